@@ -14,7 +14,7 @@ pub use pxpl5_run::Experiment;
 /// ```
 /// use pxpl5::prelude::*;
 ///
-/// // A run of one field shows nothing. The error keeps what was observed.
+/// // A run of one field shows no picture. The error contains the observations of the run.
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene);
 /// match experiment.fields(1).run() {
@@ -33,7 +33,7 @@ pub use pxpl5_run::ExperimentError;
 /// let outcome: Outcome = experiment.run()?;
 /// // Slats shows a new picture in each field, with a latency of one field.
 /// assert!((outcome.latency_fields().mean - 1.0).abs() < 1e-9);
-/// // The events of the run name their boards.
+/// // Each event of the run has the board on which it happened.
 /// let first: Option<ObservedEvent> = outcome.events().find(|event| matches!(event.kind, ObservedKind::Arrived { .. }));
 /// println!("{}", first.expect("pictures were shown"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -63,7 +63,7 @@ pub use pxpl5_run::Head;
 /// let mut stepper = experiment.stepper()?;
 /// assert_eq!(stepper.step_board(Board::Renderer(0)), Pause::Reached);
 /// assert_eq!(stepper.last().map(|event| event.board), Some(Board::Renderer(0)));
-/// // The steps change no result.
+/// // A run in steps has the same results as a run without steps.
 /// let outcome = stepper.finish()?;
 /// assert_eq!(outcome.record().trace_hash(), experiment.run()?.record().trace_hash());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -87,7 +87,7 @@ pub use pxpl5_run::{PipelineEntry, PipelineSettings, Registry};
 /// use pxpl5::{Aim, Machine, PictureTimes, Record, SettingError, Setup, Source, Time, prelude::*};
 /// use std::collections::BTreeMap;
 ///
-/// // A pipeline of one's own. This one loads the firmware of another pipeline.
+/// // A new pipeline that loads the firmware of an existing pipeline.
 /// #[derive(Debug)]
 /// struct Mine(RenderingControl);
 ///
@@ -109,7 +109,7 @@ pub use pxpl5_run::{PipelineEntry, PipelineSettings, Registry};
 ///     }
 /// }
 ///
-/// // The rules say what its pictures are, and which view a part of a picture shows.
+/// // The rules define the pictures of the pipeline, and the view for which each part of a picture was drawn.
 /// impl PictureRules for Mine {
 ///     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
 ///         self.0.pictures(record, end)
@@ -161,7 +161,7 @@ pub use pxpl5_run::{Frameless, Jitp, RenderingControl, Slats};
 /// ```
 /// use pxpl5::{Code, CopySchedule, FinishedRegions, Interpolation, RegionBinning, Slats, SlatsLighting};
 ///
-/// // The settings of pipelines are fields, and their values have the names of experiment files.
+/// // A pipeline is a struct of settings. Experiment files use the same names for the values.
 /// let slats = Slats { copy: CopySchedule::Whole, binning: RegionBinning::Touched, ..Slats::split() };
 /// assert_eq!(slats.copy.to_string(), "whole");
 /// assert_eq!("touched".parse(), Ok(slats.binning));
@@ -178,7 +178,7 @@ pub use slats::CopySchedule;
 /// ```
 /// use pxpl5::{Keep, Level, Pixels};
 ///
-/// // Names are read as they are written.
+/// // Each value has a name, which can be printed and parsed.
 /// assert_eq!("cycle".parse(), Ok(Level::Cycle));
 /// assert_eq!(Pixels::Lazy.to_string(), "lazy");
 /// assert_eq!("statistics".parse(), Ok(Keep::Statistics));
@@ -194,7 +194,7 @@ pub use pxpl5_run::{Keep, Level, Pixels};
 /// let device = Reprojection::new(Warp::Rotation, Every::Line);
 /// assert_eq!(device.to_string(), "rotation every line, 100 us");
 /// assert_eq!("rotation every line, 100 us".parse(), Ok(Raster::Reprojected(device)));
-/// // The view is predicted for the middle of the time in which the picture lights.
+/// // By default, the view is predicted for the middle of the time in which the picture lights.
 /// assert_eq!(Aim::default().to_string(), "middle");
 /// ```
 pub use pxpl5_run::{Aim, Every, Raster, Reprojection, Warp};
@@ -202,7 +202,7 @@ pub use pxpl5_run::{Aim, Every, Raster, Reprojection, Warp};
 /// ```
 /// use pxpl5::{BareHost, Host};
 ///
-/// // Without a clock of the host, a run has no host time. The results are the same.
+/// // A host without a clock measures no computing time. The results are the same.
 /// assert_eq!(BareHost.seconds(), None);
 /// ```
 pub use pxpl5_run::{BareHost, Host};
@@ -217,7 +217,7 @@ pub use pxpl5_run::{BareHost, Host};
 /// // The setting `copy` has three values.
 /// let copy: &Key = slats.keys.iter().find(|key| key.name == "copy").ok_or("a key")?;
 /// assert_eq!(copy.values.to_string(), "whole, split or backup");
-/// // The largest scene is the one with which no retrace is missed.
+/// // A scene is small enough if no retrace is missed.
 /// let LimitCriterion { goal, .. } = (slats.limit)(&Default::default());
 /// assert_eq!(goal, Goal::NoMissedRetrace);
 /// # let _ = TestScene::Typical;
@@ -260,7 +260,7 @@ pub use pxpl5_run::{Cause, Fingerprint};
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), pipeline, scene).fields(60).pixels(Pixels::Off);
 /// assert!(experiment.run()?.latency().is_some());
 ///
-/// // A frame checks an assignment before it is drawn.
+/// // The method `check` refuses an assignment to a renderer that does not exist.
 /// let frame = PolicyFrame { frame: Default::default(), time: Default::default(), columns: 1, primitives: vec![9], renderers: 5 };
 /// let error: SettingError = frame.check(&[(RegionId(0), 5)]).expect_err("renderers 0 to 4");
 /// println!("{error}");

@@ -1,4 +1,4 @@
-//! Experiments in files, saved runs, and questions over many experiments.
+//! Experiments in files, saved runs, and studies of many experiments.
 
 /// ```
 /// use pxpl5::{Settings, prelude::*};
@@ -21,7 +21,7 @@ pub use pxpl5_lab::{ExperimentFile, Plan, Settings};
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
 /// let mut stepper = experiment.stepper()?;
 /// stepper.step_period();
-/// // The text of a file. Later, the same experiment continues from the saved field.
+/// // The text of a saved run. The same experiment can later continue from the saved field.
 /// let text = Snapshot::of_stepper(&stepper)?.to_text();
 /// let saved = Snapshot::read(&text, "saved")?;
 /// let other = saved.resume(&experiment.clone().seed(2), "saved");
@@ -35,7 +35,7 @@ pub use pxpl5_lab::Snapshot;
 /// ```
 /// use pxpl5::prelude::*;
 ///
-/// // 10 % more of each resource, by the analytic model.
+/// // The latency with 10 % more of each resource, computed by the analytic model.
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
 /// for WhatIf { resource, latency_ms: [before, after], .. } in what_if(&registry(), &experiment)? {
@@ -49,7 +49,7 @@ pub use pxpl5_lab::{WhatIf, what_if};
 /// use pxpl5::StudyError;
 /// use pxpl5::pipeline_figures::PIPELINE_FIGURES;
 ///
-/// // The papers' drawings of pipelines, as runs. An invalid setting or a run that fails is one kind of error.
+/// // A drawing of a pipeline in a paper, repeated as a run. One error type covers invalid settings and failed runs.
 /// let run = || -> Result<_, StudyError> { PIPELINE_FIGURES[0].run() };
 /// assert!(run().is_ok());
 /// ```
@@ -59,7 +59,7 @@ pub use pxpl5_lab::StudyError;
 /// use pxpl5::prelude::*;
 /// use pxpl5::Workstation;
 ///
-/// // The pixels of all regions, computed by two threads beside the simulation.
+/// // Two threads compute the pixels of all regions during the simulation.
 /// let scene = scene::builtin("full-screen:1")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(12);
 /// let outcome = experiment.pixels(Pixels::All).host(Workstation::with_threads(2)).run()?;
@@ -84,7 +84,7 @@ pub use pxpl5_lab::StopFlag;
 /// ```
 /// use pxpl5::{MachineConfig, Suitability, registry, suitability};
 ///
-/// // Pipelines that can run on a machine, or the reason why not.
+/// // For each pipeline, the reason why the machine cannot run it, or `None`.
 /// let of_slats: Vec<Suitability> = suitability(&registry(), &MachineConfig::slats());
 /// assert!(!of_slats.is_empty());
 /// ```
@@ -95,7 +95,7 @@ pub use pxpl5_lab::{Suitability, registry, suitability};
 ///
 /// let text = "pipeline = \"slats\"\nscene = \"mig\"\ntriangles = 100\nhead.motion = \"pan:90\"\n";
 /// let plan = ExperimentFile::parse(text, "an experiment")?.resolve()?;
-/// // The choices of a plan are data.
+/// // The choices of a plan are public fields.
 /// let (scene, outputs): (&SceneChoice, &Outputs) = (&plan.scene, &plan.output);
 /// assert_eq!(scene.triangles, Some(100));
 /// println!("{outputs:?}");

@@ -229,7 +229,6 @@ pub mod prelude {
     pub use glam::{DQuat, DVec3, Vec3};
 }
 
-/// Compiles and runs the examples of the README.
 #[cfg(all(doctest, feature = "lab", feature = "views", feature = "volume", feature = "arp"))]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -26,7 +26,7 @@ pub use pxpl5_machine::MachineConfig;
 /// assert!(arrivals.len() >= 20 && swaps.len() >= 2);
 /// let stages: Vec<StageSpan> = outcome.stages();
 /// assert!(stages.iter().all(|stage| stage.end.is_none_or(|end| end >= stage.begin)));
-/// // The pictures that one frame buffer showed, and regions that came too late.
+/// // The pictures that one frame buffer showed, and the regions that arrived too late.
 /// let shown: Vec<Shown> = outcome.record().shown_by(swaps[0].port);
 /// let late: &[LateRegion] = &outcome.tally().first_late_regions;
 /// assert!(!shown.is_empty() && late.is_empty());
@@ -105,7 +105,7 @@ pub use pxpl5_machine::Optimization;
 /// use pxpl5::{MachineConfig, ParameterInfo, ParameterTable, Provenance, Value};
 ///
 /// let machine = MachineConfig::small_hmd();
-/// // A table is read by names too. Each entry states where its value comes from.
+/// // An entry of a table can also be read by its name. Each entry has the origin of its value.
 /// let word: &ParameterInfo = machine.ring.entries()[0].info;
 /// assert_eq!(machine.ring.get(word.name)?, word.papers);
 /// assert_eq!("published".parse(), Ok(Provenance::Published));
@@ -120,7 +120,7 @@ pub use pxpl5_sim::parameters::{ParameterInfo, ParameterTable, Provenance, Value
 /// // An error names the file, the line, the key, the expected value and the found value.
 /// let key: SettingError = ExperimentFile::parse("pipelin = \"slats\"\n", "mine.toml").expect_err("no such key");
 /// assert_eq!(key.to_string(), "mine.toml, line 1: there is no key `pipelin`; did you mean `pipeline`?");
-/// // An unknown name has a nearest valid name. A text in a wrong form has an expected form.
+/// // For an unknown name, the error has the nearest valid name. For a malformed text, it has the expected form.
 /// let name: SettingError = "cicle".parse::<Level>().expect_err("no level");
 /// assert_eq!((name.kind, &*name.nearest), (SettingErrorKind::UnknownName, "cycle"));
 /// let text: SettingError = "gpu".parse::<Board>().expect_err("no board");
@@ -144,7 +144,7 @@ pub use pxpl5_sim::parameters::Parameter;
 /// # #[cfg(feature = "volume")] {
 /// use pxpl5::{PathSettings, volume::VolumeSettings};
 ///
-/// // Texts change the settings of a volume by path. Numbers of tables have the range of their source.
+/// // A setting of a volume is changed by its path. The error for an unknown path contains the nearest path.
 /// let mut settings = VolumeSettings::paper();
 /// settings.assign("clip.variant = hyperbolic", "--set")?;
 /// let error = settings.set("clip.varient", "hyperbolic", "--set").expect_err("no such path");
@@ -157,7 +157,7 @@ pub use pxpl5_sim::parameters::PathSettings;
 /// ```
 /// use pxpl5::{CodeVersion, PRESETS, Preset};
 ///
-/// // The machines of the papers.
+/// // The presets include the machines of the papers.
 /// let preset: Preset = "small-hmd".parse()?;
 /// assert!(PRESETS.contains(&preset) && preset.about.contains("TR94"));
 /// assert_eq!("scheduled".parse(), Ok(CodeVersion::Scheduled));
@@ -170,7 +170,7 @@ pub use pxpl5_gp::CodeVersion;
 /// ```
 /// use pxpl5::{FrameBufferConfig, HiResConfig, LcdConfig, MachineConfig, NtscDisplay, OledConfig, Panel, PanelConfig};
 ///
-/// // The same machine with one of five displays.
+/// // Five displays that a machine can have.
 /// let machine = MachineConfig::small_hmd().with_display(OledConfig::PAPERS);
 /// assert!(machine.check().is_ok());
 /// let names = [
@@ -203,11 +203,11 @@ pub use pxpl5_sim::{Span, Time, TraceHash};
 /// ```
 /// use pxpl5::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 ///
-/// // On a machine with one stereo display, surfaces are eyes.
+/// // On a machine with one stereo display, each surface is the picture of an eye.
 /// assert_eq!(SurfaceId::from(Eye::Right), SurfaceId(1));
 /// assert_eq!("right".parse(), Ok(Eye::Right));
 /// assert_eq!(PeriodNumber(3).next(), PeriodNumber(4));
-/// // Pipelines number pictures and views.
+/// // Pictures and views have numbers, which can be compared.
 /// assert!(PictureNumber(1) < PictureNumber(2) && ViewNumber(1) < ViewNumber(2));
 /// ```
 pub use pxpl5_wire::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};

@@ -24,10 +24,10 @@ pub use pxpl5_measure::Measured;
 /// for part in parts {
 ///     println!("{}: {:.2} ms", part.name, part.statistics.statistics.mean);
 /// }
-/// // The left eye, the right eye and the pair, each to the end of COPY, to the swap and to the light.
+/// // Latencies of the left eye, the right eye and both, each to the end of COPY, to the swap and to the light.
 /// let eyes: &[SurfaceStatistics] = &report.latency_by_eye_ms;
 /// assert_eq!(eyes.len(), 3 * 3);
-/// // The scene is light enough.
+/// // The scene is small enough for the pipeline, so there is no warning.
 /// let heavy: Option<&TooHeavy> = report.too_heavy.as_ref();
 /// assert!(heavy.is_none());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -59,7 +59,7 @@ pub use pxpl5_measure::{Budget, EyeReport, HeadReport, ReprojectionReport};
 /// ```
 /// use pxpl5::{QUANTITIES, Quantity, prelude::*};
 ///
-/// // All quantities are in a list.
+/// // The list of all quantities that can be measured.
 /// let first: &Quantity = &QUANTITIES[0];
 /// println!("{}: {}", first.name, first.definition);
 /// let measure: Measure = "latency_ms.mean".parse()?;
@@ -78,7 +78,7 @@ pub use pxpl5_measure::{Measure, QUANTITIES, Quantity, Results};
 ///
 /// let scene = scene::builtin("full-screen:12")?;
 /// let report = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60).run()?.report();
-/// // The resources that the latency waits for, the largest share first.
+/// // The resources for which the picture waits, sorted by their share of the latency.
 /// let path: CriticalPath = report.critical_path.ok_or("pictures were shown")?;
 /// println!("limited by {}", path.limited_by);
 /// assert!(path.share(Resource::Ports) > 0.0);
@@ -149,12 +149,12 @@ pub use pxpl5_run::{DefinedStatistics, Samples, Statistics};
 ///
 /// let scene = scene::builtin("full-screen:12")?;
 /// let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).run()?;
-/// // Results cover a window after start-up. In the window, all due pictures were shown.
+/// // Results cover the display periods after the warm-up. In these periods, all due pictures were shown.
 /// let (window, due): (ResultWindow, DuePictures) = outcome.window().zip(outcome.due()).ok_or("a window")?;
 /// assert!(window.periods() > 0 && due.not_shown() == 0);
 /// let picture: &PictureTimes = outcome.complete_pictures().next().ok_or("a picture")?;
 /// assert!(picture.shown_at > picture.transform_at && picture.end == PictureResult::Shown);
-/// // The parts of a latency have definitions.
+/// // Each part of a latency has a definition in words.
 /// let part: &PartDefinition = &LATENCY_PARTS[0];
 /// println!("{part:?}");
 /// let parts: Vec<LatencyParts> = outcome.latency_parts();
@@ -171,7 +171,7 @@ pub use pxpl5_run::{
 /// use pxpl5::{HeadSum, Keep, prelude::*};
 /// use std::sync::Arc;
 ///
-/// // A run of any length in constant memory. The observer computes the errors while the run goes on.
+/// // A run in constant memory, whatever its length. The observer computes the errors during the run.
 /// let head = Head::new(Arc::new(from_fn(|_| Pose::IDENTITY)), TrackerConfig::ideal(), PredictorKind::None, 1)?;
 /// let scene = scene::builtin("full-screen:4")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(90).pixels(Pixels::Off);
@@ -186,7 +186,7 @@ pub use pxpl5_measure::HeadSum;
 /// use pxpl5::{FinalResults, Keep, ObserverFactory, StreamingObserver};
 /// use std::any::Any;
 ///
-/// // An observer that counts pictures while the run goes on.
+/// // An observer that counts pictures during the run.
 /// #[derive(Debug, Default)]
 /// struct Count(usize);
 ///
@@ -213,7 +213,7 @@ pub use pxpl5_run::{FinalResults, ObserverFactory, StreamingObserver};
 /// use pxpl5::{Raster, RasterOffsets};
 /// use std::sync::Arc;
 ///
-/// // VDRT: the raster is shifted by the error of the pose.
+/// // The display shifts the picture during scan-out to correct the error of the pose (VDRT).
 /// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(seconds), ..Pose::IDENTITY });
 /// let head = Head::new(Arc::new(turn), TrackerConfig::ideal(), PredictorKind::None, 1)?.with_raster(Raster::Vdrt);
 /// let scene = scene::builtin("full-screen:4")?;

@@ -48,7 +48,7 @@ fn typical_triangles_sent_only_where_they_touch_raise_the_limit() {
 
 /// A finished region leaves through the backing store. Colours take a block of 32 bits, and depths take another block.
 #[test]
-fn a_backing_store_has_room_for_a_finished_region_or_is_refused() {
+fn a_backing_store_too_small_for_a_region_is_refused() {
     for (pipeline, bits) in [("rendering-control", 32), ("arp-full", 64)] {
         let with = |bits: u64| {
             let text = format!(
@@ -66,7 +66,7 @@ fn a_backing_store_has_room_for_a_finished_region_or_is_refused() {
 }
 
 #[test]
-fn every_machine_that_the_papers_name_goes_on_drawing() {
+fn every_machine_named_by_the_papers_runs() {
     // Machines have up to 50 GPs and 20 renderers (I3D95). Full input FIFOs must not block the pixels of their own
     // boards.
     for machine in ["small-hmd", "medium", "large"] {

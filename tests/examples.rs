@@ -30,7 +30,7 @@ fn shown(page: &str) -> String {
 }
 
 #[test]
-fn the_guide_shows_every_example_as_it_is() {
+fn the_guide_shows_every_example_unchanged() {
     let path = root().join("docs/guide/rust.md");
     let page = read(&path);
     assert!(EXAMPLES.iter().all(|name| page.contains(&format!("<!-- examples/{name}.rs -->"))));
@@ -63,7 +63,7 @@ fn number_before(line: &str, word: &str) -> f64 {
 }
 
 #[test]
-fn my_model_is_shown_by_both_pipelines_and_slats_shows_it_in_every_field() {
+fn both_pipelines_show_a_model_file_and_slats_shows_it_in_every_field() {
     let printed = printed("my_model");
     let lines: Vec<&str> = printed.lines().filter(|line| !line.starts_with("warning")).collect();
     let [rendering_control, its_pixels, slats, pixels] = lines[..] else { panic!("{printed}") };

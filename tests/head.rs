@@ -31,7 +31,7 @@ fn plan(settings: &[(&str, &str)]) -> Plan {
 }
 
 #[test]
-fn an_experiment_file_gives_the_numbers_of_the_comparison() {
+fn an_experiment_file_gives_the_same_numbers_as_the_comparison() {
     let shared = [
         ("scene", "full-screen:2"),
         ("fields", "40"),
@@ -98,7 +98,7 @@ fn is_wall(picture: &image::RgbImage, x: u32, y: u32) -> bool {
 }
 
 #[test]
-fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
+fn a_shifted_raster_shows_an_edge_at_its_position_when_each_line_lights() {
     const FIELD: PeriodNumber = PeriodNumber(20);
     let pan = Pan::at(30.0);
     let view = Hmd::unc();
@@ -124,7 +124,7 @@ fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
 }
 
 #[test]
-fn a_film_on_a_shifted_raster_shows_the_pictures_of_a_run_on_it() {
+fn a_film_with_a_shifted_raster_shows_the_pictures_of_its_run() {
     let mut bytes = Vec::new();
     Film::new(panned(40.0, Raster::Vdrt, 30), PeriodNumber(10), 3, FilmSurfaces::One(Eye::Left.into()))
         .write(&[], &mut bytes)
@@ -187,7 +187,7 @@ fn poses_in_the_world_stay_and_poses_of_the_scene_begin_at_its_start() {
 }
 
 #[test]
-fn a_place_is_part_of_the_settings_only_if_it_is_not_the_usual_one() {
+fn a_place_is_written_to_settings_only_if_it_is_not_the_default() {
     let usual = [("pipeline", "slats"), ("scene", "room"), ("head.motion", "pan:40")];
     let hash = |more: &[(&str, &str)]| plan(&[&usual[..], more].concat()).fingerprint();
     assert_eq!(hash(&[("head.place", "scene")]), hash(&[]));

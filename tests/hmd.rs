@@ -17,7 +17,7 @@ fn report(settings: &[&str]) -> Report {
 /// A turn by an angle moves the middle of the picture by the focal length times the tangent of the angle. The focal
 /// length is half the width divided by the tangent of half the field of view. The ratio is tan 45 / tan 30 = 1.732.
 #[test]
-fn the_error_in_the_middle_goes_with_the_focal_length() {
+fn the_error_in_the_middle_is_proportional_to_the_focal_length() {
     let centre = |settings: &[&str]| {
         let error = report(settings).head.expect("a tracked head").error;
         let fields: Vec<f64> = error.by_field.iter().map(|field| field.centre_px).filter(|px| px.is_finite()).collect();

@@ -158,7 +158,7 @@ fn j4_the_plates_slant_as_the_old_well_does() {
 }
 
 #[test]
-fn a_picture_is_seen_as_it_is_by_a_still_head() {
+fn a_still_head_sees_no_distortion() {
     let outcome = under_a_pan(Viewpoint::Strip, true);
     let picture = image::RgbImage::from_fn(640, 240, |x, y| image::Rgb([x as u8, y as u8, (x / 3) as u8]));
     let still = Still(Pose::IDENTITY);
@@ -193,7 +193,7 @@ fn beside_strips(interpolation: Interpolation) -> [f64; 3] {
 }
 
 #[test]
-fn places_on_the_screen_are_off_at_the_edge_and_positions_in_the_view_are_not() {
+fn interpolation_on_the_screen_is_wrong_at_the_edge_and_in_the_view_is_not() {
     let screen = beside_strips(Interpolation::Screen);
     let view = beside_strips(Interpolation::View);
     println!("dual display list, left edge, middle, right edge: screen {screen:?} view {view:?}");
@@ -205,7 +205,7 @@ fn places_on_the_screen_are_off_at_the_edge_and_positions_in_the_view_are_not() 
 }
 
 #[test]
-fn all_combinations_of_viewpoint_and_racing_are_in_time_and_racing_saves_a_field() {
+fn racing_saves_a_field_and_all_combinations_with_viewpoints_are_in_time() {
     for pair in Jitp::all().chunks(2) {
         let [plain, racing] = [pair[0], pair[1]].map(|jitp| run(jitp, perfect(Pan::at(PAN)), 60));
         for outcome in [&plain, &racing] {
@@ -219,7 +219,7 @@ fn all_combinations_of_viewpoint_and_racing_are_in_time_and_racing_saves_a_field
 }
 
 #[test]
-fn lines_that_come_too_late_are_counted_and_nothing_breaks() {
+fn late_lines_are_counted_without_an_error() {
     // For each line, 417 triangles take a slave 9 ms, but only 12 x 63.6 us are available.
     let mig = builtin("mig").expect("built in");
     let outcome = Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Strip, true), mig).fields(40).run();
@@ -245,7 +245,7 @@ fn more_renderers_allow_more_triangles_in_a_line() {
 }
 
 #[test]
-fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
+fn the_error_at_90_ms_is_1_8_times_the_error_at_50_ms() {
     for seed in 1..=4 {
         let motion = Synthetic::recorded_use(seed);
         let [of_90_ms, of_50_ms] = [90, 50].map(|ms| LatencyCurve::of(&motion, ms, 120, 1.0).mean_px());
@@ -265,7 +265,7 @@ fn latency_and_error(pipeline: impl Pipeline + 'static) -> (f64, f64) {
 }
 
 #[test]
-fn errors_of_pipelines_are_as_their_latencies_from_head_to_light() {
+fn errors_of_pipelines_are_ordered_as_their_head_to_light_latencies() {
     let control = latency_and_error(RenderingControl::stereo());
     let slats = latency_and_error(Slats::split());
     // A frame of Rendering Control is visible for two fields, on average half a field later than its first light.
@@ -275,7 +275,7 @@ fn errors_of_pipelines_are_as_their_latencies_from_head_to_light() {
 }
 
 #[test]
-fn a_perfect_tracker_and_a_still_head_leave_no_error() {
+fn a_still_head_with_an_ideal_tracker_has_no_error() {
     let outcome = run(Slats::split(), perfect(Still(Pose::at(DVec3::new(0.3, 0.1, 0.2)))), 60);
     let errors = PixelErrors::of(&outcome);
     assert!(errors.evaluated > 500 && errors.pixels.max < 1e-6, "{errors:?}");
@@ -311,7 +311,7 @@ fn the_raster_offset_removes_a_pan_in_the_middle_and_leaves_the_edges() {
 }
 
 #[test]
-fn frameless_blocks_come_once_a_pass_and_are_half_a_pass_old() {
+fn frameless_blocks_are_drawn_once_per_pass_and_are_half_a_pass_old() {
     let frameless = Frameless::new();
     let outcome = run(frameless, perfect(Pan::at(20.0)), 60);
     let mut of_block: BTreeMap<u16, Vec<f64>> = BTreeMap::new();
@@ -332,7 +332,7 @@ fn frameless_blocks_come_once_a_pass_and_are_half_a_pass_old() {
 }
 
 #[test]
-fn every_pipeline_goes_on_when_the_tracker_fails() {
+fn every_pipeline_continues_when_the_tracker_fails() {
     let faults = [
         vec![TrackerFault::Silence { from_ps: 0 }],
         vec![TrackerFault::Silence { from_ps: 300 * PS_PER_MS }],
@@ -365,7 +365,7 @@ fn every_pipeline_goes_on_when_the_tracker_fails() {
 }
 
 #[test]
-fn the_order_of_simultaneous_events_decides_nothing() {
+fn the_order_of_simultaneous_events_changes_nothing() {
     let pipelines: [Arc<dyn Pipeline>; 3] = [
         Arc::new(Jitp::new(Viewpoint::Strip, true)),
         Arc::new(Jitp::new(Viewpoint::Dual(Interpolation::Screen), false)),
@@ -388,7 +388,7 @@ fn trace_hash(experiment: &Experiment) -> TraceHash {
 }
 
 #[test]
-fn a_comparison_has_a_row_for_every_pipeline_and_just_in_time_comes_nearest_to_the_ideal() {
+fn a_comparison_has_all_pipelines_and_just_in_time_pixels_have_the_smallest_error() {
     let all = comparison(90).run(|_, _| ()).expect("90 fields");
     let names: Vec<_> = all.pipelines.iter().map(|row| row.pipeline.as_str()).collect();
     println!("{names:?}");
@@ -423,7 +423,7 @@ fn comparison(fields: u64) -> CompareQuery {
 }
 
 #[test]
-fn what_cannot_be_compared_is_refused_with_what_was_expected() {
+fn incomparable_settings_are_refused_with_the_expected_values() {
     for (text, says) in [
         ("pan:fast", "such as pan:200"),
         ("pan:fast", "`fast`"),

@@ -57,7 +57,7 @@ fn the_head_on_the_largest_machine_is_limited_by_one_renderer() {
 
 /// The followed latency is that of the report: from the start of TRANSFORM to the retrace.
 #[test]
-fn the_chain_is_as_long_as_the_latency() {
+fn the_links_of_the_critical_path_add_up_to_the_latency() {
     let report = report("full-screen:12", (13, 5), 60);
     let path = report.critical_path.expect("pictures were shown");
     let statistics = report.latency_ms.statistics;

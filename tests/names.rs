@@ -46,7 +46,7 @@ where
 }
 
 #[test]
-fn every_public_name_is_read_as_it_is_written() {
+fn every_public_name_is_parsed_as_printed() {
     // Settings of experiments.
     round_trip(Level::ALL);
     listed(Pixels::ALL);
@@ -117,7 +117,7 @@ fn every_pipeline_and_display_of_the_papers_is_found_by_its_name() {
 
 /// Names of volumetric displays.
 #[test]
-fn every_choice_of_volumes_is_read_as_it_is_written() {
+fn every_choice_of_volumes_is_parsed_as_printed() {
     use pxpl5::volume::spatialgl::{BinTolerance, Binning, Combine, Coverage, Rotation, Strobes, TieRule};
     listed(TieRule::ALL);
     listed(Binning::ALL);
@@ -129,7 +129,7 @@ fn every_choice_of_volumes_is_read_as_it_is_written() {
 }
 
 #[test]
-fn a_preset_is_a_machine() {
+fn every_preset_name_gives_a_machine() {
     let preset: Preset = "slats-1995".parse().expect("listed");
     assert_eq!((preset.name, preset.to_string().as_str()), ("slats-1995", "slats-1995"));
     let error = "slats1995".parse::<Preset>().expect_err("not listed");

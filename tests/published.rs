@@ -74,7 +74,7 @@ fn the_bins_hold_7_700_triangles_that_cover_the_screen() {
 }
 
 #[test]
-fn triangles_touch_fewer_than_1_3_regions_in_the_mean_of_our_scenes() {
+fn triangles_of_our_scenes_touch_fewer_than_1_3_regions_on_average() {
     // FIXME(accuracy): the published value is 1.3. The mig alone gives 1.4, and the head gives 1.02.
     within("8", 1.1, 1.25);
 }
@@ -93,13 +93,13 @@ fn twenty_field_regions_take_eleven_region_times_and_ten_take_five() {
 }
 
 #[test]
-fn the_limits_that_parameters_were_fitted_to_come_out_exactly() {
+fn limits_used_for_fitting_are_reproduced_exactly() {
     within("12", 110.0, 110.0);
     within("14", 100.0, 100.0);
 }
 
 #[test]
-fn the_copy_optimisation_raises_the_limit_by_seven_triangles_too_many() {
+fn the_copy_optimisation_raises_the_limit_by_seven_triangles_more_than_published() {
     // FIXME(accuracy): the published value is 140.
     within("13", 146.0, 147.0);
 }
@@ -110,7 +110,7 @@ fn the_first_copy_of_a_full_field_begins_after_about_12_8_ms() {
 }
 
 #[test]
-fn the_rig_sees_what_the_paper_measured_with_its_photodiode_low_on_the_screen() {
+fn with_a_photodiode_low_on_the_screen_the_rig_measures_the_published_latency() {
     // The published range is 54 to 57 ms, without the position of the photodiode. Both copies take 31.2 ms. The wait
     // for the retrace is 8.3 ms on average over all phases. A field has 240 lines of 63.6 us.
     let [first, last] = row("17").unprinted.expect("the line is not printed");
@@ -120,13 +120,13 @@ fn the_rig_sees_what_the_paper_measured_with_its_photodiode_low_on_the_screen() 
 }
 
 #[test]
-fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
+fn the_error_at_90_ms_is_1_8_times_the_error_at_50_ms() {
     // The ratio of the latencies, except for the curvature of the motion within them.
     within("18", 1.75, 1.8);
 }
 
 #[test]
-fn tracker_and_rendering_together_are_the_parts_that_were_measured_one_by_one() {
+fn tracker_and_rendering_latencies_equal_the_sum_of_the_measured_parts() {
     for (id, rendering) in [("19", row("4").simulated), ("19b", row("9").simulated * 1001.0 / 60.0)] {
         let of = |name: &str| row(id).details.iter().find(|detail| detail.name == name).expect("listed").value;
         assert!((of("tracking") + of("rendering") - row(id).simulated).abs() < 1e-9, "{id}");
@@ -157,7 +157,7 @@ fn the_joint_sample_of_machines_lies_on_both_sides_of_the_presets() {
 }
 
 #[test]
-fn what_is_simulated_lies_in_the_interval_of_the_analytic_level_or_within_3_percent_of_it() {
+fn simulated_values_are_within_the_analytic_interval_or_3_percent_of_it() {
     // The interval was computed at the other level, so agreement is not trivial.
     for row in varied() {
         let [low, high] = row.interval.expect("every figure with a closed form has one");
@@ -178,7 +178,7 @@ fn what_is_simulated_lies_in_the_interval_of_the_analytic_level_or_within_3_perc
 }
 
 #[test]
-fn no_figure_is_out_of_reach_of_all_parameters_and_readings() {
+fn every_figure_is_within_reach_of_some_parameters_and_interpretations() {
     let out_of_reach: Vec<&str> = FIGURES.rows.iter().filter(|row| row.is_out_of_reach()).map(|row| row.id).collect();
     assert_eq!(out_of_reach, [""; 0]);
 }
@@ -195,7 +195,7 @@ fn the_analytic_level_agrees_with_the_transaction_level() {
 }
 
 #[test]
-fn accuracy_md_is_what_these_runs_give() {
+fn accuracy_md_has_the_results_of_these_runs() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/ACCURACY.md");
     let kept = std::fs::read_to_string(path).expect("ACCURACY.md is part of the project");
     let alternatives = alternatives_with(&BENCH, |_, _| {}).expect("every experiment runs on its preset");
@@ -203,7 +203,7 @@ fn accuracy_md_is_what_these_runs_give() {
 }
 
 #[test]
-fn behind_faces_a_turn_takes_as_long_with_10_000_triangles_as_with_10() {
+fn with_faces_the_latency_of_a_rotation_is_equal_for_10_and_10_000_triangles() {
     let rows = &FIGURES.families[0].rows;
     let of_e1: Vec<_> = rows.iter().filter(|row| row.experiment == "E1").collect();
     assert_eq!((of_e1[0].id, of_e1[0].simulated), ("A4", 0.0), "picoseconds");

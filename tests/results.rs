@@ -80,7 +80,7 @@ fn racing() -> [Outcome; 3] {
 }
 
 #[test]
-fn where_there_is_no_swap_the_parts_are_those_of_the_part_that_meets_the_beam() {
+fn without_a_swap_the_stages_belong_to_the_strip_that_meets_the_beam() {
     for outcome in racing() {
         let stages = outcome.stages();
         for (parts, times) in outcome.latency_parts().iter().zip(outcome.complete_pictures()) {
@@ -124,7 +124,7 @@ fn part(name: &str) -> usize {
 }
 
 #[test]
-fn a_part_is_the_time_between_the_marks_that_define_it() {
+fn a_stage_is_the_time_between_its_two_marks() {
     let outcome = stereo();
     for (parts, times) in stereo().latency_parts().iter().zip(stereo().steady_pictures()) {
         let copied_at = times.copied_at.expect("copied");
@@ -145,7 +145,7 @@ fn mean_ms(report: &Report, of: &str, until: &str) -> f64 {
 }
 
 #[test]
-fn the_latencies_of_the_eyes_lie_between_their_events() {
+fn the_latencies_of_the_eyes_equal_the_times_between_their_events() {
     let outcome = stereo();
     let report = outcome.report();
     // The latency of a frame is the latency of the pair: from its first TRANSFORM to the swap.
@@ -163,7 +163,7 @@ fn the_latencies_of_the_eyes_lie_between_their_events() {
 }
 
 #[test]
-fn csv_opens_with_its_names_and_holds_the_latency_of_the_report() {
+fn csv_starts_with_column_names_and_has_the_latency_of_the_report() {
     for outcome in &all() {
         let text = csv(outcome);
         let report = outcome.report();
@@ -198,7 +198,7 @@ fn row(names: &[&str], line: &str) -> BTreeMap<String, Option<u64>> {
 
 #[cfg(feature = "parquet")]
 #[test]
-fn parquet_holds_what_csv_holds() {
+fn parquet_equals_csv() {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
     let mut bytes = Vec::new();
@@ -348,7 +348,7 @@ fn counters_stay_within_the_machine() {
 }
 
 #[test]
-fn recorded_messages_are_those_that_the_boards_counted() {
+fn recorded_messages_equal_the_counters_of_the_boards() {
     for outcome in &all() {
         let machine = outcome.record();
         let traffic = outcome.observation().traffic.as_deref().expect("recorded");
@@ -369,7 +369,7 @@ fn recorded_messages_are_those_that_the_boards_counted() {
 }
 
 #[test]
-fn recording_changes_nothing() {
+fn recording_traffic_changes_no_result() {
     let quiet = experiment(Slats::split(), "full-screen:100", 30).pixels(Pixels::Off).run().expect("runs");
     assert_eq!(quiet.record().trace_hash(), split().record().trace_hash());
     assert!(has_messages(&split()));

@@ -97,7 +97,7 @@ fn assert_same(whole: &Outcome, pieces: &Outcome, name: &str) {
 }
 
 #[test]
-fn every_pipeline_on_every_display_runs_in_pieces_as_in_one_go() {
+fn stepping_equals_one_run_for_every_pipeline_on_every_display() {
     let registry = registry();
     let mut ran = BTreeSet::new();
     for (pipeline, display) in registry
@@ -123,7 +123,7 @@ fn every_pipeline_on_every_display_runs_in_pieces_as_in_one_go() {
 }
 
 #[test]
-fn a_tracked_head_with_prediction_is_followed_in_pieces_as_in_one_go() {
+fn stepping_equals_one_run_for_a_tracked_head_with_prediction() {
     let settings = ["pipeline=slats", "scene=full-screen:2", "fields=7", "head.motion=synthetic:3"];
     let experiment = experiment(&settings).expect("it can be built");
     assert_same(&outcome(experiment.run()), &in_pieces(&experiment, 9), "head");
@@ -165,7 +165,7 @@ fn an_event_is_taken_at_its_time_and_named_with_its_board() {
 
 /// The picture at an instant has all pixels that the beam has drawn by then, and none that it draws later.
 #[test]
-fn what_has_been_drawn_so_far_is_what_the_whole_run_says_of_that_instant() {
+fn partial_pictures_equal_those_of_the_whole_run() {
     let whole = outcome(slats().run());
     let mut stepper = slats().stepper().expect("it can be built");
     let mut lit = 0;
@@ -184,7 +184,7 @@ fn what_has_been_drawn_so_far_is_what_the_whole_run_says_of_that_instant() {
 
 /// The levels of a FIFO are compared with the record of traffic, whose sums cover the whole run.
 #[test]
-fn a_fifo_holds_what_the_record_of_traffic_says() {
+fn the_contents_of_a_fifo_agree_with_the_record_of_traffic() {
     let whole = outcome(slats().run());
     let traffic = whole.record().observation().traffic.as_deref().expect("it was recorded");
     let courses: Vec<_> = (0..4).map(|renderer| traffic.fifo_words(renderer)).collect();
@@ -203,7 +203,7 @@ fn a_fifo_holds_what_the_record_of_traffic_says() {
 }
 
 #[test]
-fn an_array_whose_commands_have_all_started_is_what_was_sent() {
+fn an_array_shows_all_sent_commands_after_the_last_one_started() {
     let mut stepper = slats().stepper().expect("it can be built");
     stepper.run_to(stepper.record().tick(PeriodNumber(4)));
     let started = |stepper: &Stepper, at: Time| stepper.record().renderers()[0].look(at).fifo_words == Some(0);
@@ -219,7 +219,7 @@ fn an_array_whose_commands_have_all_started_is_what_was_sent() {
 }
 
 #[test]
-fn pixels_come_into_an_array_one_command_after_the_other() {
+fn pixels_appear_in_an_array_command_by_command() {
     let mut stepper = slats().stepper().expect("it can be built");
     stepper.run_to(stepper.record().tick(PeriodNumber(4)));
     let mut enabled = BTreeSet::new();
@@ -256,7 +256,7 @@ fn breakpoints_show_registers_and_change_no_trace() {
 }
 
 #[test]
-fn a_stepper_stands_at_the_end_and_says_so() {
+fn a_stepper_stops_at_the_end_and_reports_it() {
     let mut stepper = slats().stepper().expect("it can be built");
     assert_eq!(stepper.run_to(stepper.end() + Span(1)), Pause::End);
     assert_eq!(stepper.now(), stepper.end());

@@ -47,7 +47,7 @@ fn a_table_over_renderers_takes_fifteen_lines() {
 
 /// A panel of 1,080 x 1,200 pixels and 90 Hz for each eye.
 #[test]
-fn a_display_of_ones_own_takes_ten_lines() {
+fn a_custom_display_takes_ten_lines() {
     let panel = PanelConfig { width: 1_080, height: 1_200, refresh_hz: 90, ports: 8, ..PanelConfig::PAPERS };
     let machine = MachineConfig::small_hmd().with_renderers(20).with_display(panel);
     let scene = scene::builtin("full-screen:12").expect("built in");
@@ -58,7 +58,7 @@ fn a_display_of_ones_own_takes_ten_lines() {
 }
 
 #[test]
-fn the_programs_are_as_short_as_their_names_say() {
+fn the_programs_have_at_most_the_stated_number_of_lines() {
     let source = include_str!("typed.rs");
     for (name, most) in [("takes_forty_lines", 40), ("takes_fifteen_lines", 15), ("takes_ten_lines", 10)] {
         let (_, program) = source.split_once(&format!("{name}() {{\n")).expect("a program");
@@ -69,7 +69,7 @@ fn the_programs_are_as_short_as_their_names_say() {
 
 /// The events of a run are in the order of time, name their boards, and agree with the run's counters.
 #[test]
-fn events_name_their_boards_in_the_order_of_time() {
+fn events_have_their_boards_and_are_in_order_of_time() {
     let scene = scene::builtin("full-screen:12").expect("built in");
     let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
     let outcome = experiment.pixels(Pixels::Off).record_traffic(true).run().expect("it fits");

@@ -1,4 +1,5 @@
-//! The display on the ring: a port for each memory, and for each eye an orientation register and a picture.
+//! The address recalculation display as a board on the ring: a port for each memory, and for each eye an orientation
+//! register and a picture.
 
 use crate::address::Footprint;
 use crate::config::ArpConfig;
@@ -18,7 +19,6 @@ use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, Word};
 use std::collections::VecDeque;
 use std::sync::OnceLock;
 
-/// The display memories and the orientation register of one eye.
 #[derive(Debug)]
 struct EyeBoards {
     memories: Vec<DisplayMemory>,
@@ -60,7 +60,6 @@ pub struct AddressRecalculationPipeline {
 }
 
 impl AddressRecalculationPipeline {
-    /// Returns the configuration of the display.
     #[must_use]
     pub const fn config(&self) -> &ArpConfig {
         &self.optics.config
@@ -192,7 +191,6 @@ impl AddressRecalculationPipeline {
     }
 }
 
-/// Name of the display on the command line.
 const NAME: &str = "arp";
 
 impl Display for AddressRecalculationPipeline {

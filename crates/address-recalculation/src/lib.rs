@@ -111,7 +111,6 @@ pub use scan::{FaceScan, Latch};
 pub use texel::{DEPTH_FARTHEST, FaceSet, TexelFormat};
 pub use timing::{ArpTiming, ScanTiming};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

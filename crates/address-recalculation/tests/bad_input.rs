@@ -10,7 +10,7 @@ fn refusal(timing: ArpTiming) -> String {
 }
 
 #[test]
-fn numbers_are_refused_by_name() {
+fn invalid_numbers_are_refused_with_their_name() {
     let papers = ArpTiming::PAPERS;
     let cases = [
         (ArpTiming { face_texels: 200, ..papers }, "arp.face_texels: expected a multiple of 128, found 200"),
@@ -49,7 +49,7 @@ fn table(text: &str) -> Result<Lens, String> {
 }
 
 #[test]
-fn a_table_of_vectors_is_read_and_its_lengths_do_not_matter() {
+fn a_table_of_vectors_is_read_whatever_the_lengths_of_the_vectors() {
     let lens = table("# two pixels\n\n  1 0 -1\n-2e0 0 -2\n").expect("two vectors");
     assert_eq!(lens.view(&TINY, 0, 0), [1.0, 0.0, -1.0]);
     lens.check(&TINY).expect("fits");
@@ -58,7 +58,7 @@ fn a_table_of_vectors_is_read_and_its_lengths_do_not_matter() {
 }
 
 #[test]
-fn a_table_has_a_vector_for_each_pixel_row_by_row() {
+fn a_table_of_vectors_lists_the_pixels_row_by_row() {
     let picture = LensPicture { width: 3, height: 2, ..TINY };
     let text: Vec<String> = (1..=6).map(|n| format!("{n} 0 -1\n")).collect();
     let read = |lines: &[String]| Lens::read(Cursor::new(lines.concat()), &picture).map_err(|error| error.to_string());
@@ -87,7 +87,7 @@ fn a_lens_without_slope_and_a_picture_without_angle_are_refused() {
 }
 
 #[test]
-fn a_table_that_cannot_be_read_is_refused_by_its_line() {
+fn an_invalid_table_of_vectors_is_refused_with_its_line() {
     let numbers = "expected three numbers, finite and not all 0, found";
     let cases = [
         ("1 0 -1\n1 0\n", format!("arp.lens table, line 2: {numbers} 1 0")),
@@ -107,7 +107,7 @@ fn a_table_that_cannot_be_read_is_refused_by_its_line() {
 
 proptest! {
     #[test]
-    fn no_table_makes_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+    fn no_text_of_a_table_causes_a_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
         let _ = Lens::read(Cursor::new(bytes), &TINY);
     }
 
@@ -132,7 +132,7 @@ proptest! {
     }
 
     #[test]
-    fn no_lens_makes_it_panic(k1 in any::<f64>(), k2 in any::<f64>(), horizontal_deg in any::<f64>()) {
+    fn no_text_of_a_lens_causes_a_panic(k1 in any::<f64>(), k2 in any::<f64>(), horizontal_deg in any::<f64>()) {
         let picture = LensPicture { horizontal_deg, ..TINY };
         let lens = Lens::Radial { k1, k2 };
         if lens.check(&picture).is_ok() {

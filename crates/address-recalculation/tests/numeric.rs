@@ -139,7 +139,7 @@ fn cases_9_and_10_corners_and_edges() {
 }
 
 #[test]
-fn case_11_what_is_no_direction_has_no_texel() {
+fn case_11_an_invalid_direction_has_no_texel() {
     assert_eq!(BARE.texel([0.0; 3]), None);
     assert_eq!(BARE.texel([f64::NAN, 1.0, 0.0]), None);
     assert_eq!(BARE.texel([f64::INFINITY, 1.0, 0.0]), None);
@@ -224,7 +224,7 @@ fn worst_address(bits: u64) -> f64 {
 /// Checks address errors for several word lengths. The printed errors come from another sample, so each limit is 1.5
 /// times as large.
 #[test]
-fn case_15_addresses_err_by_as_much_as_their_words_are_short() {
+fn case_15_address_errors_follow_from_the_word_lengths() {
     for (bits, printed) in [(8, 5.7), (10, 1.39), (12, 0.33), (14, 0.088), (16, 0.021)] {
         let worst = worst_address(bits);
         assert!(worst <= 1.5 * printed && worst >= printed / 2.0, "{bits} bits: {worst}, printed {printed}");
@@ -326,7 +326,7 @@ fn the_life_of_a_pixel_in_the_guide() {
 /// Checks the example of the guide on a complete display: the upper left pixel of a head that looks 30 degrees to the
 /// left.
 #[test]
-fn a_display_tells_the_texels_of_a_pixel() {
+fn a_display_returns_the_texels_of_a_pixel() {
     let half = 15.0_f64.to_radians();
     let turned = Orientation::from_quaternion([0.0, half.sin(), 0.0, half.cos()]).expect("a rotation");
     let footprint = ArpConfig::IDEAL.footprint(0, 0, &turned).expect("valid").expect("in the picture");
@@ -340,7 +340,7 @@ fn a_display_tells_the_texels_of_a_pixel() {
 }
 
 #[test]
-fn a_lens_is_read_from_its_text() {
+fn a_lens_is_parsed_from_text() {
     let read = |text: &str| text.parse::<Lens>();
     assert_eq!(read("flat"), Ok(Lens::Flat));
     assert_eq!(read("equidistant"), Ok(Lens::Equidistant));

@@ -76,7 +76,7 @@ fn a_walk_along_cells_depends_on_its_lane_only_near_their_edges() {
 }
 
 #[test]
-fn a_still_eye_needs_nothing_whatever_the_head_does() {
+fn an_eye_that_stays_in_place_needs_no_updates_however_the_head_turns() {
     let mut cells = Cells::new(&EQUAL_RINGS, square(5), true);
     assert_eq!(cells.frame(at(1.0, 2.0)).due, [true; 4]);
     for _ in 0..100 {
@@ -87,7 +87,7 @@ fn a_still_eye_needs_nothing_whatever_the_head_does() {
 /// The margin before a new assignment lies between 0 and D_3. For a = 5 m, D_3 is at least 46.0 mm (15 m x 2 sin(theta
 /// / 2)).
 #[test]
-fn to_and_fro_across_a_border_deals_once_at_most() {
+fn moving_to_and_fro_across_a_border_assigns_objects_at_most_once() {
     let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
     assert!((1e3 * threshold.way(15.0) - 46.02).abs() < 0.01);
     for start in [0, 7, 13] {
@@ -99,7 +99,7 @@ fn to_and_fro_across_a_border_deals_once_at_most() {
 }
 
 #[test]
-fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
+fn a_jump_of_a_kilometre_assigns_objects_once_and_leaves_no_tear() {
     let mut cells = Cells::new(&EQUAL_RINGS, square(300), true);
     cells.frame(at(1.0, 2.0));
     let update = cells.frame(at(1_001.0, 2.0));
@@ -113,7 +113,7 @@ fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
 /// With the smallest theta, every memory is drawn in every frame. With the largest theta, no memory is redrawn within a
 /// cell.
 #[test]
-fn thresholds_at_their_ends() {
+fn thresholds_are_accepted_at_both_limits() {
     let walk_with = |theta_deg| {
         let mut cells = Cells::new(&PriorityTiming { theta_deg, ..EQUAL_RINGS }, square(5), false);
         cells.frame(at(0.1, 2.0));
@@ -124,7 +124,7 @@ fn thresholds_at_their_ends() {
 }
 
 #[test]
-fn one_memory_and_eight() {
+fn policies_work_with_one_and_with_eight_memories() {
     for memories in [1, 8] {
         let mut cells = Cells::new(&PriorityTiming { memories, ..EQUAL_RINGS }, square(12), true);
         cells.frame(at(0.0, 0.0));
@@ -225,7 +225,7 @@ fn images_are_drawn_again_before_they_are_wrong() {
 
 /// With 64 frames per second, times are exact. An image that is right for two frames is drawn every second frame.
 #[test]
-fn a_memory_rests_while_its_images_are_right_until_its_next_frame() {
+fn a_memory_is_not_drawn_while_its_images_stay_correct_until_its_next_frame() {
     let timing = PriorityTiming { frame_hz: 64.0, memories: 1, ..EQUAL_RINGS };
     let mut policy = Objects::new(&timing, 2);
     let due: Vec<bool> = (0..6).map(|frame| policy.frame(frame, &[2.0 / 64.0; 2]).due[0]).collect();
@@ -250,7 +250,7 @@ fn an_object_moves_when_both_memories_are_drawn() {
 
 /// From the middle of a cell of 5 m, the slowest memory begins 17.5 m away. 17.5 m x 2 sin(theta / 2) is 53.7 mm.
 #[test]
-fn cells_are_assigned_anew_when_the_eye_leaves_the_home_cell_and_the_slowest_memory_is_due() {
+fn cells_are_assigned_again_when_the_eye_leaves_its_cell_and_the_slowest_memory_is_due() {
     let mut cells = Cells::new(&EQUAL_RINGS, square(8), false);
     let first = cells.frame(at(12.5, 12.5));
     assert!(!first.deals_anew && first.due == [true; 4], "{first:?}");
@@ -273,7 +273,7 @@ fn cells_are_assigned_anew_when_the_eye_leaves_the_home_cell_and_the_slowest_mem
 /// From the middle cell, the hall reaches three rings. The slowest of four memories is empty, and must not delay a new
 /// assignment.
 #[test]
-fn a_memory_without_cells_is_never_due_and_does_not_hold_back_a_dealing() {
+fn a_memory_without_cells_is_never_due_and_does_not_delay_an_assignment() {
     let timing = PriorityTiming { to_held_cells: 1, ..EQUAL_RINGS };
     let hall = || (0..7).flat_map(|x| (0..7).map(move |z| Cell { x, z }));
     let mut cells = Cells::new(&timing, hall(), false);
@@ -293,7 +293,7 @@ fn a_memory_without_cells_is_never_due_and_does_not_hold_back_a_dealing() {
 /// The nearest cell of ring 2 begins 5 m + 3 m behind the eye. The block's border in front is 7 m away (7.5 m to the
 /// sides), where no cell is occupied.
 #[test]
-fn distances_may_be_those_of_cells_that_hold_something() {
+fn distances_can_be_limited_to_cells_with_objects() {
     let row = || (0..7).map(|z| Cell { x: 0, z });
     let eye = at(2.5, 33.0);
     for (to_held_cells, distances) in [(0, [7.0, 12.0]), (1, [8.0, 13.0])] {

@@ -60,7 +60,7 @@ fn cases_18_and_19_size() {
 /// A8: with a disc, size never decides. With a sphere, it decides for 2 r > 1.411 c. Neither gives the printed factor
 /// of 10.
 #[test]
-fn size_never_decides_with_a_disc_and_from_1_411_distances_on_with_a_sphere() {
+fn size_decides_never_for_a_disc_and_beyond_1_411_distances_for_a_sphere() {
     let decides = |size: SizeRule, diameter: f64| {
         let threshold = Threshold { size, ..threshold() };
         threshold.max_approach(1.0, diameter / 2.0) < threshold.way(1.0)
@@ -117,7 +117,7 @@ fn places_of_the_cube() -> impl Iterator<Item = DVec3> {
 /// Seen along a corner, an edge's middle or a face's middle, the nearest direction of any face is again one of these.
 /// From an edge's middle, the opposite faces are 90 degrees away.
 #[test]
-fn angles_from_places_that_the_symmetry_of_the_cube_tells() {
+fn angles_agree_with_the_symmetry_of_the_cube() {
     for view in places_of_the_cube() {
         for face in places_of_the_cube().filter(|place| place.length() == 1.0) {
             let of_face = places_of_the_cube().filter(|place| place.dot(face) == 1.0);
@@ -137,7 +137,7 @@ fn dealing() -> CellAssignment {
 }
 
 #[test]
-fn case_22_borders_ways_and_periods() {
+fn case_22_borders_distances_and_periods() {
     let eye = at(2.0, 1.0);
     for (k, distance, way_mm, frames) in [(1, 6.0, 18.408, 2.0), (2, 11.0, 33.748, 3.0), (3, 16.0, 49.087, 3.0)] {
         near(dealing().distance(eye, k), distance, 1e-12);
@@ -165,7 +165,7 @@ fn cases_23_and_24_cells_and_their_memories() {
 /// Memory k begins outside ring q + 1 + g + ... + g^(k-2). With q = 1 and g = 2, memories 1 to 3 begin outside rings 1,
 /// 2 and 4.
 #[test]
-fn rings_that_double_begin_one_two_and_four_rings_away() {
+fn doubling_rings_begin_at_ring_one_two_and_four() {
     let doubling = CellAssignment { ring_growth: 2, ..dealing() };
     assert_eq!([0, 1, 2].map(|memory| doubling.last_ring(memory)), [1, 2, 4]);
     let memories = (0..=7).map(|ring| doubling.memory(Cell { x: -ring, z: 0 })).collect::<Vec<_>>();
@@ -277,7 +277,7 @@ fn the_distance_of_an_object_is_that_of_its_nearest_point_or_of_its_middle() {
 /// The period is infinite if the argument of the arcsine is 1 or more, and for objects that do not rotate or have no
 /// size.
 #[test]
-fn what_turns_unseen_is_right_for_ever() {
+fn an_object_that_rotates_unseen_is_always_correct() {
     let right_angle = Threshold::of_degrees(90.0);
     assert_eq!(right_angle.turn_s(2.0, 1.0, 1.0), f64::INFINITY, "2 x sin 90 / 2 is 1");
     near(right_angle.turn_s(1.0, 1.0, 1.0), 2.0 * 0.5_f64.asin(), 1e-12);
@@ -285,12 +285,12 @@ fn what_turns_unseen_is_right_for_ever() {
 }
 
 #[test]
-fn a_frame_is_one_of_sixty_a_second() {
+fn a_frame_lasts_a_sixtieth_of_a_second() {
     near(PriorityTiming::PAPERS.frame_s(), 1.0 / 60.0, 1e-15);
 }
 
 #[test]
-fn memories_that_were_shown_together_are_bits() {
+fn memories_shown_together_are_a_bit_mask() {
     let update =
         Update { due: vec![true, false, true, true], together: vec![true, false, true, false], deals_anew: false };
     assert_eq!(update.together_bits(), 0b0101);
@@ -317,7 +317,7 @@ fn vertices_are_moved_by_their_distance_from_the_border() {
 proptest::proptest! {
     /// The result is exact regardless of rounding in the division, even next to a border.
     #[test]
-    fn a_place_lies_between_the_borders_of_its_cell(number in -1_000_000i64..1_000_000, side in 1e-3..1e3_f64, beside in -2i8..3) {
+    fn a_position_lies_between_the_borders_of_its_cell(number in -1_000_000i64..1_000_000, side in 1e-3..1e3_f64, beside in -2i8..3) {
         let border = number as f64 * side;
         let x = match beside {
             -2 => border - side / 3.0,
@@ -334,7 +334,7 @@ proptest::proptest! {
 }
 
 #[test]
-fn numbers_are_refused_by_name() {
+fn invalid_numbers_are_refused_with_their_name() {
     PriorityTiming::PAPERS.check().expect("valid");
     let papers = PriorityTiming { cell_m: 5.0, falloff_m: 5.0, ..PriorityTiming::PAPERS };
     papers.check().expect("valid");

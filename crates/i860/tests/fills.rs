@@ -41,7 +41,7 @@ fn clocks(rows: &[Freeze], source: &str) -> u64 {
 
 /// Intel's list, row 1: "+ remaining READY#s of the block if a jump or another freeze occurs meanwhile".
 #[test]
-fn row_1_another_freeze_while_a_line_comes_in_waits_for_the_rest_of_it() {
+fn row_1_another_freeze_during_a_line_fill_waits_for_the_rest_of_the_line() {
     let source = "adds 1, r5, r5\nbc end\nnop\nnop\nnop\nnop\nnop\nnop";
     // The first word arrives at clock 11, and adds ends at 12. bc would wait until 13, so it waits for the line until
     // 17 and ends at 18. Six more instructions end at 24.
@@ -56,7 +56,7 @@ fn row_1_another_freeze_while_a_line_comes_in_waits_for_the_rest_of_it() {
 
 /// The constant part of a freeze row at the end of an instruction also waits for the rest of the line.
 #[test]
-fn row_1_a_branch_within_the_line_waits_for_the_rest_of_it() {
+fn row_1_a_branch_within_a_line_being_filled_waits_for_the_rest_of_the_line() {
     let source = "bnc on\nnop\nnop\non: nop\nnop\nnop\nnop\nnop";
     // The first word arrives at clock 11, bnc ends at 12, and the taken branch at 13 waits until 17. Five nops follow.
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::BranchTaken], source), 22);
@@ -125,7 +125,7 @@ fn sum_behind(operation: &str) -> f32 {
 
 /// According to the manual, a scalar operation uses the pipe of its unit and destroys the results in the pipe.
 #[test]
-fn a_scalar_operation_destroys_what_the_pipe_of_its_unit_holds() {
+fn a_scalar_operation_clears_the_pipe_of_its_unit() {
     for keeps in ["nop", "fmul.ss f2, f3, f4", "frcp.ss f2, f4", "fiadd.ss f2, f3, f4"] {
         assert_eq!(sum_behind(keeps).to_bits(), 3f32.to_bits(), "{keeps}");
     }

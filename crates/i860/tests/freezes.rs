@@ -99,7 +99,7 @@ fn stores(n: u64) -> String {
 /// Every number of the table has its effect exactly once. With five more clocks in a row, the program of the row takes
 /// five more clocks.
 #[test]
-fn every_row_costs_what_its_number_says() {
+fn every_freeze_row_costs_its_parameter() {
     for Sample { row, beside, source } in samples() {
         let rules = beside.with(row);
         let mut dearer = rules;
@@ -112,7 +112,7 @@ fn every_row_costs_what_its_number_says() {
 
 /// Rows 1a and 16 of the list consist only of waiting: their constant part is 0.
 #[test]
-fn every_row_with_a_constant_part_has_a_sample() {
+fn every_freeze_row_with_a_constant_part_has_a_test_program() {
     let sampled: Vec<_> = samples().iter().map(|sample| sample.row).collect();
     let constant = FREEZES.iter().filter(|row| row.clocks.limits != (Value::Whole(0), Value::Whole(0)));
     assert_eq!(sampled, constant.map(|row| row.id).collect::<Vec<_>>());
@@ -121,7 +121,7 @@ fn every_row_with_a_constant_part_has_a_sample() {
 }
 
 #[test]
-fn rows_and_numbers_stand_in_the_same_order() {
+fn freeze_rows_and_parameters_have_the_same_order() {
     for (n, row) in FREEZES.iter().enumerate() {
         let name = row.clocks.name.replace('_', "");
         assert_eq!((row.id as usize, format!("{:?}", row.id).to_lowercase()), (n, name));
@@ -150,7 +150,7 @@ fn row_1_leaving_the_line_early_waits_for_the_rest_of_it() {
 }
 
 #[test]
-fn row_1_a_line_that_is_held_costs_nothing() {
+fn row_1_a_cached_line_costs_nothing() {
     let t = dram();
     let twice = "adds 1, r0, r8\nloop: bte r8, r9, end\nmov r8, r9\nbr loop\nnop";
     assert_eq!(cost(Freeze::InstructionMiss, twice), t.first_miss);
@@ -174,7 +174,7 @@ fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
 /// The list, 2, use of the destination of an integer load that missed: "1 + read clocks - instructions executed since
 /// the load".
 #[test]
-fn row_2_the_destination_of_a_load_that_missed_is_waited_for() {
+fn row_2_using_the_destination_of_a_missed_load_waits() {
     let t = dram();
     let read = t.first_miss;
     assert_eq!(cost(Freeze::LoadMissUse, "ld.l 0(r4), r5\nadds r5, r0, r6"), 1 + read);
@@ -248,7 +248,7 @@ fn row_6_the_next_instruction_waits_for_a_load_and_the_one_after_does_not() {
 
 /// The list, 7, destination of fld, pfld, ixfr used within the next two instructions: "2 in the 1st, 1 in the 2nd".
 #[test]
-fn row_7_a_floating_load_is_waited_for_by_two_instructions() {
+fn row_7_two_instructions_after_a_floating_load_wait_for_it() {
     for load in ["fld.d 0(r4), f8", "pfld.d 0(r4), f8", "ixfr r5, f8"] {
         for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
             let found = cost_apart(Freeze::FloatingLoadUse, load, gap, "pfadd.ss f8, f10, f12");
@@ -285,7 +285,7 @@ fn row_9_the_first_source_of_a_multiply_waits_for_the_result_before_it() {
 
 /// The list, 10, operation while a scalar one is in flight: "2 - instructions since".
 #[test]
-fn row_10_a_scalar_operation_holds_the_unit_for_two_clocks_more() {
+fn row_10_a_scalar_operation_occupies_the_unit_for_two_more_clocks() {
     for scalar in ["fadd.ss f8, f9, f10", "fmul.ss f8, f9, f10", "famov.ss f8, f10"] {
         for next in ["fadd.ss f2, f3, f4", "fst.l f3, 0(r4)", "fiadd.ss f2, f3, f4", "pfadd.ss f2, f3, f0"] {
             for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
@@ -299,7 +299,7 @@ fn row_10_a_scalar_operation_holds_the_unit_for_two_clocks_more() {
 
 /// The list, 10: "fmul.dd 3 - instructions since".
 #[test]
-fn row_10b_a_double_multiply_holds_it_for_three() {
+fn row_10b_a_double_multiply_occupies_the_unit_for_three_more_clocks() {
     let row = Freeze::ScalarDoubleMultiplyBusy;
     assert_eq!(cost(row, "fmul.dd f8, f10, f12\nfadd.dd f2, f4, f6"), 3);
     assert_eq!(cost(row, "fmul.dd f8, f10, f12\nnop\nnop\nfadd.dd f2, f4, f6"), 1);
@@ -308,7 +308,7 @@ fn row_10b_a_double_multiply_holds_it_for_three() {
 
 /// The list, 10: "+1 if precision changes; +1 if the new operation is pipelined with destination other than f0".
 #[test]
-fn rows_10c_and_10d_add_to_a_wait_but_make_none() {
+fn rows_10c_and_10d_only_lengthen_existing_waits() {
     let busy = FreezeRules::none().with(Freeze::ScalarBusy);
     for (gap, expected) in [(0, 1), (1, 1), (2, 0)] {
         let source = apart("fadd.ss f8,f9,f10", gap, "fadd.dd f2,f4,f6");
@@ -333,7 +333,7 @@ fn row_11_the_multiplier_takes_a_double_every_second_clock() {
 
 /// The list, 12, TLB miss: "5 + two reads".
 #[test]
-fn row_12_a_page_seen_first_costs_five_and_two_reads() {
+fn row_12_the_first_access_to_a_page_costs_five_clocks_and_two_reads() {
     let t = dram();
     let translation_on = "adds 1, r0, r5\nst.c r5, dirbase\n";
     let reads = t.first_miss + t.first_miss;
@@ -368,7 +368,7 @@ fn row_14_a_pipelined_load_that_hits_waits_for_the_bus_and_two_more() {
 
 /// The list, 15, store pipe full (2 internal and the bus) and a store misses: "1 + clocks to READY# of next write".
 #[test]
-fn row_15_the_fourth_store_waits_for_the_first_to_leave() {
+fn row_15_the_fourth_store_waits_for_the_first_to_be_written() {
     let t = dram();
     assert_eq!(cost(Freeze::StorePipeFull, &stores(3)), 0);
     // The first store is requested at clock 1 and ends at 1 + write_miss. The fourth store is issued at clock 4.
@@ -495,7 +495,7 @@ fn both_halves_of_a_pair_wait_together_for_the_longer_freeze() {
 }
 
 #[test]
-fn a_row_switched_off_among_all_others_costs_nothing() {
+fn a_disabled_freeze_row_costs_nothing() {
     let all_but = FreezeRules::all().without(Freeze::ConditionUse);
     // The branch is after the last word of the line. Before the last word, row 1 would make the freeze longer
     // (fills.rs).

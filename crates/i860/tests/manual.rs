@@ -256,7 +256,7 @@ fn name(text: &str) -> String {
 }
 
 #[test]
-fn there_are_no_instructions_but_those_of_the_manual() {
+fn no_instruction_is_missing_from_the_manual() {
     let known: BTreeSet<String> =
         CORE.iter().map(|(text, _)| name(text)).chain(floating().iter().map(|(text, _)| name(text))).collect();
     // Try all low bits that can select an operation, for every operation code. Floating-point codes are tried without

@@ -37,7 +37,7 @@ fn every_clock_is_an_issue_or_one_cause() {
 }
 
 #[test]
-fn a_cleared_profile_starts_from_nothing_while_the_clock_goes_on() {
+fn clearing_a_profile_does_not_stop_the_clock() {
     let (mut cpu, _) = run(LOOP, FreezeRules::all());
     let before = cpu.clocks();
     cpu.clear_profile();

@@ -75,7 +75,6 @@ pub use master::master;
 pub use slave::{Transforms, slave};
 pub use timing::JitpTiming;
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

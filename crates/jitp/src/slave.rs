@@ -28,9 +28,8 @@ const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS as usize, PARTS_OF_F
 struct SlaveFields {
     /// Fields that the master has ordered but that are not transformed yet, oldest first, with their views.
     ordered: VecDeque<(PeriodNumber, Vec<FrameView>)>,
-    /// Transformed fields, oldest first, with their parts of memory.
+    /// Transformed fields, oldest first, each with the part of memory that holds the result.
     transformed: VecDeque<(PeriodNumber, Field, MemoryPart)>,
-    /// Number of fields that were transformed in the run.
     n_transformed: usize,
 }
 
@@ -234,7 +233,6 @@ impl Slave {
         }
     }
 
-    /// Draws the next blocks and asks the master for another order.
     async fn blocks(&self, update: PictureNumber, step: u64, view: &FrameView) -> Result<(), Fault> {
         let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return Ok(()) };
         let viewport = self.config.extent(update).0;
@@ -252,8 +250,8 @@ impl Slave {
 
     /// Finds the primitives in some regions and sends the messages that draw these regions, as one chain.
     ///
-    /// Several slaves use the same region memory of a renderer. The messages of a region therefore reserve the
-    /// renderer's port until the last message, so that no other slave can draw into the region.
+    /// Several slaves use the same region context (part of pixel memory) of a renderer. The messages of a region
+    /// therefore reserve the renderer's port until the last message, so that no other slave can draw into the region.
     async fn send(
         &self,
         picture: PictureNumber,

@@ -70,7 +70,6 @@ impl TransformCost {
             + timing.bin_entry_ns * self.entries
     }
 
-    /// Returns the processor time as a span of simulated time.
     #[must_use]
     pub const fn span(self, timing: &GpTiming) -> Span {
         Span::from_ns(self.ns(timing))

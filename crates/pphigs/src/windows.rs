@@ -184,9 +184,7 @@ impl Pass {
 pub struct WindowSearchWork<'a> {
     /// Part of memory with the stored commands and bounding boxes.
     pub part: MemoryPart,
-    /// Picture for which [`Pass::keep`] stored the commands.
     pub viewport: Viewport,
-    /// Division of the picture into windows.
     pub grid: RegionGrid,
     /// Windows to search, by index in the grid.
     pub windows: &'a [RegionId],
@@ -207,7 +205,6 @@ impl Work for WindowSearchWork<'_> {
 /// Time of a search, and the number of messages for each window.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SearchOutput {
-    /// Simulated time of all steps together.
     pub span: Span,
     /// Simulated time to list the messages, which is included in `span`.
     pub handoff_span: Span,
@@ -326,7 +323,8 @@ impl WindowSearchWork<'_> {
     }
 }
 
-/// Returns two registers: the frame line of row 0, and the distance between rows in lines, minus one.
+/// Returns the values of two registers, from number `first` on: the frame line of row 0, and the distance between rows
+/// in lines, minus one.
 fn line_registers(viewport: &Viewport, first: usize) -> [(usize, Word); 2] {
     [(first, viewport.first_line()), (first + 1, viewport.line_step() - 1)]
 }
@@ -375,8 +373,8 @@ pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)
 }
 
-/// The code that searches windows and lists messages. Every message has room for the copy command, like the messages of
-/// the same search in Rust.
+/// The code that searches windows and lists messages. Every message has room for the copy command, as in the messages
+/// that the simulator makes without code.
 static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
     let token = token_source([MAX_MESSAGE_WORDS - CLOSING, MAX_MESSAGE_WORDS]);
     let sources = [("windows", include_str!("../kernels/windows.s")), ("token", token.as_str())];

@@ -55,8 +55,8 @@ pub fn add_closed_forms(registry: &mut Registry) {
     registry.closed_form("slats", slats::CLOSED_FORM);
 }
 
-/// Returns the experiment's pipeline. Returns an error if the pipeline is not a `P`, or if a tracker reports the head's
-/// pose.
+/// Returns the experiment's pipeline. Returns an error if the pipeline does not have the type `P`, or if a tracker
+/// reports the head's pose.
 fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, ExperimentError> {
     experiment.config().check()?;
     if experiment.tracked_head().is_some() {
@@ -69,7 +69,7 @@ fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, Experim
 
 /// Smallest and largest number of fields that an estimate computes.
 ///
-/// In this time, a run reaches a steady state and shows several views of a moving head.
+/// In these fields, a run reaches a steady state and shows several views of a moving head.
 const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
 
 /// Estimates the largest number of primitives for which all pictures are in time.
@@ -128,7 +128,6 @@ fn video_of(config: &MachineConfig) -> Result<Video, SettingError> {
     display.video.video()
 }
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -34,7 +34,6 @@ use std::sync::Arc;
 struct Clump {
     /// Time of TRANSFORM for both eyes, in nanoseconds.
     transform_ns: f64,
-    /// Numbers of triangles and of spheres in each region.
     bins: [[f64; 2]; REGIONS],
 }
 
@@ -45,7 +44,8 @@ pub(super) struct Clumps {
     view_words: f64,
 }
 
-/// Number of words of a message with the view of two eyes: a number, two counts, and three matrices for each eye.
+/// Number of words of a message with the view of two eyes: a number of two words, two counts, and three matrices for
+/// each eye.
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
@@ -135,7 +135,8 @@ pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clump
     [accepted_ns, ring.all_done_ns(&senders)]
 }
 
-/// The words of a command that has left a renderer's FIFO, and so made room for words one FIFO depth later.
+/// The words of a command that has left a renderer's FIFO. Their departure makes room for the words that follow one
+/// FIFO depth later.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
     first_word: f64,
@@ -143,7 +144,6 @@ struct Departure {
     at_ns: f64,
 }
 
-/// A renderer: port, input FIFO and array of pixel processors.
 #[derive(Clone, Debug, Default)]
 struct Renderer {
     free_ns: f64,
@@ -156,8 +156,8 @@ impl Renderer {
     /// Receives a command whose words arrive without gaps from `from_ns` on. Returns the time at which the last word
     /// has entered the FIFO.
     ///
-    /// A word enters the FIFO when the word one FIFO depth before it has left. The words of a command leave when the
-    /// command starts. A command starts when all its words have arrived and the previous command has ended.
+    /// A full FIFO accepts a word when the word that lies one FIFO depth earlier has left. The words of a command leave
+    /// when the command starts. A command starts when all its words have arrived and the previous command has ended.
     fn take(&mut self, from_ns: f64, command: Cost, depth_words: f64, word_ns: f64) -> f64 {
         let first = self.words_in;
         let last = first + command.words - 1.0;
@@ -189,7 +189,6 @@ struct Message {
     runs: [(Cost, f64); 4],
 }
 
-/// A graphics processor that sends the messages of its clumps one after the other.
 #[derive(Debug)]
 struct Sender<'a> {
     gp: usize,
@@ -214,7 +213,6 @@ impl Sender<'_> {
     }
 }
 
-/// The channels of the ring and the renderers, which all senders share.
 struct Ring<'a> {
     model: &'a SlatsModel,
     renderers: Vec<Renderer>,
@@ -361,7 +359,7 @@ impl<'a> Ring<'a> {
         heads.reduce(|first, head| if head.0 < first.0 { head } else { first }).map(|(_, place)| place)
     }
 
-    /// Sends a sender's next message. The message occupies the port of the renderer and channels until its last word is
+    /// Sends a sender's next message. The message occupies the renderer's port and ring channels until its last word is
     /// in the FIFO.
     fn grant(&mut self, sender: &mut Sender<'_>) {
         let model = self.model;

@@ -36,7 +36,6 @@ impl Content {
         self.place(vertex) - self.eye
     }
 
-    /// Draws the memory's segments (parts of objects) into faces.
     pub fn draw(&self, world: &World, view: &CubeView, faces: &mut FaceSet) -> DrawCounts {
         view.draw(self.eye, world.triangles(&self.segments, |vertex| self.place(vertex)), faces)
     }

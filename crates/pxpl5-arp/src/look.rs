@@ -86,7 +86,7 @@ impl WalkFaces {
     }
 }
 
-/// Returns a picture of `width` pixels across. `pixels` has one value for each pixel in row order. `colour` converts
+/// Returns a picture that is `width` pixels wide. `pixels` has one value for each pixel in row order. `colour` converts
 /// each value to a colour.
 pub(crate) fn picture<T>(width: u32, pixels: &[T], colour: impl Fn(&T) -> u32) -> RgbImage {
     let height = pixels.len() as u32 / width;

@@ -1,5 +1,4 @@
-//! Simulation of a viewer's walk, frame by frame: which memories are due for an update, their drawing, and their
-//! display.
+//! Simulation of a viewer's walk, frame by frame: the updates that are due, and the drawing and display of memories.
 
 use crate::content::{Content, warp};
 use crate::settings::{PolicyKind, SourceKind, WalkSettings};
@@ -30,7 +29,6 @@ impl Unit {
     }
 }
 
-/// A policy for updating memories, with its state.
 #[derive(Clone, Debug)]
 enum Policy {
     Full,
@@ -41,7 +39,6 @@ enum Policy {
 /// Memories that became due, were updated or missed the retrace in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameOutcome {
-    /// Position of the eye.
     pub eye: DVec3,
     /// Flag of each memory: true if it became due for an update.
     pub due: Vec<bool>,
@@ -203,7 +200,6 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the new contents of the memories that are due for an update.
     fn contents(&self, update: &Update, eye: DVec3) -> Result<Vec<(usize, Content)>, SettingError> {
         let mut segments = vec![Vec::new(); update.due.len()];
         for (number, unit) in self.units.iter().enumerate() {
@@ -229,7 +225,6 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the index of the memory to which a unit (an object or a segment) currently belongs.
     fn memory(&self, unit: usize) -> usize {
         match &self.policy {
             Policy::Full => 0,

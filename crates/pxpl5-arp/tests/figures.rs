@@ -38,7 +38,7 @@ fn table_1_checked_rates_fall_from_memory_to_memory_and_memory_0_is_drawn_in_eve
 /// doubling rings, and distances to the border of a block of cells, its errors were 4.7 to 6.4 % in all halls. With
 /// equal rings and such distances they were 11 to 13 %.
 #[test]
-fn rings_that_double_explain_table_1_better_than_equal_rings() {
+fn doubling_rings_explain_table_1_better_than_equal_rings() {
     let ranked = &FIGURES.0.interpretations.ranked;
     let of = |rules: Rules| ranked.iter().find(|ranked| ranked.rules == rules).expect("all are run");
     let equal = of(Rules { ring_growth: 1, ..Rules::USUAL });
@@ -58,7 +58,7 @@ fn rings_that_double_explain_table_1_better_than_equal_rings() {
 
 /// Checks that memory 1 is drawn as often as memory 0 if memory 0 holds only the user's cell.
 #[test]
-fn table_1_without_inner_rings_is_out_by_a_quarter_at_least() {
+fn table_1_without_inner_rings_is_off_by_at_least_a_quarter() {
     let ranked = &FIGURES.0.interpretations.ranked;
     let outside = ranked.iter().filter(|ranked| ranked.rules.inner_rings == 0);
     assert!(outside.clone().count() == 4 && outside.clone().all(|ranked| ranked.mean_error_percent > 25.0));
@@ -67,7 +67,7 @@ fn table_1_without_inner_rings_is_out_by_a_quarter_at_least() {
 /// Checks predictions of three update rates. Each rate is left out once, and the rules are then chosen by the other two
 /// rates.
 #[test]
-fn rates_that_are_left_out_are_predicted_by_the_others() {
+fn omitted_rates_are_predicted_by_the_others() {
     let left_out = &FIGURES.0.interpretations.left_out;
     assert_eq!(left_out.iter().map(|one| one.memory).collect::<Vec<_>>(), [1, 2, 3]);
     for one in left_out {
@@ -83,7 +83,7 @@ fn rates_that_are_left_out_are_predicted_by_the_others() {
 /// The nearest border is one cell side away. If the update of a memory is late by a frame of 16.7 mm, its tears grow by
 /// the angle of this distance.
 #[test]
-fn a_threshold_in_pixels_tells_the_side_of_a_cell() {
+fn a_threshold_in_pixels_gives_the_side_of_a_cell() {
     let rows = &FIGURES.0.thresholds;
     let row = |name: &str| rows.iter().find(|row| row.threshold == name).expect("listed");
     assert!((row("2 texels").at_once_px - 3.75).abs() < 1e-9 && (row("1 texel").at_once_px - 1.875).abs() < 1e-9);
@@ -100,7 +100,7 @@ fn a_threshold_in_pixels_tells_the_side_of_a_cell() {
 /// The default rule measures the eye's movement by its chord. This rule makes the diameters smaller by a fraction of
 /// theta.
 #[test]
-fn a8_lies_between_limits_that_depend_on_what_is_measured() {
+fn a8_lies_between_the_limits_of_two_definitions() {
     let expected = [0.5_f64, 1.0, 2.0].map(|tangent| {
         let sine = tangent.atan().sin();
         [2.0 * sine, 2.0 * sine / (1.0 - sine)]
@@ -114,7 +114,7 @@ fn a8_lies_between_limits_that_depend_on_what_is_measured() {
 }
 
 #[test]
-fn table_2_cutting_moves_segments_outwards_and_saves() {
+fn table_2_cutting_moves_segments_outwards_and_saves_draws() {
     let [cut, uncut] =
         [rows("A13"), rows("A14")].map(|rows| rows.iter().map(|row| row.simulated).collect::<Vec<f64>>());
     assert!(cut[0] < uncut[0] && cut[3] > uncut[3], "{cut:?} {uncut:?}");
@@ -123,7 +123,7 @@ fn table_2_cutting_moves_segments_outwards_and_saves() {
 
 /// Checks that the definitions D1 to D5 equal the values that the specification computed by hand.
 #[test]
-fn definitions_are_the_derived_numbers_and_no_rows() {
+fn definitions_are_derived_numbers_and_not_rows_of_results() {
     let all = definitions();
     let values = |id: &str| all.iter().filter(|one| one.id == id).map(|one| one.value).collect::<Vec<f64>>();
     let near = |id: &str, expected: &[f64]| {
@@ -152,7 +152,7 @@ fn point_objects_are_drawn_6_and_13_times_less_often_as_computed_by_hand() {
 }
 
 #[test]
-fn size_decides_with_the_sphere_from_1_41_on_and_never_with_the_disc() {
+fn size_decides_beyond_1_41_distances_for_a_sphere_and_never_for_a_disc() {
     for row in &FIGURES.0.sizes {
         assert!(row.size_s[0] > row.translation_s, "{row:?}");
         assert_eq!(row.size_s[1] < row.translation_s, row.size_over_distance > 1.411, "{row:?}");
@@ -189,7 +189,7 @@ fn there_is_a_row_of_every_experiment_and_every_picture_of_the_papers_figures() 
 }
 
 #[test]
-fn pictures_that_must_be_the_same_are_the_same_in_every_bit() {
+fn pictures_that_must_be_equal_are_equal_bit_for_bit() {
     assert_eq!((FIGURES.0.composite_differs, FIGURES.0.turned_differ), (0, 0));
 }
 

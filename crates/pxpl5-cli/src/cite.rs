@@ -60,7 +60,6 @@ fn text() -> String {
     text
 }
 
-/// Returns the citation of a work on one line.
 fn citation(work: &Work) -> String {
     let number = work.number.map(|number| format!(", {number}")).unwrap_or_default();
     let pages = work.pages.map(|[first, last]| format!(", pages {first} to {last}")).unwrap_or_default();
@@ -82,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_joined_by_commas_and_a_last_and() {
+    fn names_are_joined_by_commas_and_a_final_and() {
         assert_eq!(names(&[("A.", "B")]), "A. B");
         assert_eq!(names(&[("A.", "B"), ("C.", "D")]), "A. B and C. D");
         assert_eq!(names(&[("A.", "B"), ("C.", "D"), ("E.", "F")]), "A. B, C. D and E. F");

@@ -73,7 +73,7 @@ fn a_run_prints_one_object_with_units_in_its_names() {
 }
 
 #[test]
-fn a_run_that_shows_nothing_says_so_and_fails() {
+fn a_run_that_shows_nothing_fails_with_a_message() {
     // A frame of 20,000 triangles takes at least 70 fields, and the first four frames are discarded.
     too_short(&with(&FULL, &["--fields", "200"]), "simulate more fields: the next one is shown after about");
     // Slats shows every field, and none of these fields is complete in time.
@@ -93,7 +93,7 @@ fn a_run_that_shows_nothing_says_so_and_fails() {
 }
 
 #[test]
-fn a_run_that_is_too_short_prints_what_it_has() {
+fn a_run_that_is_too_short_prints_its_partial_results() {
     let folder = Folder::new("too-short");
     let short = with(&FULL, &["--fields", "60"]);
     let output = folder.run(&with(&short, &["--json"]));
@@ -118,7 +118,7 @@ fn json_of(output: &std::process::Output) -> serde_json::Value {
 }
 
 #[test]
-fn one_picture_of_many_that_are_due_has_no_deviation() {
+fn one_shown_picture_has_no_deviation() {
     let folder = Folder::new("one-picture");
     let report = json(&folder.run(&with(&FULL, &["--fields", "400", "--json"])));
     assert_eq!((&report["pictures"], &report["latency_ms"]["sd"]), (&1.into(), &serde_json::Value::Null));
@@ -185,7 +185,7 @@ fn trace_hash_with(folder: &Folder, more: &[&str]) -> serde_json::Value {
 }
 
 #[test]
-fn pixels_threads_and_repetition_leave_the_trace_alone() {
+fn pixels_threads_and_repetition_do_not_change_the_trace() {
     let folder = Folder::new("trace");
     let expected = trace_hash_with(&folder, &[]);
     for more in
@@ -196,7 +196,7 @@ fn pixels_threads_and_repetition_leave_the_trace_alone() {
 }
 
 #[test]
-fn a_table_goes_to_standard_output_and_quiet_says_nothing() {
+fn a_table_goes_to_standard_output_and_quiet_prints_nothing() {
     let folder = Folder::new("table");
     let output = folder.run(&SLATS);
     assert!(output.status.success() && err(&output).is_empty());
@@ -210,7 +210,7 @@ fn a_table_goes_to_standard_output_and_quiet_says_nothing() {
 }
 
 #[test]
-fn lists_name_what_is_built_in() {
+fn lists_name_all_built_in_items() {
     let folder = Folder::new("lists");
     let scenes = json(&folder.run(&["scenes", "--json"]));
     let known: Vec<_> = scenes["scenes"].as_array().expect("a list").iter().map(|scene| &scene["name"]).collect();
@@ -229,7 +229,7 @@ fn lists_name_what_is_built_in() {
 }
 
 #[test]
-fn a_flag_of_the_other_pipeline_is_refused() {
+fn a_flag_of_another_pipeline_is_refused() {
     refused(&with(&SLATS, &["--mono"]), 2, &["--mono", "does not apply to the pipeline slats"]);
     for (flag, value) in [("--copy", "whole"), ("--code", "1994"), ("--binning", "all")] {
         refused(&with(&RC, &[flag, value]), 2, &[flag, "does not apply to the pipeline rendering-control"]);
@@ -360,7 +360,7 @@ fn an_experiment_file_reaches_every_setting_and_its_errors_name_the_line() {
 }
 
 #[test]
-fn what_check_prints_is_a_file_that_says_the_same() {
+fn check_prints_an_equivalent_file() {
     let folder = Folder::new("check");
     let args = ["--pipeline", "rendering-control", "--scene", "mig", "--mono", "--set", "ring.hop_ns=100"];
     let once = out(&folder.run(&with(&["check"], &args)));
@@ -372,7 +372,7 @@ fn what_check_prints_is_a_file_that_says_the_same() {
 
 #[cfg(unix)]
 #[test]
-fn a_reader_that_goes_away_is_no_fault_and_a_full_disk_is() {
+fn a_closed_pipe_is_no_error_and_a_full_disk_is_one() {
     for args in [&["machines"][..], &["scenes"], &["--help"], &["completions", "bash"]] {
         let mut child =
             command(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
@@ -388,7 +388,7 @@ fn a_reader_that_goes_away_is_no_fault_and_a_full_disk_is() {
 }
 
 #[test]
-fn help_shows_examples_and_completions_know_the_options() {
+fn help_shows_examples_and_completions_have_the_options() {
     let folder = Folder::new("help");
     for args in
         [&["--help"][..], &["run", "--help"], &["check", "--help"], &["demo", "--help"], &["machines", "--help"]]
@@ -555,7 +555,7 @@ fn assert_agrees_with_accuracy(published: &serde_json::Value) {
 const DIFFERS: &str = "# Not the number of ACCURACY.md: ";
 
 #[test]
-fn the_files_of_figures_agree_with_accuracy_md_or_say_why_not() {
+fn the_files_of_figures_agree_with_accuracy_md_or_state_the_reason() {
     for (name, text) in experiments() {
         let file = pxpl5::ExperimentFile::parse(&text, &name).expect("valid");
         if file.is_sweep() || text.contains(DIFFERS) {
@@ -600,7 +600,7 @@ fn cell(text: &str, name: &str) -> String {
 /// Tests light and heavy runs of all kinds. The table on the terminal must show the rounded values of the JSON report,
 /// and `-` for null.
 #[test]
-fn the_terminal_says_what_json_says() {
+fn the_terminal_and_json_show_the_same_values() {
     let folder = Folder::new("terminal");
     let pipelines =
         ["slats", "rendering-control", "jitp-field", "jitp-dual-screen-racing", "frameless", "arp-priority"];
@@ -637,7 +637,7 @@ fn the_terminal_says_what_json_says() {
 
 /// Tests a scene that needs only one update: a still ball in front of a still head, on a display that turns cube faces.
 #[test]
-fn a_scene_that_is_drawn_once_has_no_rate_and_no_limit_by_rate_and_is_shown() {
+fn a_scene_that_is_drawn_once_is_shown_and_has_no_rate_and_no_limit_by_rate() {
     let folder = Folder::new("drawn-once");
     let still = ["--scene", "sphere:1000", "--set", "head.path=still", "--set", "head.sway=0"];
     for pipeline in ["arp-priority", "arp-cells"] {

@@ -47,7 +47,7 @@ fn interrupt(folder: &Folder, out: &str) -> String {
 }
 
 #[test]
-fn an_interrupted_comparison_goes_on_and_gives_the_same_files() {
+fn an_interrupted_comparison_resumes_and_writes_the_same_files() {
     let folder = Folder::new("compare-resume");
     let whole = folder.run(&with(&["--out", "whole"]));
     assert!(whole.status.success(), "{}", err(&whole));
@@ -77,7 +77,7 @@ fn an_interrupted_comparison_goes_on_and_gives_the_same_files() {
 }
 
 #[test]
-fn rows_of_other_settings_are_refused_and_the_key_is_named() {
+fn rows_with_other_settings_are_refused_with_the_key() {
     let folder = Folder::new("compare-foreign");
     assert!(folder.run(&with(&["--out", "o"])).status.success());
     interrupt(&folder, "o");

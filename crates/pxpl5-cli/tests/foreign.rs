@@ -10,7 +10,7 @@ const MODEL: &[u8] =
     b"# Gr\xf6\xdfe\nusemtl M\xe9tall\nv 0 0 0\nv 1 0 \\\n0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
 #[test]
-fn what_a_reader_makes_of_a_model_is_told() {
+fn reading_a_model_prints_a_summary() {
     let folder = Folder::new("foreign-model");
     folder.file("model.obj", MODEL);
     let run = folder.run(&["check", "--pipeline", "slats", "--scene", "model.obj"]);
@@ -25,7 +25,7 @@ fn what_a_reader_makes_of_a_model_is_told() {
 }
 
 #[test]
-fn a_model_in_a_format_that_cannot_be_read_is_refused_with_those_that_can() {
+fn a_model_in_an_unknown_format_is_refused_with_the_known_formats() {
     let folder = Folder::new("foreign-format");
     for name in ["model.fbx", "./model.fbx", "model.FBX", "model.3ds"] {
         folder.file(name, "solid");
@@ -88,7 +88,7 @@ fn recording() -> String {
 }
 
 #[test]
-fn recordings_with_repeated_times_and_gaps_are_told_and_a_run_that_needs_a_gap_is_refused() {
+fn recordings_with_repeated_times_or_gaps_are_reported_and_a_run_in_a_gap_is_refused() {
     let folder = Folder::new("foreign-recording");
     folder.file("head.tum", recording());
     let run = |more: &[&str]| {

@@ -29,7 +29,7 @@ fn sweep(folder: &Folder, measured: impl Fn(&str, u64, u64) -> Value) {
 /// degrees of freedom the 97.5th percentile of Student's t is 4.302653 (any table). Half of the interval is therefore
 /// 4.302653 / sqrt(3) = 2.484138.
 #[test]
-fn means_deviations_and_intervals_are_those_of_the_seeds() {
+fn means_deviations_and_intervals_are_over_the_seeds() {
     let folder = Folder::new("plot-means");
     sweep(&folder, |copy, n, seed| json!(10 * n + seed + if copy == "split" { 100 } else { 0 }));
     let run = folder.run(&["plot", ".", "--x", "n", "--y", "latency", "--by", "copy", "--out", "fig.svg"]);
@@ -122,7 +122,7 @@ fn pdf_without_its_feature_is_refused_with_the_command_that_builds_it() {
 }
 
 #[test]
-fn what_is_asked_wrongly_is_said_and_nothing_is_written() {
+fn an_invalid_request_is_reported_and_nothing_is_written() {
     let folder = Folder::new("plot-wrong");
     sweep(&folder, |_, n, _| json!(n));
     for (arguments, says) in [

@@ -105,7 +105,7 @@ proptest! {
     #![proptest_config(ProptestConfig { max_global_rejects: 1 << 16, ..ProptestConfig::default() })]
 
     #[test]
-    fn lines_never_shown_are_those_of_which_no_field_shows_every_pixel(
+    fn a_line_is_never_shown_if_no_field_shows_all_its_pixels(
         place in places(), older in met(1..4), newer in met(1..6),
     ) {
         let mut board = Board::slow(place.1);

@@ -83,7 +83,7 @@ fn painted(regions: &[u16]) -> RgbImage {
 }
 
 #[test]
-fn its_clock_is_72_hz_and_its_scan_fills_each_period() {
+fn the_panel_has_a_clock_of_72_hz_and_a_scan_that_fills_each_period() {
     let display = Rig::new().display;
     for scan in [0_u64, 1, 2, 71, 72, 1_000_003] {
         let tick = display.tick(PeriodNumber(scan));
@@ -104,7 +104,7 @@ fn its_clock_is_72_hz_and_its_scan_fills_each_period() {
 }
 
 #[test]
-fn it_says_what_it_is() {
+fn the_panel_has_a_description() {
     let config = HiResConfig::PAPERS;
     let display = Rig::new().display;
     assert_eq!((display.name(), DisplayConfig::name(&config)), ("hires", "hires"));
@@ -122,7 +122,7 @@ fn it_says_what_it_is() {
 }
 
 #[test]
-fn a_picture_is_shown_from_the_scan_after_it_was_asked_for() {
+fn a_picture_is_shown_from_the_scan_after_its_swap_request() {
     let mut rig = Rig::new();
     let first = rig.tick(0);
     let target = rig.region(first + Span::from_us(1), 1, 1, 37);
@@ -153,7 +153,7 @@ fn a_picture_is_shown_from_the_scan_after_it_was_asked_for() {
 }
 
 #[test]
-fn what_a_port_cannot_use_is_counted() {
+fn invalid_messages_of_a_port_are_counted() {
     let mut rig = Rig::new();
     rig.deliver(Time(1), 0, Body::Words(swap_request(2)));
     rig.deliver(Time(2), 1, Body::Words([7].into()));
@@ -193,7 +193,7 @@ fn lit_us(config: PanelConfig, pixels: &[(u32, u32)]) -> Vec<Option<u64>> {
 /// 5,000 pixels light in 8,000 us, 1.6 us for each pixel. A line of 100 pixels takes 160 us, and a column of 50 pixels
 /// takes 80 us.
 #[test]
-fn a_scan_goes_the_way_that_its_direction_says_and_a_global_one_lights_at_its_end() {
+fn a_scan_follows_its_direction_and_a_global_scan_lights_at_its_end() {
     let corners = [(0, 0), (1, 0), (0, 1), (99, 49)];
     let expected: [(u64, u64, [u64; 4]); 5] = [
         (0, 0, [0, 2, 160, 7_999]),
@@ -251,7 +251,7 @@ fn an_interlaced_panel_lights_every_second_line_and_keeps_the_others() {
 }
 
 #[test]
-fn colours_keep_their_highest_bits() {
+fn panels_keep_the_highest_bits_of_colours() {
     let mut display = built(PanelConfig { width: 128, height: 128, bits: 6, ..small() });
     let grid = RegionGrid { width: 128, height: 128, region_width: 128, region_height: 128 };
     let mut bench = TestBench::new();
@@ -274,7 +274,7 @@ fn colours_keep_their_highest_bits() {
 }
 
 #[test]
-fn numbers_that_no_panel_can_have_are_refused_with_what_was_expected() {
+fn invalid_panel_numbers_are_refused_with_the_expected_range() {
     let wide = PanelConfig { width: 1440, height: 1600, ..PanelConfig::PAPERS };
     let long = PanelConfig { refresh_hz: 90, persistence_us: 20_000, ..PanelConfig::PAPERS };
     let odd = PanelConfig { interlace: 1, height: 481, ..PanelConfig::PAPERS };
@@ -311,7 +311,7 @@ fn numbers_that_no_panel_can_have_are_refused_with_what_was_expected() {
 
 /// The centre of a light of 2 ms with a time constant of 0.1 ms is 1.1 ms after its start.
 #[test]
-fn presets_are_lit_as_their_sources_say() {
+fn presets_are_lit_as_their_sources_state() {
     let light = OledConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();
     assert_eq!((light.scan, light.centre()), (ScanOrder::Down, Span::from_us(1_100)));
     let light = LcdConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();

@@ -41,16 +41,14 @@ pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
 
-/// Returns the distance from a corner to the centre of a pixel along one axis, in pixels. `corner` is in subpixels.
 #[inline(always)]
 fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
     f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)
 }
 
-/// The values that all planes of one triangle share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
-    /// Distances from corner 0 to corners 1 and 2 along x, in subpixels.
+    /// Differences in x from corner 0 to corners 1 and 2, in subpixels.
     x: [f64; 2],
     y: [f64; 2],
     /// Factor from cross products to slopes per pixel: 16 divided by twice the area.

@@ -29,9 +29,9 @@ pub enum StudyError {
         "expected the time of complete display for {expected} frames that low points requested, found it for {found}"
     )]
     NotShown {
-        /// Number of frames that the rig requested because the pendulum passed its lowest point.
+        /// Number of frames that the rig requested, one for each pass of the pendulum through its lowest point.
         expected: usize,
-        /// Number of requested frames that were shown completely, according to the pipeline's records.
+        /// Number of completely shown frames, according to the pipeline's records.
         found: usize,
     },
     /// The experiment of a published figure yields no result.

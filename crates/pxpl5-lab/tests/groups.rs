@@ -19,7 +19,7 @@ fn within(id: &str, [low, high]: [f64; 2]) {
 }
 
 #[test]
-fn every_row_is_written_out_with_its_experiment() {
+fn every_row_is_written_with_its_experiment() {
     for row in ROWS.iter() {
         println!(
             "{:<4} {:>12.4} {:>12.4} {:<12} {:?} % {:?} {:?}",
@@ -80,7 +80,7 @@ fn the_fifo_and_the_senders_channels_move_the_rate_of_the_machine() {
 /// Tests the interval of the rig's total latency. The beam takes 239 lines of 63.56 us from the first line of a field
 /// to the last. In this test nothing else changes the latency.
 #[test]
-fn the_rigs_total_moves_with_the_photodiode() {
+fn the_total_of_the_rig_follows_the_photodiode() {
     let [low, high] = row("R6").interval.expect("varied");
     assert!((high - low - 239.0 * 0.063_556).abs() < 0.01, "{low} to {high}");
 }
@@ -88,7 +88,7 @@ fn the_rigs_total_moves_with_the_photodiode() {
 /// Tests the wait for the kernel. A report waits at most for one poll: 30 ms are 1.798 fields. The mean wait is half of
 /// this time.
 #[test]
-fn polling_adds_at_most_a_look_and_half_of_it_in_the_mean() {
+fn polling_adds_at_most_one_poll_and_half_a_poll_on_average() {
     within("T1", [1.75, 1.799]);
     let mean = row("T1").details.iter().find(|detail| detail.name == "mean of all reports").expect("stated");
     assert!((mean.value - 0.899).abs() < 0.05, "{}", mean.value);

@@ -85,7 +85,7 @@ fn the_analytic_limit_of_slats_is_the_simulated_one_within_its_bound() {
 }
 
 #[test]
-fn what_the_analytic_level_does_not_model_is_refused() {
+fn settings_outside_the_analytic_level_are_refused() {
     let of = |gps, channels| {
         let all = [boards(gps, 20), vec![format!("machine.ring.fifo_channels={channels}")]].concat();
         LimitQuery { level: Level::Analytic, ..query(&all, TestScene::Typical) }
@@ -110,7 +110,7 @@ fn boards(gps: u32, renderers: u32) -> Vec<String> {
 /// Tests 34 GPs that share six channels to 20 renderers. An earlier version of the analytic level gave 1,299 triangles,
 /// but only 850 are drawn in time.
 #[test]
-fn many_senders_are_limited_by_the_channels_that_they_share() {
+fn many_senders_are_limited_by_their_shared_channels() {
     let simulated = query(&boards(34, 20), TestScene::Typical);
     let analytic = LimitQuery { level: Level::Analytic, ..simulated.clone() };
     let [simulated, analytic] =
@@ -132,7 +132,7 @@ fn the_answer_is_the_size_below_the_first_miss() {
 
 /// Tests every size up to the result. The search must have found the smallest size that misses the goal.
 #[test]
-fn the_first_miss_is_the_least_size_that_misses() {
+fn the_first_miss_is_the_smallest_size_that_misses() {
     for (gps, renderers, copy) in [(1, 5, "split"), (3, 9, "whole")] {
         let settings = [boards(gps, renderers), vec![format!("copy={copy}"), "code=1995".to_owned()]].concat();
         let query = query(&settings, TestScene::FullScreen);

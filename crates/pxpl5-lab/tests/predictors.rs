@@ -43,7 +43,7 @@ fn shown(name: &str, all: &Predictors) {
 }
 
 #[test]
-fn on_a_still_head_a_tuned_filter_costs_nothing_against_no_prediction() {
+fn on_a_still_head_a_tuned_filter_adds_no_error() {
     let still = || Still(Pose::IDENTITY);
     for (name, experiment) in [
         ("rendering-control", experiment(RenderingControl::stereo(), still())),
@@ -66,7 +66,7 @@ fn on_a_still_head_a_tuned_filter_costs_nothing_against_no_prediction() {
 }
 
 #[test]
-fn the_report_says_for_what_a_filter_was_tuned_and_the_interval_is_the_pipelines_own() {
+fn the_report_names_the_tuning_of_a_filter_and_uses_the_interval_of_the_pipeline() {
     let outcome = experiment(RenderingControl::stereo(), Pan::at(60.0)).run().expect("it runs");
     let head = outcome.report().head.expect("there is a head");
     let training = head.training.expect("tuned");
@@ -84,7 +84,7 @@ fn the_report_says_for_what_a_filter_was_tuned_and_the_interval_is_the_pipelines
 }
 
 #[test]
-fn numbers_that_are_given_are_not_tuned() {
+fn parameters_set_by_the_user_are_not_tuned() {
     let file = |more: &str| {
         let text = format!(
             "pipeline = \"slats\"\nscene = \"room\"\nfields = 40\nhead.motion = \"pan:50\"\nhead.tracker = \"fastrak\"\n{more}"

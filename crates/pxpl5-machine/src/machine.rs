@@ -48,10 +48,9 @@ pub struct Machine {
     /// True if boards run at every edge of their clock, because the optimization `IdleBoards` is disabled.
     every_edge: bool,
     failure: Option<RunError>,
-    /// Number of events in the current period of the first display, without the events of displays, host lines and
-    /// clocks.
+    /// Number of events in the current period of the first display, except events of displays, clocks, and host lines
+    /// (connections that bypass the ring).
     work_events: u64,
-    /// Number of successive idle periods of the first display. [`DEADLOCK_TICKS`] defines an idle period.
     idle_ticks: u64,
     now: Time,
 }
@@ -66,7 +65,8 @@ struct Contexts {
 
 /// Number of idle periods of the first display after which a machine with waiting programs counts as deadlocked.
 ///
-/// In an idle period, only displays, host lines and clocks have events, and no other board has a pending event.
+/// In an idle period, only displays, clocks and [host lines](HostLine) have events, and no other board has a pending
+/// event.
 pub const DEADLOCK_TICKS: u64 = 120;
 
 /// Number of events that the start of a period causes on the first graphics processor: the retrace signal, and a poll
@@ -280,8 +280,6 @@ impl Machine {
         self.failure.clone().map_or(Ok(taken), Err)
     }
 
-    /// Removes the next event from the queue and returns its time. Returns `None` if the event is not before `end`, or
-    /// if the machine has failed.
     fn takes_event_before(&mut self, end: Time) -> Option<Time> {
         if self.failure.is_some() {
             return None;
@@ -315,7 +313,6 @@ impl Machine {
         }
     }
 
-    /// Lets every processor and the arbiter of the ring check for work, and schedules the next clock edge.
     fn edge(&mut self, now: Time) {
         (0..self.processors.len()).for_each(|board| self.gp_event(now, board, GpEvent::Poll));
         self.ring_event(now, RingEvent::Arbitrate);
@@ -349,7 +346,6 @@ impl Machine {
         }
     }
 
-    /// Returns true if a program, a renderer or a message waits for another board.
     fn waits_for_a_board(&self) -> bool {
         self.processors.iter().any(GpBoard::waits_for_a_board)
             || self.record.renderers.iter().any(|renderer| renderer.blocked().is_some())
@@ -362,7 +358,7 @@ impl Machine {
         self.idle_ticks
     }
 
-    /// Returns true if only displays, host lines and clocks have pending events.
+    /// Returns true if only displays, clocks and [host lines](HostLine) have pending events.
     ///
     /// The start of a display period can still end the wait of a program.
     #[must_use]

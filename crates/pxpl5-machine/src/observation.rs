@@ -34,7 +34,7 @@ impl Arrival {
 pub struct Swap {
     /// The surface whose visible buffer changes.
     pub surface: SurfaceId,
-    /// The port of the display that swapped. A surface may have several ports.
+    /// The ring port whose visible buffer changes. A surface may have several ports.
     pub port: NodeId,
     /// Number of earlier swaps at this port.
     pub number: u64,
@@ -138,7 +138,8 @@ impl Observation {
 
     /// Returns the period in which each frame was first visible on all of the first `surfaces` surfaces.
     ///
-    /// The key counts the swaps of each surface from 0. Frames with discarded swaps are missing.
+    /// A key of the map is the number of a swap, which counts from 0 on each surface. Frames with discarded swaps are
+    /// missing.
     #[must_use]
     pub fn frames(&self, surfaces: usize) -> BTreeMap<u64, PeriodNumber> {
         let of = |surface| self.swaps_of(surface).map(|swap| (swap.number, swap.tick));
@@ -257,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shown_stays_known_however_long_ago_it_was_swapped_in() {
+    fn the_displayed_frame_is_kept_however_old_it_is() {
         let mut observation = stereo();
         observation.discard_before(Time(1_000_000), tick);
         let left: Vec<(SurfaceId, u64)> = observation.swaps.iter().map(|swap| (swap.surface, swap.number)).collect();
@@ -307,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_at_the_instant_stays_and_room_for_as_much_again() {
+    fn discarding_keeps_the_records_at_the_instant() {
         let mut observation = stereo();
         observation.marks = (0..1_000).map(|n| mark(n, n, StageEdge::Begin)).collect();
         observation.arrivals = (0..1_000).map(|n| arrival(0, n / 2, n, n)).collect();

@@ -1,5 +1,3 @@
-//! The built-in machines, by name.
-
 use crate::config::MachineConfig;
 use pxpl5_framebuffer::FrameBufferConfig;
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, HostTiming};

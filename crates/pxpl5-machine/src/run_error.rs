@@ -1,5 +1,3 @@
-//! Errors that stop a run.
-
 use crate::board::Board;
 use pxpl5_gp::Fault;
 use pxpl5_ring::RingError;

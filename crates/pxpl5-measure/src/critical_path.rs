@@ -28,7 +28,7 @@ pub struct PathPart {
     pub share_of_board: Option<f64>,
 }
 
-/// The chain of waits of the last complete pictures of a run.
+/// The waits of the last complete pictures of a run, from the screen back to the start of TRANSFORM.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CriticalPath {
     /// Number of pictures that were followed: the last complete pictures of the result window, at most
@@ -97,7 +97,6 @@ impl CriticalPath {
     }
 }
 
-/// Sums the waits for one resource over all chains. Returns `None` if no chain contains a wait for the resource.
 fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPart> {
     let of = || chains.iter().flatten().filter(|step| step.resource == resource);
     let span: Span = of().map(Step::span).sum();
@@ -198,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn no_board_is_named_where_several_share_the_part() {
+    fn no_board_is_named_if_several_share_the_part() {
         let half = |number, from, to| step(Resource::Renderers, Some(Board::Renderer(number)), from, to);
         let path = CriticalPath::of_chains(&[vec![half(0, 50, 100), half(1, 0, 50)]]).expect("a picture");
         assert_eq!(path.limited_by, "execution of commands in the renderers, 100 % of the latency");
@@ -216,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_said_of_no_picture() {
+    fn without_a_picture_there_is_no_critical_path() {
         assert_eq!(CriticalPath::of_chains(&[]), None);
     }
 }

@@ -38,8 +38,7 @@ pub struct ReprojectionReport {
     pub disoccluded_share: Option<f64>,
 }
 
-/// A device that moves pictures: the setting of the device, and the numbers of pixels and poses per second that the
-/// device needs on the display.
+/// Setting of a device that moves pictures, and the numbers of pixels and poses per second that it needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Device {
     pub(crate) setting: Reprojection,
@@ -69,12 +68,10 @@ impl EyeSum {
         Self { smear, device, age_ms: Distribution::keeping(limit), looked_at: 0, beyond: 0, hidden: 0 }
     }
 
-    /// Adds a smear: the distance in pixels that a pixel's content moves while the pixel is lit.
     pub(crate) fn smeared(&mut self, px: f64) {
         self.smear.iter_mut().for_each(|smear| smear.push(px));
     }
 
-    /// Adds the time from the measurement of a pose until a pixel is lit.
     pub(crate) fn pose(&mut self, measured_at: Option<Time>, light: Time) {
         if let Some(measured_at) = measured_at {
             self.age_ms.push((light.0 as f64 - measured_at.0 as f64) * 1e-9);

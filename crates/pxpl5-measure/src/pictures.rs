@@ -66,7 +66,6 @@ pub fn screen(
     shifted
 }
 
-/// Returns a black picture of the size of the display's first surface.
 fn blank(display: &dyn Display) -> RgbImage {
     display.surfaces().first().map_or_else(RgbImage::default, |surface| RgbImage::new(surface.width, surface.height))
 }

@@ -188,7 +188,6 @@ pub static QUANTITIES: [Quantity; 57] = [
     of_run("critical_path.other", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Other))),
 ];
 
-/// Returns the number that `count` reads from the result of the due pictures, or NaN if no picture was due.
 fn of_due(summary: &Summary, count: fn(&DuePictures) -> u64) -> f64 {
     summary.due.map_or(f64::NAN, |due| count(&due) as f64)
 }
@@ -302,7 +301,6 @@ impl Results {
     }
 }
 
-/// Returns the mean time of a stage over the pictures in the result window. `None` if no picture has this stage.
 fn stage_ms(outcome: &Outcome, stage: Stage) -> Option<f64> {
     let (_, samples) = outcome.tally().stage_ms.iter().find(|(of, _)| *of == stage)?;
     Some(samples.statistics().mean)

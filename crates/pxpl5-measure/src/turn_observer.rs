@@ -14,7 +14,7 @@ pub struct RotationPart {
     pub statistics: Statistics,
 }
 
-/// Collects the rotation latency of the middle pixel of every field of the result window, in milliseconds.
+/// Statistics of the rotation latency of the middle pixel, over all fields of the result window, in milliseconds.
 #[derive(Debug, Default)]
 pub(crate) struct RotationLatencySum {
     next: PeriodNumber,
@@ -24,8 +24,6 @@ pub(crate) struct RotationLatencySum {
     parts: Vec<Samples>,
 }
 
-/// Rotation latencies that a [`RotationLatencySum`] has collected. Empty without a tracker, or if the display is not an
-/// address recalculation display.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns {
     pub(crate) latency_ms: Option<Statistics>,

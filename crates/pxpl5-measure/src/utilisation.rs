@@ -62,7 +62,8 @@ pub struct GpUtilisation {
     pub work: f64,
     /// Mean share of time for the software that receives and sends messages.
     pub messages: f64,
-    /// Mean share of time for handing over bins in return for tokens.
+    /// Mean share of time for sending bins to renderers. A graphics processor sends a bin when it has the token of the
+    /// bin's region.
     pub tokens: f64,
 }
 
@@ -202,7 +203,6 @@ impl fmt::Display for Utilisation {
     }
 }
 
-/// Formats shares as text: the mean, the busiest board, and the number of idle boards.
 fn shares_text(shares: &Shares, board: &str) -> String {
     let idle = if shares.idle > 0 { format!(", {} idle", shares.idle) } else { String::new() };
     format!("mean {}, {board} {} {}{idle}", percent(shares.mean), shares.busiest, percent(shares.max))

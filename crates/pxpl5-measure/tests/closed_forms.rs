@@ -246,7 +246,7 @@ fn pipelines() -> Vec<&'static str> {
 }
 
 #[test]
-fn under_a_pan_nothing_but_scan_out_is_left_at_every_pipeline_and_aim() {
+fn with_ideal_prediction_a_pan_leaves_only_the_scan_out_error_in_every_pipeline() {
     // At this low speed, the error of interpolation on the screen is negligible relative to the scan-out of a line. The
     // interpolation error grows with the square of the speed and is 0.34 px at 200 deg/s.
     const DEG_PER_S: f64 = 0.02;
@@ -260,7 +260,7 @@ fn under_a_pan_nothing_but_scan_out_is_left_at_every_pipeline_and_aim() {
 }
 
 #[test]
-fn a_fast_pan_too_where_a_picture_is_drawn_for_one_instant() {
+fn a_fast_pan_leaves_only_the_scan_out_error_of_pictures_drawn_for_one_instant() {
     const DEG_PER_S: f64 = 200.0;
     for pipeline in pipelines().into_iter().filter(|name| !name.contains("dual")) {
         let run = Run::new(pipeline, Aim::Middle, Pan::at(DEG_PER_S));
@@ -298,7 +298,7 @@ impl Motion for Shaking {
 }
 
 #[test]
-fn a_sinusoid_is_wrong_by_its_distance_from_a_straight_line_and_by_scan_out() {
+fn the_error_of_a_sinusoid_is_its_distance_from_a_straight_line_plus_scan_out() {
     // The predictor's line passes through the newest report and the fourth report before it, 4 ms apart.
     const BASELINE_S: f64 = 0.004;
     for pipeline in pipelines() {
@@ -321,7 +321,7 @@ fn a_sinusoid_is_wrong_by_its_distance_from_a_straight_line_and_by_scan_out() {
 }
 
 #[test]
-fn blocks_of_frameless_rendering_are_drawn_for_the_middle_of_the_time_in_which_they_are_seen() {
+fn frameless_rendering_draws_blocks_for_the_middle_of_their_display_time() {
     let run = Run::new("frameless", Aim::Middle, Pan::at(20.0));
     let pass_s = 1.0 / run.outcome.report().updates_hz.expect("two passes");
     let early = |(field, row, x)| beam(field, row, x) - run.content(field, row, x).drawn_for;

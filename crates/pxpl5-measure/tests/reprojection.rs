@@ -124,7 +124,7 @@ fn turned_px(rate: f64, every: Every) -> f64 {
 }
 
 #[test]
-fn a_rotation_cancels_a_turn_but_for_what_the_head_turns_between_its_pose_and_light() {
+fn reprojection_leaves_only_the_rotation_between_its_pose_and_light() {
     let outcome = fields(head(Turning(2.0)), "full-screen:2");
     for by in [Warp::Rotation, Warp::Depth] {
         for every in [Every::Field, Every::Strip, Every::Line] {
@@ -140,7 +140,7 @@ fn a_rotation_cancels_a_turn_but_for_what_the_head_turns_between_its_pose_and_li
 }
 
 #[test]
-fn a_shift_is_a_rotation_in_the_middle_of_the_picture_alone() {
+fn a_shift_equals_a_rotation_only_in_the_middle_of_the_picture() {
     let outcome = fields(head(Turning(2.0)), "full-screen:2");
     let shift = PixelErrors::shown(&outcome, device(Warp::Shift, Every::Line));
     let turn = PixelErrors::shown(&outcome, device(Warp::Rotation, Every::Line));
@@ -151,7 +151,7 @@ fn a_shift_is_a_rotation_in_the_middle_of_the_picture_alone() {
 /// The expected share covers 16 x 12 positions of each field whose source lies beyond the edge: `f tan(atan(x / f) -
 /// a)`, with x from the middle.
 #[test]
-fn the_empty_share_is_what_the_turn_brings_from_beyond_the_edge() {
+fn the_empty_share_is_the_part_rotated_in_from_beyond_the_edge() {
     const RATE: f64 = 8.0;
     let outcome = fields(head(Turning(RATE)), "full-screen:2");
     let found = EyeReport::shown(&outcome, device(Warp::Rotation, Every::Line)).expect("a device");
@@ -181,7 +181,7 @@ fn the_empty_share_is_what_the_turn_brings_from_beyond_the_edge() {
 /// The content lies on a plane at a distance z before the head, which slides along the plane. In a time t, the content
 /// moves by f v t / z.
 #[test]
-fn without_depth_a_slide_leaves_f_v_t_by_z_and_with_it_what_a_line_takes() {
+fn a_translation_leaves_f_v_t_by_z_without_depth_and_a_line_time_with_depth() {
     const M_PER_S: f64 = 0.5;
     const DISTANCE_M: f64 = 2.0;
     let slide = head(Slide::right_at(M_PER_S)).evaluated_at(DISTANCE_M).expect("in range");
@@ -217,7 +217,7 @@ fn off_px(seconds: f64, rate: f64) -> f64 {
 }
 
 #[test]
-fn a_global_display_is_right_everywhere_and_a_rolling_one_in_the_middle_of_its_scan() {
+fn a_global_display_is_correct_everywhere_and_a_rolling_one_in_the_middle_of_its_scan() {
     const RATE: f64 = 1.0;
     let [rolling, global] = [0, 1].map(|scan| {
         let outcome = on_panel(PanelConfig { scan, ..PanelConfig::PAPERS }, RATE);
@@ -238,7 +238,7 @@ fn a_global_display_is_right_everywhere_and_a_rolling_one_in_the_middle_of_its_s
 }
 
 #[test]
-fn persistence_moves_the_centre_of_light_by_half_and_smears_by_the_way_of_all_of_it() {
+fn persistence_delays_the_centre_of_light_by_half_and_smears_over_its_whole_time() {
     const RATE: f64 = 1.0;
     for (persistence_us, response_us) in [(4_000, 0), (20_000, 0), (2_000, 1_000)] {
         let config = PanelConfig { scan: 1, persistence_us, response_us, ..PanelConfig::PAPERS };
@@ -258,7 +258,7 @@ fn persistence_moves_the_centre_of_light_by_half_and_smears_by_the_way_of_all_of
 }
 
 #[test]
-fn a_display_of_instants_has_no_smear_and_a_plain_raster_no_report() {
+fn a_display_without_persistence_has_no_smear_and_a_plain_raster_no_report() {
     let outcome = fields(head(Turning(1.0)), "full-screen:2");
     assert_eq!(EyeReport::shown(&outcome, Showing::Plain), None);
     assert_eq!(outcome.report().eye, None);
@@ -267,7 +267,7 @@ fn a_display_of_instants_has_no_smear_and_a_plain_raster_no_report() {
 
 /// VDRT is reported as a device. No pixel is empty, because its picture counts as drawn beyond the edge of the screen.
 #[test]
-fn vdrt_is_one_setting_and_its_errors_stay_what_they_are() {
+fn vdrt_is_one_setting_with_unchanged_errors() {
     assert_eq!(Raster::Vdrt.reprojection(), Some(Reprojection::VDRT));
     let outcome = fields(head(Turning(2.0)).with_raster(Raster::Vdrt), "full-screen:2");
     let eye = outcome.report().eye.expect("a device").reprojection.expect("a device");
@@ -301,7 +301,7 @@ fn alike(a: [u8; 3], b: [u8; 3]) -> bool {
 }
 
 #[test]
-fn an_ideal_picture_that_is_turned_is_the_ideal_picture_of_the_turned_head() {
+fn rotating_an_ideal_picture_gives_the_ideal_picture_of_the_rotated_head() {
     let outcome = fields(head(Turning(1.0)), "gallery");
     let views = outcome.head().expect("a head");
     let [before, now] = [Time(300_000_000_000), Time(350_000_000_000)];
@@ -328,7 +328,7 @@ fn an_ideal_picture_that_is_turned_is_the_ideal_picture_of_the_turned_head() {
 /// A device with depth, one pose per line and no latency must be as accurate as the reference, which draws every pixel
 /// for its own instant.
 #[test]
-fn an_ideal_machine_that_is_reprojected_at_every_line_is_the_ideal_but_for_what_was_hidden() {
+fn reprojecting_an_ideal_machine_at_every_line_is_ideal_except_for_hidden_parts() {
     let sliding = head(Slide::right_at(1.0));
     let outcome = fields(sliding, "gallery");
     let setting = Reprojection { by: Warp::Depth, every: Every::Line, latency_us: 0 };
@@ -343,7 +343,7 @@ fn an_ideal_machine_that_is_reprojected_at_every_line_is_the_ideal_but_for_what_
 }
 
 #[test]
-fn a_panel_that_is_global_takes_one_pose_a_period() {
+fn a_global_panel_takes_one_pose_for_each_period() {
     let config = PanelConfig { scan: 1, ..PanelConfig::PAPERS };
     let display = config.build(&[pxpl5_wire::NodeId(1)]).expect("it can be built");
     assert_eq!(display.light().scan, pxpl5_wire::display::ScanOrder::Global);

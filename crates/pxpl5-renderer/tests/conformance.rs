@@ -56,7 +56,7 @@ fn bit_planes_agree_on_every_vector_unit() {
 }
 
 #[test]
-fn what_is_skipped_changes_nothing_on_any_vector_unit() {
+fn skipped_work_changes_nothing_on_any_vector_unit() {
     for vectors in Vectors::available() {
         for layout in layouts() {
             let mut definition = BitSerial::new(&layout);
@@ -310,7 +310,7 @@ fn random_lists_agree() {
 }
 
 #[test]
-fn constants_of_a_command_agree_whatever_they_are() {
+fn all_constants_of_commands_agree() {
     for layout in layouts() {
         let mut a = BitSerial::new(&layout);
         let mut b = Lanes::new(&layout);
@@ -407,7 +407,7 @@ fn every_part_of_the_suite_finds_a_wrong_array() {
 /// Each plane is one of eight kinds. In one kind no bit is set, in one kind all bits, in one kind a quarter, and in one
 /// kind three quarters. In four kinds, half of the bits are set.
 #[test]
-fn noise_is_the_same_in_both_arrays_and_has_long_runs_too() {
+fn noise_is_the_same_in_both_arrays_and_includes_long_runs() {
     let layout = Layout::slats();
     let [mut a, mut b] = [(); 2].map(|()| BitSerial::new(&layout));
     let mut counts = [0; 5];

@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn every_preset_lies_in_its_range_and_passes_the_check() {
+    fn every_preset_is_in_range_and_passes_the_check() {
         assert_eq!(RingTiming::PAPERS.out_of_range(), []);
         assert_eq!(RingTiming::PAPERS.check(), Ok(()));
     }

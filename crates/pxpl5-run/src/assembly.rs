@@ -95,17 +95,17 @@ impl Experiment {
     }
 }
 
-/// Returns the function that gives the start time of a frame. When the host is ready for a frame, its application
-/// computes for a while, and then the frame starts.
+/// Returns the function that gives the start time of a frame: the time at which the host is ready, plus the computing
+/// time of the host's application.
 fn frame_starts(host: HostTiming, seed: u64) -> FrameStarts {
     Arc::new(move |ready| Some(ready + host.application_span(mix(seed ^ mix(ready.0)))))
 }
 
-/// Checks that display and pipeline have the same coverage.
+/// Checks that the display and the pipeline have the same coverage: one view, or all directions around the head.
 ///
 /// # Errors
 ///
-/// [`SettingError`] states the coverage of both.
+/// The [`SettingError`] states the coverage of the display and the coverage of the pipeline.
 pub fn check_coverage(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), SettingError> {
     let Some(display) = config.displays.first() else { return Ok(()) };
     let (shown, drawn) = (display.coverage(), pipeline.coverage());
@@ -124,7 +124,6 @@ pub fn check_coverage(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result
     )))
 }
 
-/// Checks that a recorded head motion has poses for the whole run.
 fn check_recording(head: &Head, until: Time) -> Result<(), ExperimentError> {
     let seconds = |ps: u64| ps as f64 * 1e-12;
     let run = seconds(until.0);

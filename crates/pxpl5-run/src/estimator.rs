@@ -51,7 +51,7 @@ impl Cause {
 
 pxpl5_sim::parameters::named!(Cause, "cause", Cause::ALL.map(|cause| (cause.name(), cause)));
 
-/// Length of the series of reports that a new predictor receives for one request, in picoseconds.
+/// Length of the series of reports that a predictor receives for one request, in picoseconds.
 const FED_PS: u64 = 2 * PS_PER_S;
 
 /// Computes the head's pose from the tracker reports that a host has at an instant.
@@ -61,7 +61,6 @@ pub struct Estimator {
 }
 
 enum Way {
-    /// One predictor receives all tracker reports in order of time.
     Following(Follower),
     /// One predictor receives all measurements of the tracker up to the requested instant.
     AtOnce(Follower),

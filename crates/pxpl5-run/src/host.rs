@@ -1,5 +1,3 @@
-//! The interface to the computer on which a simulation runs.
-
 use pxpl5_machine::{PixelWorker, SameThread};
 use std::fmt::Debug;
 

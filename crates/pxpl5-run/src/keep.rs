@@ -1,5 +1,3 @@
-//! Choice of the observations that a run keeps in memory.
-
 /// The choice of the observations that a run keeps in memory. The choice changes no time and no trace.
 ///
 /// Two runs that differ only in this choice have the same statistics. Only the last digits of means over more than
@@ -21,8 +19,8 @@ pub enum Keep {
     /// The run keeps the same data as under [`Keep::Statistics`], but messages may be recorded, and no streaming
     /// observer is used.
     ///
-    /// A page that displays a run for hours uses this choice. Pixel errors and messages are available only for the last
-    /// periods.
+    /// A web page that displays a run for hours uses this choice. Pixel errors and messages are available only for the
+    /// last periods.
     Recent,
 }
 

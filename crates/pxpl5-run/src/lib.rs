@@ -102,7 +102,6 @@ pub use tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
 pub use tunings::Tunings;
 pub use views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

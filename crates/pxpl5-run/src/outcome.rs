@@ -1,5 +1,3 @@
-//! Result of an experiment.
-
 use crate::assembled::Assembled;
 use crate::due::{DuePictures, LEAST_UPDATES};
 use crate::experiment::Experiment;

@@ -1,5 +1,3 @@
-//! Results of the pictures of a run, by display period.
-
 use pxpl5_wire::PeriodNumber;
 
 /// Number of pictures at the start of a run that are not evaluated, because the pipeline is still filling. TR94 also

@@ -1,5 +1,3 @@
-//! A cache of tuned predictors, which several runs share.
-
 use crate::fingerprint::Fingerprint;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -20,8 +18,8 @@ pub struct Tunings {
 }
 
 impl Tunings {
-    /// Returns the tuned predictor from the cache, or tunes it. Threads that request the same predictor wait for one
-    /// result.
+    /// Returns the tuned predictor from the cache. If the cache does not contain the predictor, tunes the predictor
+    /// first. Threads that request the same predictor wait for one result.
     pub(crate) fn tuned(
         &self,
         motion: &(dyn Motion + Send + Sync),
@@ -96,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_that_the_training_avoids_alike_share_a_tuning() {
+    fn seeds_not_used_for_training_share_a_tuning() {
         let tunings = Tunings::default();
         let tracker = TrackerModel::new(TrackerConfig::optical_ceiling()).expect("a preset");
         let base = PredictorConfig::for_tracker(PredictorKind::ConstantVelocity, tracker.config());

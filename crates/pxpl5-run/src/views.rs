@@ -1,5 +1,3 @@
-//! Types of the functions by which a pipeline requests views of the scene.
-
 use pphigs::FrameView;
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;

@@ -35,7 +35,6 @@ pub(crate) struct Window {
     forgets: bool,
     samples: usize,
     taken_to: Option<Time>,
-    /// Number of arrivals in memory that are already part of the statistics.
     arrivals_taken: usize,
     /// Number of records in memory at which old records are discarded the next time.
     next_look: usize,
@@ -112,7 +111,6 @@ impl Window {
         Some(begin)
     }
 
-    /// Returns the pictures that are not yet part of the statistics, in the order in which they are shown.
     fn fresh(&self, pipeline: &dyn Pipeline, record: &Record, now: Time) -> Vec<PictureTimes> {
         let pictures = pipeline.pictures(record, now).into_iter();
         pictures.filter(|times| Some(times.shown_at) > self.taken_to).collect()
@@ -124,7 +122,6 @@ impl Window {
         self.sum.iter_mut().for_each(|sum| sum.take(results));
     }
 
-    /// Adds all remaining results of a run that ended in the period `reached`.
     pub(crate) fn close(
         mut self,
         experiment: &Experiment,
@@ -152,7 +149,6 @@ impl Window {
     }
 }
 
-/// Returns the start of the period that is [`PERIODS_HELD`] periods before `instant`.
 fn before(record: &Record, instant: Time) -> Option<Time> {
     let period = record.display().period_at(instant).before(PERIODS_HELD)?;
     Some(record.tick(period))

@@ -33,7 +33,7 @@ fn pictures_of_every_field_are_all_shown() {
 }
 
 #[test]
-fn each_kind_of_end_is_counted_once() {
+fn each_result_of_a_picture_is_counted_once() {
     let mut pictures = regular(2, 1, 108, Shown);
     pictures[10].1 = Late;
     pictures[11].1 = Incomplete;
@@ -45,7 +45,7 @@ fn each_kind_of_end_is_counted_once() {
 }
 
 #[test]
-fn of_pictures_three_periods_apart_that_are_due_every_second_a_third_is_missed() {
+fn pictures_three_periods_apart_but_due_every_second_period_miss_a_third() {
     // Swaps come at 9, 12, 15, 18 ..., due periods at 9, 11, 13, 15, 17, 19 .... Two of three due pictures are new.
     let due = count(&regular(9, 3, 609, Shown), 2, 609);
     assert!((due.not_shown_share() - 1.0 / 3.0).abs() < 1.0 / due.due as f64, "{due:?}");
@@ -60,7 +60,7 @@ fn one_retrace_of_delay_is_one_picture_missed() {
 }
 
 #[test]
-fn two_pictures_for_one_that_is_due_are_one_that_is_shown() {
+fn two_pictures_in_one_due_interval_count_as_one_shown() {
     let due = count(&regular(4, 1, 40, Shown), 2, 40);
     assert_eq!((due.due, due.shown, due.pictures), (16, 16, 32));
     // The rate counts the pictures shown: one in each field.
@@ -69,13 +69,13 @@ fn two_pictures_for_one_that_is_due_are_one_that_is_shown() {
 }
 
 #[test]
-fn what_never_showed_anything_missed_all() {
+fn a_run_that_showed_nothing_missed_all_pictures() {
     let due = count(&[], 1, 60);
     assert_eq!((due.due, due.missed, due.updates_hz(1001.0 / 60.0)), (52, 52, None));
 }
 
 #[test]
-fn a_run_within_the_warm_up_says_nothing() {
+fn a_run_within_the_warm_up_has_no_counts() {
     for periods in 0..=WARM_UP_PERIODS {
         assert_eq!(counted(&regular(2, 1, periods, Shown), 1, periods), None);
     }
@@ -86,7 +86,7 @@ fn a_run_within_the_warm_up_says_nothing() {
 ///
 /// With a picture in every period, the ninth period comes later than the fifth picture.
 #[test]
-fn the_window_begins_with_the_ninth_period_or_the_fifth_picture_whichever_is_later() {
+fn the_window_begins_at_the_later_of_ninth_period_and_fifth_picture() {
     for (first, apart, every, expected) in [(5, 2, 2, 12), (2, 1, 1, 8), (0, 2, 2, 9), (20, 10, 10, 51)] {
         let due = count(&regular(first, apart, 200, Shown), every, 200);
         assert_eq!(due.first_period.0, expected, "{first} {apart} {every}");
@@ -96,7 +96,7 @@ fn the_window_begins_with_the_ninth_period_or_the_fifth_picture_whichever_is_lat
 /// If a pipeline begins a picture every seventh period, and no picture is in time, then the pictures count as late from
 /// the ninth period on.
 #[test]
-fn start_up_hides_no_failure_behind_the_first_periods() {
+fn start_up_hides_no_failure_after_the_first_periods() {
     let due = count(&regular(2, 7, 60, Late), 1, 60);
     assert_eq!((due.first_period.0, due.due, due.shown), (WARM_UP_PERIODS, 52, 0));
 }
@@ -140,7 +140,7 @@ fn ends() -> impl Strategy<Value = Vec<(u64, PictureResult)>> {
 
 proptest! {
     #[test]
-    fn every_picture_that_is_due_ends_in_exactly_one_way(pictures in ends(), every in 1u64..12, periods in 0u64..260) {
+    fn every_picture_due_has_exactly_one_result(pictures in ends(), every in 1u64..12, periods in 0u64..260) {
         if let Some(due) = counted(&pictures, every, periods) {
             prop_assert_eq!(due.shown + due.late + due.incomplete + due.missed, due.due);
             prop_assert_eq!(window(&due), due.due * every);

@@ -67,7 +67,7 @@ fn wholes(numbers: &[u64]) -> Vec<u8> {
 }
 
 #[test]
-fn a_scene_is_named_by_the_bits_of_its_numbers_in_order() {
+fn a_scene_is_identified_by_the_bits_of_its_numbers_in_order() {
     let bytes = [
         wholes(&[3]),
         [floats(&[0.0, 0.5, -3.0, 0.0, 0.0, 1.0]), vec![1, 2, 3]].concat(),
@@ -90,7 +90,7 @@ fn a_scene_is_named_by_the_bits_of_its_numbers_in_order() {
 }
 
 #[test]
-fn any_change_of_a_scene_but_of_its_names_changes_its_fingerprint() {
+fn any_change_of_a_scene_except_its_names_changes_its_fingerprint() {
     let plain = name_of(parts());
     let hinged = |hinge: Option<Hinge>| {
         let mut parts = parts();
@@ -128,7 +128,7 @@ fn head(motion: impl Motion + Send + Sync + 'static) -> Head {
 }
 
 #[test]
-fn a_head_is_named_by_its_settings_a_line_each() {
+fn a_head_is_identified_by_its_settings_one_per_line() {
     let found = head(Pan::at(200.0)).with_raster(Raster::Vdrt).fingerprint().to_string();
     let TrackerConfig { rate_hz, filter_gain, .. } = TrackerConfig::ideal();
     let predictor = tracking::predict::PredictorConfig::for_tracker(PredictorKind::None, &TrackerConfig::ideal());
@@ -174,7 +174,7 @@ impl Motion for Nod {
 }
 
 #[test]
-fn motions_that_differ_have_different_names_even_if_debug_does_not_tell() {
+fn different_motions_have_different_names_even_with_equal_debug_output() {
     let recording = |x: f64| {
         let text = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
         Recording::read(text.as_bytes()).expect("valid")
@@ -201,7 +201,7 @@ fn motions_that_differ_have_different_names_even_if_debug_does_not_tell() {
 }
 
 #[test]
-fn every_tracker_predictor_seed_and_raster_has_a_name_of_its_own() {
+fn every_tracker_predictor_seed_and_raster_has_its_own_name() {
     let of = |tracker: TrackerConfig, predictor: PredictorKind, seed: u64| {
         Head::new(Arc::new(Pan::at(1.0)), tracker, predictor, seed).expect("in range").fingerprint()
     };
@@ -244,7 +244,7 @@ fn every_parameter_of_the_machine_changes_the_name_of_an_experiment() {
 }
 
 #[test]
-fn a_machine_with_the_papers_numbers_of_its_firmware_is_the_one_without_them() {
+fn writing_out_the_default_parameters_of_firmware_changes_nothing() {
     let of = |config: MachineConfig| {
         let scene = pxpl5_scene::builtin("full-screen:12").expect("built in");
         Experiment::new(config, Jitp::new(Viewpoint::Field, false), scene).config_hash()

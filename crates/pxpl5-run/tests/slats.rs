@@ -58,7 +58,7 @@ fn no_bottom_region_of_a_field_is_copied_before_all_top_ones() {
 ///
 /// No pixel may arrive behind the beam, and no newer picture may be written into the displayed buffer.
 #[test]
-fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
+fn with_a_backup_only_complete_fields_are_shown() {
     for scene in ["full-screen:147", "full-screen:160", "full-screen:200", "typical:147", "typical:160", "typical:200"]
     {
         let outcome = run(Slats::backup(), scene);

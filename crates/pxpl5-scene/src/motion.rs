@@ -75,7 +75,6 @@ pub struct HeadMotion {
     sway: Sway,
 }
 
-/// The numbers of a head motion before [`HeadMotion::new`] checks the numbers.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Unchecked {

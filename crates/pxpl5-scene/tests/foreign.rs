@@ -34,7 +34,7 @@ const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\
 // Lines that continue in the next line.
 
 #[test]
-fn a_line_of_obj_that_ends_in_a_backslash_goes_on_in_the_next_one() {
+fn a_line_of_obj_that_ends_in_a_backslash_continues_on_the_next_line() {
     let plain = obj(TETRAHEDRON);
     for (from, to) in [
         ("f 1 3 2\n", "f 1 3 \\\n2\n"),
@@ -55,12 +55,12 @@ fn a_line_of_obj_that_ends_in_a_backslash_goes_on_in_the_next_one() {
 }
 
 #[test]
-fn a_comment_that_ends_in_a_backslash_takes_nothing_from_the_next_line() {
+fn a_comment_of_obj_that_ends_in_a_backslash_does_not_continue() {
     assert_eq!(obj(format!("# C:\\models\\\n{TETRAHEDRON}")), obj(TETRAHEDRON));
 }
 
 #[test]
-fn a_fault_in_a_line_that_goes_on_is_named_with_the_line_where_it_begins() {
+fn an_error_in_a_continued_line_names_its_first_line() {
     let error = read(Format::Obj, "v 0 0 0\nv 1 \\\n two 0\nf 1 1 1\n").expect_err("no number").to_string();
     assert_eq!(error, "test: line 2: expected a number for y, found \"two\"");
     let error = read(Format::Obj, "v 0 0 0\nv \\\n0 0 1\nv 1 0 0\nf 1 2 \\\n9\n").expect_err("no point").to_string();
@@ -70,7 +70,7 @@ fn a_fault_in_a_line_that_goes_on_is_named_with_the_line_where_it_begins() {
 // Order of elements.
 
 #[test]
-fn faces_may_stand_before_the_points_of_an_obj_file() {
+fn faces_may_precede_the_points_of_an_obj_file() {
     let (points, faces) = TETRAHEDRON.split_at(TETRAHEDRON.find('f').expect("a face"));
     assert_eq!(obj(format!("{faces}{points}")), obj(TETRAHEDRON));
 }
@@ -124,14 +124,14 @@ fn binary_faces_first(encoding: &str, word: fn(u32) -> [u8; 4]) -> Vec<u8> {
 }
 
 #[test]
-fn faces_come_first_in_binary_files_too() {
+fn faces_may_also_come_first_in_binary_files() {
     let plain = ply(ascii_ply(&ELEMENTS));
     assert_eq!(ply(binary_faces_first("binary_little_endian", u32::to_le_bytes)), plain);
     assert_eq!(ply(binary_faces_first("binary_big_endian", u32::to_be_bytes)), plain);
 }
 
 #[test]
-fn a_fault_in_faces_that_come_first_is_named_where_it_stands() {
+fn an_error_in_faces_that_come_first_names_its_place() {
     let [vertices, faces] = ELEMENTS;
     let text = ascii_ply(&[faces, vertices]).replace("3 1 2 3\n", "3 1 2 4\n");
     let error = read(Format::Ply, text).expect_err("no such vertex").to_string();
@@ -139,7 +139,7 @@ fn a_fault_in_faces_that_come_first_is_named_where_it_stands() {
 }
 
 #[test]
-fn lines_of_ply_end_as_those_of_obj_and_a_mark_may_come_before_them() {
+fn lines_of_ply_may_have_any_line_ending_and_a_byte_order_mark() {
     let text = ascii_ply(&ELEMENTS);
     let plain = ply(&text);
     for text in
@@ -150,7 +150,7 @@ fn lines_of_ply_end_as_those_of_obj_and_a_mark_may_come_before_them() {
 }
 
 #[test]
-fn numbers_of_ply_are_written_in_any_way() {
+fn numbers_of_ply_may_have_any_notation() {
     let plain = ply(ascii_ply(&ELEMENTS));
     for one in ["1.", "+1", "1e0", "1.0E+00", "10e-1", "0.1e1"] {
         assert_eq!(ply(ascii_ply(&ELEMENTS).replace("1 0 0\n", &format!("{one} 0 0\n"))), plain, "{one}");
@@ -159,7 +159,7 @@ fn numbers_of_ply_are_written_in_any_way() {
 }
 
 #[test]
-fn indices_of_ply_have_any_type() {
+fn indices_of_ply_may_have_any_type() {
     let plain = ply(ascii_ply(&ELEMENTS));
     for kinds in ["uint8 uint8", "char short", "int ushort", "uint uint", "uint16 int32"] {
         assert_eq!(ply(ascii_ply(&ELEMENTS).replace("uchar int", kinds)), plain, "{kinds}");
@@ -169,7 +169,7 @@ fn indices_of_ply_have_any_type() {
 // Encodings and line ends.
 
 #[test]
-fn comments_and_names_in_any_encoding_are_no_reason_to_refuse_a_model() {
+fn comments_and_names_in_any_encoding_are_accepted() {
     let latin = |text: &str| -> Vec<u8> { text.chars().map(|c| c as u8).collect() };
     let with_names =
         format!("# Gr\u{f6}\u{df}e\no W\u{fc}rfel\ng t\u{ea}te\nusemtl M\u{e9}tall\n{TETRAHEDRON}# \u{e9}\n");
@@ -184,7 +184,7 @@ fn comments_and_names_in_any_encoding_are_no_reason_to_refuse_a_model() {
 }
 
 #[test]
-fn what_is_no_text_where_a_number_must_be_is_refused_with_its_line() {
+fn bytes_that_are_not_text_in_place_of_a_number_are_refused_with_the_line() {
     let error = read(Format::Obj, b"v 0 0 0\nv 0 \xe9 0\n").expect_err("no number").to_string();
     assert_eq!(error, "test: line 2: expected a number for y, found \"\u{fffd}\"");
     let mut text = ascii_ply(&ELEMENTS).into_bytes();
@@ -225,7 +225,7 @@ fn assert_covers(points: &[(f64, f64)], scene: &Scene) {
 const DART: [(f64, f64); 4] = [(0.0, 2.0), (-2.0, -2.0), (0.0, -1.0), (2.0, -2.0)];
 
 #[test]
-fn the_notch_of_a_polygon_stays_open_wherever_it_begins_and_whichever_way_it_turns() {
+fn the_notch_of_a_polygon_stays_open_for_any_start_and_orientation() {
     let polygons: [&[(f64, f64)]; 6] = [
         &DART,
         // L, U, and a star; a comb with points on straight lines, and one with a point twice.
@@ -344,7 +344,7 @@ fn is_flat(scene: &Scene) -> bool {
 }
 
 #[test]
-fn faces_of_obj_are_flat_where_smoothing_is_off() {
+fn faces_of_obj_are_flat_if_smoothing_is_off() {
     let faces = FACES.concat();
     for off in ["", "s off\n", "s 0\n", "s Off\n", "s 1\ns off\n"] {
         let scene = obj(format!("{off}{CUBE}{faces}"));
@@ -362,7 +362,7 @@ fn faces_of_obj_are_flat_where_smoothing_is_off() {
 }
 
 #[test]
-fn smoothing_groups_are_shaded_by_themselves() {
+fn smoothing_groups_are_shaded_separately() {
     let grouped: String = (1..).zip(FACES).map(|(group, face)| format!("s {group}\n{face}")).collect();
     assert!(is_flat(&obj(format!("{CUBE}{grouped}"))));
     // Two faces that meet at a right angle in one group: at their edge the mean, elsewhere their own.
@@ -407,7 +407,7 @@ fn colours_of_obj_vertices_are_drawn_as_fractions_or_bytes() {
 }
 
 #[test]
-fn materials_that_are_not_read_are_told_once() {
+fn unread_materials_cause_one_warning() {
     let scene = obj(format!("usemtl a\nusemtl b\n{TETRAHEDRON}"));
     assert_eq!(scene.warnings(), ["colours of materials (usemtl) are not read: faces have one colour"]);
     assert!(obj(TETRAHEDRON).warnings().is_empty());
@@ -447,7 +447,7 @@ fn colours_of_ply_faces_are_drawn_and_do_not_change_the_shading() {
 // Normals that are NaN.
 
 #[test]
-fn normals_that_are_no_numbers_are_computed_and_told_once() {
+fn invalid_normals_are_recomputed_with_one_warning() {
     let smooth = TETRAHEDRON.replacen('f', "s 1\nf", 1);
     let plain = obj(&smooth);
     for nan in ["nan", "NaN", "-nan", "-nan(ind)", "nan(0x8000)", "1.#QNAN", "inf", "-inf", "1.#INF"] {
@@ -465,7 +465,7 @@ fn normals_that_are_no_numbers_are_computed_and_told_once() {
 }
 
 #[test]
-fn a_place_that_is_no_number_is_refused_and_named() {
+fn an_invalid_coordinate_is_refused_with_its_place() {
     for nan in ["nan", "-nan(ind)", "1.#IND"] {
         let said = read(Format::Obj, format!("v 0 {nan} 0\n")).expect_err("no place").to_string();
         assert!(said.starts_with("test: line 1: expected a coordinate") && said.ends_with("found NaN"), "{said}");
@@ -492,7 +492,7 @@ fn drawn(line: &str) -> (f32, [u8; 3]) {
 }
 
 #[test]
-fn elements_are_told_by_the_names_of_atoms_where_the_columns_for_them_are_missing() {
+fn missing_element_columns_are_replaced_by_the_names_of_atoms() {
     let (h, c, n, o, s) = (1.20, 1.70, 1.55, 1.52, 1.80);
     for (record, name, residue, radius) in [
         ("ATOM", "HG11", "VAL", h),
@@ -546,7 +546,7 @@ fn elements_are_told_by_the_names_of_atoms_where_the_columns_for_them_are_missin
 }
 
 #[test]
-fn what_stands_in_the_columns_of_the_element_and_is_none_is_passed_over() {
+fn unknown_text_in_the_element_columns_is_ignored() {
     // Old files number their lines in columns 73 to 80.
     for end in ["1CRN  70", "1CRN 123", "        ", ""] {
         let line = format!("{:<72}{end}\n", atom("ATOM", " CA ", "VAL").trim_end());

@@ -187,7 +187,7 @@ fn corners_without_indices_make_triangles_strips_and_fans_as_the_specification_s
 }
 
 #[test]
-fn triangles_that_only_join_parts_of_a_strip_are_left_out() {
+fn triangles_that_only_join_parts_of_a_strip_are_ignored() {
     let mut writer = Writer::default();
     let positions = writer.vectors(&SQUARE);
     let indices = writer.shorts(&[0, 1, 2, 2, 0, 0, 2, 3]);
@@ -254,7 +254,7 @@ fn a_mirroring_transform_leaves_triangles_anticlockwise() {
 }
 
 #[test]
-fn a_mesh_in_two_nodes_is_there_twice_and_a_node_out_of_the_scene_is_not() {
+fn a_mesh_in_two_nodes_is_drawn_twice_and_a_node_outside_the_scene_is_not() {
     let (writer, mut document) = square();
     document["nodes"] = json!([{"mesh": 0}, {"mesh": 0, "translation": [5, 0, 0]}, {"mesh": 0}]);
     document["scenes"] = json!([{"nodes": [2]}, {"nodes": [0, 1]}]);
@@ -345,7 +345,7 @@ fn a_buffer_in_a_file_beside_the_model_is_read_and_no_other_file() {
 }
 
 #[test]
-fn what_is_not_read_gives_a_warning() {
+fn unread_parts_cause_a_warning() {
     let (writer, mut document) = square();
     document["textures"] = json!([{"source": 0}]);
     document["images"] = json!([{"uri": "a.png"}]);
@@ -506,7 +506,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_damaged_file_makes_the_reader_panic(is_binary: bool, damages in damages(), end: prop::sample::Index, cut: bool) {
+    fn no_damaged_file_causes_a_panic(is_binary: bool, damages in damages(), end: prop::sample::Index, cut: bool) {
         let (writer, document) = square();
         let mut file = if is_binary { writer.binary(&document) } else { writer.text(document) };
         for (place, bytes) in damages {
@@ -524,7 +524,7 @@ proptest! {
 
     /// Every number of the document becomes any number in turn, which no damage of bytes reaches as often.
     #[test]
-    fn no_number_in_the_document_makes_the_reader_panic(which in 0..64_usize, number: u64, small in 0..9_u64, is_small: bool) {
+    fn no_number_in_the_document_causes_a_panic(which in 0..64_usize, number: u64, small in 0..9_u64, is_small: bool) {
         let (writer, document) = square();
         let number = if is_small { small } else { number };
         let text = document.to_string();

@@ -47,7 +47,7 @@ fn negative_indices_count_back_from_the_last_vertex_so_far() {
 }
 
 #[test]
-fn texture_coordinates_are_passed_over_in_every_notation() {
+fn texture_coordinates_are_ignored_in_every_notation() {
     assert_square(&obj(&format!("{SQUARE_OBJ}vt 0 0\nvn 0 0 2\nf 1/1 2/1/1 3//1 4\n")));
     assert_square(&obj(&format!("{SQUARE_OBJ}vt 0 0\nf 1/1/ 2/1 3// 4 # comment\r\n")));
 }
@@ -81,7 +81,7 @@ fn models_of_any_size_fit() {
 }
 
 #[test]
-fn points_that_no_face_uses_are_dropped_however_far_they_lie() {
+fn unused_points_are_dropped_at_any_distance() {
     let scene = ply("ply\nformat ascii 1.0\nelement vertex 5\nproperty double x\nproperty double y\n\
         property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
         1e15 0 0\n0 0 0\n-1e15 0 0\n1e-300 0 0\n0 1e-300 0\n3 1 3 4\n");
@@ -122,7 +122,7 @@ fn the_three_encodings_of_ply_give_the_same_scene() {
 }
 
 #[test]
-fn normals_doubles_fractional_colours_and_foreign_elements_of_ply_are_understood() {
+fn normals_doubles_fractional_colours_and_unknown_elements_of_ply_are_read() {
     let scene = ply("ply\nformat ascii 1.0\nelement junk 2\nproperty int a\nelement vertex 3\nproperty double x\n\
         property double y\nproperty double z\nproperty float nx\nproperty float ny\nproperty float nz\n\
         property float red\nproperty float green\nproperty float blue\nproperty float quality\n\
@@ -154,7 +154,7 @@ fn written(scene: &Scene) -> String {
 }
 
 #[test]
-fn a_scene_comes_back_from_a_ply_file() {
+fn a_scene_written_as_ply_is_read_back() {
     let mig = pxpl5_scene::builtin("mig").expect("a built-in scene");
     let back = ply(written(&mig));
     let again = ply(written(&back));
@@ -215,7 +215,7 @@ fn missing_primitive(format: Format, text: &str) -> String {
 }
 
 #[test]
-fn a_file_with_nothing_to_draw_says_what_is_missing() {
+fn a_file_with_nothing_to_draw_is_refused_with_the_missing_part() {
     assert_eq!(missing_primitive(Format::Obj, "v 0 0 0\n"), "triangle");
     let header =
         "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
@@ -224,7 +224,7 @@ fn a_file_with_nothing_to_draw_says_what_is_missing() {
 }
 
 #[test]
-fn a_coordinate_that_is_no_place_is_refused() {
+fn a_coordinate_that_is_not_finite_is_refused() {
     for bad in ["nan", "inf", "-inf", "1e16", "-1e300", "1e999"] {
         let error = read(Format::Obj, format!("v 0 0 0\nv 0 {bad} 0\nf 1 2 1\n")).expect_err(bad);
         assert_eq!((error.kind, &*error.place), (FileErrorKind::Number, "line 2"), "{bad}");
@@ -265,7 +265,7 @@ fn an_index_of_ply_out_of_range_is_named_with_its_place() {
 }
 
 #[test]
-fn a_ply_file_cut_anywhere_is_refused() {
+fn a_truncated_ply_file_is_refused() {
     for file in
         [binary_square("binary_little_endian", u32::to_le_bytes), binary_square("binary_big_endian", u32::to_be_bytes)]
     {
@@ -310,7 +310,7 @@ fn message(format: Format, text: &str) -> String {
 }
 
 #[test]
-fn what_breaks_a_format_is_named_with_line_expectation_and_finding() {
+fn format_errors_name_line_expected_and_found() {
     assert_eq!(message(Format::Obj, "v 1 two 3\n"), "test: line 1: expected a number for y, found \"two\"");
     assert_eq!(message(Format::Obj, "v 1 2\n"), "test: line 1: expected a number for z, found \"\"");
     assert_eq!(message(Format::Obj, "v 1 2 3\nf 1 x 1\n"), "test: line 2: expected an index of vertices, found \"x\"");
@@ -361,7 +361,7 @@ fn paths_that_lead_to_no_model_are_refused() {
 }
 
 #[test]
-fn a_mark_at_the_begin_of_a_text_and_lines_that_end_in_cr_alone_change_nothing() {
+fn a_byte_order_mark_and_lines_that_end_in_cr_change_nothing() {
     let text = format!("{SQUARE_OBJ}f 1 2 3 4\n");
     let first_is_a_vertex = text.trim_start_matches("# a square, 5 right and 2 wide\no s\n");
     assert_square(&obj(&format!("\u{feff}{first_is_a_vertex}")));
@@ -374,7 +374,7 @@ fn a_mark_at_the_begin_of_a_text_and_lines_that_end_in_cr_alone_change_nothing()
 /// Superfluous content is refused at every position of a PLY file: repeated elements, numbers after a row, and rows
 /// after the last.
 #[test]
-fn what_is_too_much_in_a_ply_file_is_refused_where_it_stands() {
+fn surplus_data_in_a_ply_file_is_refused_with_its_place() {
     let file = |version: &str, again: &str, vertex: &str, face: &str, rest: &str| {
         format!(
             "ply\nformat ascii {version}\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{again}element face 1\n\
@@ -398,7 +398,7 @@ fn what_is_too_much_in_a_ply_file_is_refused_where_it_stands() {
 }
 
 #[test]
-fn triangle_strips_are_read_and_every_other_triangle_is_turned() {
+fn triangle_strips_are_read_and_every_other_triangle_is_reversed() {
     let scene = ply(
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n\
                      property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 1 2\n",
@@ -411,7 +411,7 @@ fn triangle_strips_are_read_and_every_other_triangle_is_turned() {
 /// Serine 5 has two locations of CB and one of OG, and a third residue shares its position. Atom CA of residue 6 has
 /// only the locations B and C.
 #[test]
-fn an_atom_is_where_its_first_alternate_location_is_whatever_its_letter() {
+fn an_atom_has_its_first_alternate_location() {
     let atom = |name: &str, alternate: &str, residue: &str, place: u32, x: f64| {
         format!("ATOM      1  {name:<3}{alternate}{residue} A{place:>4}    {x:>8.3}{:>8.3}{:>8.3}\n", 0.0, 0.0)
     };

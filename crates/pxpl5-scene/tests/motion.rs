@@ -36,7 +36,7 @@ fn the_mean_angular_speed_is_that_of_recorded_heads() {
 }
 
 #[test]
-fn no_head_turns_faster_than_recorded_ones() {
+fn no_head_rotates_faster_than_recorded_heads() {
     for seed in 0..8 {
         let fastest = speeds(&swaying(seed), 600).into_iter().fold(0.0, f64::max);
         assert!(fastest < MAX_HEAD_SPEED_DEG_PER_S, "seed {seed}: {fastest}");
@@ -95,7 +95,7 @@ fn energy(signal: &[f64], mean: f64, bin: usize) -> f64 {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_pose_and_another_seed_another() {
+fn equal_seeds_give_equal_poses_and_different_seeds_different_poses() {
     let time = 123_456_789_012_345;
     assert_eq!(swaying(3).pose(time), swaying(3).pose(time));
     assert_ne!(swaying(3).pose(time), swaying(4).pose(time));
@@ -167,7 +167,7 @@ fn boxed_share(scene: &Scene, time_ps: u64) -> f32 {
 }
 
 #[test]
-fn mig_at_times_fills_the_view_and_at_times_is_small_in_it() {
+fn mig_varies_between_filling_the_view_and_being_small() {
     // Each at least a twentieth of two laps.
     let mig = builtin("mig").expect("a built-in scene");
     let shares: Vec<f32> = (0..80).map(|i| boxed_share(&mig, i * SECOND / 2)).collect();
@@ -185,7 +185,7 @@ fn the_head_fills_about_a_third_of_the_view_at_all_times() {
 }
 
 #[test]
-fn numbers_out_of_range_are_refused_also_from_a_file() {
+fn numbers_out_of_range_are_refused_in_code_and_in_files() {
     let nan = HeadPath::Pan { eye: Vec3::ZERO, deg_per_s: f64::NAN };
     assert_eq!(&*HeadMotion::new(nan, Sway::none()).expect_err("not a number").name, "deg_per_s");
     let far = HeadPath::Look { target: Vec3::splat(f32::INFINITY), distance: 1.0 };

@@ -1,5 +1,3 @@
-//! Duration of a film's frame.
-
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Display;
@@ -28,7 +26,7 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// Returns the distance from another fraction, multiplied by both denominators so that the result is an integer.
+    /// Returns the difference to another fraction, multiplied by both denominators so that the result is an integer.
     const fn distance(self, other: Self) -> u128 {
         (self.over * other.under).abs_diff(other.over * self.under)
     }
@@ -98,12 +96,12 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_of_the_high_resolution_display_takes_the_72nd_part_of_a_second() {
+    fn a_frame_of_the_high_resolution_display_takes_a_72nd_of_a_second() {
         assert_eq!(seconds(&HiResConfig::PAPERS), (1, 72));
     }
 
     #[test]
-    fn a_fraction_that_fits_is_found_exactly() {
+    fn an_exact_fraction_is_found() {
         for (over, under) in [(1, 1), (65_535, 65_534), (1, 65_535), (65_535, 1), (355, 113), (2, 3)] {
             let exact = Fraction { over, under };
             assert_eq!(nearest_fraction(Fraction { over: over * 1_000, under: under * 1_000 }), exact);
@@ -111,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn of_fractions_that_do_not_fit_no_neighbour_is_nearer() {
+    fn the_nearest_fraction_is_found() {
         for (over, under) in [(100_003, 100_019), (1, 1_000_003), (141_421_356, 100_000_000), (1_000_003, 70_001)] {
             let exact = Fraction { over, under };
             let found = nearest_fraction(exact);

@@ -54,7 +54,7 @@ fn a_timeline_counts_the_periods_of_its_display() {
 }
 
 #[test]
-fn what_a_file_is_made_again_from_names_the_display() {
+fn the_command_that_repeats_a_file_names_the_display() {
     let report = Report::of(&run(hires(40)));
     assert!(origin(&report).contains(&("display", "hires".to_owned())));
 }
@@ -115,7 +115,7 @@ fn a_film_has_the_size_and_the_rate_of_its_display() {
 }
 
 #[test]
-fn a_film_of_what_is_not_there_is_refused() {
+fn a_film_of_a_missing_surface_is_refused() {
     let film = Film::new(hires(10), PeriodNumber(6), 2, FilmSurfaces::One(SurfaceId(1)));
     let error = film.write(&[], Vec::new()).expect_err("there is one surface");
     assert_eq!(error.to_string(), "a film of surface 1: the display has 1, counted from 0");

@@ -11,8 +11,8 @@ pub enum ClipKind {
     UserPlanes,
     /// Clip by both boundary planes in the fragment program, which gives exactly the volume of the slice.
     Exact,
-    /// Clip by two planes whose distance grows with the radius: a fixed number of pixels at the axis, and the exact
-    /// thickness of the slice at the rim. Each side of the axis has its own drawing pass.
+    /// Clip by two planes whose distance grows with the radius. The distance is a fixed number of pixels at the axis,
+    /// and the exact thickness of the slice at the rim. Each side of the axis has its own drawing pass.
     Tapered,
     /// Clip by both boundary planes of the slice, moved outwards.
     Parallel,
@@ -51,9 +51,7 @@ pub enum RendererKind {
     PixelPlanes,
 }
 
-/// A choice that has a name in options, files and reports.
 pub(crate) trait Named: Copy + PartialEq + 'static {
-    /// Names, each with the choice that it stands for.
     const NAMES: &'static [(&'static str, Self)];
 
     fn name(self) -> &'static str {

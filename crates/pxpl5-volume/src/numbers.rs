@@ -1,4 +1,4 @@
-//! All numbers of an experiment, except the numbers of the display and of the time model.
+//! All numbers in the settings of a volume, except the numbers of the display and of the time model.
 
 pxpl5_sim::parameters::parameter_table! {
     /// Offset and bias of the methods that clip to a slice, and the precision of their planes.

@@ -42,7 +42,7 @@ fn a_still_head_has_no_error_of_latency() {
 /// atan(20/508) = 2.25 degrees for the middle. The mean over points around the middle is about the same. The errors
 /// grow with the latency.
 #[test]
-fn a_sliding_head_is_off_by_its_way_over_the_distance() {
+fn the_error_of_a_sliding_head_is_its_movement_over_the_distance() {
     let slide = Slide::right_at(0.4);
     let short = HeadStudyConfig { seconds: 0.01, ..QUESTION };
     let first = study(&slide, &short).samples[0];
@@ -57,7 +57,7 @@ fn a_sliding_head_is_off_by_its_way_over_the_distance() {
 /// Checks a head that turns by 60 degrees a second, with a latency of 50 ms. The error is exactly 3 degrees, seen from
 /// the head. The eyes are 31 mm beside the axis of the turn.
 #[test]
-fn a_turning_head_is_off_by_its_rate_times_the_latency() {
+fn the_error_of_a_rotating_head_is_its_rate_times_the_latency() {
     let first = study(&Pan::at(60.0), &HeadStudyConfig { seconds: 0.01, ..QUESTION }).samples[0];
     let found = first.hmd_mean_deg.expect("ahead");
     assert!((found - 3.0).abs() < 0.2, "{found}");
@@ -67,7 +67,7 @@ fn a_turning_head_is_off_by_its_rate_times_the_latency() {
 /// edges. Across the plane it is at most half the distance to the next slice. At the rim this is 64 px x sin(5 degrees)
 /// = 5.58 px, because 36 slices are 10 degrees apart. One pixel is 254/128 mm.
 #[test]
-fn voxels_are_off_by_their_own_size_and_no_more() {
+fn the_error_of_voxels_is_at_most_their_size() {
     let study = study(&Still(Pose::IDENTITY), &QUESTION);
     let pixel_mm = 254.0 / 128.0;
     assert!((study.voxel_mm - pixel_mm).abs() < 1e-12);
@@ -100,7 +100,7 @@ fn both_eyes_see_both_displays() {
 }
 
 #[test]
-fn a_volume_is_as_late_as_its_model_and_its_turn() {
+fn the_latency_of_a_volume_is_that_of_its_model_and_rotation() {
     let late = VOLUME.latency_ms().expect("a GPU drew it");
     assert!((late - 1e3 / VOLUME.time().serial_hz() - 50.0).abs() < 1e-9, "three quarters of a turn of 66.7 ms");
     let study = study(&Still(Pose::IDENTITY), &HeadStudyConfig { latency_ms: None, ..QUESTION });
@@ -109,7 +109,7 @@ fn a_volume_is_as_late_as_its_model_and_its_turn() {
 }
 
 #[test]
-fn what_cannot_be_asked_is_refused() {
+fn impossible_settings_are_refused() {
     let still = Still(Pose::IDENTITY);
     for latency in [-1.0, f64::NAN, 1e9] {
         let error = HeadComparison::new(&VOLUME, &still, Some(latency)).expect_err("refused").to_string();

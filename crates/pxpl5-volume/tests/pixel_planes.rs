@@ -140,7 +140,7 @@ fn both_pixel_arrays_draw_what_the_host_draws() {
 /// Checks the clocks of the 36 regions of a slice: each is selected (6 clocks), cleared (62) and halftoned (72). A
 /// triangle in one region takes 238 more.
 #[test]
-fn clocks_and_words_are_those_of_the_programs() {
+fn clocks_and_words_follow_from_the_programs() {
     let renderer = PixelPlanesRenderer::new(&settings(), ArrayKind::Lanes).expect("supported");
     let corners = [([6400, 6400], 0.0, [200; 3]), ([6560, 6400], 0.0, [200; 3]), ([6400, 6560], 0.0, [200; 3])];
     drawn(&renderer, &recording(&corners));
@@ -179,7 +179,7 @@ fn bounds_follow_from_counts() {
 /// channels. The program has 12 words. Both arrays give the bits of the host's halftone, for every level and threshold
 /// of Bayer's matrix.
 #[test]
-fn the_halftones_program_gives_the_hosts_bits_in_72_clocks() {
+fn the_halftone_program_gives_the_bits_of_the_host_in_72_clocks() {
     let layout = Layout::rendering_control_phong();
     assert_eq!(halftone_clocks(&layout), 3 * (6 + 12 + 6));
     assert_eq!(halftone_words(&layout).len(), 3 * (1 + 2 + 1));
@@ -273,7 +273,7 @@ fn more_boards_than_a_ring_has_ports_are_refused() {
 }
 
 #[test]
-fn what_is_no_single_quadratic_is_refused() {
+fn a_surface_that_is_not_one_quadratic_is_refused() {
     for (path, text, part) in [
         ("clip.variant", "exact", "hyperbolic"),
         ("projection", "jittered", "orthographic"),

@@ -95,7 +95,7 @@ fn counts_follow_from_the_display() {
 }
 
 #[test]
-fn mirrored_and_connected_volumes_say_that_they_are_beyond_the_paper() {
+fn mirrored_and_connected_volumes_are_marked_as_beyond_the_paper() {
     let mut settings = small();
     settings.set("draw.strobes", "mirror", "test").expect("valid");
     settings.set("draw.coverage", "connected", "test").expect("valid");
@@ -155,7 +155,7 @@ fn pictures_show_the_slices() {
 /// Checks that a sheet has rows of 22 thumbnails of 64 px. A tile map has as many white pixels as occupied tiles are
 /// counted.
 #[test]
-fn sheets_and_maps_show_everything() {
+fn sheets_and_maps_show_all_slices() {
     let volume = drawn(&small());
     assert_eq!(sheet(&volume).dimensions(), (22 * 64, 2 * 64));
     let map = tile_map(&volume).expect("there are tiles");
@@ -167,7 +167,7 @@ fn sheets_and_maps_show_everything() {
 }
 
 #[test]
-fn a_slice_that_is_not_there_is_refused() {
+fn a_missing_slice_is_refused() {
     let volume = drawn(&small());
     assert_eq!(volume.check_slice(35), Ok(35));
     let error = volume.check_slice(36).expect_err("36 slices");

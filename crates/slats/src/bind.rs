@@ -13,7 +13,7 @@ pub struct BoundRegion {
     pub region: RegionId,
     /// Index of the renderer in the list [`crate::SlatsConfig::renderers`].
     pub renderer: usize,
-    /// Index of the part of the renderer's pixel memory that holds the region. A renderer has up to four such contexts.
+    /// Index of the part of the renderer's pixel memory that holds the region, from 0 to 3.
     pub context: u8,
 }
 

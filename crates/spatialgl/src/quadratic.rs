@@ -65,7 +65,6 @@ impl ClipQuadratic {
         Some(Self::of_plane(slope, offset, wedge, bias))
     }
 
-    /// Returns the value of the quadratic at a sample.
     #[must_use]
     pub fn at(&self, u: f64, v: f64) -> f64 {
         self.uu * u * u + self.uv * u * v + self.vv * v * v + self.u * u + self.v * v + self.one
@@ -96,7 +95,7 @@ mod tests {
     /// 16 fraction bits of the renderers' format, S^2 would be 4 units, which is too coarse. With 26 bits, S^2 is 4,224
     /// units, and the quadratic fits into 48 bits.
     #[test]
-    fn its_scale_fits_the_renderers_words() {
+    fn the_scale_of_a_quadratic_fits_the_words_of_a_renderer() {
         let square = WEDGE().sin * WEDGE().sin;
         assert!((square * f64::from(1 << 16) - 4.12).abs() < 0.01);
         assert!((square * f64::from(1 << 26) - 4_223.6).abs() < 0.1);
@@ -105,7 +104,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_has_the_sign_of_the_biased_product(
+        fn a_quadratic_has_the_sign_of_the_biased_product(
             corners in prop::array::uniform3(prop::array::uniform3(-300.0f64..300.0)),
             u in -384.0f64..384.0, v in -384.0f64..384.0, bias in 0.0f64..4.0,
         ) {

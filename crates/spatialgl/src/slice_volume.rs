@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
-    /// Each boundary plane belongs to the slice that begins with this plane, so every point off the axis is in exactly
-    /// one slice. This rule is not from the SpatialGL paper.
+    /// Each boundary plane belongs to only one of the two slices at this plane, the slice that begins there. Every
+    /// point off the axis is therefore in exactly one slice. This rule is not from the SpatialGL paper.
     #[default]
     HalfOpen,
     /// The rule as printed in the SpatialGL paper: the product of the distances is positive. No slice contains its
@@ -26,7 +26,6 @@ pub enum TieRule {
 }
 
 impl TieRule {
-    /// All rules for points on a boundary, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 4] = [
         ("half-open", Self::HalfOpen),
         ("product-positive", Self::ProductPositive),
@@ -61,12 +60,12 @@ impl TieRule {
 /// z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WedgePlanes {
-    /// Coefficients of x and z of plane A. Points of the positive lobe (half of the double wedge) lie on its positive
-    /// side.
+    /// Coefficients of x and z of plane A. Points of the positive lobe (half of the double wedge) lie on the positive
+    /// side of this plane.
     pub a: [f64; 2],
-    /// Coefficients of x and z of plane B. Points of the positive lobe lie on its positive side.
+    /// Coefficients of x and z of plane B. Points of the positive lobe lie on the positive side of this plane.
     pub b: [f64; 2],
-    /// Fraction bits to which both planes are rounded at every sample, or `None` for double precision.
+    /// Number of fraction bits in the evaluation of both planes at every sample, or `None` for double precision.
     pub fraction_bits: Option<u32>,
 }
 
@@ -91,12 +90,7 @@ pub enum SliceVolume {
     /// All points between the near and far planes.
     Frustum,
     /// A slab low <= s < high parallel to the slice, where s is the distance from the slice in pixels.
-    Slab {
-        /// Lower limit of the distance s in the slab, inclusive.
-        low: f64,
-        /// Upper limit of the distance s in the slab, exclusive.
-        high: f64,
-    },
+    Slab { low: f64, high: f64 },
     /// A double wedge around the axis y: its planes, and its test.
     Wedge(WedgePlanes, WedgeTest),
     /// The volume |s| <= offset + slope |u|, bounded by clip planes. s is the distance from the slice, and u the
@@ -147,7 +141,6 @@ impl SliceVolume {
         }
     }
 
-    /// Returns the test that samples must pass in one replay of the commands.
     pub(crate) fn test(&self, pass: u32) -> SampleTest {
         match *self {
             Self::Frustum => SampleTest::All,
@@ -206,7 +199,6 @@ impl SampleTest {
         }
     }
 
-    /// Returns the number of fraction bits to which the planes are rounded, or `None` without rounding.
     pub(crate) const fn fraction_bits(self) -> Option<u32> {
         match self {
             Self::All | Self::Slab | Self::Taper { .. } => None,
@@ -215,7 +207,6 @@ impl SampleTest {
         }
     }
 
-    /// Returns the same test for values that are already rounded.
     pub(crate) const fn without_rounding(self) -> Self {
         match self {
             Self::Plus(ties, _) => Self::Plus(ties, None),

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct Tiling {
     /// Side of a tile in pixels, a multiple of 8. With `None` there are no tiles, and every pixel is packed and sent.
     pub tile: Option<u32>,
-    /// Number of slices that share a stencil clear and the queries of tiles.
+    /// Number of slices in a batch. The slices of a batch share one clear of the stencil and the queries of tiles.
     pub batch: u32,
 }
 
@@ -26,7 +26,7 @@ impl Tiling {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] names the number, the expected range and the value found.
+    /// [`SettingError`] names the invalid number, the expected range and the found value.
     pub fn check(self) -> Result<(), SettingError> {
         if let Some(tile) = self.tile {
             SettingError::require((8..=4096).contains(&tile), "tile.size", "8 to 4096", tile)?;
@@ -73,7 +73,6 @@ impl TileGrid {
         u64::from((right - left) / 8) * u64::from(bottom - top)
     }
 
-    /// Sets `tiles` to true for each tile in which a fragment was drawn.
     pub(crate) fn mark(&self, image: &SliceImage, tiles: &mut [bool]) {
         let row_bytes = self.size[0] as usize / 8;
         let tile_bytes = self.tile as usize / 8;

@@ -37,7 +37,7 @@ fn d9_each_double_wedge_serves_50_planes() {
 }
 
 #[test]
-fn two_planes_are_weaker_than_all() {
+fn two_planes_exclude_fewer_slices_than_all_planes() {
     for triangle in [T1, T2, T4, T5, T8] {
         let two = slices_drawn(triangle, Binning::TwoPlanes, BinTolerance::OfTheClip);
         let all = slices_drawn(triangle, Binning::AllPlanes, BinTolerance::OfTheClip);

@@ -53,7 +53,7 @@ fn case_28_connected_surfaces_of_a_sphere() {
 /// facet per slice around it has the same gaps in every slice of an orthographic projection. If each slice has a
 /// different eye, the gaps differ.
 #[test]
-fn jitter_makes_gaps_of_neighbouring_slices_unlike() {
+fn jitter_gives_neighbouring_slices_different_gaps() {
     let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 198, [255; 3]);
     let mut context = DrawContext::default();
     context.draw_indexed(&VertexBuffer::new(vertices).expect("finite"), &indices, Topology::Triangles).expect("valid");
@@ -108,7 +108,7 @@ fn a_flat_screen_hides_what_is_behind() {
 /// Checks that one recording can be shown on a swept screen, a stack of planes and a flat screen. The scene is the Mig,
 /// which has 417 triangles.
 #[test]
-fn a_scene_does_not_know_the_display() {
+fn a_scene_does_not_depend_on_the_display() {
     let scene = builtin("mig").expect("built in");
     let commands = record_scene(&scene, 384.0, true).expect("valid");
     assert_eq!(commands.primitives(), 417);
@@ -128,7 +128,7 @@ fn a_scene_does_not_know_the_display() {
 
 /// Checks the formulas of section 6 for 396 slices of 768 x 768 pixels, from counts alone.
 #[test]
-fn the_model_of_time_is_the_specifications() {
+fn the_model_of_time_follows_the_specification() {
     let size = [768, 768];
     let pixels = 768 * 768 * 396;
     let stats = VolumeStats {

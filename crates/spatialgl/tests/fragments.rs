@@ -105,7 +105,7 @@ fn case_17_a_triangle_over_the_rim() {
 }
 
 #[test]
-fn case_18_a_floor_is_lost_without_an_eye_aside() {
+fn case_18_a_floor_is_lost_if_the_eye_is_not_moved_aside() {
     assert_eq!(fragments(&[T3], HYPERBOLA, ORTHOGRAPHIC), (0, 0));
     let (count, slices) = fragments(&[T3], HYPERBOLA, ASIDE);
     same(count, 4_554, "hyperbola");
@@ -113,13 +113,13 @@ fn case_18_a_floor_is_lost_without_an_eye_aside() {
 }
 
 #[test]
-fn case_19_a_triangle_seen_from_aside() {
+fn case_19_a_triangle_seen_from_the_side() {
     same(fragments(&[T4], EXACT, ASIDE).0, 16_865, "exact");
     same(fragments(&[T4], HYPERBOLA, ASIDE).0, 43_680, "hyperbola");
 }
 
 #[test]
-fn case_20_a_quad_is_the_same_by_either_diagonal() {
+fn case_20_a_quad_is_the_same_with_either_diagonal() {
     let [a, b, c, d] = [[-150.2, -80.1, 60.3], [140.7, -80.1, 20.6], [140.7, 90.4, 20.6], [-150.2, 90.4, 60.3]];
     for (clip, expected) in [(EXACT, 38_420), (SliceClip::Prism, 177_820), (HYPERBOLA, 48_790)] {
         let one = fragments(&[[a, b, c], [a, c, d]], clip, ORTHOGRAPHIC).0;
@@ -145,7 +145,7 @@ fn case_25_tiles_of_a_wall() {
 
 /// Checks figure P5: the number of times that the commands are replayed for a slice.
 #[test]
-fn passes_are_as_published() {
+fn the_number_of_passes_is_as_published() {
     let passes = |clip| {
         let stats = volume(&swept(clip, ORTHOGRAPHIC), &recording(&[T5]), &half(VolumeConfig::plain())).stats;
         assert_eq!(stats.draws, 198 * stats.passes);
@@ -157,7 +157,7 @@ fn passes_are_as_published() {
 /// Checks the number of generated fragments. Clip variants with one pass generate every fragment between the near and
 /// far planes. Clip planes generate only accepted fragments.
 #[test]
-fn what_is_generated_and_not_accepted() {
+fn plane_clips_accept_all_generated_fragments() {
     let stats = |clip| volume(&swept(clip, ORTHOGRAPHIC), &recording(&[T1]), &half(VolumeConfig::plain())).stats;
     let prism = stats(SliceClip::Prism);
     assert_eq!(prism.fragments_generated, prism.fragments_accepted);

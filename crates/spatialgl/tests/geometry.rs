@@ -156,7 +156,7 @@ fn case_7_integer_points_within_384() {
 
 /// Checks figure P4 as printed, at the points where the printed rule is ambiguous.
 #[test]
-fn the_two_printed_tie_rules_treat_a_boundary_plane_as_they_say() {
+fn the_two_published_tie_rules_assign_points_of_a_boundary_plane() {
     let accepting = |ties: TieRule, x: f64, z: f64| {
         let config = SweptConfig { ties, ..SweptConfig::perspecta(EXACT, Projection::Orthographic) };
         planes_of(&SweptDisplay::new(config).expect("valid"), x, z).len()
@@ -168,7 +168,7 @@ fn the_two_printed_tie_rules_treat_a_boundary_plane_as_they_say() {
 }
 
 #[test]
-fn case_9_an_eye_aside_and_a_shear() {
+fn case_9_an_eye_moved_aside_and_a_shear() {
     let display = swept(SliceClip::Prism, ASIDE);
     let seen = |u: f64, v: f64, s: f64| {
         let clip = display.views()[0].projection * DVec3::new(u, v, s).extend(1.0);
@@ -232,7 +232,7 @@ fn case_26_where_a_wall_crosses_a_slice() {
 }
 
 #[test]
-fn the_plane_of_a_slice_stays_where_it_is_whatever_the_eye() {
+fn the_plane_of_a_slice_does_not_depend_on_the_eye() {
     for projection in [Projection::Orthographic, ASIDE, Projection::Jittered(Jitter::new(7))] {
         let display = swept(SliceClip::Hyperbolic(0.25), projection);
         for view in display.views().iter().step_by(29) {

@@ -69,7 +69,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
     #[test]
-    fn the_fast_path_draws_every_voxel_of_the_reference_model(
+    fn the_fast_model_draws_every_voxel_of_the_reference_model(
         triangles in mesh(), clip in clips(), projection in projections(),
         combine in prop::sample::select(vec![Combine::Last, Combine::Max, Combine::Add]),
         bits in prop::option::of(2u32..12),
@@ -110,7 +110,7 @@ proptest! {
     }
 
     #[test]
-    fn exact_lies_in_the_hyperbola_and_that_in_the_parallel_planes(triangles in mesh(), q in 0.05f64..1.5) {
+    fn the_exact_clip_is_within_the_hyperbola_and_that_within_the_parallel_planes(triangles in mesh(), q in 0.05f64..1.5) {
         let commands = recording(&triangles);
         let set = |clip| drawn(&volume(&small(clip, ORTHOGRAPHIC), &commands, &kept(VolumeConfig::plain())));
         let exact = set(EXACT);
@@ -130,7 +130,7 @@ proptest! {
     }
 
     #[test]
-    fn two_passes_of_user_planes_are_one_shader_pass(triangles in mesh(), projection in projections()) {
+    fn two_passes_with_user_planes_equal_one_shader_pass(triangles in mesh(), projection in projections()) {
         let commands = mixed(&triangles, Combine::Max);
         let draw = |clip| volume(&small(clip, projection), &commands, &kept(VolumeConfig::plain())).colours;
         prop_assert!(draw(SliceClip::UserPlanes) == draw(EXACT));
@@ -181,7 +181,7 @@ proptest! {
 
     /// Checks that unpacking the words gives the halftoned colours, pixel by pixel.
     #[test]
-    fn packed_bits_are_the_halftone_of_the_colours(triangles in mesh()) {
+    fn packed_bits_equal_the_halftone_of_the_colours(triangles in mesh()) {
         let frame = volume(&small(SliceClip::Hyperbolic(0.25), ORTHOGRAPHIC), &mixed(&triangles, Combine::Last), &kept(VolumeConfig::paper()));
         let halftone = Halftone::bayer(8).expect("valid");
         let mut lit = 0;
@@ -199,7 +199,7 @@ proptest! {
 
 /// Checks that the sum over 198 slices of fragments / |n . e_s| approaches the triangle's area, for the exact clip.
 #[test]
-fn fragments_over_facing_are_the_area() {
+fn the_number_of_fragments_divided_by_the_facing_is_the_area() {
     let [a, b, c] = T4.map(DVec3::from_array);
     let cross = (b - a).cross(c - a);
     let area = cross.length() / 2.0;

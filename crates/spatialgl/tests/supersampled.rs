@@ -33,7 +33,7 @@ fn colour(frame: &VolumeFrame, x: u32, y: u32) -> Option<[u8; 3]> {
 /// Checks the brightness of a partly covered pixel. Samples lie at 1/4 and 3/4 of a pixel, or at 1/8, 3/8, 5/8 and 7/8.
 /// The pixel is as bright as the fraction of its samples inside a white rectangle.
 #[test]
-fn a_pixel_is_as_bright_as_it_is_covered() {
+fn the_brightness_of_a_pixel_is_its_coverage() {
     for (samples, beyond, expected) in [(4, 10.5, 128), (16, 10.25, 64), (16, 10.75, 191), (16, 10.5, 128)] {
         let frame = drawn(&rectangle(beyond), samples, "host");
         assert_eq!(colour(&frame, 400, 305), Some([255; 3]));
@@ -82,7 +82,7 @@ fn a_line_keeps_its_width() {
 /// Checks the time model with more samples. Fill, clears and reads grow with the number of samples, but the bytes sent
 /// do not.
 #[test]
-fn more_samples_cost_fill_and_no_bytes() {
+fn more_samples_take_fill_time_and_no_bytes() {
     let size = [768, 768];
     let one = VolumeStats { slices_rendered: 396, bytes_sent: 1000, samples: 1, ..VolumeStats::default() };
     let many = VolumeStats { samples: 16, ..one.clone() };

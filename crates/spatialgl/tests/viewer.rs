@@ -37,7 +37,7 @@ fn centre(picture: &RgbImage) -> [f64; 2] {
 }
 
 #[test]
-fn case_8_a_pixel_is_seen_where_its_voxel_is() {
+fn case_8_a_pixel_is_seen_at_the_position_of_its_voxel() {
     let planes = one_pixel(33, 483, 283);
     let (sin, cos) = sin_cos_of_turn(33, 396);
     let world = [99.5 * cos, 100.5, 99.5 * sin];
@@ -58,7 +58,7 @@ fn case_8_a_pixel_is_seen_where_its_voxel_is() {
 
 /// Checks the angle of slice k: phase + k d, or phase - k d on a screen that turns the other way.
 #[test]
-fn phase_and_direction_of_the_turn_place_a_slice() {
+fn phase_and_direction_of_rotation_determine_the_place_of_a_slice() {
     let camera = case_8(40.0, 25.0);
     for (phase_deg, rotation, sign) in
         [(0.0, Rotation::ZToX, -1.0), (30.0, Rotation::XToZ, 1.0), (-71.5, Rotation::ZToX, -1.0)]
@@ -125,7 +125,7 @@ fn mig(strobes: Strobes) -> VolumeFrame {
 }
 
 #[test]
-fn the_light_does_not_depend_on_threads_and_is_that_of_all_lit_voxels() {
+fn the_light_is_the_sum_of_all_lit_voxels_for_any_number_of_threads() {
     let frame = mig(Strobes::Each);
     let camera = Camera::around(384.0, 40.0, 25.0, 512);
     let alone = view_planes(&frame.planes, &camera, PLAIN, &OneThread).expect("valid");
@@ -165,7 +165,7 @@ fn a_film_turns_around_the_volume() {
 }
 
 #[test]
-fn cameras_that_see_nothing_are_named() {
+fn cameras_that_see_nothing_are_refused() {
     let planes = BitPlanes::dark([64, 64], 4);
     let camera = Camera::around(32.0, 0.0, 0.0, 64);
     for (camera, expected) in [
@@ -195,7 +195,7 @@ fn golden(name: &str, picture: &RgbImage) {
 /// Compares the view, a cutaway and the view without dither with reference pictures. The code uses libm and integers,
 /// so the bits are the same on every host.
 #[test]
-fn the_mig_looks_as_it_did() {
+fn the_picture_of_mig_is_unchanged() {
     let frame = mig(Strobes::Each);
     let camera = Camera::around(384.0, 40.0, 25.0, 256);
     let swept = view_planes(&frame.planes, &camera, PLAIN, &OneThread).expect("valid");

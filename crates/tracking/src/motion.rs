@@ -38,7 +38,7 @@ use crate::time::{PS_PER_S, span_s};
 /// motion is then 2 parts in 10^8.
 const HALF_STEP_PS: u64 = 50_000_000;
 
-/// Time between the sampled poses that the default [`Motion::identify`] writes.
+/// Time (ps) between the poses that the default [`Motion::identify`] writes.
 const SAMPLE_PS: u64 = PS_PER_S / 8;
 const SAMPLES: u64 = 512;
 
@@ -66,7 +66,7 @@ pub trait Motion: Debug {
         None
     }
 
-    /// Returns the first gap of a recording that begins before `until_ps`. The two numbers are the times (ps) of the
+    /// Returns the first gap of a recording that begins before `_until_ps`. The two numbers are the times (ps) of the
     /// last pose before the gap and of the first pose after the gap. A run must not read poses within a gap. Returns
     /// `None` without a gap, or if the head stands still during gaps.
     fn gap_ps(&self, _until_ps: u64) -> Option<(u64, u64)> {
@@ -78,7 +78,7 @@ pub trait Motion: Debug {
         Vec::new()
     }
 
-    /// Returns the latest time (ps) at which the head is known to move. The tuning of a prediction filter needs no
+    /// Returns the time (ps) after which no motion of the head is known. The tuning of a prediction filter needs no
     /// motion after this time. The default is the end of the motion, if the motion has an end.
     fn moves_until_ps(&self) -> Option<u64> {
         self.ends_ps()
@@ -115,7 +115,6 @@ pub trait Motion: Debug {
     }
 }
 
-/// Implements [`Motion`] for pointers to a motion by forwarding every call.
 macro_rules! forward {
     ($($pointer:ty),*) => {$(
         impl<M: Motion + ?Sized> Motion for $pointer {

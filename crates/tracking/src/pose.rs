@@ -1,5 +1,3 @@
-//! The pose of a head: position and orientation.
-
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -76,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn interpolation_meets_both_ends() {
+    fn interpolation_is_exact_at_both_ends() {
         let a = Pose::IDENTITY;
         let b = Pose { position: DVec3::X, orientation: rotation::about_x(1.0) };
         assert!(a.interpolate(&b, 0.0).angle_deg(&a) < 1e-12 && a.interpolate(&b, 1.0).angle_deg(&b) < 1e-12);

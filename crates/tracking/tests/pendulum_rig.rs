@@ -59,7 +59,7 @@ fn the_low_point_is_seen_within_one_report_of_the_optical_tracker_and_33_ms_of_i
 }
 
 #[test]
-fn rendering_is_the_inside_latency_plus_the_photodiodes_place() {
+fn rendering_latency_is_the_internal_latency_plus_the_photodiodes_place() {
     for photodiode_line in [0, 120, 239] {
         let rig = PendulumRig { photodiode_line, ..PendulumRig::assumed() };
         let measured = measure(rig, noiseless(TrackerConfig::optical_ceiling()));
@@ -71,7 +71,7 @@ fn rendering_is_the_inside_latency_plus_the_photodiodes_place() {
 }
 
 #[test]
-fn outside_and_inside_agree_within_the_bound_for_every_tracker_and_line() {
+fn external_and_internal_latencies_agree_within_the_bound_for_every_tracker_and_line() {
     let slow_line = Some(SerialLine { baud: 9600, ..SerialLine::fastrak() });
     for config in [
         TrackerConfig::ideal(),
@@ -98,7 +98,7 @@ fn outside_and_inside_agree_within_the_bound_for_every_tracker_and_line() {
 }
 
 #[test]
-fn with_noise_the_mean_still_agrees() {
+fn with_noise_the_mean_latencies_still_agree() {
     for config in [TrackerConfig::fastrak(), TrackerConfig::flock_of_birds(), TrackerConfig::optical_ceiling()] {
         let measured = measure(PendulumRig::assumed(), config.clone());
         let difference = measured.outside_less_inside_s();
@@ -118,7 +118,7 @@ fn the_sign_of_the_velocity_fails_with_a_millimetre_of_noise() {
 }
 
 #[test]
-fn every_low_point_is_seen_once_and_frames_alternate() {
+fn every_low_point_is_detected_once_and_frames_alternate() {
     let rig = PendulumRig::assumed();
     let tracker = TrackerModel::new(TrackerConfig::fastrak()).unwrap();
     let inside = inside(&rig, &tracker, 200);
@@ -152,7 +152,7 @@ fn a_silent_tracker_is_an_error() {
 }
 
 #[test]
-fn a_frame_whose_light_never_comes_is_an_error() {
+fn a_frame_that_never_lights_is_an_error() {
     let rig = PendulumRig::assumed();
     let tracker = TrackerModel::new(TrackerConfig::ideal()).unwrap();
     let inside = inside(&rig, &tracker, 3);
@@ -166,7 +166,7 @@ fn a_frame_whose_light_never_comes_is_an_error() {
 /// Each measurement detects errors of the other. They disagree if they differ by more than the limits, 8.3 and 7.6 ms
 /// here.
 #[test]
-fn an_error_of_one_side_is_found_by_the_other() {
+fn an_error_of_one_measurement_is_found_by_the_other() {
     let rig = PendulumRig::assumed();
     let tracker = TrackerModel::new(noiseless(TrackerConfig::fastrak())).unwrap();
     let truth = inside(&rig, &tracker, 50);

@@ -115,7 +115,7 @@ fn after_a_crash_of_the_patched_host_predictors_keep_the_last_pose() {
 }
 
 #[test]
-fn reports_that_cannot_be_true_are_rejected_and_counted() {
+fn impossible_reports_are_rejected_and_counted() {
     for kind in PredictorKind::ALL {
         let mut predictor = build(kind, &TrackerConfig::fastrak());
         (0..20).for_each(|i| predictor.observe(&report(i * 8 * PS_PER_MS, Pose::IDENTITY)));
@@ -161,7 +161,7 @@ fn after_a_gap_old_velocities_are_discarded() {
 }
 
 #[test]
-fn faults_of_all_kinds_cost_accuracy_but_nothing_else() {
+fn faults_of_all_kinds_only_reduce_accuracy() {
     let faults = vec![
         TrackerFault::RandomDropout { probability: 0.05 },
         TrackerFault::NotANumber { probability: 0.05 },
@@ -179,7 +179,7 @@ fn faults_of_all_kinds_cost_accuracy_but_nothing_else() {
 }
 
 #[test]
-fn tiny_steps_are_survived() {
+fn tiny_time_steps_are_handled() {
     // Reports of a noisy still head 50 us apart, the least that the gate lets through.
     let tracker = TrackerConfig { rate_hz: 10_000, ..TrackerConfig::optical_ceiling() };
     let model = TrackerModel::new(TrackerConfig { serial: None, ..tracker }).unwrap();
@@ -201,7 +201,7 @@ fn tiny_steps_are_survived() {
 }
 
 #[test]
-fn the_last_five_minutes_of_an_hour_are_predicted_as_well_as_the_first() {
+fn prediction_is_equally_good_in_the_first_and_last_five_minutes_of_an_hour() {
     // Five-minute means of four traces scatter by 3 %.
     for kind in [PredictorKind::ConstantAcceleration, PredictorKind::Kalman] {
         let [first, last] = [(1, 300), (3300, 3600)].map(|span_s| {
@@ -212,7 +212,7 @@ fn the_last_five_minutes_of_an_hour_are_predicted_as_well_as_the_first() {
 }
 
 #[test]
-fn each_prediction_is_for_the_very_instant_it_is_asked_for() {
+fn each_prediction_is_for_the_requested_time() {
     let pan = Pan::at(200.0);
     let mut predictor = build(PredictorKind::ConstantVelocity, &TrackerConfig::ideal());
     (0..20).for_each(|i| predictor.observe(&report(i * PS_PER_MS, pan.pose(i * PS_PER_MS))));

@@ -27,7 +27,7 @@ fn speeds(seed: u64) -> [f64; 4] {
 }
 
 #[test]
-fn speeds_of_17_minutes_are_those_of_recorded_use() {
+fn speeds_over_17_minutes_equal_those_of_recorded_use() {
     let HeadSpeeds { mean_turn, turn_95, turn_999, mean_translation, .. } = HeadSpeeds::PAPERS;
     let published = [mean_turn, turn_95, turn_999, mean_translation];
     let traces: Vec<_> = (0..SEEDS).map(speeds).collect();
@@ -77,7 +77,7 @@ fn practically_all_yaw_energy_is_below_2_hz() {
 }
 
 #[test]
-fn the_last_of_sixty_minutes_wanders_no_farther_than_the_first() {
+fn the_motion_does_not_drift_within_an_hour() {
     // Six standard deviations of yaw (47 deg and 9 deg) and of place (0.38 m): a drift would leave them.
     let motion = Synthetic::recorded_use(3);
     for t in at_120_hz(60).flat_map(|t| [t, t + 3540 * PS_PER_S]) {
@@ -87,7 +87,7 @@ fn the_last_of_sixty_minutes_wanders_no_farther_than_the_first() {
 }
 
 #[test]
-fn one_seed_gives_one_motion_and_two_seeds_two() {
+fn the_motion_depends_only_on_the_seed() {
     let t = 1234 * PS_PER_S;
     assert_eq!(Synthetic::recorded_use(5).pose(t), Synthetic::recorded_use(5).pose(t));
     assert!(Synthetic::recorded_use(5).pose(t).distance_m(&Synthetic::recorded_use(6).pose(t)) > 1e-3);

@@ -31,7 +31,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 #[test]
-fn an_ideal_report_is_the_truth_at_once() {
+fn an_ideal_report_is_exact_and_immediate() {
     let motion = Synthetic::recorded_use(1);
     for report in reports(TrackerConfig::ideal(), &motion, 0, 1000) {
         assert_eq!(report.arrives_ps, report.measured_ps);
@@ -40,7 +40,7 @@ fn an_ideal_report_is_the_truth_at_once() {
 }
 
 #[test]
-fn a_fastrak_report_arrives_a_transfer_after_5_5_ms_and_was_true_3_75_ms_before_output() {
+fn a_fastrak_report_is_3_75_ms_old_at_its_output_and_arrives_one_transfer_later() {
     for report in reports(TrackerConfig::fastrak(), &HEAD, 0, 100) {
         let output_ps = report.solution * PS_PER_S / 120 + 5_500_000_000;
         assert_eq!(report.measured_ps, output_ps - 3_750_000_000);
@@ -75,7 +75,7 @@ fn the_fastraks_filter_has_the_latencies_of_the_manual() {
 
 /// Every serial tracker exists with both kernels, and `host.poll` affects only the polled kernel.
 #[test]
-fn a_polled_variant_is_later_by_the_wait_for_the_kernel_and_by_nothing_else() {
+fn polling_only_adds_the_wait_for_the_next_poll() {
     let mut slow = Tables::PAPERS;
     slow.host.poll = 60.0;
     for by in [TrackerConfig::fastrak_by, TrackerConfig::flock_of_birds_by, TrackerConfig::polhemus_3space_by] {
@@ -175,7 +175,7 @@ fn noise_has_the_configured_deviation_on_each_axis() {
 }
 
 #[test]
-fn static_accuracy_is_a_bias_the_same_in_every_report_and_another_for_each_installation() {
+fn static_accuracy_is_a_constant_bias_of_each_installation() {
     let config = TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::fastrak() };
     let of_seed = |seed| {
         let all = reports(config.clone(), &HEAD, seed, 50);
@@ -193,7 +193,7 @@ fn static_accuracy_is_a_bias_the_same_in_every_report_and_another_for_each_insta
 }
 
 #[test]
-fn noise_belongs_to_the_seed() {
+fn noise_depends_on_the_seed() {
     let [first, again, other] = [1, 1, 2].map(|seed| reports(TrackerConfig::fastrak(), &HEAD, seed, 10));
     assert_eq!(first, again);
     assert_ne!(first[0].pose, other[0].pose);
@@ -238,7 +238,7 @@ fn a_dropout_leaves_no_report_between_its_ends() {
 }
 
 #[test]
-fn a_dropout_for_all_time_ends_the_reports() {
+fn an_endless_dropout_ends_the_reports() {
     let faults = vec![TrackerFault::Dropout { from_ps: 0, to_ps: u64::MAX }];
     assert_eq!(reports(TrackerConfig { faults, ..TrackerConfig::fastrak() }, &HEAD, 0, 1), []);
 }
@@ -253,7 +253,7 @@ fn is_a_tenth_of_20_000(found: usize) -> bool {
 }
 
 #[test]
-fn random_faults_strike_as_often_as_told() {
+fn random_faults_occur_at_the_stated_rate() {
     let lost = reports(ideal_but_for(TrackerFault::RandomDropout { probability: 0.1 }), &HEAD, 1, 18_000);
     assert!((lost.last().unwrap().solution as f64 - 20_000.0).abs() < 250.0);
     let nan = reports(ideal_but_for(TrackerFault::NotANumber { probability: 0.1 }), &HEAD, 1, 20_000);
@@ -267,7 +267,7 @@ fn random_faults_strike_as_often_as_told() {
 }
 
 #[test]
-fn a_silent_tracker_says_nothing_from_that_instant() {
+fn a_silent_tracker_sends_no_reports_from_the_stated_time() {
     let faults = vec![TrackerFault::Silence { from_ps: PS_PER_S }];
     let all = reports(TrackerConfig { faults, ..TrackerConfig::ideal() }, &HEAD, 0, 5000);
     assert_eq!(all.len(), 1000);
@@ -275,7 +275,7 @@ fn a_silent_tracker_says_nothing_from_that_instant() {
 }
 
 #[test]
-fn the_patched_host_dies_of_the_flock_and_of_no_other() {
+fn the_patched_host_crashes_only_with_the_flock() {
     let all = reports(TrackerConfig::flock_of_birds_on_patched_host(), &HEAD, 0, 5000);
     assert!(all.len() < 5000);
     let first = all[0].arrives_ps;

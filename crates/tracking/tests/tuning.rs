@@ -63,7 +63,7 @@ fn on_a_still_head_a_tuned_filter_is_no_worse_than_none() {
 }
 
 #[test]
-fn a_tuned_filter_is_near_the_best_of_all_on_motion_and_noise_that_it_has_not_seen() {
+fn a_tuned_filter_is_near_the_optimum_on_unseen_motion_and_noise() {
     let tracker = model(TrackerConfig::optical_ceiling());
     let motion = Synthetic::recorded_use(3);
     for interval_ps in [50, 145].map(|ms| ms * PS_PER_MS) {
@@ -111,7 +111,7 @@ fn a_filter_is_never_tuned_on_the_noise_on_which_it_is_evaluated() {
 }
 
 #[test]
-fn tuning_gives_the_same_every_time_and_nothing_where_there_is_nothing_to_tune() {
+fn tuning_is_deterministic_and_skips_predictors_without_parameters() {
     let tracker = model(TrackerConfig::optical_ceiling());
     let motion = Synthetic::recorded_use(1);
     for kind in PredictorKind::ALL {

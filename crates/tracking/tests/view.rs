@@ -86,7 +86,7 @@ fn disparity_is_eye_separation_times_focal_length_over_depth() {
 }
 
 #[test]
-fn an_orientation_of_any_length_counts_by_its_direction() {
+fn an_orientation_quaternion_may_have_any_length() {
     let mut head = turned_left();
     head.orientation *= 7.0;
     let view = hmd().mono(&head);
@@ -96,7 +96,7 @@ fn an_orientation_of_any_length_counts_by_its_direction() {
 }
 
 #[test]
-fn numbers_out_of_range_are_named() {
+fn numbers_out_of_range_are_refused_by_name() {
     type Damage = fn(&mut HmdConfig);
     let damage: [(&str, Damage); 10] = [
         ("eye_separation_m", |c| c.eye_separation_m = -0.1),

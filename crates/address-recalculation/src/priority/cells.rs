@@ -33,13 +33,13 @@ impl Cell {
     }
 }
 
-/// Returns the coordinate at which the column of cells with index `number` begins, in metres.
+/// Returns the coordinate, in metres, at which the cells of column `number` begin.
 pub(crate) fn border(number: i64, side_m: f64) -> f64 {
     number as f64 * side_m
 }
 
-/// Returns the index of the column of cells that contains a coordinate. The result is the last column that begins at or
-/// before the coordinate.
+/// Returns the number of the column of cells that contains a coordinate. The result is the last column that begins at
+/// or before the coordinate.
 ///
 /// Comparisons correct the rounding errors of the division.
 pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
@@ -49,20 +49,17 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
     near.saturating_add(after - before)
 }
 
-/// Assignment of cells to memories by rings of cells. The home cell contained the eye at the time of the assignment,
-/// and all cells at the same distance from the home cell form a ring of cells.
+/// Assignment of cells to memories by rings of cells. The home cell contained the eye at the time of the assignment.
+/// All cells at the same distance from the home cell form a ring of cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellAssignment {
-    /// The home cell, which contained the eye at the time of the assignment and is the centre of all rings of cells.
     pub home: Cell,
-    /// Side of a cell (square of the floor) in metres.
     pub side_m: f64,
     /// Number of rings of cells around the home cell that memory 0 holds.
     pub inner_rings: u64,
     /// Number of rings of cells in a memory divided by the number in the previous memory, from memory 2 on. Memory 1
     /// holds one ring of cells, memory 2 holds `ring_growth` rings of cells, and so on.
     pub ring_growth: u64,
-    /// Number of memories.
     pub memories: usize,
 }
 
@@ -139,7 +136,7 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Creates the policy for a world. The scene lies in the cells of `occupied`.
+    /// Creates the policy for a scene. `occupied` lists the cells in which the scene has content.
     ///
     /// With `has_cascade`, an update of a memory makes all memories that are drawn more often due for an update as
     /// well. Warping requires such a cascade.
@@ -200,7 +197,7 @@ impl Cells {
         distances
     }
 
-    /// Computes one frame of the policy for an eye position. Returns the memories to draw.
+    /// Computes the updates of one frame for an eye position. Returns the memories to draw.
     pub fn frame(&mut self, eye: DVec3) -> Update {
         let memories = self.dealing.memories;
         let is_first = self.drawn_from[0].is_none();
@@ -224,7 +221,7 @@ impl Cells {
                 *due |= changed;
             }
         }
-        // With a cascade, all memories faster than a due one are due.
+        // With a cascade, all memories that are drawn more often than a due memory are due.
         if self.has_cascade
             && let Some(slowest) = due.iter().rposition(|due| *due)
         {

@@ -17,7 +17,6 @@ pub struct Objects {
 }
 
 impl Objects {
-    /// Creates the policy for a number of objects.
     #[must_use]
     pub fn new(timing: &PriorityTiming, objects: usize) -> Self {
         let memories = timing.memories as usize;
@@ -37,11 +36,11 @@ impl Objects {
         [self.moved, self.draws]
     }
 
-    /// Computes the policy for frame number `frame`, counted from 0. `periods_s` holds the validity period of each
+    /// Computes the updates of frame number `frame`, counted from 0. `periods_s` holds the validity period of each
     /// object from now on, in seconds.
     ///
     /// An object changes its memory only in a frame that draws both the old and the new memory. Memory k can be drawn
-    /// in every 2^k-th frame. The memory is not drawn in this frame if the images of all its objects stay right for
+    /// in every 2^k-th frame. Such a frame does not draw the memory if the images of all its objects stay right for
     /// another 2^k frames.
     pub fn frame(&mut self, frame: u64, periods_s: &[f64]) -> Update {
         let mut together = vec![false; self.memories];

@@ -24,7 +24,6 @@ pub enum Falloff {
 pxpl5_sim::parameters::named!(Falloff, "falloff", Falloff::ALL);
 
 impl Falloff {
-    /// All variants with their command-line names.
     pub const ALL: [(&str, Self); 4] =
         [("none", Self::None), ("linear", Self::Linear), ("smoothstep", Self::Smoothstep), ("step", Self::Step)];
 
@@ -52,8 +51,8 @@ pub struct RegionWarp {
 }
 
 impl RegionWarp {
-    /// Creates the warp of a memory. `drawn_from` is the eye position from which this memory was drawn, and
-    /// `slower_from` the eye position from which the slower memory was drawn.
+    /// Creates the warp of a memory. `drawn_from` is the eye position from which this memory was drawn. `slower_from`
+    /// is the eye position for the memory beyond the border, which is drawn less often.
     ///
     /// # Errors
     ///
@@ -66,7 +65,7 @@ impl RegionWarp {
     }
 
     /// Returns the position at which a vertex is drawn. `to_slower_m` is the vertex's distance to the border of the
-    /// slower memory, or `None` if no memory is slower.
+    /// less often drawn memory, or `None` if there is no such memory.
     ///
     /// A vertex on the border moves by the whole displacement. Its direction and depth are then the same in both
     /// memories.

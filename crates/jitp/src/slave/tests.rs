@@ -112,7 +112,7 @@ fn a_field_of_one_view_is_drawn_from_it() {
 /// Tests that a strip is drawn only if its TRANSFORM ends before its deadline. The end of TRANSFORM follows from the
 /// timing table.
 #[test]
-fn a_strip_that_is_transformed_when_its_beam_is_there_is_not_drawn() {
+fn a_strip_is_not_drawn_if_the_beam_is_there_after_its_transform() {
     let timing = GpTiming::PAPERS;
     let work = timing.message_ns + timing.pass_ns + TRIANGLES as u64 * timing.triangle_ns;
     let transformed = us(100) + Span::from_ns(work);

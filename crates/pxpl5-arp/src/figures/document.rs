@@ -103,7 +103,6 @@ const COLUMNS: [TableColumn<FigureRow>; 9] = [
     ("", |row| verdict(row).to_owned()),
 ];
 
-/// Returns the rows as a Markdown table with a heading.
 #[must_use]
 pub fn table(rows: &[FigureRow]) -> String {
     figures::table(&COLUMNS, rows)
@@ -236,7 +235,6 @@ fn best_of_all(all: &Interpretations) -> String {
     text
 }
 
-/// Returns the reasons for the rules that this project chose among the interpretations, as Markdown.
 fn chosen(all: &Interpretations) -> String {
     let place = all.usual().map_or_else(String::new, |(place, ranked)| {
         format!(
@@ -291,7 +289,7 @@ fn thresholds(text: &mut String, all: &Experiments) {
 }
 
 /// Writes two constraints on table 2 of the paper CPR05, which prints the number of segments in each memory. Both
-/// follow because the same segments are drawn with and without cutting, only in different memories.
+/// constraints follow from one fact: the same segments are drawn with and without cutting, only in different memories.
 fn conservation(text: &mut String, all: &Experiments) {
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();
@@ -407,8 +405,8 @@ fn sizes(text: &mut String, all: &Experiments) {
     }
 }
 
-/// Writes the ratios of size to distance that belong to statement A8 of the papers. For larger ratios, the growth of
-/// the object on the screen determines the validity period.
+/// Writes the ratios of size to distance that belong to statement A8 of the papers on priority rendering. For larger
+/// ratios, the growth of the object on the screen determines the validity period.
 fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     text.push_str(
         "\nStatement A8, \"about ten times the distance\", leaves two questions open. One question is which angle describes the size\n\

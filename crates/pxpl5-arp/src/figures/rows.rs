@@ -1,4 +1,4 @@
-//! All rows of the comparison between published and simulated numbers, by experiment.
+//! All rows that compare published numbers with simulated numbers, by experiment.
 
 use super::definitions::SEGMENTS;
 use super::experiments::{CellFit, Experiments};
@@ -40,8 +40,8 @@ fn composition(all: &Experiments) -> Vec<FigureRow> {
     vec![row("fig. 2", statement, "texels", [0.0, all.composite_differs as f64], Basis::Free)]
 }
 
-/// Compares statement A8 of the papers on the size of objects ("about ten times the distance") with the limits of size
-/// for spheres. The distance of a sphere is measured to its nearest point.
+/// Compares statement A8 of the papers on priority rendering with the limits of size for spheres. The statement gives a
+/// size of "about ten times the distance". The distance of a sphere is measured to its nearest point.
 fn sizes(all: &Experiments) -> Vec<FigureRow> {
     let limits = all.size_limits.iter().map(|limit| limit.of_nearest);
     let [least, most] = [limits.clone().fold(f64::INFINITY, f64::min), limits.fold(0.0, f64::max)];

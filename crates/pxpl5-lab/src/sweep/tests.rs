@@ -56,7 +56,7 @@ fn settings_taken_together_are_one_axis() {
 }
 
 #[test]
-fn a_sweep_is_named_by_its_version_settings_quantities_and_axes_a_line_each() {
+fn a_header_lists_version_settings_quantities_and_axes_one_per_line() {
     let sweep = sweep("[sweep.grid]\nseed = [1, 2]\n");
     let header = sweep.header().expect("valid");
     let first = sweep.plan(0).expect("valid").fingerprint();
@@ -71,7 +71,7 @@ fn a_sweep_is_named_by_its_version_settings_quantities_and_axes_a_line_each() {
 }
 
 #[test]
-fn a_space_that_makes_no_sense_is_refused() {
+fn an_invalid_space_is_refused() {
     for (space, says) in [
         ("", "sweep is missing"),
         ("[sweep]", "at least one setting"),
@@ -108,7 +108,7 @@ fn an_error_of_a_sweep_names_the_line_of_its_key() {
 }
 
 #[test]
-fn shards_are_disjoint_and_hold_everything() {
+fn shards_are_disjoint_and_cover_all_points() {
     let shards: Vec<Shard> = (1..=7).map(|i| Shard::new(i, 7).expect("one of seven")).collect();
     assert!((0..1_000).all(|point| shards.iter().filter(|shard| shard.holds(point)).count() == 1));
     for points in [0, 1, 6, 7, 1_000] {
@@ -120,7 +120,7 @@ fn shards_are_disjoint_and_hold_everything() {
 }
 
 #[test]
-fn a_point_that_fails_is_recorded_and_the_rest_go_on() {
+fn a_failed_point_is_recorded_and_the_others_continue() {
     // Slats binds 20 regions, four to a renderer. Fewer than five renderers cannot hold them.
     let sweep = sweep("[sweep.grid]\nmachine.n_renderers = [0, 4, 5]\n");
     let path = folder("fails");
@@ -138,7 +138,7 @@ fn a_point_that_fails_is_recorded_and_the_rest_go_on() {
 }
 
 #[test]
-fn rows_survive_reading_and_writing_bit_by_bit() {
+fn rows_are_read_and_written_bit_for_bit() {
     let sweep = sweep("[sweep]\nseeds = 3\n");
     let path = folder("bits");
     let mut store = Store::open(&path, sweep.header().expect("valid"), false).expect("writable");
@@ -242,7 +242,7 @@ fn ranges_may_go_together_with_lists() {
 }
 
 #[test]
-fn a_row_of_no_point_is_refused() {
+fn a_row_that_belongs_to_no_point_is_refused() {
     let sweep = sweep("[sweep]\nseeds = 2\n");
     let path = folder("no-point");
     let header = sweep.header().expect("valid");
@@ -258,7 +258,7 @@ fn a_row_of_no_point_is_refused() {
 }
 
 #[test]
-fn what_a_kill_left_under_temporary_names_is_removed_and_nothing_else() {
+fn only_temporary_files_of_a_killed_process_are_removed() {
     let sweep = sweep("[sweep]\nseeds = 1\n");
     let path = folder("left-over");
     std::fs::create_dir_all(&path).expect("writable");
@@ -274,7 +274,7 @@ fn what_a_kill_left_under_temporary_names_is_removed_and_nothing_else() {
 }
 
 #[test]
-fn a_sweep_whose_model_was_edited_is_another_one() {
+fn editing_a_model_makes_another_sweep() {
     let place = folder("edited");
     std::fs::create_dir_all(&place).expect("a folder");
     let model = |x: i32| {
@@ -300,7 +300,7 @@ fn a_sweep_whose_model_was_edited_is_another_one() {
 /// Tests that a change of a glTF scene's binary file changes the hash of a sweep, although the glTF file stays the
 /// same. A build without the glTF reader cannot read the scene and keeps the hash.
 #[test]
-fn a_sweep_whose_models_buffer_was_edited_is_another_one() {
+fn editing_the_buffer_of_a_model_makes_another_sweep() {
     let place = folder("buffer");
     std::fs::create_dir_all(&place).expect("a folder");
     let triangle = r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"m.bin"}],

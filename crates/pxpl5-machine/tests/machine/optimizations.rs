@@ -24,7 +24,7 @@ fn an_optimization_is_parsed_from_the_name_that_it_prints() {
 
 /// The boards' clock of 40 MHz has forty edges per microsecond.
 #[test]
-fn without_sleep_every_board_is_asked_at_every_edge() {
+fn without_sleep_every_board_is_polled_at_every_edge() {
     let mut machine = machine();
     machine.disable(Optimization::IdleBoards);
     machine.switch_on();

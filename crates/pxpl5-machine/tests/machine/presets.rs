@@ -38,7 +38,7 @@ fn an_unknown_preset_names_the_nearest() {
 
 /// The version `Compiled` is the code that did not fit the cache.
 #[test]
-fn times_of_code_are_those_of_the_version_in_its_use() {
+fn times_of_code_belong_to_the_chosen_version() {
     let compiled = MachineConfig::slats();
     let scheduled = MachineConfig::preset("slats-optimised").expect("it is listed");
     let expected = [

@@ -62,7 +62,7 @@ fn swapped(at: u64, surface: u32, tick: u32) -> (u64, Say) {
 }
 
 #[test]
-fn what_a_port_shows_is_the_newest_picture_before_each_swap() {
+fn a_port_shows_the_newest_picture_before_each_swap() {
     let (machine, [left, right]) = told(&[
         arrived(10, 0, 1),
         arrived(20, 0, 1),
@@ -147,7 +147,7 @@ fn with_traffic() -> Record {
 /// The first word of a message arrives 16 words and its hops after the grant. The last word arrives `words` word times
 /// later.
 #[test]
-fn traffic_tells_when_each_message_was_taken_and_how_many_channels_were_busy() {
+fn traffic_has_the_time_of_each_message_and_the_number_of_busy_channels() {
     let record = with_traffic();
     let traffic = record.observation().traffic.as_deref().expect("it was asked for");
     let word = Span::from_ns(50);

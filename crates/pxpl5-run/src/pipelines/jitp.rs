@@ -1,5 +1,3 @@
-//! Just-in-time pixels on the emulated machine.
-
 use super::{late_regions, ntsc, samples};
 use crate::keys::PipelineSettings;
 use crate::picture_ends::PictureResult;
@@ -101,7 +99,6 @@ fn beam(video: Video) -> Beam {
     Beam::new(at, move |field| video.retrace(field))
 }
 
-/// Returns the cost of TRANSFORM, in which each slave transforms the whole display list.
 pub(super) fn whole_pass(setup: &Setup) -> TransformCost {
     TransformCost::pass_over(&setup.list, Share::new(Arc::clone(&setup.list), 0, 1).counts())
 }
@@ -130,14 +127,13 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     }
 }
 
-/// Returns the deadline of a region: the time at which the display scans the region's first pixel.
 fn due(video: &Video, target: &CopyTarget) -> Time {
     let field = target.picture.period_drawn_for();
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// Arrivals of a field's regions: number before the end of the field, number before the beam, and arrival time of the
-/// middle strip.
+/// Counts of a field's regions that arrived before the end of the field and before the beam, and the arrival time of
+/// the middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,
@@ -235,7 +231,6 @@ impl PictureRules for Jitp {
         late_regions(display, record, end, |video, arrival| due(video, &arrival.target))
     }
 
-    /// Returns 1, because a picture is due in every field.
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
     }

@@ -1,5 +1,3 @@
-//! Slats on the emulated machine.
-
 use super::{late_regions, ntsc, samples};
 use crate::keys::PipelineSettings;
 use crate::picture_ends::PictureResult;
@@ -88,8 +86,8 @@ pub struct Slats {
 }
 
 impl Slats {
-    /// Creates the prototype with the papers' optimization of COPY (TR94). The lower half of a picture is copied while
-    /// the display already scans the upper half.
+    /// Creates the prototype with the split copy of TR94. The lower half of a picture is copied while the display
+    /// already scans the upper half.
     #[must_use]
     pub const fn split() -> Self {
         Self {
@@ -100,8 +98,7 @@ impl Slats {
         }
     }
 
-    /// Creates the prototype without the papers' optimization of COPY: both halves are copied before the retrace
-    /// (TR94).
+    /// Creates the prototype without the split copy: both halves are copied before the retrace (TR94).
     #[must_use]
     pub const fn whole() -> Self {
         Self { copy: CopySchedule::Whole, ..Self::split() }
@@ -169,7 +166,6 @@ impl Pipeline for Slats {
         }
     }
 
-    /// Sets the times per primitive of the selected code version.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let Some(code) = self.code else { return config };
         let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
@@ -264,7 +260,6 @@ impl PictureRules for Slats {
         late_regions(display, record, end, due)
     }
 
-    /// Returns 1, because a picture is due in every field.
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
     }
@@ -313,7 +308,6 @@ impl Copied {
     }
 }
 
-/// The buffers that each eye's frame buffer has shown, for runs of [`Slats::backup`].
 struct Backup {
     /// First period and buffer of each swap, in order, for each eye.
     swaps: [Vec<(PeriodNumber, u8)>; 2],
@@ -341,7 +335,6 @@ impl Backup {
     }
 }
 
-/// Returns the deadline of a region: the retrace, or the time at which the beam reaches the region.
 fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
     let field = target.picture.period_drawn_for();
     let retrace = video.retrace(field);

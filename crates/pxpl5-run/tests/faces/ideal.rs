@@ -91,7 +91,7 @@ fn texels_of(config: &MachineConfig) -> String {
 }
 
 #[test]
-fn it_takes_faces_of_512_texels_unless_said_and_a_machine_of_any_size() {
+fn faces_have_512_texels_by_default_on_a_machine_of_any_size() {
     let config = IDEAL.adapt(MachineConfig::preset("small-hmd").expect("listed"));
     assert_eq!(texels_of(&config), "512");
     assert_eq!(texels_of(&machine("small-hmd", IDEAL, &[("arp.face_texels", 256)])), "256");

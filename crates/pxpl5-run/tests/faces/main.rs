@@ -124,7 +124,7 @@ fn copies(texels: u64, packed: bool) -> (Vec<Span>, u64) {
 
 /// Section 5's table: 32 messages of 1,024 words, 50 ns a word and 0.8 us a message.
 #[test]
-fn all_regions_take_the_ports_time_and_no_more() {
+fn copying_all_regions_takes_only_the_time_of_the_ports() {
     let message_ns = 1_024 * 50 + 800;
     for (texels, packed, messages, published_ms) in
         [(128, false, 32, 9.98), (256, false, 32, 39.94), (512, false, 32, 159.7), (256, true, 16, 39.94 / 2.0)]
@@ -203,7 +203,7 @@ fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suf
 }
 
 #[test]
-fn objects_go_into_the_slowest_memory_that_keeps_them_right() {
+fn objects_belong_to_the_slowest_memory_that_keeps_them_correct() {
     let outcome = walk(OBJECTS, 40_000_000);
     let notes = outcome.requested_updates();
     let held = |k: usize| notes.iter().rfind(|note| note.memory == k).map(|note| note.structures.to_vec());

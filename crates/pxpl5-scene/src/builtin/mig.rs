@@ -48,7 +48,6 @@ pub(super) fn scene() -> Scene {
     finish(solid)
 }
 
-/// Moves the aircraft and its hinges to the origin, scales them to [`RADIUS_M`], and makes a scene.
 fn finish(mut solid: Solid) -> Scene {
     // Hinges move and scale together with the vertices.
     let balls = solid.mesh.positions.iter().map(|&p| (p, 0.0));
@@ -126,13 +125,11 @@ fn fuselage(solid: &mut Solid) {
     solid.cone(&deep_intake, DVec3::new(0.0, -0.07, 5.35), DARK);
 }
 
-/// Returns `section` with its points in reverse order, as seen from the other side of the cross-section.
 fn reversed(mut section: Vec<DVec3>) -> Vec<DVec3> {
     section.reverse();
     section
 }
 
-/// A cross-section of a wing or fin: leading edge, trailing edge, and half the thickness.
 struct Cut {
     leading: DVec3,
     trailing: DVec3,
@@ -155,14 +152,12 @@ impl Cut {
         vec![self.leading, middle + self.thickness, self.trailing, middle - self.thickness]
     }
 
-    /// Returns the corners of a cross-section that ends in a flat (blunt) trailing edge.
     fn blunt(&self) -> Vec<DVec3> {
         let middle = self.thickest();
         let edge = self.thickness * 0.3;
         vec![self.leading, middle + self.thickness, self.trailing + edge, self.trailing - edge, middle - self.thickness]
     }
 
-    /// Returns a wedge of length `chord` that begins at the blunt trailing edge and continues the cross-section.
     fn wedge_behind(&self, chord: f64) -> Vec<DVec3> {
         let edge = self.thickness * 0.3;
         vec![self.trailing + edge, self.trailing - DVec3::Z * chord, self.trailing - edge]
@@ -259,7 +254,6 @@ fn arch(z: f64, base: f64, width: f64, height: f64) -> [DVec3; 5] {
     })
 }
 
-/// Adds a canopy of three arches between a front point and a back point: 4 + 8 + 8 + 4 triangles.
 fn canopy(solid: &mut Solid) {
     let arches = [arch(1.0, 0.62, 0.42, 0.62), arch(2.1, 0.58, 0.48, 0.74), arch(3.0, 0.56, 0.44, 0.62)];
     let back = DVec3::new(0.0, 0.88, -0.6);

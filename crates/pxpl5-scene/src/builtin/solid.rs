@@ -81,8 +81,7 @@ impl Solid {
         self.append(part);
     }
 
-    /// Adds a flat polygon, anticlockwise seen from outside, as a number of triangles that is the number of points
-    /// minus 2.
+    /// Adds a flat polygon of n points as n - 2 triangles. The points run anticlockwise seen from outside.
     pub(super) fn face(&mut self, points: &[DVec3], colour: Colour) {
         let mut part = Mesh::default();
         let corners: Vec<u32> = points.iter().map(|&p| part.push(p, DVec3::ZERO, colour)).collect();

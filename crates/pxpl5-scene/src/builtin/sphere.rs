@@ -26,7 +26,6 @@ pub(super) fn scene(count: u32) -> Scene {
     fitted_scene(&format!("sphere:{count}"), mesh, Vec::new())
 }
 
-/// The vertices on one parallel of the sphere.
 struct Ring {
     first: u32,
     points: u32,
@@ -72,7 +71,7 @@ fn push_ring(mesh: &mut Mesh, down: f64, points: u32) {
     }
 }
 
-/// Adds the triangles between a parallel and the next lower parallel. A pole counts as a parallel of one point.
+/// Adds the triangles between a parallel and the parallel below it. A pole counts as a parallel of one point.
 fn join(mesh: &mut Mesh, above: &Ring, below: &Ring) {
     let steps = |ring: &Ring| if ring.points == 1 { 0 } else { ring.points };
     let [upper, lower] = [above, below].map(steps);

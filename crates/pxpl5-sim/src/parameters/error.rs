@@ -1,12 +1,10 @@
-//! The error of a setting or an argument.
-
 use crate::parameters::{FileError, FileErrorKind, Value, nearest};
 use std::fmt::{self, Display};
 
 /// Largest number of valid names that the message of an error lists after the most similar name.
 const MAX_LISTED: usize = 12;
 
-/// Largest number of valid names that the message of an error lists if it does not state the most similar name.
+/// Largest number of valid names that an error message lists if the message does not state the most similar name.
 const FEW_NAMES: usize = 4;
 
 /// Error of a setting or an argument that cannot be used. The message states the place, the name, the expected and the
@@ -14,7 +12,6 @@ const FEW_NAMES: usize = 4;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SettingError {
-    /// Reason why the setting cannot be used.
     pub kind: SettingErrorKind,
     /// Place where the setting was written, such as a file with a line, or a command line option. Empty if the place is
     /// clear from the call.
@@ -22,15 +19,14 @@ pub struct SettingError {
     /// Name or path of the setting, such as `ring.word_ns`. For an unknown name, this text is the kind of thing that
     /// the name should denote, such as `pipeline`.
     pub name: Box<str>,
-    /// The expected value, in words.
+    /// The expected value in words, such as `a whole number of 1 to 4096 lines`.
     pub expected: Box<str>,
-    /// The value or name that the setting has.
+    /// The value or name that the user wrote.
     pub found: Box<str>,
     /// Valid name that is most similar to an unknown name. Empty for errors of another kind.
     pub nearest: Box<str>,
 }
 
-/// Reason why a setting or an argument cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum SettingErrorKind {
@@ -42,12 +38,10 @@ pub enum SettingErrorKind {
     UnknownName,
     /// The setting is a fixed property of a chip. Programs can read the property but cannot change the property.
     ReadOnly,
-    /// The setting is missing.
     Missing,
     /// Two settings exclude each other, a setting does not apply to the experiment, or the text of a setting has
     /// another fault.
     Combination,
-    /// A scene has contents that the program cannot use.
     Scene,
     /// A file that the setting names cannot be used.
     File(FileErrorKind),

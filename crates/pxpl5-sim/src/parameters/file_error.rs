@@ -9,7 +9,6 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FileError {
-    /// Reason why the file cannot be used.
     pub kind: FileErrorKind,
     /// Path or name of the file. Empty if the text does not come from a file.
     pub file: Box<str>,
@@ -21,7 +20,6 @@ pub struct FileError {
     pub found: Box<str>,
 }
 
-/// Reason why a file or a text cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FileErrorKind {
@@ -51,7 +49,7 @@ pub enum FileErrorKind {
     Damaged,
     /// A file or directory that already exists prevents the writing of the file.
     Occupied,
-    /// Results of the same work are there already, and the work was not to be resumed.
+    /// Results of the same work exist already, and the user did not ask to resume the work.
     Unfinished,
     /// Another process is writing the file.
     Locked,
@@ -71,7 +69,7 @@ impl FileError {
         Self::new(FileErrorKind::Unreadable, expected, error).in_file(file)
     }
 
-    /// Creates an error whose message is the sentence `reason`, without an expected content.
+    /// Creates an error whose message is only the sentence `reason`.
     #[must_use]
     pub fn because(kind: FileErrorKind, reason: impl Display) -> Self {
         Self::new(kind, "", reason)
@@ -83,13 +81,11 @@ impl FileError {
         move |error| Self::because(FileErrorKind::Unreadable, format_args!("{doing}: {error}")).in_file(file.display())
     }
 
-    /// Adds the position of the error in the file.
     #[must_use]
     pub fn at(self, place: impl Display) -> Self {
         Self { place: place.to_string().into(), ..self }
     }
 
-    /// Adds the path or name of the file.
     #[must_use]
     pub fn in_file(self, file: impl Display) -> Self {
         Self { file: file.to_string().into(), ..self }
@@ -137,7 +133,7 @@ mod tests {
     use super::text_of;
 
     #[test]
-    fn a_byte_that_is_no_text_is_told_by_line_and_byte() {
+    fn a_byte_that_is_not_text_is_reported_with_line_and_byte() {
         assert_eq!(text_of("a\né".as_bytes()), Ok("a\né"));
         // The e with an acute of Latin-1, and a character of UTF-8 that ends early.
         for (bytes, place, byte) in [

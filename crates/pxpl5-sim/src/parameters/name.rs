@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_is_found_exactly_or_not_at_all() {
+    fn a_name_must_match_exactly() {
         let all = [("one", 1), ("two", 2)];
         assert_eq!(find_named("number", "two", all), Ok(2));
         for wrong in ["", "Two", " two", "two ", "tw"] {

@@ -1,5 +1,3 @@
-//! Values of parameters.
-
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;

@@ -10,7 +10,6 @@ use spatialgl::{
     SpatialDisplay, SweptDisplay, Tiling, Topology, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
 };
 
-/// Returns all figures of the SpatialGL paper that are counted or measured.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let mut rows = passes(workers)?;
@@ -22,8 +21,8 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingEr
 }
 
 /// Width and height in pixels of the small slices on which passes are counted. At the rim, the exact volume of such a
-/// slice is thicker than a pixel. The tapered clip needs this, because it is a pixel thick at the axis and becomes
-/// thicker towards the rim.
+/// slice is thicker than a pixel. The tapered clip needs such slices, because its volume is a pixel thick at the axis
+/// and becomes thicker towards the rim.
 const SMALL: u64 = 192;
 
 /// Returns figure P5: the number of draws of one triangle per slice, without bins.
@@ -46,7 +45,6 @@ fn passes(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     published.into_iter().map(count).collect()
 }
 
-/// Returns the draw call of the triangle [`TRIANGLE`], scaled to slices of [`SMALL`] pixels.
 fn small_triangle() -> Result<CommandBuffer, SettingError> {
     let scale = SMALL as f64 / PerspectaConfig::PAPERS.width as f64;
     let corner = |corner: [f64; 3]| ColouredVertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);
@@ -82,7 +80,7 @@ fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<FigureRo
 
 /// Returns figures D1, D2 and D5, computed from the matrices of the views and the instants of the strobes (flashes). D1
 /// is the angle between neighbouring slices. D2 is the number of distinct planes, and how often per second each plane
-/// is shown. D5 is the distance between the same pixel of neighbouring slices at the rim.
+/// is shown. D5 is the distance at the rim between a pixel of one slice and the same pixel of the next slice.
 fn planes(views: &[SliceView]) -> Vec<FigureRow> {
     let across = |k: usize| views[k].view.transpose().x_axis.truncate();
     let angle = |k: usize| {

@@ -159,7 +159,6 @@ fn pictures(text: &mut String) {
     );
 }
 
-/// Writes the assumed values of the numbers that the SpatialGL paper does not give, with their ranges.
 fn numbers(text: &mut String) {
     let _ = write!(
         text,

@@ -36,7 +36,6 @@ const FEW_SLICES: u64 = 12;
 const DARK: Rgb<u8> = Rgb([16, 16, 24]);
 const LIT: Rgb<u8> = Rgb([240, 200, 80]);
 
-/// Distinct colours for neighbouring slices and regions.
 const COLOURS: [[u8; 3]; 8] = [
     [230, 159, 0],
     [86, 180, 233],

@@ -25,8 +25,8 @@ pub struct ShownStatement {
     pub holds: bool,
 }
 
-/// Tests all statements of the paper that have no numbers. If a statement needs a scene, the test uses the first of
-/// `scenes`.
+/// Tests all statements of the SpatialGL paper that have no numbers. If a statement needs a scene, the test uses the
+/// first of `scenes`.
 pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<ShownStatement>, SettingError> {
     let mut shown = vec![dead_zone(), dilation()];
     if let Some(scene) = scenes.first() {
@@ -40,7 +40,7 @@ pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Sh
     Ok(shown)
 }
 
-/// Compares the lit pixels of the prism with the lit pixels of the exact clip, in rings of 8 px.
+/// Compares the lit pixels with the prism clip and with the exact clip, in rings of 8 px around the axis.
 fn prism(scene: &Scene, workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let rings = |clip| {
         let volume = Volume::draw(&VolumeSettings { clip, ..plain() }, scene, workers)?;

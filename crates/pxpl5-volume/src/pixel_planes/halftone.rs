@@ -5,7 +5,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_renderer::isa::{ArrayInstruction, Operand, Test};
 use pxpl5_wire::Word;
 
-/// Number of bits of a dither threshold, the same as of a colour channel.
+/// Number of bits of a dither threshold. A colour channel has the same number of bits.
 const THRESHOLD_BITS: u8 = 8;
 
 /// Returns the location of the threshold in pixel memory: the first bits of the scratch memory. Clears and slice

@@ -5,10 +5,8 @@ use crate::command::{CommandBuffer, Primitive, Shape};
 use crate::slice_volume::SliceVolume;
 use crate::view::SliceView;
 
-/// Number of triangles that form the round end of a line.
 const CAP_TRIANGLES: usize = 12;
 
-/// The transformation of a view. Its matrices are stored as rows of numbers.
 #[derive(Clone, Debug)]
 pub(super) struct SliceTransform {
     pub(super) rows: [[f64; 4]; 3],
@@ -24,7 +22,6 @@ impl SliceTransform {
         Self { rows, window: view.window, volume: view.volume, magnification: view.magnification }
     }
 
-    /// Converts a point of the world to the coordinates of the slice.
     #[inline(always)]
     pub(super) fn local(&self, world: [f64; 3]) -> [f64; 3] {
         [along(&self.rows[0], world), along(&self.rows[1], world), along(&self.rows[2], world)]
@@ -41,14 +38,12 @@ impl SliceTransform {
         Corner { place: self.place(local), p, q, colour }
     }
 
-    /// Returns the homogeneous window coordinates of a point of the slice.
     #[inline(always)]
     pub(super) fn place(&self, local: [f64; 3]) -> Place {
         let [x, y, z, w] = &self.window;
         Place { x: along(x, local), y: along(y, local), z: along(z, local), w: along(w, local) }
     }
 
-    /// Converts a primitive to triangles, and calls `draw` with each triangle in the order of drawing.
     pub(super) fn triangles(
         &self,
         commands: &CommandBuffer,
@@ -125,8 +120,8 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
     }
 }
 
-/// Returns the part of a line between the near and far planes as a range within 0..1. Returns `None` if no part lies
-/// there.
+/// Returns the part of a line between the near and far planes, as a range of positions from 0 (begin) to 1 (end).
+/// Returns `None` if no part lies there.
 fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
     let from = &from.place;

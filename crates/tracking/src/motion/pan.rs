@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn the_angular_velocity_is_that_of_the_poses() {
+    fn the_angular_velocity_is_the_derivative_of_the_poses() {
         let start = Pose::facing(rotation::from_yaw_pitch_roll(1.0, 0.4, 0.2));
         assert_rates_agree_with_poses(&Pan { start, deg_per_s: -370.0 }, 7 * PS_PER_S, 1e-8);
     }

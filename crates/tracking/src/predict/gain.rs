@@ -1,8 +1,8 @@
 //! Exact formulas for the effect of prediction on a sinusoidal motion.
 //!
-//! A prediction of x = e^(j w t) by p seconds with exact derivatives multiplies x by a gain G(w p). A perfect
-//! prediction multiplies x by e^(j w p). The arguments of the functions are w p in radians: 2 pi x frequency x
-//! prediction time.
+//! The motion is x = e^(j w t) with the angular frequency w. A prediction by p seconds with exact derivatives
+//! multiplies x by a gain G(w p). A perfect prediction multiplies x by e^(j w p). The arguments of the functions are w
+//! p in radians: 2 pi x frequency x prediction time.
 
 /// The complex factor by which a prediction multiplies a sinusoidal motion e^(j w t), without unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,8 +32,7 @@ pub fn perfect(wp: f64) -> Gain {
     Gain { re, im }
 }
 
-/// Returns the gain without prediction. This gain is 1 for every w p, because the last reported pose is shown
-/// unchanged.
+/// Returns the gain without prediction. This gain is 1, because the last reported pose is shown unchanged.
 pub fn none(_wp: f64) -> Gain {
     Gain { re: 1.0, im: 0.0 }
 }
@@ -72,7 +71,7 @@ mod tests {
     ];
 
     #[test]
-    fn relative_errors_are_those_published_to_their_last_digit() {
+    fn relative_errors_equal_the_published_digits() {
         for (hz, p, published) in PUBLISHED {
             let digit = if published[0] < 1.0 { 5.1e-4 } else { 5.1e-3 };
             for (gain, expected) in [none, constant_velocity, constant_acceleration].into_iter().zip(published) {
@@ -105,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gain_is_what_x_plus_vp_plus_ap2_over_2_does_to_a_sinusoid() {
+    fn the_gain_equals_extrapolating_a_sinusoid_to_second_order() {
         let w = TAU * 1.3;
         let p = 0.07;
         let gain = constant_acceleration(w * p);

@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_is_centred_on_its_instant() {
+    fn a_pulse_is_centred_on_its_time() {
         let trace = ScopeTrace::pulsing("low point", [100, 200].into_iter(), 10);
         assert_eq!([94, 95, 104, 105, 195].map(|t| trace.level(t)), [false, true, true, false, true]);
     }

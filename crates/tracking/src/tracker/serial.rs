@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_that_completes_at_the_look_is_seen_and_one_picosecond_later_waits() {
+    fn a_record_complete_at_a_poll_is_read_and_one_a_picosecond_later_waits() {
         let line = SerialRead::unix();
         let look = 5 + 30 * PS_PER_MS;
         assert_eq!(line.seen_ps(look, 5), look);

@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn both_meet_the_ends_of_the_field() {
+    fn both_interpolations_are_exact_at_the_ends_of_the_field() {
         let view = Hmd::unc();
         let start = DVec3::new(0.3, 0.2, -2.0);
         let end = DVec3::new(0.1, 0.3, -3.0);
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_that_passes_the_eye_has_no_place() {
+    fn a_vertex_that_passes_the_eye_has_no_position() {
         let view = Hmd::unc();
         assert_eq!(screen_space(&view, DVec3::NEG_Z, DVec3::Z, 0.1), None);
         assert!(view_space(&view, DVec3::NEG_Z, DVec3::Z, 0.1).is_some());

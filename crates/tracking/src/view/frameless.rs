@@ -48,7 +48,7 @@ impl RandomOrder {
         }
     }
 
-    /// Permutes the numbers 0..2^width by a Feistel network. The upper and the lower bits of the number exchange their
+    /// Permutes the numbers 0..2^width by a Feistel network. The upper and the lower bits of `place` exchange their
     /// roles in each round, so that `width` can be odd.
     fn permuted(&self, place: u32) -> u32 {
         let mut low_bits = self.half_bits;
@@ -77,7 +77,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_pixel_comes_once_in_a_pass(n in 1u32..5000, seed in any::<u64>()) {
+        fn every_pixel_is_drawn_once_in_a_pass(n in 1u32..5000, seed in any::<u64>()) {
             let order = RandomOrder::new(n, seed).unwrap();
             let mut seen = vec![false; n as usize];
             for step in 0..u64::from(n) {
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_in_time_are_not_neighbours_in_place() {
+    fn blocks_drawn_in_succession_are_not_adjacent() {
         let order = RandomOrder::new(300_000, 9).unwrap();
         let near = (0..3000u64).filter(|&s| order.pixel(s).abs_diff(order.pixel(s + 1)) < 3000).count();
         // By chance 2 x 3,000 / 300,000 = 2 % of 3,000: 60 +- 8.
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn no_pixels_is_an_error() {
+    fn a_picture_without_pixels_is_an_error() {
         assert!(RandomOrder::new(0, 1).is_err());
         assert!(RandomOrder::new(1, 1).is_ok_and(|order| order.pixel(7) == 0));
     }

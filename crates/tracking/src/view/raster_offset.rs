@@ -43,14 +43,13 @@ impl RasterOffset {
         Self { yaw_rate: -of_head.y, pitch_rate: -of_head.x, ..self }
     }
 
-    /// Returns yaw and pitch of the offset at `t_ps`, radians.
     fn angles(&self, t_ps: u64) -> (f64, f64) {
         let dt_s = span_s(self.at_ps, t_ps);
         (self.yaw + self.yaw_rate * dt_s, self.pitch + self.pitch_rate * dt_s)
     }
 
-    /// Returns the direction in which a viewer sees a point at `t_ps` that was drawn in the direction `drawn`. The
-    /// raster rotates as a whole.
+    /// Returns the direction in which a viewer sees a point at the time `t_ps`. The point was drawn in the direction
+    /// `drawn`. The raster rotates as a whole.
     pub fn turned(&self, drawn: DVec3, t_ps: u64) -> DVec3 {
         let (yaw, pitch) = self.angles(t_ps);
         rotation::about_y(yaw) * (rotation::about_x(pitch) * drawn)
@@ -62,8 +61,8 @@ impl RasterOffset {
         view.project(middle).map_or(DVec2::ZERO, |place| place - view.centre_px())
     }
 
-    /// Returns the angular error (degrees) of a world point that remains after the offset at `t_ps`, on a raster that
-    /// rotates as a whole. The point was drawn for the pose `predicted` and is seen from the pose `actual`.
+    /// Returns the angular error (degrees) of a world point after the offset at `t_ps`, on a raster that rotates as a
+    /// whole. The point was drawn for the pose `predicted` and is seen from the pose `actual`.
     pub fn residual_deg(&self, world: DVec3, predicted: &Pose, actual: &Pose, t_ps: u64) -> f64 {
         let shown = self.turned(predicted.view_of(world), t_ps);
         angle_between(shown, actual.view_of(world)).to_degrees()
@@ -111,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn roll_remains_and_turns_the_edge_by_its_sine() {
+    fn roll_remains_and_rotates_the_edge_by_its_sine() {
         let predicted = Pose::IDENTITY;
         let actual = wrong_by(0.05, 0.02, 0.03, &predicted);
         let offset = RasterOffset::between(&predicted, &actual, 0);
@@ -148,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flat_raster_is_right_in_the_middle_and_wrong_at_the_edge() {
+    fn a_flat_raster_is_correct_in_the_middle_and_wrong_at_the_edge() {
         let view = Hmd::unc();
         let pan = Pan::at(200.0);
         let predicted = pan.pose(0);

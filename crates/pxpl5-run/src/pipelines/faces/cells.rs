@@ -43,7 +43,6 @@ impl ByCells {
         }
     }
 
-    /// Returns the index of the display memory that holds a structure.
     fn memory(&self, structure: usize) -> usize {
         let cells = self.cells.get(structure).into_iter().flatten();
         cells.map(|cell| self.policy.dealing().memory(*cell)).min().unwrap_or(0)

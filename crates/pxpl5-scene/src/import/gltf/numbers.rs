@@ -7,7 +7,7 @@ use pxpl5_sim::parameters::FileError;
 
 use super::document::Document;
 
-/// Items of one type in a buffer, at equal distances from one item to the next.
+/// Items of one type at equal distances in a buffer.
 #[derive(Clone, Copy)]
 struct Items<'a> {
     bytes: &'a [u8],
@@ -32,7 +32,7 @@ impl Items<'_> {
     }
 }
 
-/// Numbers of an accessor. All positions in buffers are checked.
+/// Numbers of an accessor, whose positions in buffers have been checked.
 pub(super) struct Numbers<'a> {
     /// Numbers before the sparse replacements. `None` stands for zeros.
     base: Option<Items<'a>>,
@@ -113,7 +113,7 @@ impl<'a> Numbers<'a> {
         std::array::from_fn(|component| self.number(item, component))
     }
 
-    /// Finds the sparse value that replaces an item, by bisection of the sparse indices.
+    /// Finds the sparse value that replaces an item. The search bisects the sparse indices.
     fn replacement(&self, item: usize) -> Option<(Items<'a>, usize)> {
         let (indices, values, count) = self.sparse?;
         let [mut from, mut to] = [0, count];
@@ -130,7 +130,6 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// Finds the items of a buffer view, and checks that the view has all these items.
 fn items<'a>(
     document: &'a Document<'_>,
     part: &str,
