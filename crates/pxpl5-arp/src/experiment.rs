@@ -4,7 +4,7 @@ use crate::hall::{path_of, scaled};
 use crate::look::WalkFaces;
 use crate::pictures::ahead;
 use crate::plan::WalkPlan;
-use crate::report::{ArpReport, ViewStatistics};
+use crate::report::ArpReport;
 use crate::settings::WalkSettings;
 use crate::walk::{WalkTally, at_frames, walked};
 use crate::world::World;
@@ -67,10 +67,9 @@ impl WalkOutcome {
         let faces = WalkFaces::of(&simulation)?;
         let (_, stats) =
             faces.seen(ahead(&path, plan.walk.m_per_s * (frames - 1) as f64 / settings.numbers.frame_hz))?;
-        let looked = ViewStatistics { stats, drawing: faces.drawing };
         // Collect the report.
         let report = WalkReport {
-            report: ArpReport::of(&world, &settings, &tally, Some(&looked)),
+            report: ArpReport::of(&world, &settings, &tally).with_view(&stats, &faces.drawing),
             scene: scene.name().to_owned(),
             triangles: world.segments.iter().map(|segment| segment.triangles.len() as u64).sum(),
             segments: world.segments.len() as u64,

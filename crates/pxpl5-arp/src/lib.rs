@@ -56,7 +56,7 @@ pub use hall::{Route, path_of, scaled};
 pub use look::WalkFaces;
 pub use plan::{WalkNumbers, WalkPlan};
 pub use pxpl5_sim::parameters::PathSettings;
-pub use report::{ArpReport, PriorityReport, SCHEMA, TearsReport, ViewStatistics, WalkLatency, WalkMemoryReport};
+pub use report::{ArpReport, PriorityReport, SCHEMA, TearsReport, WalkLatency, WalkMemoryReport};
 pub use settings::{PolicyKind, SourceKind, WalkSettings};
 pub use simulation::{FrameOutcome, Simulation};
 pub use tears::{TearWidths, Tears};

@@ -118,19 +118,10 @@ pub struct WalkLatency {
     pub parts: BTreeMap<&'static str, Option<f64>>,
 }
 
-/// Counts for a view at the end of the viewer's walk.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ViewStatistics {
-    /// Counts of extra memory accesses for the pixels of the view.
-    pub stats: LookStats,
-    /// Counts of the triangles drawn into the cube faces for the view.
-    pub drawing: DrawCounts,
-}
-
 impl ArpReport {
-    /// Creates the report of a viewer's walk. With `looked`, the report also has the counts of one displayed view.
+    /// Creates the report of a viewer's walk, without the counts of a view ([`Self::with_view`]).
     #[must_use]
-    pub fn of(world: &World, settings: &WalkSettings, tally: &WalkTally, looked: Option<&ViewStatistics>) -> Self {
+    pub fn of(world: &World, settings: &WalkSettings, tally: &WalkTally) -> Self {
         let timing = &settings.display.timing;
         let percentiles = |angles: &[f64]| TearWidths::of(angles, settings.texel_deg());
         Self {
@@ -141,10 +132,10 @@ impl ArpReport {
             // A walk has no tracker that sends matrices.
             matrix_loads: None,
             matrix_refused: None,
-            footprints_split: looked.map(|looked| looked.stats.split),
-            bank_conflicts: looked.map(|looked| looked.stats.conflicts),
+            footprints_split: None,
+            bank_conflicts: None,
             memories: memories(settings, tally),
-            priority: priority(world, settings, tally, looked),
+            priority: priority(world, settings, tally),
             tears_px: TearsReport {
                 before: percentiles(&tally.tears.before),
                 after: percentiles(&tally.tears.after),
@@ -154,6 +145,15 @@ impl ArpReport {
             translation_latency_ms: translation(tally.memories.first(), settings),
             sampling_error_px: None,
         }
+    }
+
+    /// Adds the counts of extra memory accesses for the pixels of a view, and of the triangles drawn for the view.
+    #[must_use]
+    pub fn with_view(mut self, stats: &LookStats, drawing: &DrawCounts) -> Self {
+        self.footprints_split = Some(stats.split);
+        self.bank_conflicts = Some(stats.conflicts);
+        self.priority.faces_per_primitive = Some(drawing.on_faces as f64 / drawing.triangles.max(1) as f64);
+        self
     }
 }
 
@@ -232,12 +232,7 @@ impl WalkMemoryReport {
     }
 }
 
-fn priority(
-    world: &World,
-    settings: &WalkSettings,
-    tally: &WalkTally,
-    looked: Option<&ViewStatistics>,
-) -> PriorityReport {
+fn priority(world: &World, settings: &WalkSettings, tally: &WalkTally) -> PriorityReport {
     let hz = settings.numbers.frame_hz;
     let is_cells = settings.policy == PolicyKind::Cells;
     let draws_per_s = tally.draws_per_s(hz);
@@ -249,7 +244,6 @@ fn priority(
         saved_percent: address_recalculation::priority::saved_percent(draws_per_s, world.segments.len() as f64 * hz),
         moved_objects: tally.moved_objects,
         redeals: is_cells.then_some(tally.redeals),
-        faces_per_primitive: looked
-            .map(|looked| looked.drawing.on_faces as f64 / looked.drawing.triangles.max(1) as f64),
+        faces_per_primitive: None,
     }
 }

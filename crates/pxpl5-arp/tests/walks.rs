@@ -294,7 +294,7 @@ fn views_that_faces_cannot_show_are_refused_by_name() {
 fn the_report_has_every_key_of_the_schema_and_null_for_missing_results() {
     let settings = WalkSettings { policy: PolicyKind::Cells, ..WARPED };
     let tally = walk(&WORLD, &settings, 300, at_frames(&PATH, 1.0, 60.0)).expect("walked");
-    let report = serde_json::to_value(ArpReport::of(&WORLD, &settings, &tally, None)).expect("JSON");
+    let report = serde_json::to_value(ArpReport::of(&WORLD, &settings, &tally)).expect("JSON");
     assert_eq!(report["schema"], "pxpl5-arp/1");
     for key in [
         "face_texels",
@@ -351,7 +351,7 @@ fn a_walk_has_the_latencies_of_its_display() {
         let mut settings = CELLS;
         settings.display.latch = latch;
         let tally = walk(&WORLD, &settings, 300, at_frames(&PATH, 1.0, 60.0)).expect("walked");
-        let report = ArpReport::of(&WORLD, &settings, &tally, None);
+        let report = ArpReport::of(&WORLD, &settings, &tally);
         let turn = &report.rotation_latency_ms;
         assert!((turn.total.expect("simulated") - 0.00065 - scan).abs() < 1e-6, "{name}: {turn:?}");
         // Memory 0 is drawn in every frame in no time. Translation therefore waits only for the scan, regardless of the
@@ -371,7 +371,7 @@ fn the_age_of_the_displayed_memory_is_part_of_the_latency_of_a_step() {
     let fast = WalkSettings { source: SourceKind::Timed { triangles_per_s: 1e9 }, ..CELLS };
     let reports = [CELLS, fast].map(|settings| {
         let tally = walk(&WORLD, &settings, 1_200, &eye).expect("walked");
-        ArpReport::of(&WORLD, &settings, &tally, None)
+        ArpReport::of(&WORLD, &settings, &tally)
     });
     for memory in 0..4 {
         let [ideal, timed] = [0, 1].map(|i| &reports[i].memories[memory].translation_latency_ms.parts);

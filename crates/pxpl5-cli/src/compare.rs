@@ -12,7 +12,7 @@ use crate::numbers::{confidence, count_of, whole};
 use crate::output::OutputFolder;
 use crate::scenes;
 use crate::settings::SettingArgs;
-use crate::terminal;
+use crate::terminal::{self, answer, json_text};
 use progress::CompareProgress;
 use pxpl5::compare::{
     CONFIDENCE, CompareQuery, CompareStore, LEAST_SEEDS, MAX_SEEDS, Precision, ROWS_FOLDER, RecordedLength, RowChoice,
@@ -133,7 +133,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     progress.clear();
     let comparison = comparison?;
     // Write all files, then publish the folder in one step.
-    let json = serde_json::to_string_pretty(&comparison).map_err(CliError::failure)? + "\n";
+    let json = json_text(&comparison)?;
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;
         for (name, text) in drawings::files(&comparison) {
@@ -143,11 +143,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
         edges(&query, args.edge_pan, folder)?;
     }
     folder.map(OutputFolder::commit).transpose()?;
-    match (args.json, args.quiet) {
-        (true, _) => terminal::print(&json),
-        (false, true) => Ok(()),
-        (false, false) => terminal::print(&table::text(&comparison)),
-    }
+    answer(args.json, args.quiet, &json, || table::text(&comparison))
 }
 
 fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), CliError> {

@@ -4,7 +4,7 @@ use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Study;
 use crate::output::OutputFile;
-use crate::terminal::{advance, print, progress};
+use crate::terminal::{advance, json_text, print, progress};
 use clap::Args;
 use pxpl5::growth;
 use pxpl5::levels::{LevelQuery, LevelRecord, LevelReport, compare_with};
@@ -130,10 +130,6 @@ const fn pixels(pixels: pxpl5::Pixels) -> &'static str {
         pxpl5::Pixels::Lazy => "lazy",
         pxpl5::Pixels::All => "all",
     }
-}
-
-fn json_text(record: &LevelRecord) -> Result<String, CliError> {
-    Ok(serde_json::to_string_pretty(record).map_err(CliError::failure)? + "\n")
 }
 
 fn text(record: &LevelRecord) -> String {

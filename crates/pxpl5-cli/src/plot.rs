@@ -8,7 +8,7 @@ use crate::error::CliError;
 use crate::numbers::{are, confidence, count_of};
 use crate::output::OutputFolder;
 use crate::rows::{self, ResultRows, RowsKind};
-use crate::terminal::{print, print_error, warn};
+use crate::terminal::{json_text, print, print_error, warn};
 use crate::version::{VERSION, commit};
 use formats::Format;
 use pxpl5::compare::CONFIDENCE;
@@ -208,7 +208,7 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
         "interval": interval(args, results.kind),
         "about": results.about,
     });
-    let origin = serde_json::to_string_pretty(&origin).map_err(CliError::failure)? + "\n";
+    let origin = json_text(&origin)?;
     let mut folder = OutputFolder::beside(parent, "--out", rows::folder_of(&args.results))?;
     folder.put(&figure_name, figure)?;
     folder.put(&csv_name, csv.as_bytes())?;

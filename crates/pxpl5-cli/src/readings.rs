@@ -5,7 +5,7 @@ use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Study;
 use crate::numbers::whole;
-use crate::terminal::{advance, print, progress};
+use crate::terminal::{advance, answer, json_text, progress};
 use clap::Args;
 use pxpl5::Level;
 use pxpl5::figures::Bench;
@@ -54,11 +54,7 @@ pub(crate) fn run(args: ReadingsArgs) -> Result<(), CliError> {
     let readings = rank(&bench, args.best as usize, |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
     let readings = readings?;
-    match (args.json, args.quiet) {
-        (true, _) => print(&(serde_json::to_string_pretty(&readings).map_err(CliError::failure)? + "\n")),
-        (false, true) => Ok(()),
-        (false, false) => print(&text(&readings, args.rows)),
-    }
+    answer(args.json, args.quiet, &json_text(&readings)?, || text(&readings, args.rows))
 }
 
 fn text(readings: &Readings, rows: usize) -> String {

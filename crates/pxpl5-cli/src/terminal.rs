@@ -2,11 +2,26 @@
 
 use crate::error::CliError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::Serialize;
 use std::io::{ErrorKind, IsTerminal, Write};
 
 /// Prints a result to standard output. Returns no error if the pipe is closed (`| head`).
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
     print_bytes(text.as_bytes())
+}
+
+/// Formats a value as JSON for readers, with a line end.
+pub(crate) fn json_text(value: &impl Serialize) -> Result<String, CliError> {
+    Ok(serde_json::to_string_pretty(value).map_err(CliError::failure)? + "\n")
+}
+
+/// Prints `json` with the option --json, else `text` without the option --quiet.
+pub(crate) fn answer(is_json: bool, quiet: bool, json: &str, text: impl FnOnce() -> String) -> Result<(), CliError> {
+    match (is_json, quiet) {
+        (true, _) => print(json),
+        (false, true) => Ok(()),
+        (false, false) => print(&text()),
+    }
 }
 
 pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {

@@ -117,7 +117,7 @@ impl Experiments {
         let mut walks = Vec::new();
         for (name, settings) in kinds {
             let tally = walk(&world, &settings, EXPERIMENT_FRAMES, at_frames(&path, 1.0, 60.0))?;
-            let report = ArpReport::of(&world, &settings, &tally, None);
+            let report = ArpReport::of(&world, &settings, &tally);
             walks.push(NamedWalk { name, settings, tally, report });
         }
         Ok(Self {

@@ -6,7 +6,7 @@ use super::settings::WalkArgs;
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
-use crate::terminal::{advance, print, print_error, progress};
+use crate::terminal::{advance, answer, json_text, print_error, progress};
 use clap::Args;
 use pxpl5::arp::{ArpComparison, ComparedRow, compare, variant_count};
 use pxpl5::views::results::csv_table;
@@ -41,18 +41,14 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let bar = progress(variant_count(), "walks", args.walk.quiet);
     let comparison = compare(&scene, &plan, |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
-    let json = serde_json::to_string_pretty(&comparison).map_err(CliError::failure)? + "\n";
+    let json = json_text(&comparison)?;
     if let Some(mut folder) = folder {
         folder.put("comparison.json", json.as_bytes())?;
         let rows = comparison.rows.iter().map(|row| COLUMNS.map(|(name, cell)| (name, cell(row)).1));
         folder.put("rows.csv", csv_table(COLUMNS.map(|(name, _)| name), rows).as_bytes())?;
         folder.commit()?;
     }
-    match (args.json, args.walk.quiet) {
-        (true, _) => print(&json)?,
-        (false, true) => {}
-        (false, false) => print(&text(&comparison))?,
-    }
+    answer(args.json, args.walk.quiet, &json, || text(&comparison))?;
     // The command names each variant whose walk failed, and fails after all walks.
     for (variant, reason) in &comparison.failed {
         print_error(&format!("pxpl5: {variant}: {reason}\n"));

@@ -5,7 +5,7 @@ use super::settings::put;
 use crate::error::CliError;
 use crate::figures::{fresh, rows_text};
 use crate::output::{OutputFile, OutputFolder};
-use crate::terminal::{print, progress};
+use crate::terminal::{answer, progress};
 use clap::Args;
 use pxpl5::arp::{figures, pictures};
 use serde_json::json;
@@ -56,9 +56,10 @@ pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
     if let Some(path) = &args.check {
         fresh(path, &markdown, "arp figures")?;
     }
-    match (args.json, args.quiet) {
-        (true, _) => print(&format!("{:#}\n", json!({ "schema": "pxpl5-arp-figures/2", "figures": rows }))),
-        (false, true) => Ok(()),
-        (false, false) => print(&rows_text(&rows)),
-    }
+    answer(
+        args.json,
+        args.quiet,
+        &format!("{:#}\n", json!({ "schema": "pxpl5-arp-figures/2", "figures": rows })),
+        || rows_text(&rows),
+    )
 }

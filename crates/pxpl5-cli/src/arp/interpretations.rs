@@ -2,7 +2,7 @@
 //! ways. The command ranks these interpretations.
 
 use crate::error::CliError;
-use crate::terminal::{advance, print, progress};
+use crate::terminal::{advance, answer, json_text, progress};
 use clap::Args;
 use pxpl5::arp::figures::{Interpretations, interpretations_text};
 
@@ -27,9 +27,5 @@ pub(super) fn run(args: InterpretationsArgs) -> Result<(), CliError> {
     let all = Interpretations::run(|done, of| advance(&bar, done, of));
     bar.finish_and_clear();
     let all = all?;
-    match (args.json, args.quiet) {
-        (true, _) => print(&(serde_json::to_string_pretty(&all).map_err(CliError::failure)? + "\n")),
-        (false, true) => Ok(()),
-        (false, false) => print(interpretations_text(&all).trim_start()),
-    }
+    answer(args.json, args.quiet, &json_text(&all)?, || interpretations_text(&all).trim_start().to_owned())
 }

@@ -4,7 +4,7 @@ use super::settings::{WalkArgs, put};
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
-use crate::terminal::{advance, print, progress};
+use crate::terminal::{advance, answer, json_text, progress};
 use crate::version::{VERSION, commit_text};
 use clap::Args;
 use pxpl5::arp::pictures::of_walk;
@@ -45,7 +45,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     let outcome = WalkOutcome::of(&scene, &plan, |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
     let outcome = outcome?;
-    let json = serde_json::to_string_pretty(&outcome.report).map_err(CliError::failure)? + "\n";
+    let json = json_text(&outcome.report)?;
     if let Some(mut folder) = folder {
         folder.put("report.json", json.as_bytes())?;
         folder.put("frames.csv", frames_csv(&outcome).as_bytes())?;
@@ -55,11 +55,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
         put(&mut folder, &pictures, &origin(&outcome))?;
         folder.commit()?;
     }
-    match (args.json, args.walk.quiet) {
-        (true, _) => print(&json),
-        (false, true) => Ok(()),
-        (false, false) => print(&text(&outcome, args.out.as_deref())),
-    }
+    answer(args.json, args.walk.quiet, &json, || text(&outcome, args.out.as_deref()))
 }
 
 fn origin(outcome: &WalkOutcome) -> Vec<(&'static str, String)> {

@@ -5,7 +5,7 @@ use super::settings::VolumeSettingArgs;
 use crate::error::CliError;
 use crate::numbers::{count_of, whole};
 use crate::output::OutputFolder;
-use crate::terminal::{advance, print, progress};
+use crate::terminal::{advance, answer, json_text, progress};
 use clap::Args;
 use pxpl5::views::charts::{ChartAxes, Curve, curve_chart};
 use pxpl5::views::png_bytes;
@@ -50,7 +50,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let comparison = compare(&settings, &scene, viewpoint, &options.threads(), |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
     let comparison = comparison?;
-    let json = serde_json::to_string_pretty(&comparison).map_err(CliError::failure)? + "\n";
+    let json = json_text(&comparison)?;
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;
         folder.put("rows.csv", rows_csv(&comparison).as_bytes())?;
@@ -59,11 +59,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     }
     folder.map(OutputFolder::commit).transpose()?;
     // Files and JSON hold all numbers; the terminal shows a table.
-    match (args.json, options.quiet) {
-        (true, _) => print(&json),
-        (false, true) => Ok(()),
-        (false, false) => print(&text(&comparison)),
-    }
+    answer(args.json, options.quiet, &json, || text(&comparison))
 }
 
 fn pictures(folder: &mut OutputFolder, comparison: &VolumeComparison) -> Result<(), CliError> {

@@ -4,7 +4,7 @@ use super::settings::load;
 use crate::error::CliError;
 use crate::figures::{fresh, rows_text};
 use crate::output::{OutputFile, OutputFolder};
-use crate::terminal::{advance, print, progress};
+use crate::terminal::{advance, answer, json_text, progress};
 use clap::Args;
 use pxpl5::scene::Scene;
 use pxpl5::views::png_bytes;
@@ -61,11 +61,7 @@ pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
     if let Some(path) = &args.check {
         fresh(path, &markdown(&figures), "volume figures")?;
     }
-    match (args.json, args.quiet) {
-        (true, _) => print(&(serde_json::to_string_pretty(&figures).map_err(CliError::failure)? + "\n")),
-        (false, true) => Ok(()),
-        (false, false) => print(&text(&figures)),
-    }
+    answer(args.json, args.quiet, &json_text(&figures)?, || text(&figures))
 }
 
 fn draw(folder: &mut OutputFolder, scenes: &[Arc<Scene>]) -> Result<(), CliError> {

@@ -4,7 +4,7 @@ use super::settings::{VolumeSettingArgs, origin};
 use crate::error::CliError;
 use crate::numbers::{count_of, whole};
 use crate::output::OutputFolder;
-use crate::terminal::{print, progress};
+use crate::terminal::{json_text, print, progress};
 use clap::Args;
 use pxpl5::lab::motion;
 use pxpl5::views::Animation;
@@ -55,7 +55,7 @@ pub(super) fn run(
     let question =
         HeadStudyConfig { latency_ms: args.latency, seconds: args.seconds, instants: args.frames * INSTANTS_PER_FRAME };
     let study = before.study(&question)?;
-    let json = serde_json::to_string_pretty(&study).map_err(CliError::failure)? + "\n";
+    let json = json_text(&study)?;
     // Write the report and the errors, then render the film with the exposure of its first picture.
     folder.put("report.json", json.as_bytes())?;
     folder.put("errors.csv", errors_csv(&study).as_bytes())?;

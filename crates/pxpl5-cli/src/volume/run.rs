@@ -4,7 +4,7 @@ use super::settings::{VolumeSettingArgs, png};
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
-use crate::terminal::print;
+use crate::terminal::{answer, json_text};
 use clap::Args;
 use pxpl5::views::results::csv_table;
 use pxpl5::volume::pictures::{Look, before_and_after, sheet, tile_map};
@@ -37,7 +37,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "volume run")).transpose()?;
     let volume = args.volume.draw(&args.volume.settings.gather()?)?;
     let report = volume.report();
-    let json = serde_json::to_string_pretty(&report).map_err(CliError::failure)? + "\n";
+    let json = json_text(&report)?;
     let threads = args.volume.settings.threads();
     if let Some(mut folder) = folder {
         folder.put("report.json", json.as_bytes())?;
@@ -52,11 +52,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
         folder.put("view.png", &png(&look.picture(&volume, None, &threads)?, &volume)?)?;
         folder.commit()?;
     }
-    match (args.json, args.volume.settings.quiet) {
-        (true, _) => print(&json),
-        (false, true) => Ok(()),
-        (false, false) => print(&text(&report, args.out.as_deref())),
-    }
+    answer(args.json, args.volume.settings.quiet, &json, || text(&report, args.out.as_deref()))
 }
 
 /// Describes the work of the renderers, and the part of the machine that limits the number of volumes per second.
