@@ -1,7 +1,7 @@
 //! All parameters of the address recalculation display, with their sources.
 
 use pxpl5_sim::Span;
-use pxpl5_sim::parameters::{MAX, ParameterTable, SettingError, check};
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_wire::{Video, VideoNumbers};
 
 pxpl5_sim::parameters::parameter_table! {
@@ -115,28 +115,11 @@ impl ScanTiming {
     ///
     /// [`SettingError`] names the parameter, the expected and the found value.
     pub fn check(&self) -> Result<(), SettingError> {
-        self.check_numbers().map_err(|error| error.in_table("arp_scan"))
-    }
-
-    fn check_numbers(&self) -> Result<(), SettingError> {
-        ParameterTable::check(self)?;
-        check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;
-        check("visible_pixels", self.visible_pixels, (1, self.line_pixels))?;
-        check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels))?;
-        // Each field contains half of the lines of a frame.
-        let field_lines = self.frame_lines / 2;
-        check("visible_lines", self.visible_lines, (1, field_lines))?;
-        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines))?;
-        self.signal().map(|_| ())
+        self.video().map(drop)
     }
 
     pub(crate) fn video(&self) -> Result<Video, SettingError> {
-        self.check()?;
-        self.signal().map_err(|error| error.in_table("arp_scan"))
-    }
-
-    fn signal(&self) -> Result<Video, SettingError> {
-        let video = Video::new(VideoNumbers {
+        let numbers = VideoNumbers {
             pixel_ps: self.pixel_ps,
             pixel_divisor: self.pixel_divisor,
             line_pixels: self.line_pixels,
@@ -145,7 +128,7 @@ impl ScanTiming {
             visible_lines: self.visible_lines,
             left_blanking: self.left_blanking,
             top_blanking: self.top_blanking,
-        });
-        video.ok_or_else(|| SettingError::value("pixel_ps", "a period below 2^63 ps a field", self.pixel_ps))
+        };
+        ParameterTable::check(self).and_then(|()| Video::new(numbers)).map_err(|error| error.in_table("arp_scan"))
     }
 }

@@ -88,7 +88,7 @@ fn triangles_in_time(
     let mut denser = Arc::clone(&whole);
     let mut in_time = 0;
     // Bisection between a number of primitives that is in time and a number that is too large.
-    let mut too_many = primitives(&whole) + 1;
+    let mut too_many = whole.primitives() + 1;
     while too_many - in_time > 1 {
         let middle = in_time + (too_many - in_time) / 2;
         let thinned = Arc::new(denser.decimated(middle).ok()?);
@@ -98,7 +98,7 @@ fn triangles_in_time(
         }
         too_many = middle;
         // Decimation may return fewer primitives if no further edge can be removed. Then keep the denser scene.
-        if primitives(&thinned) == middle {
+        if thinned.primitives() == middle {
             denser = thinned;
         }
     }
@@ -107,10 +107,6 @@ fn triangles_in_time(
         in_time -= in_time.div_ceil(100);
     }
     Some(in_time as u64)
-}
-
-fn primitives(scene: &Scene) -> usize {
-    scene.triangles().len() + scene.spheres().len()
 }
 
 fn is_in_time(summary: &Summary) -> Option<bool> {

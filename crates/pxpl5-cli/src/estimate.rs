@@ -19,8 +19,8 @@
 //!
 //! The constants come from measured runs, which the tests below repeat: peak memory and processor time, rounded up.
 
-use pxpl5::PathSettings;
 use pxpl5::arp::WalkPlan;
+use pxpl5::lab::estimate::{BASE, BUSY, PRIMITIVE};
 pub(crate) use pxpl5::lab::estimate::{Estimate, RunWork, Study};
 use pxpl5::scene::Scene;
 use pxpl5::volume::{RendererKind, VolumeSettings};
@@ -45,10 +45,6 @@ pub(crate) struct WalkWork {
     pub(crate) face_texels: u64,
 }
 
-/// Memory in bytes of the process before any work.
-const BASE: f64 = 15e6;
-/// Bytes for one primitive, including its entries in all lists.
-const PRIMITIVE: f64 = 200.0;
 /// Bytes for each pixel in the buffer of a slice while the slice is drawn: three colour channels and one stencil bit.
 const TARGET: f64 = 3.125;
 /// Bytes for one pixel that a triangle or sphere covers, including unused capacity of the list of covered pixels.
@@ -81,13 +77,6 @@ const FACE_S: f64 = 15e-9;
 /// Seconds to process one primitive for one frame of a walk.
 const FRAME_S: f64 = 65e-9;
 
-/// Factor on all times for a computer that is busy with other work. Assumed, as for simulation runs.
-const BUSY: f64 = 2.5;
-
-pub(crate) fn primitives(scene: &Scene) -> u64 {
-    (scene.triangles().len() + scene.spheres().len()) as u64
-}
-
 impl VolumeWork {
     /// Returns the quantities that determine the cost of a volume, which `threads` threads draw. The settings must be
     /// valid.
@@ -98,7 +87,7 @@ impl VolumeWork {
             height: settings.display.height,
             batch: settings.tile.batch,
             samples: settings.draw.samples,
-            primitives: primitives(scene),
+            primitives: scene.primitives() as u64,
             threads: threads as u64,
             is_pixel_planes: settings.renderer == RendererKind::PixelPlanes,
         }
@@ -122,10 +111,8 @@ impl VolumeWork {
 
 impl WalkWork {
     pub(crate) fn of(plan: &WalkPlan, scene: &Scene) -> Self {
-        let texels =
-            plan.numbers().into_iter().find(|number| number.path == "arp.face_texels").map(|number| number.value);
-        let face_texels = texels.and_then(|texels| texels.to_string().parse().ok()).unwrap_or(0);
-        Self { frames: plan.walk.frames, primitives: primitives(scene), face_texels }
+        let face_texels = plan.settings().map_or(0, |settings| settings.display.timing.face_texels);
+        Self { frames: plan.walk.frames, primitives: scene.primitives() as u64, face_texels }
     }
 
     pub(crate) fn estimate(&self) -> Estimate {

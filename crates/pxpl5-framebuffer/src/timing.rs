@@ -1,6 +1,6 @@
 //! All timing parameters of the frame buffer.
 
-use pxpl5_sim::parameters::{MAX, ParameterTable, SettingError, check};
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_wire::{Video, VideoNumbers};
 
 pxpl5_sim::parameters::parameter_table! {
@@ -43,30 +43,18 @@ impl VideoTiming {
     ///
     /// # Errors
     ///
-    /// Returns [`SettingError`] with the name of the parameter, the expected range and the found value.
+    /// Returns [`SettingError`] with the name of the parameter, the expected range and the found value. The period of a
+    /// field must also fit in a 64-bit time.
     pub fn check(&self) -> Result<(), SettingError> {
-        self.check_numbers().map_err(|error| error.at("frame buffer"))
-    }
-
-    fn check_numbers(&self) -> Result<(), SettingError> {
-        ParameterTable::check(self)?;
-        check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;
-        check("visible_pixels", self.visible_pixels, (1, self.line_pixels))?;
-        // Blanking and visible parts must fit into a line and into a field.
-        check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels))?;
-        let field_lines = self.frame_lines / 2;
-        check("visible_lines", self.visible_lines, (1, field_lines))?;
-        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines))
+        self.video().map(drop)
     }
 
     /// Returns the video signal with these parameters.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`VideoTiming::check`]. Also returns an error if the period of a field does not fit in a
-    /// 64-bit time.
+    /// Fails in the same cases as [`VideoTiming::check`].
     pub fn video(&self) -> Result<Video, SettingError> {
-        self.check()?;
         let numbers = VideoNumbers {
             pixel_ps: self.pixel_ps,
             pixel_divisor: self.pixel_divisor,
@@ -77,11 +65,6 @@ impl VideoTiming {
             left_blanking: self.left_blanking,
             top_blanking: self.top_blanking,
         };
-        Video::new(numbers).ok_or_else(|| {
-            let expected = "pixel_ps x frame_lines x line_pixels below 2^64";
-            SettingError::combination(format_args!(
-                "frame buffer: the period of a field is out of range; expected {expected}"
-            ))
-        })
+        ParameterTable::check(self).and_then(|()| Video::new(numbers)).map_err(|error| error.at("frame buffer"))
     }
 }

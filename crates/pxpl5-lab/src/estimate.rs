@@ -72,13 +72,13 @@ pub struct Estimate {
 }
 
 /// Bytes of the process with a small machine.
-const BASE: f64 = 15e6;
+pub const BASE: f64 = 15e6;
 /// Bytes of the pictures in a run that computes all pixels.
 const PICTURES: f64 = 10e6;
 /// Bytes for one graphics processor.
 const GP: f64 = 60e3;
 /// Bytes for one primitive, including its entries in all lists.
-const PRIMITIVE: f64 = 200.0;
+pub const PRIMITIVE: f64 = 200.0;
 /// Bytes for each block of pixels that is drawn with one head pose.
 const WAITING: f64 = 5.5e3;
 /// Bytes for each field in a run that keeps all observations.
@@ -114,7 +114,7 @@ const RUNS_OF_HEAD: f64 = 2.0;
 const JUDGED_FIELD_S: f64 = 6e-4;
 /// Factor on the time for a computer that is busy with other work. Assumed. Four measured runs on two busy cores took
 /// 1.3 to 12 times as long as the estimate for an idle core.
-const BUSY: f64 = 2.5;
+pub const BUSY: f64 = 2.5;
 
 /// Duration of an NTSC field in seconds, which estimates use for every display.
 const NTSC_FIELD_S: f64 = 16.683_333e-3;
@@ -157,7 +157,7 @@ impl RunWork {
         let mut work = Self {
             fields: plan.fields,
             gps: plan.machine.n_gps as u64,
-            primitives: (scene.triangles().len() + scene.spheres().len()) as u64,
+            primitives: scene.primitives() as u64,
             eyes: plan.pipeline.eyes() as u64,
             pictures_a_field: 1.0,
             uses_closed_form: false,

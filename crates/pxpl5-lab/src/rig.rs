@@ -20,7 +20,7 @@ use image::RgbImage;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_run::{Coverage, Experiment, ExperimentError, Head, Outcome, PictureTimes, Pipeline, Pixels};
-use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
+use pxpl5_scene::{HeadMotion, Lighting, Scene, SceneParts, Vertex};
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::Display;
@@ -185,27 +185,13 @@ fn away() -> Pose {
 fn lamp() -> Scene {
     const CORNERS: [[f32; 2]; 4] = [[-1.6, -1.6], [1.6, -1.6], [1.6, 1.6], [-1.6, 1.6]];
     let vertex = |[x, y]: [f32; 2]| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
-    let structure = Structure {
-        name: "lamp".to_owned(),
-        vertices: 0..4,
-        triangles: 0..2,
-        spheres: 0..0,
-        frame: Frame::World,
-        hinge: None,
-        culls_back_faces: false,
-    };
     // Full ambient light makes the wall white from every direction, and the background stays black.
     let lighting = Lighting { background: [0; 3], ambient: 1.0, diffuse: 0.0, ..Lighting::over_the_shoulder() };
-    let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_X }, Sway::none());
+    let motion = HeadMotion::still(Vec3::ZERO, Vec3::NEG_X);
     Scene::new(SceneParts {
-        name: "lamp".to_owned(),
-        vertices: CORNERS.map(vertex).to_vec(),
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        spheres: Vec::new(),
-        structures: vec![structure],
         lighting,
         motion: motion.expect("a still head is in range"),
-        path: Vec::new(),
+        ..SceneParts::of("lamp", CORNERS.map(vertex).to_vec(), vec![[0, 1, 2], [0, 2, 3]])
     })
     .expect("a quadrangle is a scene")
 }

@@ -5,7 +5,7 @@ use glam::{DVec2, Vec3};
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, PixelErrors, Registration};
 use pxpl5_run::{Experiment, ExperimentError, Head, Outcome, Pixels, SampledPose, Slats};
-use pxpl5_scene::{Frame, HeadMotion, HeadPath, Hinge, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
+use pxpl5_scene::{Frame, Hinge, Scene, SceneParts, Structure, Vertex};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
@@ -67,12 +67,7 @@ fn the_error_of_a_translation_is_focal_length_times_movement_over_distance() {
 /// Returns a scene with a wheel 2 m in front of the viewer. The wheel swings about the axis of view.
 fn wheel(hinge: Hinge) -> Scene {
     let corner = |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
-    let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none());
     Scene::new(SceneParts {
-        name: "wheel".to_owned(),
-        vertices: vec![corner(-9.0, -9.0), corner(9.0, -9.0), corner(0.0, 9.0)],
-        triangles: vec![[0, 1, 2]],
-        spheres: Vec::new(),
         structures: vec![Structure {
             name: "wheel".to_owned(),
             vertices: 0..3,
@@ -82,9 +77,7 @@ fn wheel(hinge: Hinge) -> Scene {
             hinge: Some(hinge),
             culls_back_faces: false,
         }],
-        lighting: Lighting::over_the_shoulder(),
-        motion: motion.expect("in range"),
-        path: Vec::new(),
+        ..SceneParts::of("wheel", vec![corner(-9.0, -9.0), corner(9.0, -9.0), corner(0.0, 9.0)], vec![[0, 1, 2]])
     })
     .expect("a scene")
 }

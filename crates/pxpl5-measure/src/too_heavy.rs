@@ -29,7 +29,7 @@ impl TooHeavy {
         if !due.is_too_heavy() {
             return None;
         }
-        let triangles = (experiment.scene().triangles().len() + experiment.scene().spheres().len()) as u64;
+        let triangles = experiment.scene().primitives() as u64;
         let triangles_in_time = experiment.triangles_in_time().filter(|in_time| *in_time < triangles);
         let advice = advice(experiment.pipeline().name(), triangles_in_time);
         Some(Self { due: due.due, not_shown: due.not_shown(), triangles, triangles_in_time, advice })

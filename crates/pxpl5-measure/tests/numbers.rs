@@ -172,7 +172,7 @@ fn a_load_that_is_too_heavy_is_reported_with_a_size_that_fits() {
 #[test]
 fn a_size_that_fits_is_named_only_if_it_is_smaller_than_the_scene() {
     fn all(experiment: &Experiment) -> u64 {
-        (experiment.scene().triangles().len() + experiment.scene().spheres().len()) as u64
+        experiment.scene().primitives() as u64
     }
     let by = |triangles_in_time| Estimates { fields_needed: |_| None, triangles_in_time };
     let scene = Arc::new(builtin("molecules").expect("built in"));

@@ -107,16 +107,8 @@ impl Scene {
             .collect();
         // The default viewer sees the whole scene.
         let (centre, radius) = ball_around(&positions, &balls);
-        let parts = SceneParts {
-            name: name.to_owned(),
-            vertices,
-            triangles,
-            spheres,
-            structures: Vec::new(),
-            lighting: Lighting::over_the_shoulder(),
-            motion: HeadMotion::always_visible(centre, f64::from(radius.max(f32::MIN_POSITIVE))),
-            path: Vec::new(),
-        };
+        let motion = HeadMotion::always_visible(centre, f64::from(radius.max(f32::MIN_POSITIVE)));
+        let parts = SceneParts { spheres, motion, ..SceneParts::of(name, vertices, triangles) };
         scene::Scene::new(parts).map(Self::of).map_err(wrong_setting)
     }
 

@@ -11,7 +11,7 @@ use pxpl5_run::{
     Experiment, ExperimentError, FinishedRegions, KeyValue, Outcome, Pipeline, PipelineSettings, Pixels, Registry,
     RenderingControl, Slats, display_list, views,
 };
-use pxpl5_scene::{HeadMotion, HeadPath, Hmd, HmdConfig, Scene, Sway, builtin};
+use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Scene, builtin};
 use pxpl5_sim::Time;
 use pxpl5_wire::{
     FieldParity, Lines, MAX_MESSAGE_WORDS, NodeId, PictureNumber, RegionGrid, RegionId, SurfaceId, ViewNumber,
@@ -26,7 +26,7 @@ fn still(name: &str) -> Arc<Scene> {
     let mut parts = scene.posed(&scene.edits_at(0)).into_parts();
     parts.structures.iter_mut().for_each(|structure| structure.hinge = None);
     let eye = target + Vec3::Z * (radius * 3.0);
-    parts.motion = HeadMotion::new(HeadPath::Still { eye, target }, Sway::none()).expect("in range");
+    parts.motion = HeadMotion::still(eye, target).expect("in range");
     Arc::new(Scene::new(parts).expect("whole"))
 }
 

@@ -7,7 +7,7 @@ use std::error::Error;
 
 use glam::{Mat4, Vec3};
 use image::{Rgb, RgbImage};
-use pxpl5_scene::{HeadMotion, HeadPath, Hmd, Scene, Sway, View, builtin, load};
+use pxpl5_scene::{HeadMotion, Hmd, Scene, View, builtin, load};
 
 const WIDTH: u32 = 640;
 const HEIGHT: u32 = 480;
@@ -50,7 +50,7 @@ fn motions(scene: &Scene, angles: &[f64]) -> Result<Vec<(HeadMotion, u64)>, Box<
             (azimuth.cos() * elevation.cos() * distance) as f32,
         );
         let eye = target + arm;
-        HeadMotion::new(HeadPath::Still { eye, target }, Sway::none()).map(|m| (m, 0))
+        HeadMotion::still(eye, target).map(|m| (m, 0))
     });
     Ok(motions.collect::<Result<_, _>>()?)
 }

@@ -1,9 +1,8 @@
 //! Construction of a scene from the arrays of a triangle mesh.
 
 use crate::config::FIT_DISTANCE_RADII;
-use crate::motion::{HeadMotion, HeadPath};
-use crate::scene::{Lighting, Scene, SceneParts, Vertex};
-use crate::sway::Sway;
+use crate::motion::HeadMotion;
+use crate::scene::{Scene, SceneParts, Vertex};
 use glam::Vec3;
 use pxpl5_sim::parameters::SettingError;
 
@@ -48,24 +47,12 @@ impl Scene {
             normal: normal.try_normalize().unwrap_or(Vec3::Z),
             colour: GREY,
         };
-        let mut parts = SceneParts {
-            name: "triangles".to_owned(),
-            vertices: corners.iter().zip(normals).map(vertex).collect(),
-            triangles: triangles.to_vec(),
-            spheres: Vec::new(),
-            structures: Vec::new(),
-            lighting: Lighting::over_the_shoulder(),
-            motion: standing(Vec3::ZERO, Vec3::Z),
-            path: Vec::new(),
-        };
+        let vertices = corners.iter().zip(normals).map(vertex).collect();
+        let mut parts = SceneParts::of("triangles", vertices, triangles.to_vec());
         // Use the bounding sphere of the checked scene.
         let (centre, radius) = Self::new(parts.clone())?.bounding_sphere();
-        parts.motion = standing(centre, centre + Vec3::Z * (f64::from(radius) * FIT_DISTANCE_RADII) as f32);
+        let eye = centre + Vec3::Z * (f64::from(radius) * FIT_DISTANCE_RADII) as f32;
+        parts.motion = HeadMotion::still(eye, centre)?;
         Self::new(parts)
     }
-}
-
-fn standing(target: Vec3, eye: Vec3) -> HeadMotion {
-    let still = HeadPath::Still { eye, target };
-    HeadMotion::new(still, Sway { seed: 1, scale: 0.0 }).expect("pxpl5-scene: no sway is in range")
 }

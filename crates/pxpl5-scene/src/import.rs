@@ -47,7 +47,7 @@ impl Placement {
     fn motion(self) -> HeadMotion {
         match self {
             Self::Fitted => mesh::motion_for_fitted(),
-            Self::AsInFile => mesh::still_at_origin(),
+            Self::AsInFile => HeadMotion::STILL,
         }
     }
 }

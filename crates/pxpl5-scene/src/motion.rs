@@ -97,6 +97,19 @@ impl From<HeadMotion> for Unchecked {
 }
 
 impl HeadMotion {
+    /// The motion of a head that stands still at the origin and looks along -z.
+    pub(crate) const STILL: Self =
+        Self { path: HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, sway: Sway::none() };
+
+    /// Creates the motion of a head that stands still at `eye` and looks at `target`.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`HeadMotion::new`].
+    pub fn still(eye: Vec3, target: Vec3) -> Result<Self, SettingError> {
+        Self::new(HeadPath::Still { eye, target }, Sway::none())
+    }
+
     /// Creates a motion after checking its numbers.
     ///
     /// # Errors

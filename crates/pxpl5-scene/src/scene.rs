@@ -169,6 +169,12 @@ impl Scene {
         &self.parts.vertices
     }
 
+    /// Returns the number of triangles and spheres.
+    #[must_use]
+    pub fn primitives(&self) -> usize {
+        self.parts.triangles.len() + self.parts.spheres.len()
+    }
+
     /// Returns all triangles, each as three indices into [`Self::vertices`], anticlockwise seen from outside.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
@@ -294,6 +300,22 @@ fn structure_of_all(parts: &SceneParts) -> Structure {
 }
 
 impl SceneParts {
+    /// Creates the contents of a scene with one structure. The lighting is [`Lighting::over_the_shoulder`], and the head
+    /// stands still at the origin and looks along -z.
+    #[must_use]
+    pub fn of(name: &str, vertices: Vec<Vertex>, triangles: Vec<[u32; 3]>) -> Self {
+        Self {
+            name: name.to_owned(),
+            vertices,
+            triangles,
+            spheres: Vec::new(),
+            structures: Vec::new(),
+            lighting: Lighting::over_the_shoulder(),
+            motion: HeadMotion::STILL,
+            path: Vec::new(),
+        }
+    }
+
     fn move_structure(&mut self, structure: &Structure, model: &Mat4) {
         let model: DMat4 = model.as_dmat4();
         for vertex in &mut self.vertices[structure.vertices.clone()] {

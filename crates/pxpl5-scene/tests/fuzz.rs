@@ -85,7 +85,7 @@ fn apply(file: &mut Vec<u8>, damage: Damage) {
 
 /// Checks the scene's own rules again for a scene that a reader has built.
 fn assert_sound(scene: Scene) {
-    let drawn = scene.triangles().len() + scene.spheres().len();
+    let drawn = scene.primitives();
     assert!(drawn > 0);
     let reach = scene.vertices().iter().map(|v| v.position.length());
     assert!(reach.fold(0.0, f32::max).is_finite());

@@ -124,7 +124,7 @@ impl Session {
     pub(crate) fn fitting(&self) -> Value {
         let experiment = self.stepper.experiment();
         let scene = experiment.scene();
-        let primitives = (scene.triangles().len() + scene.spheres().len()) as u64;
+        let primitives = scene.primitives() as u64;
         let in_time = experiment.triangles_in_time().or_else(|| self.fitting_by_runs());
         json!({"primitives": primitives, "in_time": in_time.filter(|in_time| *in_time < primitives)})
     }

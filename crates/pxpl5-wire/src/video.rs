@@ -1,6 +1,7 @@
 //! Exact times of an interlaced video signal, and the position of its beam.
 
 use crate::{CopyTarget, FieldParity, Lines, PeriodNumber};
+use pxpl5_sim::parameters::{MAX, SettingError, check};
 use pxpl5_sim::{Clock, Time};
 
 /// Numbers of an interlaced video signal with two fields in each video frame.
@@ -37,18 +38,31 @@ pub struct Video {
 }
 
 impl Video {
-    /// Makes the video signal that `numbers` describes. Returns `None` if the period of a pixel, line or field is
-    /// shorter than a picosecond, or too long for 64-bit arithmetic.
-    #[must_use]
-    pub const fn new(numbers: VideoNumbers) -> Option<Self> {
+    /// Makes the video signal that `numbers` describes.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingError`] names the first of these faults. The period of a pixel is shorter than a picosecond. The visible
+    /// pixels and their blanking do not fit in a line, or the visible lines and their blanking do not fit in a field.
+    /// The period of a field is too long for 64-bit arithmetic.
+    pub fn new(numbers: VideoNumbers) -> Result<Self, SettingError> {
         let VideoNumbers { pixel_ps, pixel_divisor, line_pixels, frame_lines, .. } = numbers;
-        let Some(line_ps) = pixel_ps.checked_mul(line_pixels) else { return None };
-        let Some(frame_ps) = line_ps.checked_mul(frame_lines) else { return None };
-        let Some(half) = pixel_divisor.checked_mul(2) else { return None };
-        match (Clock::new(pixel_ps, pixel_divisor), Clock::new(line_ps, pixel_divisor), Clock::new(frame_ps, half)) {
-            (Some(pixel), Some(line), Some(field)) => Some(Self { numbers, pixel, line, field }),
-            _ => None,
-        }
+        let VideoNumbers { visible_pixels, visible_lines, left_blanking, top_blanking, .. } = numbers;
+        check("pixel_ps", pixel_ps, (pixel_divisor, MAX))?;
+        check("visible_pixels", visible_pixels, (1, line_pixels))?;
+        check("left_blanking", left_blanking, (0, line_pixels - visible_pixels))?;
+        // Each field contains half of the lines of a frame.
+        let field_lines = frame_lines / 2;
+        check("visible_lines", visible_lines, (1, field_lines))?;
+        check("top_blanking", top_blanking, (0, field_lines - visible_lines))?;
+        let clocks = || {
+            let line_ps = pixel_ps.checked_mul(line_pixels)?;
+            let pixel = Clock::new(pixel_ps, pixel_divisor)?;
+            let line = Clock::new(line_ps, pixel_divisor)?;
+            let field = Clock::new(line_ps.checked_mul(frame_lines)?, pixel_divisor.checked_mul(2)?)?;
+            Some(Self { numbers, pixel, line, field })
+        };
+        clocks().ok_or_else(|| SettingError::value("pixel_ps", "a period of a field below 2^63 ps", pixel_ps))
     }
 
     /// Returns the time of the retrace with which a field begins.

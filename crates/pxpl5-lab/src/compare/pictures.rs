@@ -6,7 +6,7 @@ use image::{Rgb, RgbImage};
 use pxpl5_framebuffer::{FrameBufferConfig, NtscDisplay, Video};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Head, Jitp, Pixels, Viewpoint};
-use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
+use pxpl5_scene::{HeadMotion, Lighting, Scene, SceneParts, Vertex};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 use std::sync::Arc;
 use tracking::motion::{Motion, Pan};
@@ -45,25 +45,11 @@ pub fn edge_scene(yaw_deg: f64) -> Scene {
     // The pan starts beside the edge, so that the edge is in the middle at the evaluated field.
     let (sin, cos) = yaw_deg.to_radians().sin_cos();
     let target = DVec3::new(-sin, 0.0, -cos).as_vec3();
-    let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target }, Sway::none());
-    let structure = Structure {
-        name: "wall".to_owned(),
-        vertices: 0..4,
-        triangles: 0..2,
-        spheres: 0..0,
-        frame: Frame::World,
-        hinge: None,
-        culls_back_faces: false,
-    };
+    let motion = HeadMotion::still(Vec3::ZERO, target);
     Scene::new(SceneParts {
-        name: "edge".to_owned(),
-        vertices,
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        spheres: Vec::new(),
-        structures: vec![structure],
         lighting: Lighting { background: [0; 3], ..Lighting::over_the_shoulder() },
         motion: motion.expect("a still head is in range"),
-        path: Vec::new(),
+        ..SceneParts::of("edge", vertices, vec![[0, 1, 2], [0, 2, 3]])
     })
     .expect("a quadrangle is a scene")
 }

@@ -78,7 +78,7 @@ impl SceneChoice {
     ) -> Result<Arc<Scene>, SettingError> {
         // A scene with no more primitives than requested is drawn whole.
         let scene = match self.triangles {
-            Some(n) if n < whole.triangles().len() + whole.spheres().len() => Arc::new(decimated(n)?),
+            Some(n) if n < whole.primitives() => Arc::new(decimated(n)?),
             _ => whole,
         };
         // The scene's own motion needs no copy of the scene.

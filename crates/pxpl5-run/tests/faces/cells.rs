@@ -8,7 +8,7 @@ use pxpl5_run::{
     Experiment, FacePipeline, FacePolicy, FaceSource, KeyValue, Outcome, PipelineSettings, Pixels, Registry,
     SegmentedScene,
 };
-use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex, builtin};
+use pxpl5_scene::{HeadMotion, Lighting, Scene, SceneParts, Vertex, builtin};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use tracking::motion::Slide;
@@ -19,25 +19,14 @@ pub(crate) const WARPED: FacePipeline = FacePipeline::new(FacePolicy::CellsWarpe
 /// Returns a wall of 40 m, 3 m in front of the eye, as one quadrangle from the floor to above the eye.
 fn wall() -> Scene {
     let vertex = |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -3.0), normal: Vec3::Z, colour: [200, 120, 40] };
-    let structure = Structure {
-        name: "wall".to_owned(),
-        vertices: 0..4,
-        triangles: 0..2,
-        spheres: 0..0,
-        frame: Frame::World,
-        hinge: None,
-        culls_back_faces: false,
-    };
-    let path = HeadPath::Still { eye: Vec3::new(0.5, 0.0, 0.5), target: Vec3::new(0.5, 0.0, -3.0) };
     Scene::new(SceneParts {
-        name: "wall".to_owned(),
-        vertices: vec![vertex(-20.0, -1.5), vertex(20.0, -1.5), vertex(20.0, 1.5), vertex(-20.0, 1.5)],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        spheres: Vec::new(),
-        structures: vec![structure],
         lighting: Lighting { background: [0; 3], ..Lighting::over_the_shoulder() },
-        motion: HeadMotion::new(path, Sway::none()).expect("in range"),
-        path: Vec::new(),
+        motion: HeadMotion::still(Vec3::new(0.5, 0.0, 0.5), Vec3::new(0.5, 0.0, -3.0)).expect("in range"),
+        ..SceneParts::of(
+            "wall",
+            vec![vertex(-20.0, -1.5), vertex(20.0, -1.5), vertex(20.0, 1.5), vertex(-20.0, 1.5)],
+            vec![[0, 1, 2], [0, 2, 3]],
+        )
     })
     .expect("a quadrangle")
 }

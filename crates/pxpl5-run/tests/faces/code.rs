@@ -3,7 +3,7 @@
 use super::cells::{CELLS, WARPED};
 use super::{FULL, OBJECTS, assert_no_faults, machine, memory, texels};
 use pxpl5_run::{Experiment, ExperimentError, FacePipeline, Level, Outcome};
-use pxpl5_scene::{HeadMotion, HeadPath, Scene, Sway, builtin};
+use pxpl5_scene::{HeadMotion, Scene, builtin};
 
 /// Number of fields after which every memory has been drawn at both levels.
 const FIELDS: u64 = 40;
@@ -14,8 +14,7 @@ fn still(name: &str) -> Scene {
     let mut parts = scene.posed(&scene.edits_at(0)).into_parts();
     parts.structures.iter_mut().for_each(|structure| structure.hinge = None);
     let (target, radius) = scene.bounding_sphere();
-    parts.motion = HeadMotion::new(HeadPath::Still { eye: target + glam::Vec3::Z * radius, target }, Sway::none())
-        .expect("in range");
+    parts.motion = HeadMotion::still(target + glam::Vec3::Z * radius, target).expect("in range");
     Scene::new(parts).expect("what is kept is whole")
 }
 

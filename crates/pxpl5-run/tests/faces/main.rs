@@ -18,7 +18,7 @@ use pxpl5_run::{
     Experiment, ExperimentError, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, Registry, RenderingControl,
     display_list,
 };
-use pxpl5_scene::{HeadMotion, Lighting, Scene, SceneParts, Sphere, Structure, builtin};
+use pxpl5_scene::{HeadMotion, Scene, SceneParts, Sphere, Structure, builtin};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Eye, Lines, PeriodNumber, RegionGrid};
 use rendering_control::cube::face_view;
@@ -157,14 +157,10 @@ fn balls() -> Scene {
     };
     let motion = *builtin("room").expect("built in").motion();
     let parts = SceneParts {
-        name: "balls".to_owned(),
-        vertices: Vec::new(),
-        triangles: Vec::new(),
         spheres: places.map(ball).to_vec(),
         structures: (0..4).map(structure).collect(),
-        lighting: Lighting::over_the_shoulder(),
         motion,
-        path: Vec::new(),
+        ..SceneParts::of("balls", Vec::new(), Vec::new())
     };
     Scene::new(parts).expect("in range")
 }

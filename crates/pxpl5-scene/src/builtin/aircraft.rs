@@ -31,14 +31,9 @@ pub(super) fn scene() -> Scene {
         *place = (*place - centre) * (RADIUS_M / radius);
     }
     let parts = SceneParts {
-        name: "aircraft".to_owned(),
-        vertices: mesh.vertices(),
-        triangles: mesh.triangles,
-        spheres: Vec::new(),
-        structures: Vec::new(),
         lighting: Lighting { background: [92, 140, 200], ..Lighting::over_the_shoulder() },
         motion: fly_through(),
-        path: Vec::new(),
+        ..SceneParts::of("aircraft", mesh.vertices(), mesh.triangles)
     };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

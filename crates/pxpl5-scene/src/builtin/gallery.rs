@@ -9,9 +9,8 @@ use glam::{DVec3, Vec3};
 
 use super::solid::Solid;
 use crate::import::Mesh;
-use crate::motion::{HeadMotion, HeadPath};
+use crate::motion::HeadMotion;
 use crate::scene::{Lighting, Scene, SceneParts};
-use crate::sway::Sway;
 
 /// Half the length and half the width of the hall, metres.
 const HALF_M: f64 = 20.0;
@@ -65,18 +64,14 @@ pub(super) fn scene(is_full: bool) -> Scene {
     }
     // The head stands at the first corner and looks along the path. A run can let it walk along the path instead.
     let path: Vec<Vec3> = CORNERS.map(|[x, z]| DVec3::new(x, EYE_M, z).as_vec3()).to_vec();
-    let standing = HeadPath::Still { eye: path[0], target: path[1] };
     let parts = SceneParts {
-        name: if is_full { "gallery:full" } else { "gallery" }.to_owned(),
-        vertices: solid.mesh.vertices(),
-        triangles: solid.mesh.triangles,
-        spheres: Vec::new(),
         structures: solid.structures,
         // Lamps cover the ceiling, so most of the light is ambient. With less ambient light the ceiling itself would be
         // black.
         lighting: Lighting { ambient: 0.6, diffuse: 0.4, ..Lighting::over_the_shoulder() },
-        motion: HeadMotion::new(standing, Sway::none()).expect("pxpl5-scene: constants are in range"),
+        motion: HeadMotion::still(path[0], path[1]).expect("pxpl5-scene: constants are in range"),
         path,
+        ..SceneParts::of(if is_full { "gallery:full" } else { "gallery" }, solid.mesh.vertices(), solid.mesh.triangles)
     };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

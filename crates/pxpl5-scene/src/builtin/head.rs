@@ -7,7 +7,7 @@ use super::solid::Colour;
 use crate::config::FIT_RADIUS_M;
 use crate::import::Mesh;
 use crate::motion::HeadMotion;
-use crate::scene::{Lighting, Scene, SceneParts, bounding_sphere};
+use crate::scene::{Scene, SceneParts, bounding_sphere};
 use crate::trig;
 
 /// Number of vertices on each parallel. The head has 2 x 156 x 191 = 59,592 triangles, including 156 at each pole.
@@ -30,14 +30,8 @@ pub(super) fn scene() -> Scene {
         *position = (*position - centre) * (FIT_RADIUS_M / radius);
     }
     let parts = SceneParts {
-        name: "head".to_owned(),
-        vertices: mesh.vertices(),
-        triangles: mesh.triangles,
-        spheres: Vec::new(),
-        structures: Vec::new(),
-        lighting: Lighting::over_the_shoulder(),
         motion: HeadMotion::looking_at(glam::Vec3::ZERO, FIT_RADIUS_M),
-        path: Vec::new(),
+        ..SceneParts::of("head", mesh.vertices(), mesh.triangles)
     };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

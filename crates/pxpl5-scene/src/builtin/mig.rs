@@ -60,14 +60,10 @@ fn finish(mut solid: Solid) -> Scene {
         hinge.point = ((hinge.point.as_dvec3() - centre) * scale).as_vec3();
     }
     let parts = SceneParts {
-        name: "mig".to_owned(),
-        vertices: solid.mesh.vertices(),
-        triangles: solid.mesh.triangles,
-        spheres: Vec::new(),
         structures: solid.structures,
         lighting: Lighting { background: [92, 140, 200], ..Lighting::over_the_shoulder() },
         motion: fly_through(),
-        path: Vec::new(),
+        ..SceneParts::of("mig", solid.mesh.vertices(), solid.mesh.triangles)
     };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

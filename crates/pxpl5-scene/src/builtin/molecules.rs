@@ -8,7 +8,7 @@ use super::solid::{Colour, Solid};
 use crate::config::FIT_RADIUS_M;
 use crate::import::{Atom, Source, read_atoms};
 use crate::motion::HeadMotion;
-use crate::scene::{Lighting, Scene, SceneParts, Sphere, bounding_sphere};
+use crate::scene::{Scene, SceneParts, Sphere, bounding_sphere};
 
 static MYOGLOBIN: &[u8] = include_bytes!("../../assets/1mbn.pdb");
 
@@ -167,16 +167,11 @@ fn fitted(mut solid: Solid, mut spheres: Vec<Sphere>) -> Scene {
         sphere.radius = (f64::from(sphere.radius) * scale) as f32;
     }
     let parts = SceneParts {
-        name: "molecules".to_owned(),
-        vertices: solid.mesh.vertices(),
-        triangles: solid.mesh.triangles,
         spheres,
-        structures: Vec::new(),
-        lighting: Lighting::over_the_shoulder(),
         // The molecules are half as high as wide, so the head can be nearer than it is to a ball. The molecules then
         // fill the width of the view.
         motion: HeadMotion::looking_at(glam::Vec3::ZERO, 0.8 * FIT_RADIUS_M),
-        path: Vec::new(),
+        ..SceneParts::of("molecules", solid.mesh.vertices(), solid.mesh.triangles)
     };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

@@ -1,10 +1,6 @@
 //! Scenes with a single structure that does not move. The head stands still unless the settings choose another motion.
 
-use glam::Vec3;
-
-use crate::motion::{HeadMotion, HeadPath};
-use crate::scene::{Frame, Lighting, Scene, SceneParts, Structure, Vertex};
-use crate::sway::Sway;
+use crate::scene::{Frame, Scene, SceneParts, Structure, Vertex};
 
 /// Makes a scene with all triangles in one structure, which is fixed to the room or to the head. The head is at the
 /// origin and looks along -z.
@@ -24,16 +20,6 @@ pub(super) fn scene(
         hinge: None,
         culls_back_faces: false,
     };
-    let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
-    let parts = SceneParts {
-        name: name.to_owned(),
-        vertices,
-        triangles,
-        spheres: Vec::new(),
-        structures: vec![structure],
-        lighting: Lighting::over_the_shoulder(),
-        motion: HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range"),
-        path: Vec::new(),
-    };
+    let parts = SceneParts { structures: vec![structure], ..SceneParts::of(name, vertices, triangles) };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

@@ -4,9 +4,8 @@
 use glam::{DVec3, Vec3};
 
 use crate::config::IMPORT_RADIUS_M;
-use crate::motion::{HeadMotion, HeadPath};
-use crate::scene::{Lighting, Scene, SceneParts, Sphere, Vertex, bounding_sphere};
-use crate::sway::Sway;
+use crate::motion::HeadMotion;
+use crate::scene::{Scene, SceneParts, Sphere, Vertex, bounding_sphere};
 
 /// A mesh in the coordinates of a file, before the mesh is scaled.
 #[derive(Default)]
@@ -94,12 +93,6 @@ pub(super) fn motion_for_fitted() -> HeadMotion {
     HeadMotion::always_visible(Vec3::ZERO, IMPORT_RADIUS_M)
 }
 
-/// Returns the motion of a head that stands still at the origin of a model's coordinates.
-pub(super) fn still_at_origin() -> HeadMotion {
-    let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
-    HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range")
-}
-
 /// Makes a scene of one structure from the vertices, triangles and spheres of a model. `motion` is the head's motion.
 pub(super) fn seen_by(
     motion: HeadMotion,
@@ -108,16 +101,7 @@ pub(super) fn seen_by(
     triangles: Vec<[u32; 3]>,
     spheres: Vec<Sphere>,
 ) -> Scene {
-    let parts = SceneParts {
-        name: name.to_owned(),
-        vertices,
-        triangles,
-        spheres,
-        structures: Vec::new(),
-        lighting: Lighting::over_the_shoulder(),
-        motion,
-        path: Vec::new(),
-    };
+    let parts = SceneParts { spheres, motion, ..SceneParts::of(name, vertices, triangles) };
     Scene::new(parts).expect("pxpl5-scene: readers check what they make")
 }
 
