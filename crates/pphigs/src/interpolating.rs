@@ -34,8 +34,8 @@ pub struct TriangleEndsRecorder<'a> {
 }
 
 impl TriangleEndsRecorder<'_> {
-    /// Executes the code on a board that holds the display list, and returns the simulated time. The time includes the
-    /// preparation of structures for both views.
+    /// Executes the i860 code that records the corners, and returns the simulated time. The board's memory must already
+    /// contain the display list. The time includes the preparation of structures for both views.
     ///
     /// Returns `None` if no kernel can draw this kind of picture.
     ///
@@ -97,8 +97,9 @@ pub struct StripInterpolation<'a> {
 }
 
 impl StripInterpolation<'_> {
-    /// Executes the code on a board that holds the recorded corners. Returns `None` if no kernel can draw this kind of
-    /// picture.
+    /// Executes the i860 code that makes the strip's commands, and returns the simulated time. The board's memory must
+    /// already contain the corners that a [`TriangleEndsRecorder`] has recorded. Returns `None` if no kernel can draw
+    /// this kind of picture.
     ///
     /// # Errors
     ///

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SliceClip {
-    /// Clipping uses only the near and far planes of an orthographic projection. The volume is a prism as thick as the
-    /// exact slice at the rim.
+    /// Clipping uses only the near and far planes of an orthographic projection. The clipped volume is a prism with the
+    /// same thickness everywhere. The exact volume of a slice has this thickness only at the rim of the display.
     Prism,
     /// Each pass clips with two user clip planes. The volume of a slice is a double wedge around the axis, and each
     /// half (lobe) of the double wedge has its own pass.

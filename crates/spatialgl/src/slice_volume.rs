@@ -77,10 +77,11 @@ pub enum WedgeTest {
     UserPlanes(TieRule),
     /// The distances from both boundary planes are interpolated, and one test compares their signs.
     Shader(TieRule),
-    /// Both planes are moved outwards by this number of pixels before the product of the distances is tested.
+    /// A distance in pixels by which both boundary planes are moved outwards. The test then checks the sign of the
+    /// product of a point's distances from the two moved planes.
     Parallel(f64),
-    /// This number of square pixels is added to the product of the distances from both planes before the sign is
-    /// tested.
+    /// A bias in square pixels. The test multiplies a point's distances from the two boundary planes, adds the bias,
+    /// and checks the sign of the sum.
     Hyperbolic(f64),
 }
 

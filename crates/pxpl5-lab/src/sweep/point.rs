@@ -1,4 +1,4 @@
-//! Simulates one point of a sweep, which is an experiment.
+//! Simulates one point of a sweep. Each point of a sweep is one experiment.
 
 use super::header::json;
 use super::{Sweep, SweepSpace, measures};

@@ -211,7 +211,7 @@ impl PictureRules for Slats {
             arrivals.entry(arrival.target.picture).or_default().note(arrival);
         }
         let backup = (self.copy == CopySchedule::Backup).then(|| Backup::new(record));
-        // The first GP samples a pose at the begin of each picture.
+        // The first GP samples a pose at the start of each picture.
         let leader = record.ports().gps[0];
         let begun = samples(record).filter(|mark| mark.node == leader);
         let times = begun.map(|mark| {

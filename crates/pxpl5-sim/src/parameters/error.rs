@@ -141,7 +141,8 @@ impl SettingError {
         if holds { Ok(()) } else { Err(Self::value(name, expected, found)) }
     }
 
-    /// Adds the place of the setting: a file with a line, or a command line option. An empty place adds nothing.
+    /// Adds to the message the place where the setting was written: a file with a line, or a command line option. An
+    /// empty place adds nothing.
     #[must_use]
     pub fn at(self, place: impl Display) -> Self {
         match place.to_string() {

@@ -142,8 +142,8 @@ fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// Number of steps on a circle around the axis. The circle is tested in the middle of each step, so no tested point
-/// lies in a plane between bins.
+/// Number of equal arcs into which a circle around the axis is divided. The middle of each arc is tested. No middle
+/// lies exactly on a plane that separates bins.
 const STEPS: u32 = 3_600;
 
 /// Returns figure P14: for each region, the number of planes that bound the region. Two conditions make a plane a
