@@ -329,7 +329,8 @@ fn line_registers(viewport: &Viewport, first: usize) -> [(usize, Word); 2] {
     [(first, viewport.first_line()), (first + 1, viewport.line_step() - 1)]
 }
 
-/// Executes the code that computes the limits of the windows, which are cut off at the edges of the picture.
+/// Executes the code that computes the first and last columns and rows of the windows. Windows are cut off at the edges
+/// of the picture.
 fn make_windows(
     processor: &mut Processor,
     grid: RegionGrid,
@@ -373,8 +374,8 @@ pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)
 }
 
-/// The code that searches windows and lists messages. Every message has room for the copy command, as in the messages
-/// that the simulator makes without code.
+/// The i860 code that finds the primitives in windows and lists the messages. Every message has room for the copy
+/// command, as in the messages that the simulator makes without code.
 static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
     let token = token_source([MAX_MESSAGE_WORDS - CLOSING, MAX_MESSAGE_WORDS]);
     let sources = [("windows", include_str!("../kernels/windows.s")), ("token", token.as_str())];

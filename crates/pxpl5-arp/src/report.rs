@@ -90,7 +90,7 @@ pub struct PriorityReport {
     pub draws_per_s: f64,
     /// Percentage of draws that the policy saves, relative to drawing everything in every frame.
     pub saved_percent: f64,
-    /// Number of times that an object changed to another memory. Null unless the policy is `objects`.
+    /// Number of times that an object moved from one memory to another. Null unless the policy is `objects`.
     pub moved_objects: Option<u64>,
     /// Number of times that cells (squares of the floor) were assigned to memories anew. Null without cells.
     pub redeals: Option<u64>,

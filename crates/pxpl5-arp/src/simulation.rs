@@ -117,7 +117,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the number of times that an object changed to another memory. Returns `None` unless the policy is
+    /// Returns the number of times that an object moved from one memory to another. Returns `None` unless the policy is
     /// `objects`.
     #[must_use]
     pub const fn moved_objects(&self) -> Option<u64> {

@@ -70,8 +70,8 @@ impl<const N: usize> Polygon<N> {
         &self.corners[..self.len]
     }
 
-    /// Adds a corner, up to nine. Because of rounding, a polygon can be slightly concave and have more corners, which
-    /// are left out.
+    /// Adds a corner, if the polygon has fewer than nine corners. Because of rounding, a polygon can be slightly
+    /// concave and get more than nine corners. The additional corners are left out.
     fn push(&mut self, corner: Corner<N>) {
         if let Some(slot) = self.corners.get_mut(self.len) {
             *slot = corner;

@@ -75,8 +75,8 @@ pub enum KernelPicture {
     Frame,
     /// An NTSC field: 640 x 240 pixels in regions of 128 x 120.
     Field,
-    /// A video frame of another size in regions of 128 x 128, for example a face of a cube. The size is a parameter of
-    /// the code.
+    /// A video frame of any size in regions of 128 x 128, for example a face of a cube. The size is a parameter of the
+    /// i860 code.
     Grid,
 }
 

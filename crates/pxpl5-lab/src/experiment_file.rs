@@ -56,7 +56,7 @@ use std::sync::Arc;
 use toml::Value;
 use toml::de::DeTable;
 
-/// The value of a setting, with its origin, which is a file and line or an option.
+/// The value of a setting with its origin: a file and line, or an option of the command line.
 #[derive(Clone, Debug)]
 pub(crate) struct Setting {
     pub(crate) value: Value,

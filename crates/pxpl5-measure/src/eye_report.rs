@@ -78,7 +78,7 @@ impl EyeSum {
         }
     }
 
-    /// Counts a pixel whose content the evaluation has searched in the picture.
+    /// Counts a pixel after the evaluation has searched the picture for the pixel's content.
     pub(crate) fn looked_at(&mut self, is_beyond: bool, is_hidden: bool) {
         self.looked_at += 1;
         self.beyond += u64::from(is_beyond);

@@ -289,7 +289,7 @@ impl Experiment {
         self
     }
 
-    /// Returns the same experiment on another machine.
+    /// Returns the same experiment on the machine `config`.
     #[must_use]
     pub fn with_machine(self, config: MachineConfig) -> Self {
         Self { config, ..self }

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The rule for a point exactly on a boundary plane of a slice's volume, which is a double wedge around the axis. The
-/// SpatialGL paper's rule "signs equal" is ambiguous for such a point.
+/// The rule for a point exactly on a boundary plane of a slice's volume. The volume is a double wedge around the axis.
+/// The SpatialGL paper's rule "signs equal" is ambiguous for such a point.
 ///
 /// The values `a` and `b` are the signed distances of the point from the two boundary planes. Both are positive in the
 /// positive lobe: the half of the double wedge with horizontal coordinate u > 0.

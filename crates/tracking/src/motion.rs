@@ -90,9 +90,9 @@ pub trait Motion: Debug {
         false
     }
 
-    /// Returns another motion of the same kind with different random numbers. Returns `None` if the motion has no
-    /// random numbers. Prediction filters are tuned on this other motion, so the evaluated motion has no influence on
-    /// the tuning.
+    /// Returns a motion of the same kind with different random numbers. Returns `None` if the motion has no random
+    /// numbers. Prediction filters are tuned on the returned motion, so the evaluated motion has no influence on the
+    /// tuning.
     fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
         None
     }

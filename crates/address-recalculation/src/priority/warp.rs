@@ -41,8 +41,8 @@ impl Falloff {
     }
 }
 
-/// The displacement of a memory's vertices near a border. Beyond the border lie the objects of the next memory in the
-/// order of indices, which is drawn less often. This memory is called the slower memory.
+/// The displacement of a memory's vertices near a border. Beyond the border lie the objects of the slower memory, the
+/// memory with the next higher index. The slower memory is drawn less often.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionWarp {
     falloff: Falloff,
@@ -52,7 +52,7 @@ pub struct RegionWarp {
 
 impl RegionWarp {
     /// Creates the warp of a memory. `drawn_from` is the eye position from which this memory was drawn. `slower_from`
-    /// is the eye position for the memory beyond the border, which is drawn less often.
+    /// is the eye position from which the slower memory was drawn.
     ///
     /// # Errors
     ///

@@ -212,7 +212,8 @@ fn writable_float_mask(dest: u8, bytes: u8) -> u64 {
     float_mask(dest, bytes) & !(3 << 32)
 }
 
-/// Returns the bit of integer register `n` in a mask of written registers, or 0 for r0, which is always 0.
+/// Returns the bit of integer register `n` in a mask of written registers, or 0 for r0, because writes to r0 have no
+/// effect.
 fn integer_mask(n: u8) -> u64 {
     1 << n & !1
 }

@@ -8,7 +8,8 @@ use serde::Serialize;
 pub struct Rules {
     /// Number of rings of cells around the viewer's cell in memory 0.
     pub inner_rings: u64,
-    /// Number of rings of cells in a memory, divided by the number in the previous memory, which is drawn more often.
+    /// Number of rings of cells in memory k (2 or more), divided by the number of rings in memory k - 1. Memory k - 1
+    /// is drawn more often.
     pub ring_growth: u64,
     /// Way of measuring the distance that determines when a memory is due. True: to the nearest cell with segments
     /// (parts of objects). False: to the border of a block of cells.

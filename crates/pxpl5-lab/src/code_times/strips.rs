@@ -31,7 +31,7 @@ const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 pub struct StripTimes {
     /// Time to compare one triangle's bounding box with a strip that the box does not meet.
     pub box_ns: f64,
-    /// Additional time of a bin entry for a triangle that meets one of the five windows (128 pixels wide) of a strip.
+    /// Additional time of a bin entry for a triangle that touches one of the five windows (128 pixels wide) of a strip.
     /// The time includes the search and the transfer of the entry, and the comparison with nearby triangles that miss
     /// the strip.
     pub entry_ns: f64,
@@ -74,7 +74,7 @@ pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> 
 
 struct Measured {
     triangles: f64,
-    /// Mean time to search the triangles for a strip that no triangle meets.
+    /// Mean time to search all triangles for a strip that no triangle touches.
     search_ns: f64,
     /// Additional time of each bin entry, measured in strips that triangles meet.
     entry_ns: f64,
@@ -117,7 +117,7 @@ fn ns(span: Span) -> f64 {
     span.0 as f64 / 1e3
 }
 
-/// Returns the number of bin entries and the search time in nanoseconds for each strip, which is one line here.
+/// Returns the number of bin entries and the search time in nanoseconds for each strip. Here, every strip is one line.
 fn searches(rig: &mut Rig) -> Result<Vec<[f64; 2]>, ProcessorFault> {
     let pass = rig.share.transform(&rig.view(0), 0, PICTURE);
     pass.keep(&GpTiming::PAPERS, &mut rig.processor, MemoryPart::WHOLE)?;

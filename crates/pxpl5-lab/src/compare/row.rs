@@ -40,7 +40,7 @@ pub struct CauseShare {
     pub px: MeanInterval,
 }
 
-/// Mean pixel error of a row with another predictor.
+/// Mean pixel error of a row in a run with a different predictor.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PredictorMean {
     /// Predictor that replaced the predictor of the row.
@@ -103,8 +103,8 @@ pub struct ComparisonRow {
     /// Display periods over which the run with the first seed was evaluated. `None` if there is no seed, or if the run
     /// was too short.
     pub window: Option<ResultWindow>,
-    /// Contributions of all causes to the mean error, which is their sum. Empty if the comparison did not include
-    /// causes.
+    /// Contributions of all causes to the mean error. The mean error is the sum of all contributions. Empty if the
+    /// comparison did not include causes.
     pub causes: Vec<CauseShare>,
     /// Mean error of the first seed with each predictor. Empty if the comparison did not include predictors. Also empty
     /// for the row `ideal`, because predictors do not change its pictures.

@@ -179,7 +179,7 @@ impl Bench {
         self.photodiode_line() == other.photodiode_line() && PRESETS.iter().all(is_same)
     }
 
-    /// Returns the same settings with another interpretation of the papers.
+    /// Returns the same settings with `reading` as the interpretation of the papers.
     #[must_use]
     pub fn with(&self, reading: Reading) -> Self {
         Self { reading, ..self.clone() }
@@ -285,7 +285,7 @@ impl Bench {
     ///
     /// RENDER takes this time because enough triangles cover the screen. Slower renderers would distort the result.
     /// Commands behind a full input FIFO, such as a copy command, would then wait longer by the same factor. TRANSFORM
-    /// takes this time because its code is slow, which delays nothing else.
+    /// takes this time because its code is slow. Slow code of TRANSFORM delays no other stage.
     fn stages_of(&self, ms: f64) -> Result<(MachineConfig, String)> {
         let mut machine = self.machine("small-hmd")?;
         let slaves = machine.n_gps as u64 - 1;

@@ -23,7 +23,7 @@ pub struct SettingError {
     pub expected: Box<str>,
     /// The value or name that the user wrote.
     pub found: Box<str>,
-    /// Valid name that is most similar to an unknown name. Empty for errors of another kind.
+    /// Valid name that is most similar to the unknown name. Empty if the error is not about an unknown name.
     pub nearest: Box<str>,
 }
 
@@ -39,8 +39,8 @@ pub enum SettingErrorKind {
     /// The setting is a fixed property of a chip. Programs can read the property but cannot change the property.
     ReadOnly,
     Missing,
-    /// Two settings exclude each other, a setting does not apply to the experiment, or the text of a setting has
-    /// another fault.
+    /// Two settings exclude each other, a setting does not apply to the experiment, or the text of a setting has a
+    /// fault that no other kind of error describes.
     Combination,
     Scene,
     /// A file that the setting names cannot be used.

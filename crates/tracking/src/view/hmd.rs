@@ -129,7 +129,7 @@ impl Hmd {
         Self::new(HmdConfig::unc()).expect("the table's values are in range")
     }
 
-    /// Returns the same display with pictures of another size in pixels.
+    /// Returns the same display with pictures of `width_px` x `height_px` pixels.
     ///
     /// # Panics
     ///
