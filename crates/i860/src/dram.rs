@@ -9,7 +9,7 @@ const BUS_DEPTH: usize = ChipSizes::PAPERS.bus_depth as usize;
 /// The clocks at which the 8-byte transfers of a request arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Transfer {
-    /// Clock at which the first 8 bytes arrive. They contain the requested data.
+    /// Clock at which the first 8 bytes arrive. These bytes contain the requested data.
     pub(crate) first: u64,
     pub(crate) last: u64,
     step: u64,

@@ -1,8 +1,8 @@
 //! CPU work of interpolating triangles between two views (a *dual display list*).
 //!
-//! The code records each triangle's corners in the views at the start and at the end of a field. For each strip of
-//! lines, the code then makes commands for a view between these views. The code is `ends.s` and `compiled.s` of
-//! `pxpl5-geometry`. No paper describes the code; kernels/between_rules.md states its rules.
+//! The i860 code records each triangle's corners in the views at the start and at the end of a field. For each strip of
+//! lines, the i860 code then makes commands for a view between these views. The sources are `ends.s` and `compiled.s`
+//! of `pxpl5-geometry`. No paper describes the code; kernels/between_rules.md states its rules.
 
 use crate::code::{BUDGET, Next, Programs, TRIANGLE_BYTES, budget, kept};
 use crate::layout::{BLENDED, BLENDED_ELEMENTS, CODE, DISPLAY_LIST, PARAMETERS, STACK};

@@ -125,7 +125,7 @@ impl Pass {
     ///
     /// # Errors
     ///
-    /// Returns [`ProcessorFault`] if the code does not end, or its data do not fit.
+    /// Returns [`ProcessorFault`] if the i860 code of TRANSFORM does not end, or if its data do not fit.
     pub fn keep(
         &self,
         timing: &GpTiming,
@@ -228,8 +228,8 @@ impl WindowSearchWork<'_> {
         self.counts.iter().map(|counts| counts.total()).sum()
     }
 
-    /// Executes the code on a board with commands that [`Pass::keep`] stored. Returns `None` if there are no stored
-    /// commands.
+    /// Executes the i860 code of the search. The board's memory must already contain the commands that [`Pass::keep`]
+    /// stores. Returns `None` if there are no stored commands.
     ///
     /// # Errors
     ///

@@ -172,8 +172,8 @@ impl<const N: usize> Ports<N> {
         }
     }
 
-    /// Copies one region on each machine, to the right frame buffer if the mask is set, otherwise to the left. Returns
-    /// the end times.
+    /// Copies one region on each machine, to the right frame buffer if `to_right` is set, otherwise to the left frame
+    /// buffer. Returns the end times.
     #[inline(always)]
     fn copy_where(&mut self, ready: Times<N>, to_right: Mask<N>, region: Times<N>) -> Times<N> {
         let [left, right] = self.free;

@@ -17,7 +17,7 @@
 //! channels (`senders`). The functions return an error for other pipelines, for displays other than NTSC, and for heads
 //! with a tracker.
 //!
-//! Times are nanoseconds in f64. Rounding errors are far below 1 ns, and differences that matter are much larger.
+//! Times are nanoseconds in f64. Rounding errors are far below 1 ns. Only differences of much more than 1 ns matter.
 //!
 //! # Not modelled
 //!

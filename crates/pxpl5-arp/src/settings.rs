@@ -62,8 +62,8 @@ pub struct WalkSettings {
     pub policy: PolicyKind,
     /// True if objects are cut into segments at the borders of cells.
     pub is_segmented: bool,
-    /// Rule by which warping moves vertices less at a larger distance from the border to a less often drawn memory.
-    /// [`Falloff::None`] disables warping, so gaps appear at cuts.
+    /// Rule by which warping moves vertices near the border to a less often drawn memory. The displacement decreases
+    /// with the distance from the border. [`Falloff::None`] disables warping, so gaps appear at cuts.
     pub falloff: Falloff,
     /// True if an update of a memory makes all more often drawn memories due for an update.
     pub has_cascade: bool,

@@ -72,7 +72,8 @@ impl Planes {
         }
     }
 
-    /// Returns the plane through the values `v` at the corners, which must be integers below 2^32 in absolute value.
+    /// Returns the plane through the values `v` at the three corners of the triangle. The values must be integers below
+    /// 2^32 in absolute value.
     ///
     /// A cross product is a sum of two products below 2^32 * 2^17, so it is exact.
     #[inline(always)]

@@ -90,8 +90,8 @@ impl Processor {
 
     /// Runs the i860 code that sends a chain of messages, and returns its time. The code writes a header and a
     /// descriptor for each message, and releases the descriptors of earlier chains. The boolean of a message is true if
-    /// the receiver's port stays reserved after this message. Messages for which there is no descriptor form further
-    /// chains.
+    /// the receiver's port stays reserved after this message. If the descriptors are not sufficient for all messages,
+    /// the remaining messages form one or more separate chains.
     ///
     /// # Errors
     ///

@@ -161,8 +161,8 @@ impl LimitQuery {
         Ok(limit)
     }
 
-    /// Returns [`Limit::triangles`] of [`search`](Self::search). This search is shorter, because no sizes above the
-    /// first miss are tried.
+    /// Returns [`Limit::triangles`] of [`search`](Self::search). This function takes less time than
+    /// [`search`](Self::search), because no sizes above the first miss are tried.
     ///
     /// # Errors
     ///
@@ -195,7 +195,7 @@ impl LimitQuery {
         )))
     }
 
-    /// Searches for the limit without the hints of the analytic level, which takes longer.
+    /// Searches for the limit without the hints of the analytic level. This search takes longer.
     ///
     /// # Errors
     ///

@@ -14,7 +14,8 @@ pub struct WhatIf {
     pub key: &'static str,
     /// Value of the setting on the unchanged machine.
     pub from: u64,
-    /// Value of the setting on the changed machine: 10 % better, and at least one step better.
+    /// Value of the setting on the changed machine: a time divided by 1.1 and rounded up, or any other value increased
+    /// by 10 % (at least by 1).
     pub to: u64,
     /// Mean latency in milliseconds before and after the change. `None` if no picture was complete.
     pub latency_ms: [Option<f64>; 2],
@@ -29,7 +30,7 @@ pub struct WhatIf {
 struct Knob {
     resource: &'static str,
     key: &'static str,
-    /// True if the setting is a time, so that a smaller value is better.
+    /// True if the setting is a time, so that a faster machine has a smaller value.
     is_time: bool,
 }
 

@@ -20,8 +20,8 @@ pub enum TieRule {
     /// The rule as printed in the SpatialGL paper: the signs are equal, and zero counts as positive. A slice contains
     /// both planes of the positive lobe (half of the double wedge), no plane of the negative lobe, and the axis.
     SameSign,
-    /// Both planes belong to both lobes (halves of the double wedge), as with user clip planes. The product of the
-    /// distances is not negative.
+    /// Points on a boundary plane belong to both lobes (halves of the double wedge), as with user clip planes. The
+    /// product of the distances is not negative.
     Closed,
 }
 
@@ -75,7 +75,8 @@ pub enum WedgeTest {
     /// Two user clip planes for each lobe (half of the double wedge), with one drawing pass per lobe. Fragments outside
     /// the planes are not generated.
     UserPlanes(TieRule),
-    /// The distances from both boundary planes are interpolated, and one test compares their signs.
+    /// A point's distances from the two boundary planes are interpolated, and one test compares the signs of the
+    /// distances.
     Shader(TieRule),
     /// A distance in pixels by which both boundary planes are moved outwards. The test then checks the sign of the
     /// product of a point's distances from the two moved planes.

@@ -186,7 +186,7 @@ pub struct SizeRow {
     pub size_s: [f64; 2],
 }
 
-/// Returns rows for diameters from 0.1 to 20 times the distance.
+/// Returns rows for objects with diameters from 0.1 to 20 times their distance from the eye.
 #[must_use]
 pub fn size_rows() -> Vec<SizeRow> {
     let threshold = Threshold::of_degrees(THETA_DEG);

@@ -36,7 +36,7 @@ pub struct ErrorSpread {
 pub struct CauseShare {
     /// The cause of the error. `None` means the interaction of all causes.
     pub cause: Option<Cause>,
-    /// Contribution in pixels, as a mean over the seeds. Negative if the error is larger without the cause.
+    /// Contribution in pixels, as a mean over the seeds. Negative if the error grows when the cause is turned off.
     pub px: MeanInterval,
 }
 
@@ -255,7 +255,7 @@ fn causes(trials: &[&Trial], sampling: Sampling) -> Vec<CauseShare> {
 
 impl ErrorSpread {
     /// Combines the errors of all runs. Several motions give a confidence interval over the seeds. One motion gives an
-    /// interval over time, because further seeds do not change the motion.
+    /// interval over time, because a different seed would not change the motion.
     pub(super) fn of(trials: &[&Trial], sampling: Sampling) -> Self {
         let confidence = sampling.confidence;
         let evaluated: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.evaluated > 0).collect();

@@ -74,7 +74,7 @@ impl Bench {
         }
     }
 
-    /// Returns the same settings with other numbers of seeds and frames for the fly-through of the scene "mig".
+    /// Returns the same settings with `seeds` seeds and `frames` frames for the fly-through of the scene "mig".
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
         Self { seeds, frames, ..self }

@@ -7,8 +7,8 @@ const MAX_LISTED: usize = 12;
 /// Largest number of valid names that an error message lists if the message does not state the most similar name.
 const FEW_NAMES: usize = 4;
 
-/// Error of a setting or an argument that cannot be used. The message states the place, the name, the expected and the
-/// found value.
+/// Error of a setting or an argument that cannot be used. The message states where the setting was written, the name of
+/// the setting, the expected value and the found value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SettingError {

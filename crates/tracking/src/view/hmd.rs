@@ -104,7 +104,7 @@ pub struct Hmd {
 pub struct Misregistration {
     /// Shown position minus true position, px, x to the right and y down.
     pub offset_px: DVec2,
-    /// Length of the offset, px.
+    /// Distance from the true position to the shown position, px.
     pub pixels: f64,
     /// Angle between the shown and the true direction of the point, seen from the eye, degrees.
     pub degrees: f64,
