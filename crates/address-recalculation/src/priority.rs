@@ -21,7 +21,7 @@
 //! - **Cells** ([`Cells`]): the floor of the world is divided into square cells. The home cell is the cell that
 //!   contained the eye when cells were last assigned to memories. All cells at one distance from the home cell form a
 //!   ring, which lies in one memory. Memory 0 holds the inner rings of cells, and memory 1 holds one ring of cells.
-//!   Each further memory holds `ring_growth` times as many rings of cells as the previous memory.
+//!   Memory 2 and all later memories each hold `ring_growth` times as many rings of cells as the memory before.
 //! - **Due memories**: a memory must be drawn again when the eye has moved too far since the memory's last update. The
 //!   permitted distance grows with the distance to the memory's nearest cell. The nearest cell is searched among all
 //!   cells that the memory could hold, or only among cells with content (`to_held_cells`). With warping, an update of a

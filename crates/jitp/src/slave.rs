@@ -33,7 +33,8 @@ struct SlaveFields {
     n_transformed: usize,
 }
 
-/// A transformed field. The list `whole`, for the first view, serves all strips if the field has only one view.
+/// A transformed field. The list `whole` has the primitives in the first view. If the field has only one view, all
+/// strips use this list.
 #[derive(Clone)]
 struct Field {
     ends: Ends,

@@ -6,8 +6,9 @@
 //!                        --> StereoModel::frames --> times of a frame     (pictures x regions)
 //! ```
 //!
-//! The closed forms have no events, programs or pixels. A configuration takes a few hundred additions and maxima, so a
-//! sweep over many thousand configurations takes seconds. The formulas follow these rules of the boards:
+//! The closed forms have no events, programs or pixels. The times of one configuration need a few hundred additions and
+//! comparisons, so a sweep over many thousand configurations takes seconds. The formulas follow these rules of the
+//! boards:
 //!
 //! - The messages of a clump leave in order. A renderer's full input FIFO delays a message.
 //! - A renderer executes commands in order. While a renderer copies a region, the renderer executes no other command.

@@ -1,4 +1,5 @@
-//! Experiments as text: TOML files, single settings `path=value`, and the checked [`Plan`] that results from both.
+//! Experiments as text: TOML files and single settings `path=value`. A checked [`Plan`] results from a file and the
+//! settings that are added to it.
 //!
 //! ```
 //! use pxpl5_lab::ExperimentFile;

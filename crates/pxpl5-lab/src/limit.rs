@@ -57,7 +57,7 @@ pub struct Model {
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
-    /// Decimation of `whole`. Its first steps (collapses of edges) serve all numbers of triangles.
+    /// Decimation of `whole`. Its first steps (collapses of edges) are the same for all numbers of triangles.
     decimation: Arc<Decimation>,
 }
 

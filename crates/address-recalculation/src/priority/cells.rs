@@ -57,8 +57,8 @@ pub struct CellAssignment {
     pub side_m: f64,
     /// Number of rings of cells around the home cell that memory 0 holds.
     pub inner_rings: u64,
-    /// Number of rings of cells in a memory divided by the number in the previous memory, from memory 2 on. Memory 1
-    /// holds one ring of cells, memory 2 holds `ring_growth` rings of cells, and so on.
+    /// Number of rings of cells in memory k divided by the number of rings in memory k - 1, for k of 2 or more. Memory
+    /// 1 holds one ring of cells, memory 2 holds `ring_growth` rings of cells, and so on.
     pub ring_growth: u64,
     pub memories: usize,
 }

@@ -14,7 +14,8 @@ pub enum Falloff {
     /// The displacement decreases linearly to 0.
     #[default]
     Linear,
-    /// The displacement decreases smoothly to 0, with slope 0 at both ends.
+    /// The displacement decreases smoothly to 0. As a function of the distance, it has slope 0 at the border and where
+    /// it reaches 0.
     Smoothstep,
     /// Full displacement up to a certain distance from the border (the length of the falloff), and no displacement
     /// beyond.

@@ -29,7 +29,7 @@ impl Rules {
 
     /// Returns all sets of rules that are compared.
     ///
-    /// In some sets, memory 0 holds 0, 1 or 2 inner rings of cells, and each further memory holds one ring. In other
+    /// In some sets, memory 0 holds 0, 1 or 2 inner rings of cells, and every other memory holds one ring. In other
     /// sets, memory 0 holds 1 inner ring, and the number of rings doubles from memory to memory.
     #[must_use]
     pub fn all() -> Vec<Self> {

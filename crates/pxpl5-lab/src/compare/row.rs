@@ -109,10 +109,10 @@ pub struct ComparisonRow {
     /// Mean error of the first seed with each predictor. Empty if the comparison did not include predictors. Also empty
     /// for the row `ideal`, because predictors do not change its pictures.
     pub predictors: Vec<PredictorMean>,
-    /// Largest number of triangles that meets `triangles_definition`. `None` without a search, after a failed search,
-    /// or if the pipeline has no limit.
+    /// Largest number of triangles that satisfies the condition in `triangles_definition`. `None` without a search,
+    /// after a failed search, or if the pipeline has no limit.
     pub triangles_possible: Option<u32>,
-    /// True if the search found no limit: [`CEILING`](crate::limit::CEILING) triangles meet the criterion.
+    /// True if the search found no limit: [`CEILING`](crate::limit::CEILING) triangles satisfy the condition.
     pub has_no_limit: bool,
     /// Criterion of `triangles_possible`, in words.
     pub triangles_definition: String,

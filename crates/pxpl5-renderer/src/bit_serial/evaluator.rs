@@ -69,8 +69,8 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self { coefficients, leaves, late: zeros, carries: zeros }
     }
 
-    /// Creates two trees, one for 128 columns and one for 128 rows. The trees take the first eight lanes of a vector,
-    /// and the other lanes are unused.
+    /// Creates two trees, one for 128 columns and one for 128 rows. The two trees use the first eight lanes of a
+    /// vector, and the other lanes are unused.
     #[inline(always)]
     fn of_pair(coefficients: [i64; 2], leaves: &[Leaves; LEVELS]) -> Self {
         let mut vectors = [V::splat(0); LEVELS];
