@@ -186,8 +186,8 @@ fn ms(span: Span) -> f64 {
     span.0 as f64 / 1e9
 }
 
-/// Returns the mean time from reading the orientation to displaying a pixel, over the pixels of an even and an odd
-/// field, in ms. Returns `None` if the scan is invalid.
+/// Returns the mean time from reading the orientation to displaying a pixel, without the stages of the pixel pipeline,
+/// in ms. The mean is over the pixels of an even and an odd field. Returns `None` if the scan is invalid.
 fn scan_ms(display: &ArpConfig, from: Latch) -> Option<f64> {
     let scan = display.scan().ok()?;
     let mut sum = 0.0;

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The original message software is not published. The file kernels/ring_rules.md states the assumptions about this
-//! software, and how the code was written.
+//! software, and the rules by which its i860 code was written.
 //!
 //! Before each call, Rust code does the work of the ring interface's DMA. The simulated inbox holds any number of
 //! messages, but there are few receive buffers. The Rust code therefore puts a message into the next receive buffer

@@ -1,4 +1,4 @@
-//! The manifest of an output folder, which lists the files of the last command that wrote there.
+//! The manifest of an output folder, which lists the files of the last command that wrote into the folder.
 //!
 //! A folder may hold files of several runs and files of the user. The manifest distinguishes these files. Readers use
 //! only listed and unchanged files. The next run removes all listed files that it does not write again.

@@ -54,7 +54,7 @@ impl Knob {
     }
 
     /// Returns the old value of the setting, the new value, and the machine with 10 % more of the resource. Returns
-    /// `None` if the machine cannot have more of it.
+    /// `None` if the machine cannot have more of the resource.
     fn more(&self, config: &MachineConfig) -> Option<(u64, u64, MachineConfig)> {
         let from = self.value(config)?;
         let to = if self.is_time { from.min((from * 10).div_ceil(11)) } else { from + (from / 10).max(1) };

@@ -29,7 +29,7 @@ pub struct Ring {
     unblocked: bool,
     /// Times at which an arbitration (a pass that grants channels to waiting messages) is scheduled.
     arbitrations: Vec<Time>,
-    /// True if every end of a message causes an event, even if no message waits for it.
+    /// True if every end of a message causes an event, even if no other message waits for this end.
     watched: bool,
     /// True if every word causes an event.
     word_by_word: bool,

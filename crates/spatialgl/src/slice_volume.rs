@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
-    /// Each boundary plane belongs to only one of the two slices at this plane, the slice that begins there. Every
+    /// Each boundary plane belongs to only one of its two adjacent slices, the slice that begins at this plane. Every
     /// point off the axis is therefore in exactly one slice. This rule is not from the SpatialGL paper.
     #[default]
     HalfOpen,

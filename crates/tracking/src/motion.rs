@@ -60,8 +60,8 @@ pub trait Motion: Debug {
         }
     }
 
-    /// Returns the time (ps) at which the motion ends, if a run must stop there. Returns `None` if the motion continues
-    /// for ever or the head stands still at the end.
+    /// Returns the time (ps) at which the motion ends, if a run must stop at this time. Returns `None` if the motion
+    /// continues for ever or the head stands still at the end.
     fn ends_ps(&self) -> Option<u64> {
         None
     }

@@ -1,4 +1,5 @@
-//! The policy `objects`: each object is in the least often drawn display memory that keeps the object's image right.
+//! The policy `objects`: each object is in the least often drawn display memory in which the object's image stays
+//! correct.
 
 use crate::priority::config::PriorityTiming;
 use crate::priority::update::Update;

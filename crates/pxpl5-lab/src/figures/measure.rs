@@ -48,8 +48,8 @@ pub struct Bench {
 /// COPY. The results for several times are averaged, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
 
-/// Number of display fields in the runs with full bins (rows 16b and 16c of ACCURACY.md). A frame takes about 30 fields
-/// there.
+/// Number of display fields in the runs with full bins (rows 16b and 16c of ACCURACY.md). In these runs, a frame takes
+/// about 30 fields.
 const FIELDS_OF_FULL_BINS: u64 = 600;
 
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];

@@ -198,8 +198,8 @@ fn wing(solid: &mut Solid, side: f64) {
 }
 
 /// Adds a control surface: a wedge behind the blunt trailing edge of a wing or fin. `cuts` are the cross-sections at
-/// both ends of the wedge, and `chords` the wedge's lengths there. The blunt edge is the hinge. Returns a point on the
-/// hinge and its direction.
+/// the two ends of the wedge, and `chords` the lengths of the wedge at these ends. The blunt edge is the hinge. Returns
+/// a point on the hinge and its direction.
 fn flap(solid: &mut Solid, cuts: [&Cut; 2], chords: [f64; 2], turned: bool) -> (DVec3, DVec3) {
     let mut sections = [cuts[0].wedge_behind(chords[0]), cuts[1].wedge_behind(chords[1])];
     if turned {
