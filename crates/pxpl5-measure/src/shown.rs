@@ -20,7 +20,7 @@ pub(crate) enum Seen {
     Incomplete,
     /// The pixel belongs to a complete picture that was shown before the result window.
     Before,
-    /// The pixel belongs to a picture shown within the result window, complete and in time.
+    /// The pixel belongs to a complete picture that was shown in time and within the result window.
     Complete(Drawn),
 }
 

@@ -281,8 +281,8 @@ impl Ring {
         }
     }
 
-    /// Returns the earliest known time at which a destination becomes free that a waiting message needs. Only messages
-    /// at the head of their queue count.
+    /// Returns the earliest known time when a destination of a waiting message becomes free. Only messages at the head
+    /// of their queue count.
     fn first_end_waited_for(&self) -> Option<Time> {
         let waited_for = |flight: &MessageInFlight| self.destinations[usize::from(flight.destination.0)].heads > 0;
         self.channels.ends().find(|(_, flight)| waited_for(flight)).map(|(end, _)| end)

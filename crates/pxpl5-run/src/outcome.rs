@@ -230,7 +230,7 @@ impl Outcome {
         self.experiment.fields
     }
 
-    /// Returns the end of the run.
+    /// Returns the simulated time at which the run ended.
     #[must_use]
     pub fn end(&self) -> Time {
         self.record.tick(self.experiment.end())

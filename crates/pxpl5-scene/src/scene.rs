@@ -181,7 +181,8 @@ impl Scene {
         &self.parts.spheres
     }
 
-    /// Returns the structures of the scene, at least one. In order, they contain all triangles and spheres.
+    /// Returns the structures of the scene, at least one. Together, the structures contain all triangles and spheres,
+    /// in the order of the lists of triangles and spheres.
     #[must_use]
     pub fn structures(&self) -> &[Structure] {
         &self.parts.structures

@@ -5,7 +5,7 @@ use crate::priority::config::PriorityTiming;
 use crate::priority::update::Update;
 use crate::priority::validity::level;
 
-/// State of the policy `objects`: the memory of each object, and the time until which the object's image is right.
+/// State of the policy `objects`: the memory of each object, and the time until which the object's image is correct.
 #[derive(Clone, Debug)]
 pub struct Objects {
     frame_s: f64,

@@ -271,8 +271,8 @@ impl Bench {
         self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE).map(|(_, line)| *line)
     }
 
-    /// Returns the measurements of the pendulum rig in one run. They do not depend on the level of detail and on the
-    /// definition of latency samples.
+    /// Returns the measurements of the pendulum rig in one run. The measurements depend neither on the level of detail
+    /// nor on the definition of latency samples.
     fn rig_lines(&self) -> Result<Arc<RigLines>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         // The line does not change the run, so it is no part of the key.
