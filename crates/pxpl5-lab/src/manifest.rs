@@ -135,7 +135,7 @@ impl Manifest {
         self.put(ManifestEntry { name: name.to_owned(), contents: None });
     }
 
-    /// Adds all files of another manifest.
+    /// Adds all files of the manifest `other`.
     pub fn add_all(&mut self, other: &Self) {
         other.files.iter().for_each(|entry| self.put(entry.clone()));
     }

@@ -417,7 +417,7 @@ impl Experiment {
         self.level
     }
 
-    /// Returns which pixels the run computes.
+    /// Returns the choice of the pixels that the run computes.
     #[must_use]
     pub const fn pixels_wanted(&self) -> Pixels {
         self.pixels
