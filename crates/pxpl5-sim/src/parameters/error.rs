@@ -39,8 +39,8 @@ pub enum SettingErrorKind {
     /// The setting is a fixed property of a chip. Programs can read the property but cannot change the property.
     ReadOnly,
     Missing,
-    /// Two settings exclude each other, a setting does not apply to the experiment, or the text of a setting has a
-    /// fault that no other kind of error describes.
+    /// Two settings exclude each other, or a setting does not apply to the experiment. This kind is also for faults of
+    /// a setting's text that no other kind describes.
     Combination,
     Scene,
     /// A file that the setting names cannot be used.

@@ -10,8 +10,8 @@ use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{TrackerModel, TrackerReport};
 
 /// Length in seconds of the motion on which a filter is tuned. The motion must be long, because periods of fast motion
-/// are rare. With only 20 seconds, tuning went wrong: on motions that were not used for the tuning, the filter tuned
-/// for predictions of 200 ms was worse than the filter tuned for 50 ms.
+/// are rare. In a test with only 20 seconds, the filter tuned for predictions of 200 ms was worse than the filter tuned
+/// for 50 ms. The test used a motion on which no filter was tuned.
 const TRAINING_S: u64 = 100;
 /// Time at the start of the training motion for which predictions are not evaluated, seconds.
 const SETTLING_S: u64 = 1;
