@@ -121,7 +121,7 @@ pub struct WalkLatency {
 /// Counts for a view at the end of the viewer's walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewStatistics {
-    /// Counts of extra memory accesses for the pixels of the view.
+    /// Counts of extra memory accesses for the pixels of the view, beyond one access per pixel and memory.
     pub stats: LookStats,
     /// Counts of the triangles drawn into the cube faces for the view.
     pub drawing: DrawCounts,

@@ -276,7 +276,7 @@ pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone)
     (middle, reaches.fold(0.0, f64::max))
 }
 
-/// Returns the length of a vector. The result is right even if the square of the length exceeds the range of f64.
+/// Returns the length of a vector. The result is correct even if the square of the length exceeds the range of f64.
 fn length(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     if largest > 0.0 { (v / largest).length() * largest } else { 0.0 }
