@@ -264,8 +264,8 @@ impl PictureRules for Slats {
         Some(1)
     }
 
-    /// Returns the time from the first to the last light of a field. The display scans these lines once, because the
-    /// next field has the lines between them.
+    /// Returns the time from the first to the last light of a field. The display scans the lines of the field only
+    /// once, because the next field has the lines between them.
     fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightTimes {
         light_span(record, record.display().period_at(times.shown_at), 1)
     }
