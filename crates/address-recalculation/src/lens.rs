@@ -30,7 +30,7 @@ pub enum Lens {
 pub struct LensPicture {
     pub width: u32,
     pub height: u32,
-    /// Angle between the left and the right edge if there is no lens, in degrees.
+    /// Angle between the left and the right edge of the picture if there is no lens, in degrees.
     pub horizontal_deg: f64,
 }
 
