@@ -7,12 +7,21 @@ use crate::cache::InstructionTags;
 use crate::code_map::CodeMap;
 use crate::decode::decode;
 use crate::decoded::Decoded;
-use crate::execution::Execution;
 use crate::instruction::{Instruction, Op};
 use crate::memo::BlockMemory;
 use crate::state::Mode;
 use crate::timing::ChipSizes;
 use crate::trap::TrapCause;
+
+/// The executed part of a basic block, including its delay slot and the outcome of its branch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Execution {
+    /// Number of instructions or pairs that were executed, without the delay slot.
+    pub(crate) units: usize,
+    pub(crate) slot: bool,
+    pub(crate) taken: bool,
+    pub(crate) trapped: bool,
+}
 
 /// Greatest number of instructions or pairs in a block, without the delay slot.
 const LONGEST: usize = 32;

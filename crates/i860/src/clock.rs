@@ -1,13 +1,12 @@
 //! The clock of the processor: instruction issue, freezes, caches and queues. It counts the time of every executed
 //! block of code, and changes no register or memory.
 
-use crate::block::{Access, Block, Unit};
+use crate::block::{Access, Block, Execution, Unit};
 use crate::bus::Bus;
 use crate::common::Common;
 use crate::data_cache::DataCache;
 use crate::decoded::{Decoded, hazard};
 use crate::dram::Transfer;
-use crate::execution::Execution;
 use crate::fetch::Fetch;
 use crate::instruction::Op;
 use crate::load_pipe::LoadPipe;

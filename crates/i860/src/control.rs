@@ -3,8 +3,7 @@
 use crate::action::{Core, CoreAction};
 use crate::block::Unit;
 use crate::bus::Bus;
-use crate::cpu::Cpu;
-use crate::flow::Flow;
+use crate::cpu::{Cpu, Flow};
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::{Mode, epsr, psr};
 use crate::trap::TrapCause;

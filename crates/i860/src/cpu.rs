@@ -2,13 +2,11 @@
 
 use crate::action::{Action, Floating};
 use crate::assembler::Program;
-use crate::block::Block;
+use crate::block::{Block, Execution};
 use crate::bus::Bus;
 use crate::clock::{Accesses, Clock};
 use crate::code::Code;
 use crate::decoded_programs::DecodedPrograms;
-use crate::execution::Execution;
-use crate::flow::Flow;
 use crate::profile::{AddressProfile, Profile};
 use crate::seed::SeedTable;
 use crate::state::{Mode, State, TRAP_VECTOR, psr};
@@ -17,6 +15,20 @@ use crate::trap::{RunEnd, Trap, TrapCause};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Flow {
+    Next,
+    /// Continue with the next instruction in memory, which a store may have changed.
+    NextOfChangedCode,
+    /// Jump to the target address immediately.
+    Jump(u32),
+    /// Jump to the target address after the delay slot.
+    Delayed(u32),
+    /// Skip one instruction or pair, which is the delay slot of a branch that is not taken.
+    Skip,
+    Trapped,
+}
 
 /// An i860 XR with its caches and its clock. The memory is not part of the processor: each call of [`Cpu::run`] or
 /// [`Cpu::step`] takes a [`Bus`].

@@ -2,8 +2,7 @@
 
 use crate::action::CoreAction;
 use crate::bus::Bus;
-use crate::cpu::Cpu;
-use crate::flow::Flow;
+use crate::cpu::{Cpu, Flow};
 use crate::instruction::{Flags, Instruction};
 use crate::state::PipeStage;
 use crate::trap::TrapCause;

@@ -7,10 +7,9 @@
 //! instruction cache. Otherwise, it ends at the end of the executed code. After an access that needs the bus, the next
 //! run begins with the scoreboard after this access.
 
-use crate::block::{AccessingUnit, Block};
+use crate::block::{AccessingUnit, Block, Execution};
 use crate::bus::Bus;
 use crate::clock::Clock;
-use crate::execution::Execution;
 use crate::memo::{Memo, Number, RememberedClocks, Run};
 use crate::timing::Freeze;
 

@@ -6,15 +6,14 @@
 
 use crate::begin::{PassStartWork, beginning};
 use crate::cost::TransformCost;
-use crate::counts::PrimitiveCounts;
 use crate::layout::{
     BIN_TABLE, CODE, DISPLAY_LIST, PARAMETERS, RIGHT_PARAMETERS, SPHERE_CODE, SPHERE_PARAMETERS, STACK, bins,
 };
-use crate::list::Share;
+use crate::list::{PrimitiveCounts, Share};
 use crate::pass::Pass;
 use crate::picture::{RegionBinning, Shading};
 use crate::placed::PlacedStructure;
-use crate::structure::DisplayStructure;
+use crate::view::DisplayStructure;
 use i860::Program;
 use pxpl5_geometry::kernel::{
     Heads, Kernel, KernelSurface, PARAMETER_WORDS, Schedule, TRIANGLE_WORDS, display_list_words,

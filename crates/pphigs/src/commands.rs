@@ -1,10 +1,8 @@
 //! Messages with renderer commands. The kinds of a message's commands are known from the start, but the words of the
 //! commands are computed only when the words are read.
 
-use crate::counts::PrimitiveCounts;
-use crate::encoder::Encoder;
-use crate::list::DisplayList;
-use crate::pass::{BinEntry, Pass};
+use crate::list::{DisplayList, PrimitiveCounts};
+use crate::pass::{BinEntry, Encoder, Pass};
 use crate::picture::Shading;
 use crate::placed::PlacedStructure;
 use pxpl5_geometry::{

@@ -1,8 +1,7 @@
 //! The time of TRANSFORM according to the timing table.
 
-use crate::counts::PrimitiveCounts;
-use crate::list::DisplayList;
-use crate::structure::DisplayStructure;
+use crate::list::{DisplayList, PrimitiveCounts};
+use crate::view::DisplayStructure;
 use pxpl5_gp::GpTiming;
 use pxpl5_sim::Span;
 
@@ -92,7 +91,7 @@ impl TransformCost<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::structure::ModelFrame;
+    use crate::view::ModelFrame;
     use pxpl5_geometry::Culling;
 
     const TIMING: GpTiming = GpTiming {

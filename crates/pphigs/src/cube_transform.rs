@@ -6,8 +6,8 @@
 
 use crate::begin::PassStartWork;
 use crate::code::{Destination, KernelOutput, Marks, OutputSize, SPHERE_BYTES, TRIANGLE_BYTES, budget, sphere_kernel};
-use crate::counts::PrimitiveCounts;
 use crate::layout::{DISPLAY_LIST, MOST_VIEWS, PARAMETERS, SORT_CODE, SPHERE_PARAMETERS};
+use crate::list::PrimitiveCounts;
 use crate::pass::Pass;
 use crate::placed::PlacedStructure;
 use i860::Program;

@@ -33,9 +33,7 @@ mod bin_handoff;
 mod code;
 mod commands;
 mod cost;
-mod counts;
 mod cube_transform;
-mod encoder;
 mod interpolating;
 mod layout;
 mod list;
@@ -46,7 +44,6 @@ mod picture;
 mod placed;
 mod placing;
 mod sending;
-mod structure;
 mod view;
 mod windows;
 
@@ -57,18 +54,16 @@ pub use commands::{
     BIN_ENTRY_BYTES, PROGRAM_BYTES, RegionEnvelope, copy_message, gouraud_sphere, region_messages, shade,
 };
 pub use cost::TransformCost;
-pub use counts::PrimitiveCounts;
 pub use cube_transform::{CubeTransform, CubeTransformOutput};
 pub use interpolating::{StripInterpolation, TriangleEndsRecorder};
-pub use list::{DisplayList, Share};
+pub use list::{DisplayList, PrimitiveCounts, Share};
 pub use ordering::assemble_order;
 pub use pass::Pass;
 pub use picture::{Picture, RegionBinning, Shading};
 pub use placed::{PlacedStructure, RecentViews};
 pub use placing::place_all;
 pub use sending::send_as_tracked;
-pub use structure::{DisplayStructure, ModelFrame};
-pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit};
+pub use view::{DisplayStructure, EyeView, FrameView, MAX_EDITS, ModelEdit, ModelFrame};
 pub use windows::{MemoryPart, SearchOutput, WindowSearchWork};
 
 #[cfg(doctest)]

@@ -1,11 +1,30 @@
-use crate::counts::PrimitiveCounts;
 use crate::placed::RecentViews;
-use crate::structure::DisplayStructure;
+use crate::view::DisplayStructure;
 use glam::Vec3;
 use pxpl5_geometry::kernel::TRIANGLE_WORDS;
 use pxpl5_geometry::{Triangle, WorldSphere};
 use std::ops::Range;
 use std::sync::Arc;
+
+/// A number of triangles and a number of spheres, or of their commands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PrimitiveCounts {
+    pub triangles: u32,
+    pub spheres: u32,
+}
+
+impl PrimitiveCounts {
+    #[must_use]
+    pub const fn total(self) -> u32 {
+        self.triangles + self.spheres
+    }
+
+    /// Returns the number of vertices: three corners of each triangle, and the centre of each sphere.
+    #[must_use]
+    pub const fn vertices(self) -> u64 {
+        3 * self.triangles as u64 + self.spheres as u64
+    }
+}
 
 /// All primitives to draw, divided into structures.
 #[derive(Clone, Debug, Default)]
@@ -266,7 +285,7 @@ fn part(range: &Range<usize>, from: usize, to: usize) -> Range<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::structure::ModelFrame;
+    use crate::view::ModelFrame;
     use pxpl5_geometry::Culling;
 
     #[test]

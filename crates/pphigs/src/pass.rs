@@ -1,11 +1,10 @@
-use crate::counts::PrimitiveCounts;
-use crate::encoder::Encoder;
-use crate::list::Share;
-use crate::picture::{Picture, RegionBinning};
+use crate::list::{PrimitiveCounts, Share};
+use crate::picture::{Picture, RegionBinning, Shading};
 use crate::placed::PlacedStructure;
 use crate::placing::place_cached;
 use crate::view::FrameView;
 use pxpl5_geometry::{Light, RegionMask, SetupStats, Touch, Transform};
+use pxpl5_renderer::{PhongTriangleEncoder, TriangleEncoder};
 use pxpl5_wire::RegionId;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -392,5 +391,22 @@ impl Pass {
     /// Returns a flag for each structure, true if the structure is drawn. Returns `None` if all structures are drawn.
     pub(crate) fn chosen(&self) -> Option<&[bool]> {
         self.walk.chosen.as_deref()
+    }
+}
+
+#[derive(Debug)]
+pub(crate) enum Encoder {
+    Gouraud(TriangleEncoder),
+    Phong(PhongTriangleEncoder),
+}
+
+impl Encoder {
+    /// Creates the encoder of a picture. Returns `None` if the layout of pixel memory lacks a bit field of the
+    /// commands. The machine's configuration refuses such a layout.
+    pub(crate) fn for_picture(picture: &Picture) -> Option<Self> {
+        match picture.shading {
+            Shading::Gouraud | Shading::Precomputed => Some(Self::Gouraud(TriangleEncoder::new(&picture.layout))),
+            Shading::Phong => PhongTriangleEncoder::new(&picture.layout).ok().map(Self::Phong),
+        }
     }
 }

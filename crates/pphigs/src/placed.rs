@@ -1,7 +1,6 @@
 //! Structures in the coordinates of one eye, and a cache of recent views.
 
-use crate::structure::DisplayStructure;
-use crate::view::{EyeView, ModelEdit};
+use crate::view::{DisplayStructure, EyeView, ModelEdit};
 use glam::Mat4;
 use pxpl5_geometry::{Light, ScreenVertex, SurfaceVertex, Touched, Transform, Viewport};
 use std::collections::VecDeque;

@@ -3,8 +3,7 @@
 use crate::list::DisplayList;
 use crate::picture::Shading;
 use crate::placed::{PlacedStructure, Vertices, ViewKey};
-use crate::structure::{DisplayStructure, ModelFrame};
-use crate::view::{EyeView, FrameView, product};
+use crate::view::{DisplayStructure, EyeView, FrameView, ModelFrame, product};
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{Light, SurfaceVertex, Touched, Transform, ViewTransform, Viewport};
 use std::ops::Range;

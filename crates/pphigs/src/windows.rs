@@ -11,12 +11,11 @@ use crate::bin_handoff::{
 };
 use crate::code::{Next, budget, sphere_kernel};
 use crate::cost::TransformCost;
-use crate::counts::PrimitiveCounts;
 use crate::layout::{
     ENTRY_BYTES, ENVELOPES, KEPT, KEPT_BYTES, LISTS, MOST_KEPT, MOST_WINDOWS, PIECES, REGION_WINDOWS, STACK,
     TOKEN_PARAMETERS, WINDOW_LISTS, WINDOW_PLACES, WINDOWS, WINDOWS_CODE,
 };
-use crate::list::Share;
+use crate::list::{PrimitiveCounts, Share};
 use crate::pass::Pass;
 use i860::Program;
 use pxpl5_geometry::Viewport;

@@ -7,7 +7,6 @@ mod definitions;
 mod document;
 mod experiments;
 mod fit;
-mod gallery;
 mod interpretations;
 mod lens;
 mod row;
@@ -22,7 +21,7 @@ pub use experiments::{
     point_objects_reduction, size_limits, size_rows,
 };
 pub use fit::{RATE_FITTED, RATES_HZ, fitted_cell_m, policy_rates_hz};
-pub(crate) use gallery::gallery;
+pub(crate) use interpretations::gallery;
 pub use interpretations::{
     Interpretations, LeftOutRate, PIXEL_DEG, RankedRules, Situation, ThresholdRow, Trial, Tried, threshold_rows,
 };

@@ -1,7 +1,6 @@
 //! Pictures of a viewer's walk: unfolded cube faces, views, the memory shown at each pixel, tears (gaps between
 //! memories) and errors. Drawings show the cells from above and the updates.
 
-mod colours;
 mod faces;
 mod plan;
 mod views;

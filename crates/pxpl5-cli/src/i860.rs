@@ -1,6 +1,5 @@
 //! The command `pxpl5 i860`: assembler, disassembler, execution with a cycle listing, and conformance vectors.
 
-mod names;
 mod run;
 
 use crate::error::CliError;
@@ -9,8 +8,7 @@ use crate::terminal::{print, warn};
 use ::i860::{Config, Program, Rule, assemble, disassemble, vectors};
 use clap::{Args, Subcommand};
 use flate2::read::MultiGzDecoder;
-use names::address;
-use run::{RunOptions, execute};
+use run::{RunOptions, address, execute};
 use std::fmt::Write as _;
 use std::io::Read;
 use std::path::{Path, PathBuf};

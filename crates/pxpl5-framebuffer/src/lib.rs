@@ -73,10 +73,9 @@ mod port;
 mod region;
 mod scans;
 mod seen;
-mod stats;
 mod timing;
 
-pub use board::FrameBuffer;
+pub use board::{FrameBuffer, FrameBufferStats};
 pub use config::FrameBufferConfig;
 pub use image::RgbImage;
 pub use ntsc::{NtscDisplay, seen_at};
@@ -84,7 +83,6 @@ pub use panel::{HiResConfig, LcdConfig, OledConfig, Panel, PanelConfig, PanelNum
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
 pub use pxpl5_wire::Video;
 pub use seen::{BufferContents, ScannedField, ScannedLateRegion};
-pub use stats::FrameBufferStats;
 pub use timing::{PortTiming, VideoTiming};
 
 #[cfg(doctest)]

@@ -31,7 +31,6 @@ mod inputs;
 mod joined;
 mod merge;
 mod point;
-mod points;
 mod replacement;
 mod rows;
 mod run;

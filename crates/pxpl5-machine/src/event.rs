@@ -3,7 +3,7 @@ use crate::ports::Ports;
 use pxpl5_gp::GpEvent;
 use pxpl5_renderer::RendererEvent;
 use pxpl5_ring::{RingEvent, RingOutput};
-use pxpl5_sim::Time;
+use pxpl5_sim::{Context, EventQueue, Phase, Time};
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::DisplayEvent;
 
@@ -80,5 +80,19 @@ const fn renderer_what(event: &RendererEvent) -> &'static str {
         RendererEvent::CopyBegins => "copy command begins",
         RendererEvent::Stored => "region in the backing store",
         RendererEvent::Sent => "region delivered",
+    }
+}
+
+pub(crate) fn schedule_own<E, O>(
+    queue: &mut EventQueue<Event>,
+    context: &mut Context<E, O>,
+    event_of: impl Fn(E) -> Event,
+) {
+    context.each_event(|time, phase, event| queue.schedule(time, phase, event_of(event)));
+}
+
+pub(crate) fn schedule_outputs(queue: &mut EventQueue<Event>, context: &mut Context<RingEvent, RingOutput>) {
+    for (time, output) in context.drain_outputs() {
+        queue.schedule(time, Phase::Arrive, Event::FromRing(output));
     }
 }

@@ -13,7 +13,6 @@
 
 #![warn(missing_docs)]
 
-mod agenda;
 mod board;
 mod config;
 mod event;

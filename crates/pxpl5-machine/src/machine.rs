@@ -12,10 +12,9 @@
 
 mod displays;
 
-use crate::agenda::{schedule_outputs, schedule_own};
 use crate::board::{Board, EventDescription};
 use crate::config::MachineConfig;
-use crate::event::Event;
+use crate::event::{Event, schedule_outputs, schedule_own};
 use crate::facts::{facts, host_line_facts, mark_facts};
 use crate::host_line::HostLine;
 use crate::optimization::Optimization;

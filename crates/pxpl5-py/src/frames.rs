@@ -2,8 +2,8 @@
 
 use crate::attended::{Progress, STACK_BYTES};
 use crate::errors::{failed_run, wrong_setting};
-use crate::functions::PythonFunctions;
 use crate::picture::Picture;
+use crate::policy::PythonFunctions;
 use crate::stepper::wait;
 use image::RgbImage;
 use pxpl5::ExperimentError;

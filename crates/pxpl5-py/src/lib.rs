@@ -26,7 +26,6 @@ mod command;
 mod errors;
 mod experiment;
 mod frames;
-mod functions;
 mod lab;
 mod motion;
 mod outcome;

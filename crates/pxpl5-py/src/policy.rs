@@ -2,12 +2,13 @@
 //! itself is `pxpl5::PolicyPipeline`.
 
 use crate::errors::wrong_setting;
+use crate::motion::CallableMotion;
 use pxpl5::firmware::RegionId;
 use pxpl5::{PolicyFrame, RegionAssignment, RegionPolicy, Time};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::fmt;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A Python function that assigns regions to renderers. `raised` holds an exception of the function that is not yet
 /// reported.
@@ -72,5 +73,25 @@ impl RegionPolicy for Asked {
     fn assign(&self, frame: &PolicyFrame) -> Option<Vec<RegionAssignment>> {
         let answer = Python::attach(|py| self.ask(py, frame));
         answer.map_err(|error| *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error)).ok()
+    }
+}
+
+#[derive(Clone, Default)]
+pub(crate) struct PythonFunctions {
+    pub(crate) motion: Option<Arc<CallableMotion>>,
+    pub(crate) policy: Option<Arc<Asked>>,
+}
+
+impl PythonFunctions {
+    /// Raises the exception that a Python function has raised during the run, if any.
+    pub(crate) fn check(&self) -> PyResult<()> {
+        self.motion.iter().try_for_each(|called| called.check())?;
+        self.policy.iter().try_for_each(|asked| asked.check())
+    }
+
+    /// Returns true if a Python function has raised an exception that is not yet reported.
+    pub(crate) fn has_raised(&self) -> bool {
+        self.motion.as_ref().is_some_and(|called| called.has_raised())
+            || self.policy.as_ref().is_some_and(|asked| asked.has_raised())
     }
 }

@@ -6,9 +6,9 @@
 use crate::attended::{LOOK, STACK_BYTES};
 use crate::catalogue::python;
 use crate::errors::{failed_run, wrong_setting};
-use crate::functions::PythonFunctions;
 use crate::outcome::outcome_of_run;
 use crate::picture::Picture;
+use crate::policy::PythonFunctions;
 use pxpl5::{Board, ExperimentError, Pause, PeriodNumber, Stepper as Native, StopFlag, SurfaceId, Time};
 use pyo3::prelude::*;
 use serde_json::{Value, json};

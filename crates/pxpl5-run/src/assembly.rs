@@ -8,12 +8,13 @@ use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::keys::PipelineSettings;
 use crate::level::{Level, with_clocks_of_instructions};
+use crate::papers::displays;
 use crate::pipeline::{Pipeline, Setup};
+use crate::pipelines;
 use crate::preparation::Preparation;
 use crate::registry::{DisplayEntry, PipelineEntry};
 use crate::scene_views::{hmd_on, poses, views};
 use crate::views::{FrameStarts, ReportTimes};
-use crate::{displays, pipelines};
 use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Machine, MachineConfig};
 use pxpl5_sim::parameters::SettingError;
@@ -116,7 +117,7 @@ pub fn check_coverage(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result
     let matching = |entry: &PipelineEntry| (entry.build)(&PipelineSettings::default()).coverage() == shown;
     let pipelines = pipelines::entries().into_iter().find(matching).map_or("none", |entry| entry.name);
     let matching = |entry: &DisplayEntry| (entry.config)().coverage() == drawn;
-    let displays = displays::entries().into_iter().find(matching).map_or("none", |entry| entry.name);
+    let displays = displays().into_iter().find(matching).map_or("none", |entry| entry.name);
     let (display, pipeline) = (display.name(), pipeline.name());
     Err(SettingError::combination(format_args!(
         "display {display} shows {shown}, and {pipeline} draws {drawn}: \

@@ -18,7 +18,6 @@
 mod assembled;
 mod assembly;
 mod display_list;
-mod displays;
 mod dry_run;
 mod dry_run_observer;
 mod due;
@@ -52,7 +51,6 @@ mod says;
 mod scene_views;
 mod so_far;
 mod stepper;
-mod stops;
 mod summary;
 mod tally;
 mod tunings;

@@ -1,6 +1,7 @@
-use crate::displays;
 use crate::pipelines;
-use crate::registry::{PipelineEntry, Registry};
+use crate::registry::{DisplayEntry, PipelineEntry, Registry};
+use address_recalculation::ArpConfig;
+use pxpl5_framebuffer::{FrameBufferConfig, HiResConfig, LcdConfig, OledConfig, PanelConfig};
 
 const USUAL: [&str; 7] =
     ["rendering-control", "slats", "frameless", "jitp-field", "jitp-scanline-racing", "arp-full", "arp-priority-line"];
@@ -10,7 +11,7 @@ impl Registry {
     /// forms.
     #[must_use]
     pub fn of_papers() -> Self {
-        Self::with(pipelines::entries(), displays::entries())
+        Self::with(pipelines::entries(), displays())
     }
 
     /// Returns true if a short comparison, with one row per family of pipelines, includes `pipeline`.
@@ -23,4 +24,16 @@ impl Registry {
         USUAL.contains(&pipeline.name)
             || (first == Some(pipeline.name) && !family.any(|other| USUAL.contains(&other.name)))
     }
+}
+
+/// Returns the displays of the papers, two current displays, and a display whose parameters the user sets.
+pub(crate) fn displays() -> Vec<DisplayEntry> {
+    vec![
+        DisplayEntry { name: "ntsc", config: || Box::new(FrameBufferConfig::NTSC) },
+        DisplayEntry { name: "hires", config: || Box::new(HiResConfig::PAPERS) },
+        DisplayEntry { name: "oled-90", config: || Box::new(OledConfig::PAPERS) },
+        DisplayEntry { name: "lcd-120", config: || Box::new(LcdConfig::PAPERS) },
+        DisplayEntry { name: "panel", config: || Box::new(PanelConfig::PAPERS) },
+        DisplayEntry { name: "arp", config: || Box::new(ArpConfig::MACHINE) },
+    ]
 }

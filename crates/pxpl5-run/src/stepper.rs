@@ -8,7 +8,6 @@ use crate::outcome::Outcome;
 use crate::picture_ends::WARM_UP_PICTURES;
 use crate::pipeline::PictureTimes;
 use crate::preparation::Preparation;
-use crate::stops::PROGRESS_FIELDS;
 use crate::window::Window;
 use image::RgbImage;
 use pphigs::oracle::IdealPicture;
@@ -369,3 +368,21 @@ fn shown_in(outcome: &Outcome) -> u64 {
 /// Number of fields below which the machine may not detect a deadlock itself.
 const SHORT_RUN: u64 = 2 * DEADLOCK_TICKS;
 const IDLE_TICKS: u64 = 2;
+
+/// Number of fields between two progress reports. At each report, a long run also discards old records.
+pub(crate) const PROGRESS_FIELDS: u64 = 60;
+
+impl Experiment {
+    pub(crate) fn stops(&self, asked: &[PeriodNumber]) -> impl Iterator<Item = PeriodNumber> {
+        let end = self.end();
+        let mut asked: BTreeSet<PeriodNumber> = asked.iter().copied().filter(|field| *field < end).collect();
+        let mut regular =
+            PeriodNumber(PROGRESS_FIELDS).until(end).step_by(PROGRESS_FIELDS as usize).chain([end]).peekable();
+        std::iter::from_fn(move || {
+            let next = regular.peek().into_iter().chain(asked.first()).copied().min()?;
+            regular.next_if_eq(&next);
+            asked.remove(&next);
+            Some(next)
+        })
+    }
+}

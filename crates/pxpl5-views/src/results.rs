@@ -14,12 +14,10 @@ mod origin;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod pictures;
-mod tables;
 
 pub use csv_file::csv_table;
 pub(crate) use origin::count_of;
 pub use origin::{origin, origin_lines};
 #[cfg(feature = "parquet")]
 pub use parquet::parquet;
-pub use pictures::{Column, SCHEMA, columns, rows};
-pub use tables::{csv, quantities_csv};
+pub use pictures::{Column, SCHEMA, columns, csv, quantities_csv, rows};

@@ -21,13 +21,11 @@ mod collect;
 mod draw;
 mod legend;
 mod model;
-mod options;
 mod rows;
 mod style;
 
 pub use crate::ports::ShownPicture;
-pub use model::{Arrow, Bar, DrawingPlace, Timeline, TimelineRow, TimelineScan};
-pub use options::{MAX_FIELDS, TimelineOptions};
+pub use model::{Arrow, Bar, DrawingPlace, MAX_FIELDS, Timeline, TimelineOptions, TimelineRow, TimelineScan};
 
 use crate::results::{count_of, origin_lines};
 use draw::Words;

@@ -4,7 +4,6 @@
 mod counted;
 mod document;
 mod drawings;
-mod plain;
 mod printed;
 mod row;
 mod shown;
@@ -15,11 +14,11 @@ pub use row::{MeasuredScene, VolumeFigures};
 pub use shown::ShownStatement;
 
 use crate::experiment::Volume;
-use plain::plain;
 use pxpl5_scene::Scene;
 use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::parameters::SettingError;
 use row::order;
+use shown::plain;
 use spatialgl::Workers;
 use spatialgl::perspecta::figures::{definitions, formulas, measured, packing};
 use std::sync::Arc;

@@ -1,5 +1,4 @@
-use crate::bind::Binding;
-use crate::schedule::CopySchedule;
+use crate::bind::{Binding, CopySchedule};
 use pphigs::{Picture, RegionBinning, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;

@@ -45,13 +45,11 @@ mod bind;
 mod config;
 mod host;
 mod processor;
-mod schedule;
 
-pub use bind::{Binding, BoundRegion};
+pub use bind::{Binding, BoundRegion, CopySchedule};
 pub use config::SlatsConfig;
 pub use host::host;
 pub use processor::{CLUMP, processor};
-pub use schedule::CopySchedule;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,8 +1,7 @@
 //! The programs of a graphics processor (GP) under Slats.
 
-use crate::bind::{Binding, BoundRegion};
+use crate::bind::{Binding, BoundRegion, CopySchedule};
 use crate::config::SlatsConfig;
-use crate::schedule::CopySchedule;
 use pphigs::{FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, TransformWork, copy_message, region_messages};
 use pxpl5_gp::{Account, Chain, Fault, Gp, Priority, Received, Stage, Ticket};
 use pxpl5_sim::parameters::SettingError;

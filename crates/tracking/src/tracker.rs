@@ -4,7 +4,6 @@ mod config;
 mod distortion;
 mod fault;
 mod model;
-mod report;
 mod reports;
 mod serial;
 
@@ -12,6 +11,5 @@ pub use config::TrackerConfig;
 pub use distortion::MagneticDistortion;
 pub use fault::TrackerFault;
 pub use model::TrackerModel;
-pub use report::TrackerReport;
-pub use reports::Reports;
+pub use reports::{Reports, TrackerReport};
 pub use serial::{SerialLine, SerialRead};

@@ -3,8 +3,7 @@
 
 use super::compared::{composite_differs, turned_differ};
 use super::fit::fitted_cell_m;
-use super::gallery::gallery;
-use super::interpretations::{Interpretations, ThresholdRow, threshold_rows};
+use super::interpretations::{Interpretations, ThresholdRow, gallery, threshold_rows};
 use super::lens::straight_edge;
 use super::rules::Rules;
 use crate::report::ArpReport;

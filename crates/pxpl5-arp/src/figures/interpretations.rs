@@ -6,11 +6,12 @@
 //! threshold and cell side with the same product.
 
 use super::fit::{RATES_HZ, policy_rates_hz, rates_hz};
-use super::gallery::gallery;
 use super::rules::Rules;
+use crate::hall::{Route, path_of, scaled};
 use crate::walk::at_frames;
 use address_recalculation::priority::{Cell, PriorityTiming};
 use glam::DVec3;
+use pxpl5_scene::{Scene, builtin};
 use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use tracking::motion::Walk;
@@ -299,4 +300,15 @@ pub fn threshold_rows(fitted_cell_m: f64) -> Vec<ThresholdRow> {
         ("5 texels", 5.0 * TEXEL_DEG),
     ];
     rows.map(row).to_vec()
+}
+
+/// Scale of the gallery in the experiments. The scaled gallery is 20 m wide: eight cells of 2.5 m. The gallery then has
+/// 191 segments (parts of objects in one cell). The two rows of table 2 of the paper CPR05 have 183 and 213 segments.
+const HALL_SCALE: f64 = 0.5;
+
+pub(crate) fn gallery() -> Result<(Scene, Walk), SettingError> {
+    let scene = builtin("gallery")?;
+    let scene = scaled(&scene, HALL_SCALE)?;
+    let path = path_of(&scene, Route::Scene)?;
+    Ok((scene, path))
 }

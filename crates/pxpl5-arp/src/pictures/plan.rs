@@ -1,6 +1,5 @@
 //! Drawings of the cells seen from above, and of the frames in which each memory was updated.
 
-use super::colours::MEMORY_COLOURS;
 use crate::simulation::{FrameOutcome, Simulation};
 use crate::walk::WalkTally;
 use crate::world::World;
@@ -9,6 +8,10 @@ use glam::DVec3;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use tracking::motion::Walk;
+
+/// Colours for display memories 0 to 7. People with colour blindness can distinguish these colours.
+pub(crate) const MEMORY_COLOURS: [u32; 8] =
+    [0x00D5_5E00, 0x00E6_9F00, 0x0000_9E73, 0x0056_B4E9, 0x0000_72B2, 0x00CC_79A7, 0x00F0_E442, 0x0099_9999];
 
 /// Pixels of the drawing per metre of the hall.
 const SCALE: f64 = 14.0;

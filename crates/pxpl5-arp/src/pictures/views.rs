@@ -1,6 +1,6 @@
 //! Pictures of the views that the eye sees, and of the errors in these views.
 
-use super::colours::MEMORY_COLOURS;
+use super::plan::MEMORY_COLOURS;
 use crate::content::angle;
 use crate::cube_faces::CubeView;
 use crate::look::{WalkFaces, picture, rgb};

@@ -1,6 +1,5 @@
 //! The command `pxpl5 i860 run`, which executes a program and prints clocks, registers and memory.
 
-use super::names::{address, labels_at};
 use ::i860::{AddressProfile, Config, Cpu, Program, Ram, RunEnd, disassemble};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -259,4 +258,18 @@ fn cycle_listing(program: &Program, cpu: &Cpu) -> String {
         let _ = writeln!(text, "{labels}{visits:>11} {clocks:>11}  {pc:08x}  {word:08x}  {what}");
     }
     text
+}
+
+/// Parses a 32-bit number, decimal or hexadecimal with `0x`.
+pub(super) fn address(text: &str) -> Result<u32, String> {
+    let lower = text.to_ascii_lowercase();
+    let parsed = match lower.strip_prefix("0x") {
+        Some(digits) => u32::from_str_radix(digits, 16),
+        None => lower.parse(),
+    };
+    parsed.map_err(|_| format!("expected a 32-bit address such as 0x1000, found `{text}`"))
+}
+
+pub(super) fn labels_at(program: &Program, pc: u32) -> String {
+    program.labels.iter().filter(|(_, at)| *at == pc).map(|(name, _)| format!("{name}:\n")).collect()
 }

@@ -4,8 +4,7 @@
 //! thousand shards of a million points take 28 MB. A separate table for each file would take 8 GB and exceed the number
 //! of files that a process may open.
 
-use super::points::Points;
-use super::rows::{Scan, contradiction};
+use super::rows::{Points, Scan, contradiction};
 use super::store::check_header;
 use super::{Header, ROWS_FILE, Status, SweepRow};
 use pxpl5_sim::parameters::{FileError, FileErrorKind};

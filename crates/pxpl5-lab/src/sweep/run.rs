@@ -1,7 +1,7 @@
 //! Parallel simulation of the points of a sweep.
 
 use super::point::row;
-use super::points::Points;
+use super::rows::Points;
 use super::shard::Shard;
 use super::{Store, SweepRow, Swept};
 use crate::StopFlag;

@@ -1,9 +1,8 @@
 //! The folder of a sweep, with one row of results for each simulated point. Each row is appended by one write, so
 //! finished rows survive a crash at any moment.
 
-use super::points::Points;
 use super::replacement::Replacement;
-use super::rows::RowFile;
+use super::rows::{Points, RowFile};
 use super::shard::Shard;
 use super::table::Table;
 use super::{Header, SweepRow};

@@ -1,6 +1,5 @@
 use super::{Contexts, Machine};
-use crate::agenda::schedule_own;
-use crate::event::Event;
+use crate::event::{Event, schedule_own};
 use crate::observation::{Arrival, Observation, Swap};
 use pxpl5_gp::GpEvent;
 use pxpl5_sim::{EventQueue, Phase, Time};

@@ -16,14 +16,13 @@ mod load_schedule;
 mod objects;
 mod pipeline;
 mod plan;
-mod policy;
 pub(crate) mod requests;
 pub(crate) mod segments;
 
 pub(crate) use entries::ENTRIES;
 pub use history::{FaceHistory, ShownUpdate};
+pub use keys::FacePolicy;
 pub use latched_head::{OrientationTiming, RotationLatency};
 pub use pipeline::{FaceLens, FacePipeline, FaceSource};
-pub use policy::FacePolicy;
 pub use requests::{RequestedUpdate, RequestedUpdates};
 pub use segments::SegmentedScene;

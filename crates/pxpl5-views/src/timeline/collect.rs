@@ -1,6 +1,5 @@
 use super::arrows::arrows;
-use super::model::{Timeline, TimelineRow, TimelineScan};
-use super::options::{MAX_FIELDS, TimelineOptions};
+use super::model::{MAX_FIELDS, Timeline, TimelineOptions, TimelineRow, TimelineScan};
 use super::rows::{rows, set_lanes};
 use crate::updates::Updates;
 use pxpl5_gp::{Stage, StageEdge};

@@ -1,7 +1,6 @@
 //! Rows of a timeline, each with the work of one board or of all boards of a kind.
 
-use super::model::{Bar, TimelineRow};
-use super::options::TimelineOptions;
+use super::model::{Bar, TimelineOptions, TimelineRow};
 use crate::ports::{DisplayPort, display_ports, has_separate_ports, shown};
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, Record, StageSpan};

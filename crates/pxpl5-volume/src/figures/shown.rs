@@ -1,7 +1,6 @@
 //! Statements of the SpatialGL paper that contain no numbers. The model confirms or refutes each statement by
 //! measurements.
 
-use super::plain::plain;
 use crate::choices::{ClipKind, ProjectionKind};
 use crate::experiment::Volume;
 use crate::settings::VolumeSettings;
@@ -199,4 +198,10 @@ fn tiles(scene: &Scene, workers: &dyn Workers) -> Result<ShownStatement, Setting
         evidence: format!("{}: {}", scene.name(), text.join("; ")),
         holds: found.windows(2).all(|pair| pair[1].1 < pair[0].1 && pair[1].2 > pair[0].2),
     })
+}
+
+/// Returns the SpatialGL paper's settings, with the hyperbolic clip and an orthographic projection. This projection has
+/// no jitter.
+pub(super) fn plain() -> VolumeSettings {
+    VolumeSettings { projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() }
 }

@@ -1,8 +1,7 @@
 //! Registry entries of the address recalculation pipelines: names, settings and variants.
 
-use super::keys::{IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
+use super::keys::{FacePolicy, IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::pipeline::{FaceLens, FacePipeline, FaceSource};
-use super::policy::FacePolicy;
 use crate::keys::PipelineSettings;
 use crate::pipeline::Pipeline;
 use crate::pipelines::{SHADING, shading_or};

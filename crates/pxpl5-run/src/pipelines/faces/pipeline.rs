@@ -3,10 +3,9 @@
 
 use super::cells::ByCells;
 use super::ideal::{All, IdealFaces, seen_next};
-use super::keys::{IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
+use super::keys::{FacePolicy, IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::objects::ByObjects;
 use super::plan::{Cycles, Full, Plan, Updates};
-use super::policy::FacePolicy;
 use crate::head_views::HeadViews;
 use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
@@ -25,8 +24,7 @@ use pxpl5_gp::Priority;
 use pxpl5_machine::{Attachment, HostLine, Machine, MachineConfig, Record, Shown};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::{HmdConfig, Scene};
-use pxpl5_sim::parameters::KeyValue;
-use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::parameters::{KeyValue, SettingError};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::{Aim, Coverage};
 use pxpl5_wire::{Body, CopyContent, Lines, NodeId, PeriodNumber, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
