@@ -5,20 +5,11 @@ from __future__ import annotations
 from typing import TypedDict
 
 from ._report_types import BudgetData, HmdData, PercentilesData, StatisticsData, WindowData
-from ._rows import PublishedFigure
+from ._rows import ParameterRow, PublishedFigure
 
 
-class ParameterData(TypedDict):
+class ParameterData(ParameterRow):
     """A number of a machine or a tracker, as :class:`Parameter`."""
-
-    path: str
-    value: float
-    unit: str
-    provenance: str
-    low: float
-    high: float
-    source: str
-    read_only: bool
 
 
 class MachineData(TypedDict):

@@ -69,10 +69,7 @@ impl Cpu {
     ) -> Result<Flow, TrapCause> {
         let address = self.effective_address(a, SIZE)?;
         let value = u64::from(self.state.r(a.dest));
-        match SIZE {
-            4 => self.write(bus, address, 4, value)?,
-            size => self.write(bus, address, size, value)?,
-        }
+        self.write(bus, address, SIZE, value)?;
         self.accessed(a, address, true);
         Ok(self.after_store())
     }

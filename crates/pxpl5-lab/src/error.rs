@@ -3,14 +3,13 @@
 use pxpl5_run::ExperimentError;
 use pxpl5_sim::parameters::{FileError, SettingError};
 use thiserror::Error;
-use tracking::rig::RigError;
 
 /// An error that prevents a study. A study is a comparison, a search for a limit, the measurement of a published
 /// figure, or a measurement with the latency rig.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StudyError {
-    /// A setting is invalid.
+    /// A setting is invalid, or the pendulum rig gives no measurement with the settings.
     #[error(transparent)]
     Setting(#[from] SettingError),
     /// An experiment of the study cannot run.
@@ -20,20 +19,6 @@ pub enum StudyError {
     /// comparison in the folder is unfinished, and the user did not allow a resume.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The pendulum rig gave no measurement: the tracker reported no pass of the pendulum through its lowest point, or
-    /// the photodiode detected no bright pixel.
-    #[error(transparent)]
-    Rig(#[from] RigError),
-    /// A requested frame was not shown completely.
-    #[error(
-        "expected the time of complete display for {expected} frames that low points requested, found it for {found}"
-    )]
-    NotShown {
-        /// Number of frames that the rig requested, one for each pass of the pendulum through its lowest point.
-        expected: usize,
-        /// Number of completely shown frames, according to the pipeline's records.
-        found: usize,
-    },
     /// The experiment of a published figure yields no result.
     #[error("figure {id}: {reason}")]
     Figure {

@@ -277,7 +277,7 @@ fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outc
 
 /// Returns one picture for each report that the pendulum is at its lowest point: the first complete picture with the
 /// head pose of the report. The pictures come from the pipeline's records.
-fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<Vec<PictureTimes>, StudyError> {
+fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<Vec<PictureTimes>, SettingError> {
     let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
     let arrived_at: BTreeMap<ViewNumber, Time> =
         sampled.iter().filter_map(|s| Some((s.number, s.arrived_at?))).collect();
@@ -290,7 +290,11 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<V
     }
     let found: Vec<_> = sightings.iter().filter_map(|sighting| first.get(&sighting.arrives_ps).copied()).collect();
     let expected = sightings.len();
-    if found.len() == expected { Ok(found) } else { Err(StudyError::NotShown { expected, found: found.len() }) }
+    if found.len() == expected {
+        return Ok(found);
+    }
+    let expected = format_args!("the time of complete display for {expected} frames that low points requested");
+    Err(SettingError::value("", expected, format_args!("it for {}", found.len())))
 }
 
 /// Returns the time at which a program sampled the head pose of a frame and changed the D/A line. Under Rendering

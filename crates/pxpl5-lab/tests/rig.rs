@@ -164,7 +164,7 @@ fn an_error_of_one_measurement_is_found_by_the_other() {
     // The light of the last frame never appears. The rig either reports so, or the latencies disagree.
     match with(Fault::StaleViews) {
         Ok(stale) => assert!(!stale.agrees(), "{stale:?}"),
-        Err(error) => assert!(matches!(error, StudyError::Rig(_)), "{error}"),
+        Err(error) => assert!(matches!(error, StudyError::Setting(_)), "{error}"),
     }
 }
 

@@ -18,12 +18,11 @@ pub use detection::Detection;
 pub use measurement::{InsidePass, LowPointReport, Measurement, Oscilloscope, OutsidePass, Side};
 pub use oscilloscope::{ScopeEdge, ScopeTrace};
 
-use thiserror::Error;
-
 use crate::config as table;
 use crate::motion::Pendulum;
 use crate::time::PS_PER_S;
 use crate::tracker::TrackerModel;
+use pxpl5_sim::parameters::SettingError;
 
 /// Greatest time without a detected pass of the pendulum through its lowest point, ps. After this time the measurement
 /// fails.
@@ -47,28 +46,6 @@ pub struct PendulumRig {
     pub photodiode_line: u32,
 }
 
-/// The reason why a latency measurement with the pendulum failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum RigError {
-    /// The tracker stopped reporting, or the host detected too few passes of the pendulum.
-    #[error("expected {expected} low points, the host detected {found}")]
-    TooFewPasses {
-        /// Number of passes that the measurement needs.
-        expected: usize,
-        /// Number of passes that the host detected.
-        found: usize,
-    },
-    /// The number of light changes on the screen differs from the number of requested frames.
-    #[error("expected the photodiode on the screen to change for each of {expected} frames, found {found} changes")]
-    NoLight {
-        /// Number of frames that the host requested.
-        expected: usize,
-        /// Number of changes between dark and light that the photodiode on the screen detected.
-        found: usize,
-    },
-}
-
 impl PendulumRig {
     /// Returns a rig with assumed numbers: arm 0.5 m, amplitude 20 degrees, detection by crossing the vertical,
     /// photodiode in the middle of the screen.
@@ -86,8 +63,8 @@ impl PendulumRig {
     ///
     /// # Errors
     ///
-    /// Returns [`RigError::TooFewPasses`] if the tracker stops reporting or the host detects fewer than `n` passes.
-    pub fn sightings(&self, tracker: &TrackerModel, seed: u64, n: usize) -> Result<Vec<LowPointReport>, RigError> {
+    /// Returns a [`SettingError`] if the tracker stops reporting or the host detects fewer than `n` passes.
+    pub fn sightings(&self, tracker: &TrackerModel, seed: u64, n: usize) -> Result<Vec<LowPointReport>, SettingError> {
         let expected = n.max(1);
         // The dead time of the detector is a quarter of a swing.
         let mut detector = self.detection.start(self.half_swing_ps() / 2);
@@ -99,7 +76,11 @@ impl PendulumRig {
             .map(|report| LowPointReport { measured_ps: report.position_measured_ps, arrives_ps: report.arrives_ps })
             .take(expected)
             .collect();
-        if seen.len() < expected { Err(RigError::TooFewPasses { expected, found: seen.len() }) } else { Ok(seen) }
+        if seen.len() == expected {
+            return Ok(seen);
+        }
+        let reason = format_args!("expected {expected} low points, the host detected {}", seen.len());
+        Err(SettingError::combination(reason))
     }
 
     /// Measures the passes of the pendulum on the oscilloscope and combines the results with the measurements by time
@@ -107,7 +88,7 @@ impl PendulumRig {
     ///
     /// # Errors
     ///
-    /// Returns [`RigError::NoLight`] if the screen never shows a frame, or if the two measurements have different
+    /// Returns a [`SettingError`] if the screen never shows a frame, or if the two measurements have different
     /// numbers of passes.
     pub fn compare(
         &self,
@@ -115,9 +96,10 @@ impl PendulumRig {
         place_ps: u64,
         oscilloscope: &Oscilloscope,
         inside: Vec<InsidePass>,
-    ) -> Result<Measurement, RigError> {
+    ) -> Result<Measurement, SettingError> {
         let found = oscilloscope.screen.edges().len();
-        let no_light = RigError::NoLight { expected: inside.len(), found };
+        let expected = format!("the photodiode on the screen to change for each of {} frames", inside.len());
+        let no_light = SettingError::value("", expected, format_args!("{found} changes"));
         // The two measurements are compared pass by pass, so they must have the same number of passes.
         let outside = oscilloscope.passes(self).filter(|passes| passes.len() == inside.len() && !inside.is_empty());
         Ok(Measurement::new(self.detection, tracker, place_ps, outside.ok_or(no_light)?, inside))

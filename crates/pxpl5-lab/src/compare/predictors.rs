@@ -10,7 +10,7 @@ use tracking::predict::{PredictorConfig, PredictorKind, Training};
 
 /// Result of an experiment with one predictor.
 #[derive(Clone, Debug, Serialize)]
-pub struct PredictorError {
+pub struct PredictorResult {
     /// Predictor that extrapolates the tracker's reports.
     pub kind: PredictorKind,
     /// Parameters of the predictor in the run. `None` if the run failed.
@@ -33,13 +33,13 @@ pub struct Predictors {
     /// pixel was evaluated.
     pub best: Option<PredictorKind>,
     /// Results of all predictors, with the simplest predictor first.
-    pub each: Vec<PredictorError>,
+    pub each: Vec<PredictorResult>,
 }
 
 impl Predictors {
     /// Returns the result of one predictor.
     #[must_use]
-    pub fn of(&self, kind: PredictorKind) -> Option<&PredictorError> {
+    pub fn of(&self, kind: PredictorKind) -> Option<&PredictorResult> {
         self.each.iter().find(|one| one.kind == kind)
     }
 }
@@ -52,7 +52,7 @@ pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     let head = experiment.tracked_head()?;
     let showing = head.raster().into();
     let each = parallel::map(&PredictorKind::ALL, |kind| with_predictor(experiment, head, showing, *kind));
-    let mean = |one: &PredictorError| one.error.as_ref().map(|error| (one.kind, error.pixels.mean));
+    let mean = |one: &PredictorResult| one.error.as_ref().map(|error| (one.kind, error.pixels.mean));
     let evaluated = each.iter().filter_map(mean).filter(|(_, mean)| mean.is_finite());
     let best = evaluated.reduce(|best, next| if next.1 < best.1 { next } else { best });
     Some(Predictors { chosen: head.predictor_kind(), best: best.map(|(kind, _)| kind), each })
@@ -72,20 +72,20 @@ pub(super) fn predictor_means(experiment: &Experiment, showing: Showing, of_chos
     })
 }
 
-fn with_predictor(experiment: &Experiment, head: &Head, showing: Showing, kind: PredictorKind) -> PredictorError {
+fn with_predictor(experiment: &Experiment, head: &Head, showing: Showing, kind: PredictorKind) -> PredictorResult {
     let with_kind = Arc::new(head.clone().with_prediction(kind));
     of_run(kind, showing, experiment.clone().head(with_kind).pixels(Pixels::Off).run())
 }
 
-fn of_run(kind: PredictorKind, showing: Showing, run: Result<Outcome, ExperimentError>) -> PredictorError {
-    let blank = PredictorError { kind, numbers: None, training: None, error: None, failure: None };
+fn of_run(kind: PredictorKind, showing: Showing, run: Result<Outcome, ExperimentError>) -> PredictorResult {
+    let blank = PredictorResult { kind, numbers: None, training: None, error: None, failure: None };
     match run {
-        Ok(outcome) => PredictorError {
+        Ok(outcome) => PredictorResult {
             numbers: outcome.head().map(|views| *views.head().predictor()),
             training: outcome.head().and_then(|views| views.head().training().copied()),
             error: Some(PixelErrors::shown(&outcome, showing)).filter(|error| error.evaluated > 0),
             ..blank
         },
-        Err(error) => PredictorError { failure: Some(error.to_string()), ..blank },
+        Err(error) => PredictorResult { failure: Some(error.to_string()), ..blank },
     }
 }
