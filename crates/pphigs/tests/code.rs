@@ -1,10 +1,13 @@
 //! Tests of TRANSFORM as i860 code on a board. The words must equal the words of the native firmware. Other tests check
 //! the time of the code.
 
+mod native;
+
 use glam::{Mat4, Vec3};
+use native::native;
 use pphigs::{
     DisplayList, DisplayStructure, EyeView, FrameView, KernelOutput, ModelEdit, ModelFrame, Pass, Picture,
-    RegionBinning, RegionEnvelope, Shading, Share, TransformWork, region_messages,
+    RegionBinning, Shading, Share, TransformWork,
 };
 use pxpl5_geometry::{Culling, Viewport, WorldSphere};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
@@ -79,15 +82,6 @@ fn board(version: CodeVersion, share: &Share) -> Processor {
     let mut processor = Processor::new(NodeId(1), MEMORY, version, i860::Config::cycle());
     share.install(&mut processor).expect("it fits");
     processor
-}
-
-/// Returns the words of a region's primitives as the native firmware makes them.
-fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
-    let mut words = Vec::new();
-    for list in region_messages(pass, region, 0, RegionEnvelope::default()) {
-        list.content.expect("pixels are wanted").append_words(&mut words);
-    }
-    words
 }
 
 /// Returns the words of a region's primitives that the i860 code has written to memory.

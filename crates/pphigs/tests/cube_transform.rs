@@ -1,13 +1,15 @@
 //! Tests of the i860 code for six views around an eye. Each view's words and bins must equal the words and bins of the
 //! native firmware. The number of primitives that are transformed for a view outside which they lie must be small.
 
+mod native;
 mod numbers;
 
 use glam::{Mat4, Quat, Vec3, Vec4};
+use native::native;
 use numbers::Numbers;
 use pphigs::{
     BinHandoffWork, CubeTransform, CubeTransformOutput, DisplayList, DisplayStructure, EyeView, FrameView, ModelEdit,
-    ModelFrame, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages,
+    ModelFrame, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share,
 };
 use pxpl5_geometry::{Culling, Viewport, WorldSphere};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
@@ -116,15 +118,6 @@ fn board(version: CodeVersion, share: &Share) -> Processor {
 fn run(processor: &mut Processor, passes: &[Arc<Pass>; 6], context: u8) -> CubeTransformOutput {
     let transform = CubeTransform { passes, context };
     transform.run_code(&GpTiming::PAPERS, processor).expect("it returns").expect("it has kernels")
-}
-
-/// Returns the words of a region's primitives as the native firmware makes them.
-fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
-    let mut words = Vec::new();
-    for list in region_messages(pass, region, 0, RegionEnvelope::default()) {
-        list.content.expect("pixels are wanted").append_words(&mut words);
-    }
-    words
 }
 
 /// Returns the words of a region's primitives as the code sends them.

@@ -1,18 +1,19 @@
 //! Tests of spheres as i860 code on a board. The words and bins must equal the words and bins of the native firmware.
 
+mod native;
 mod numbers;
 
 use glam::{Mat4, Quat, Vec3};
+use native::native;
 use numbers::Numbers;
 use pphigs::{
-    DisplayList, DisplayStructure, EyeView, FrameView, ModelEdit, ModelFrame, Pass, Picture, RegionBinning,
-    RegionEnvelope, Shading, Share, region_messages,
+    DisplayList, DisplayStructure, EyeView, FrameView, ModelEdit, ModelFrame, Picture, RegionBinning, Shading, Share,
 };
 use pxpl5_geometry::{Culling, SetupStats, Viewport, WorldSphere};
 use pxpl5_gp::{CodeVersion, Processor};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::SplitMix64;
-use pxpl5_wire::{FieldParity, Lines, NodeId, RegionGrid, RegionId, ViewNumber, Word};
+use pxpl5_wire::{FieldParity, Lines, NodeId, RegionGrid, RegionId, ViewNumber};
 use std::sync::Arc;
 
 impl Numbers {
@@ -104,15 +105,6 @@ fn view(numbers: &mut Numbers, n: usize) -> FrameView {
         ModelEdit { structure: 3, model: numbers.model(n) },
     ];
     FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits }
-}
-
-/// Returns the words of a region's primitives as the native firmware makes them.
-fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
-    let mut words = Vec::new();
-    for list in region_messages(pass, region, 0, RegionEnvelope::default()) {
-        list.content.expect("pixels are wanted").append_words(&mut words);
-    }
-    words
 }
 
 fn add(sum: &mut SetupStats, of: SetupStats) {

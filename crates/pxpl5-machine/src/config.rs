@@ -325,12 +325,6 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_preset_names_the_nearest() {
-        let error = MachineConfig::preset("smal-hmd").expect_err("misspelt");
-        assert!(error.to_string().contains("did you mean `small-hmd`?"), "{error}");
-    }
-
-    #[test]
     fn parameters_are_reached_by_path_and_a_wrong_path_names_the_nearest() {
         let mut config = MachineConfig::small_hmd();
         config.set("gp.triangle_ns", 30_000).expect("known");

@@ -5,8 +5,12 @@
 
 #![allow(dead_code, reason = "the test and the example each use a part")]
 
+#[path = "../numbers/mod.rs"]
+mod numbers;
+
 use glam::{Mat4, Vec3};
 use i860::{Config, Cpu, Profile, Program, Ram, RunEnd, linear, link};
+use numbers::Numbers;
 use pxpl5_geometry::kernel::{
     Heads, Kernel, KernelList, KernelPicture, KernelSurface, Schedule, display_list_words, vertex_words,
 };
@@ -71,20 +75,9 @@ pub(crate) fn light() -> Light {
     Light { direction: [0.48, 0.6, 0.64], ambient: 0.2, diffuse: 0.7 }
 }
 
-/// A generator of numbers from -1 to 1. It gives the same numbers on every host.
-struct Numbers(SplitMix64);
-
 impl Numbers {
-    fn next(&mut self) -> f32 {
-        2.0 * self.0.unit() - 1.0
-    }
-
     fn colour(&mut self) -> [u8; 3] {
         [0, 1, 2].map(|_| ((self.next() + 1.0) * 127.0) as u8)
-    }
-
-    fn vector(&mut self, size: f32) -> Vec3 {
-        Vec3::new(self.next(), self.next(), self.next()) * size
     }
 
     fn triangle(&mut self, size: f32) -> Triangle {

@@ -273,6 +273,21 @@ fn only_temporary_files_of_a_killed_process_are_removed() {
     let _ = std::fs::remove_dir_all(path);
 }
 
+/// Returns two sweeps with the model `file`: as the scene of all points, and as a value of an axis.
+fn sweeps_with(file: &str) -> [String; 2] {
+    [
+        format!("pipeline = \"slats\"\nscene = \"{file}\"\nfields = 10\n[sweep]\nseeds = 2\n"),
+        format!("pipeline = \"slats\"\nfields = 10\n[sweep.grid]\nscene = [\"mig\", \"{file}\"]\n"),
+    ]
+}
+
+/// Returns the hash of a sweep whose file lies in the folder `place`.
+fn hash_in(place: &Path, text: &str) -> String {
+    let path = place.join("sweep.toml");
+    std::fs::write(&path, text).expect("written");
+    Sweep::load(&path).expect("a sweep").header().expect("valid").config_hash
+}
+
 #[test]
 fn editing_a_model_makes_another_sweep() {
     let place = folder("edited");
@@ -280,19 +295,12 @@ fn editing_a_model_makes_another_sweep() {
     let model = |x: i32| {
         std::fs::write(place.join("m.obj"), format!("v 0 0 0\nv {x} 0 0\nv 0 1 0\nf 1 2 3\n")).expect("written")
     };
-    let hash_of = |text: &str| {
-        let path = place.join("sweep.toml");
-        std::fs::write(&path, text).expect("written");
-        Sweep::load(&path).expect("a sweep").header().expect("valid").config_hash
-    };
-    let for_all = "pipeline = \"slats\"\nscene = \"m.obj\"\nfields = 10\n[sweep]\nseeds = 2\n";
-    let axis = "pipeline = \"slats\"\nfields = 10\n[sweep.grid]\nscene = [\"mig\", \"m.obj\"]\n";
-    for text in [for_all, axis] {
+    for text in sweeps_with("m.obj") {
         model(1);
-        let before = hash_of(text);
-        assert_eq!(before, hash_of(text));
+        let before = hash_in(&place, &text);
+        assert_eq!(before, hash_in(&place, &text));
         model(2);
-        assert_ne!(before, hash_of(text), "{text}");
+        assert_ne!(before, hash_in(&place, &text), "{text}");
     }
     let _ = std::fs::remove_dir_all(&place);
 }
@@ -311,19 +319,15 @@ fn editing_the_buffer_of_a_model_makes_another_sweep() {
     let hash_of = |text: &str, x: f32| {
         let corners: Vec<u8> = [0., 0., 0., x, 0., 0., 0., 1., 0.].iter().flat_map(|n: &f32| n.to_le_bytes()).collect();
         std::fs::write(place.join("m.bin"), corners).expect("written");
-        let path = place.join("sweep.toml");
-        std::fs::write(&path, text).expect("written");
-        Sweep::load(&path).expect("a sweep").header().expect("valid").config_hash
+        hash_in(&place, text)
     };
-    let for_all = "pipeline = \"slats\"\nscene = \"m.gltf\"\nfields = 10\n[sweep]\nseeds = 2\n";
-    let axis = "pipeline = \"slats\"\nfields = 10\n[sweep.grid]\nscene = [\"mig\", \"m.gltf\"]\n";
-    for text in [for_all, axis] {
-        let before = hash_of(text, 1.0);
-        assert_eq!(before, hash_of(text, 1.0));
+    for text in sweeps_with("m.gltf") {
+        let before = hash_of(&text, 1.0);
+        assert_eq!(before, hash_of(&text, 1.0));
         // The reader of glTF is a feature of the scene crate.
         let read = pxpl5_scene::load(place.join("m.gltf"));
         let is_read = read.is_ok_and(|scene| !scene.triangles().is_empty());
-        assert_eq!(before != hash_of(text, 2.0), is_read, "{text}");
+        assert_eq!(before != hash_of(&text, 2.0), is_read, "{text}");
     }
     let _ = std::fs::remove_dir_all(&place);
 }
