@@ -37,7 +37,7 @@ fn rendering_control() -> Experiment {
         .level(Level::Cycle)
 }
 
-/// Returns the trace hash of a run, also of one without a picture after the warm-up.
+/// Returns the trace hash of a run, even if the run shows no picture after the warm-up.
 fn hash(experiment: &Experiment) -> TraceHash {
     match experiment.run() {
         Ok(outcome) => outcome.record().trace_hash(),

@@ -115,7 +115,6 @@ fn every_pipeline_and_display_of_the_papers_is_found_by_its_name() {
     );
 }
 
-/// Names of volumetric displays.
 #[test]
 fn every_choice_of_volumes_is_parsed_as_printed() {
     use pxpl5::volume::spatialgl::{BinTolerance, Binning, Combine, Coverage, Rotation, Strobes, TieRule};

@@ -121,7 +121,7 @@ fn with_a_photodiode_low_on_the_screen_the_rig_measures_the_published_latency() 
 
 #[test]
 fn the_error_at_90_ms_is_1_8_times_the_error_at_50_ms() {
-    // The ratio of the latencies, except for the curvature of the motion within them.
+    // The ratio of the latencies, apart from the curvature of the motion within each latency.
     within("18", 1.75, 1.8);
 }
 
@@ -168,7 +168,7 @@ fn simulated_values_are_within_the_analytic_interval_or_3_percent_of_it() {
         match row.interval {
             // The measuring rig also has its photodiode on the first and on the last line of the screen.
             Some([low, high]) if row.id == "17" => assert!(low < row.simulated && row.simulated < high),
-            // For runs with a tracker, the depth of the FIFO and the channels of a sender are varied, with events.
+            // For runs with a tracker, the depth of the FIFO and the channels of a sender are varied in simulated runs.
             Some([low, high]) => {
                 assert!(["19", "19b"].contains(&row.id) && low <= row.simulated && row.simulated <= high)
             }
@@ -185,8 +185,8 @@ fn every_figure_is_within_reach_of_some_parameters_and_interpretations() {
 
 #[test]
 fn the_analytic_level_agrees_with_the_transaction_level() {
-    // Closed form and events agree within 3 %. Both use the same views of the head, for more than half of the views of
-    // figures 7 and 7b.
+    // The closed form and the simulation agree within 3 %. Both use the same views of the head, for more than half of
+    // the views of figures 7 and 7b.
     let bench = Bench::new(Level::Analytic).with_mig(6, 150);
     for row in varied() {
         let value = bench.measure(row.id).expect("it runs").value;

@@ -4,7 +4,8 @@ use address_recalculation::priority::{Cell, Cells, Falloff, Objects, PriorityTim
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// Parameters of the specification's examples: rings of equal width, cells of 5 m, and a threshold of 90/512 degrees.
+/// Parameters of the cases that were computed by hand: rings of equal width, cells of 5 m, and a threshold of 90/512
+/// degrees.
 const EQUAL_RINGS: PriorityTiming =
     PriorityTiming { theta_deg: 90.0 / 512.0, ring_growth: 1, cell_m: 5.0, falloff_m: 5.0, ..PriorityTiming::PAPERS };
 const FRAME_M: f64 = 1.0 / 60.0;
@@ -17,8 +18,8 @@ fn at(x: f64, z: f64) -> DVec3 {
     DVec3::new(x, 1.7, z)
 }
 
-/// Returns the number of updates of each memory along a path, without the first frame. Also returns how often cells
-/// were assigned anew.
+/// Returns the number of updates of each memory along a path, without the first frame. Also returns the number of new
+/// assignments of cells.
 fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64) {
     let mut updates = vec![0; 8];
     let mut deals = 0;
@@ -30,8 +31,8 @@ fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64)
     (updates, deals)
 }
 
-/// Returns the update rates of the memories over two minutes of straight walking at 1 m/s. The path has a given heading
-/// and lateral position.
+/// Returns the update rates of the memories over two minutes of straight walking at 1 m/s. `heading` is the direction
+/// of the path in radians, and `lane_m` is its distance to the side of a parallel line through the origin.
 fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
     let timing = PriorityTiming { cell_m: side_m, ..EQUAL_RINGS };
     let mut cells = Cells::new(&timing, square(60), false);
@@ -44,10 +45,11 @@ fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
     [0, 1, 2, 3].map(|k| updates[k] as f64 / 120.0)
 }
 
-/// Compares rates with E5. Table 1 prints 60.00, 39.25, 28.21 and 16.15 Hz, but not the path.
+/// Compares rates with experiment E5 of docs/address-recalculation.md. The paper's table 1 has 60.00, 39.25, 28.21 and
+/// 16.15 Hz, but not the path.
 ///
-/// With cells of 5 m, fitted to the second rate, the specification's simulation gives 37 to 41, 24 to 30 and 17 to 20
-/// Hz. It misses the printed rates by 10 to 14 percent (root mean square). Walks that cross cells diagonally do the
+/// Cells of 5 m fit the second rate. An independent simulation with such cells gave 37 to 41, 24 to 30 and 17 to 20 Hz.
+/// It misses the rates of the paper by 10 to 14 percent (root mean square). Walks that cross cells diagonally do the
 /// same.
 #[test]
 fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
@@ -316,15 +318,15 @@ fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
     assert_eq!((update.together, cells.dealing().memory(Cell { x: 2, z: 0 })), (vec![true, true, false, false], 0));
 }
 
-/// E4 has point objects, uniform on a disc of 100 m around a walker.
+/// Experiment E4 has point objects, uniform on a disc of 100 m around a walker.
 ///
-/// 60 x objects / draws is 6.01 at 1 m/s with four memories, and 13.40 at 0.37 m/s with five.
+/// The quotient 60 x objects / draws is 6.01 at 1 m/s with four memories, and 13.40 at 0.37 m/s with five memories.
 #[test]
 fn far_objects_are_drawn_seldom() {
     let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
     for (speed, memories, expected) in [(1.0, 4, 6.01), (0.37, 5, 13.40)] {
         let objects = 20_000;
-        // Distance of the n-th of many rings with equal area.
+        // Distance of object n if all objects cover rings of equal area.
         let periods: Vec<f64> = (0..objects)
             .map(|n| threshold.way(100.0 * ((f64::from(n) + 0.5) / f64::from(objects)).sqrt()) / speed)
             .collect();

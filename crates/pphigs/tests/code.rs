@@ -331,7 +331,6 @@ fn one_pass_for_both_eyes_writes_the_native_words_of_each_eye() {
     }
 }
 
-/// If the left eye cannot draw a structure, the structure must have commands only for the right eye.
 #[test]
 fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
     let mut view = view();

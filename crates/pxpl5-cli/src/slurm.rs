@@ -300,15 +300,17 @@ mod tests {
     #[test]
     fn resources_follow_the_formulas() {
         let one = Resources::of(SAMPLED, None, 1);
-        // 60 + 5 (18,000 / 21 + 3) = 4,361 s; 2 x 40 MB; 60 + 40e-6 x 20,000 = 60.8 s; 50 + 0.32 + 0.67 MB.
+        // Time 60 + 5 (18,000 / 21 + 3) = 4,361 s; memory 2 x 40 MB. To merge: time 60 + 40e-6 x 20,000 = 60.8 s;
+        // memory 50 + 0.32 + 0.67 MB.
         let expected =
             Resources { tasks: 21, threads: 1, minutes: 73, megabytes: 80, merge_minutes: 2, merge_megabytes: 51 };
         assert_eq!(one, expected);
-        // Four threads: 4,500 s of work are 5 tasks, and 7 is the next number; 60 + 5 (4,500 / 7 + 3) = 3,289 s.
+        // On four threads, 4,500 s of work are 5 tasks. The next allowed number is 7, which gives 60 + 5 (4,500 / 7 +
+        // 3) = 3,289 s.
         let four = Resources::of(SAMPLED, None, 4);
         assert_eq!((four.tasks, four.minutes, four.megabytes), (7, 55, 320));
         let said = Resources::of(SAMPLED, Some(10), 1);
-        // 60 + 5 (1,800 + 3) = 9,075 s.
+        // Ten tasks take 60 + 5 (1,800 + 3) = 9,075 s.
         assert_eq!((said.tasks, said.minutes), (10, 152));
     }
 

@@ -13,7 +13,7 @@ fn with<'a>(first: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
     [first, more].concat()
 }
 
-/// Asserts that a command is refused with this exit code, and that standard error contains all given texts.
+/// Asserts that a command is refused with the exit code `code`, and that standard error contains all texts in `says`.
 fn refused(args: &[&str], code: i32, says: &[&str]) {
     let folder = Folder::new(&format!(
         "refused-{:x}",

@@ -16,7 +16,6 @@ const SIZE: [u32; 2] = [1280, 1024];
 const GRID: RegionGrid = RegionGrid { width: 1280, height: 1024, region_width: 128, region_height: 128 };
 /// Time of a word on the ring.
 const WORD: Span = Span::from_ns(50);
-/// Number of picoseconds in a second.
 const SECOND: u128 = 1_000_000_000_000;
 
 /// A pixel source whose colours encode region and row.
@@ -293,7 +292,7 @@ fn invalid_panel_numbers_are_refused_with_the_expected_range() {
     ] {
         assert_eq!(DisplayConfig::check(&config).expect_err("refused").to_string(), expected);
     }
-    // The rules that relate several numbers also apply to numbers without a table.
+    // `PanelNumbers` were not checked against the table of parameters, so their own rules must refuse a zero.
     for (zero, name) in [
         (PanelConfig { width: 0, ..PanelConfig::PAPERS }, "width"),
         (PanelConfig { height: 0, ..PanelConfig::PAPERS }, "height"),

@@ -39,7 +39,6 @@ fn accepted(batch: u64, place: u64) -> GpEvent {
     GpEvent::Accepted(batch << PLACE_BITS | place)
 }
 
-/// A board on its test bench.
 struct Rig {
     board: GpBoard,
     bench: TestBench<GpEvent, GpOutput>,
@@ -53,7 +52,6 @@ impl Rig {
         Self { board: GpBoard::new(BOARD, timing, CYCLE), bench }
     }
 
-    /// Adds a program.
     fn with<F>(mut self, priority: Priority, program: impl FnOnce(Gp) -> F) -> Self
     where
         F: Future<Output = Result<(), Fault>> + 'static,
@@ -63,7 +61,6 @@ impl Rig {
         self
     }
 
-    /// Adds an event at an instant.
     fn fed(mut self, at_ns: u64, event: GpEvent) -> Self {
         self.bench.feed(ns(at_ns), Phase::Arrive, event);
         self

@@ -470,7 +470,7 @@ mod tests {
                 let expected = f64::from(x) + shift(if is_near(from[0], from[1]) { near } else { far });
                 assert!((f64::from(from[0]) - expected).abs() <= 1.0 && from[1] == y, "{step}: {x} {y} {from:?}");
             }
-            // Beside the near plane on its right, and at the right edge of the picture.
+            // The empty columns lie to the right of the near plane, and at the right edge of the picture.
             let expected = (shift(near) - shift(far)) * 200.0 + shift(far) * 480.0;
             let rounding = f64::from(200 + 480);
             assert!((empty as f64 - expected).abs() <= rounding, "{step}: {empty} for {expected}");

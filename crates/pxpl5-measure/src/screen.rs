@@ -129,7 +129,7 @@ mod tests {
     fn a_line_shows_its_own_field() {
         let odd = target(Lines::Field(FieldParity::Odd), 7);
         let screen = screen([(10, odd)]);
-        // Row 128 of a field, of 256: line 257 of the frame.
+        // Row 128 of an odd field of 256 rows is line 257 of the frame.
         assert_eq!(screen.shown(128, 257, PeriodNumber(0), Time(10)), Some(odd));
         assert_eq!(screen.shown(128, 256, PeriodNumber(0), Time(10)), None);
     }

@@ -17,7 +17,6 @@ use tracking::predict::{PredictorConfig, PredictorKind};
 use tracking::tracker::TrackerConfig;
 use tracking::{Pose, SettingSink};
 
-/// Number of fields of a run.
 const FIELDS: u64 = 45;
 
 /// Duration of an NTSC line.
@@ -99,7 +98,7 @@ impl Run {
     fn new(pipeline: &'static str, aim: Aim, motion: impl Motion + Send + Sync + 'static) -> Self {
         let registry = Registry::of_papers();
         let built = (registry.pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
-        // The closed form needs a given baseline, so the predictor is not tuned.
+        // The closed form needs the baseline of the predictor, so the predictor is not tuned.
         let tracker = TrackerConfig::ideal();
         let predictor = PredictorConfig::for_tracker(PredictorKind::ConstantVelocity, &tracker);
         let head = Head::predicted_by(Arc::new(motion), tracker, predictor, 1);
@@ -273,7 +272,7 @@ fn a_fast_pan_leaves_only_the_scan_out_error_of_pictures_drawn_for_one_instant()
 #[derive(Clone, Copy, Debug)]
 struct Shaking;
 
-/// So small that the square of the speed is negligible (see above).
+/// Amplitude so small that the square of the speed is negligible.
 const AMPLITUDE_DEG: f64 = 0.1;
 const HZ: f64 = 0.5;
 
@@ -312,8 +311,8 @@ fn the_error_of_a_sinusoid_is_its_distance_from_a_straight_line_plus_scan_out() 
         if pipeline.contains("dual") {
             continue;
         }
-        // With prediction turned off as a cause, the exact motion replaces it. Between two views the motion is not a
-        // straight line.
+        // If prediction is removed as a cause of the error, the exact motion replaces it. Between two views the motion
+        // is not a straight line.
         let scanned = |content: &Content, at: f64| yaw(at) - yaw(content.drawn_for);
         let errors = PixelErrors::without(&run.outcome, Showing::Plain, Cause::Prediction);
         run.check_errors(&errors, run.expected(scanned), 1e-3);

@@ -65,7 +65,7 @@ fn practically_all_energy_of_yaw_lies_below_2_hz_and_95_percent_below_0_14_hz() 
     let yaw = (0..count).map(|i| {
         let f = forward(&motion.pose(i as u64 * SECOND / 8));
         let angle = (-f.x).atan2(-f.z);
-        // Unwrapped: the next turn is the nearest one.
+        // Unwrap the angle: a turn between two samples is less than half a circle.
         previous +=
             (angle - previous + 3.0 * std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
         previous
@@ -168,7 +168,7 @@ fn boxed_share(scene: &Scene, time_ps: u64) -> f32 {
 
 #[test]
 fn mig_varies_between_filling_the_view_and_being_small() {
-    // Each at least a twentieth of two laps.
+    // The model is large in at least a twentieth of two laps, and small in another twentieth.
     let mig = builtin("mig").expect("a built-in scene");
     let shares: Vec<f32> = (0..80).map(|i| boxed_share(&mig, i * SECOND / 2)).collect();
     assert!(shares.iter().filter(|&&s| s > 0.9).count() >= 4, "{shares:?}");

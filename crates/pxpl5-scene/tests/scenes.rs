@@ -34,7 +34,8 @@ fn each_scene_has_the_stated_number_of_primitives() {
     assert_eq!(counts("full-screen:1"), (1, 0));
     assert_eq!(counts("aircraft"), (100, 0));
     assert_eq!(counts("typical:37"), (37, 0));
-    // Six sides of two triangles, ten boxes without a lower side; 30 whole boxes and ten more without.
+    // The room has six sides of two triangles, and ten boxes without a lower side. The full scene has 30 whole boxes
+    // and ten more boxes without a lower side.
     assert_eq!(counts("gallery"), (6 * 2 + 10 * 10, 0));
     assert_eq!(counts("gallery:full"), (112 + 30 * 12 + 10 * 10, 0));
 }
@@ -94,7 +95,7 @@ fn every_edge_of_the_head_is_used_once_in_each_direction() {
             *edges.entry(edge).or_default() += 1;
         }
     }
-    assert_eq!(edges.len(), 3 * 59_592); // each once
+    assert_eq!(edges.len(), 3 * 59_592); // each directed edge once
     assert!(edges.keys().all(|&(a, b)| edges.contains_key(&(b, a))));
     // Euler: a surface without holes has V - E + F = 2.
     assert_eq!(head.vertices().len() as i64 - edges.len() as i64 / 2 + 59_592, 2);
@@ -178,7 +179,7 @@ fn the_ailerons_of_mig_deflect_oppositely() {
         sum_of_heights(&mig, 1, early) > sum_of_heights(&mig, 1, 0)
             && sum_of_heights(&mig, 2, early) < sum_of_heights(&mig, 2, 0)
     );
-    // The right one is the mirror image of the left one half a swing later.
+    // The right structure is the mirror image of the left structure half a swing later.
     assert!((sum_of_heights(&mig, 1, early) - sum_of_heights(&mig, 2, late)).abs() < 1e-5);
     assert!((sum_of_heights(&mig, 1, late) - sum_of_heights(&mig, 2, early)).abs() < 1e-5);
 }

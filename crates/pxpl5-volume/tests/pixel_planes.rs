@@ -154,8 +154,8 @@ fn clocks_and_words_follow_from_the_programs() {
     assert!((f64::from(clears) / 40e6 * 1e3 - 11.05).abs() < 0.005);
 }
 
-/// Checks the specification's numbers. A tile takes 7.2 us on the ring. 10 % of the tiles of 198 slices take 82 ms of
-/// one channel, or 10.3 ms of eight. Renderers and processors divide their work.
+/// Checks numbers that were computed by hand. A tile takes 7.2 us on the ring. 10 % of the tiles of 198 slices take 82
+/// ms of one channel, or 10.3 ms of eight. Renderers and processors divide their work.
 #[test]
 fn bounds_follow_from_counts() {
     let bounds = SliceBounds { work: RendererWork::default(), tiles: 11_405, tile_words: 128, copies: 0 };

@@ -25,7 +25,7 @@ fn drawn(settings: &VolumeSettings) -> Volume {
     Volume::draw(settings, &mig(), &OneThread).expect("valid")
 }
 
-/// Fields that every report must have, from section 9 of the specification.
+/// Fields that every report must have.
 const FIELDS: [&str; 35] = [
     "display",
     "clip",
@@ -86,7 +86,7 @@ fn counts_follow_from_the_display() {
     assert_eq!(report.bytes_packed, 36 * 128 * 96 / 2);
     assert!((report.waste_percent - 90.625).abs() < 1e-9);
     assert_eq!((report.queries, report.stencil_clears), (9 * 12, 9));
-    // A packed tile has 32 x 32 / 2 bytes, of each of 4 slices; the map of 12 tiles has 2 bytes.
+    // A packed tile has 32 x 32 / 2 bytes in each of 4 slices. The map of 12 tiles has 2 bytes.
     assert_eq!(report.bytes_sent, report.tiles_occupied * 4 * 512 + 9 * 2);
     assert_eq!(report.draws_unbinned, 36 * report.triangles);
     let rings: u64 = report.brightness_by_radius.lit_voxels.iter().sum();

@@ -49,7 +49,8 @@ fn case_8_a_pixel_is_seen_at_the_position_of_its_voxel() {
         let place = camera.project(world);
         assert!((place[0] - expected[0]).abs() < 6e-5 && (place[1] - expected[1]).abs() < 6e-5, "{place:?}");
         let light = view_planes(&planes, &camera, PLAIN, &OneThread).expect("valid");
-        // Bilinear: the light's centre is the place itself, to 1/256 px and 1/255 of brightness.
+        // With bilinear interpolation, the centre of the light is the exact position, to 1/256 px and 1/255 of
+        // brightness.
         let found = centre(&light.picture(255.0));
         assert!((found[0] - expected[0]).abs() < 0.01 && (found[1] - expected[1]).abs() < 0.01, "{found:?}");
         assert!(light.total().iter().all(|sum| (sum - 1.0).abs() < 1e-9), "one pixel's light");
@@ -85,7 +86,8 @@ fn the_second_half_turn_shows_the_same_voxels() {
 #[test]
 fn a_cutaway_leaves_out_a_range_of_angles() {
     let camera = case_8(10.0, 20.0);
-    // The voxel of case 8 is at 30 degrees from +x to +z; the voxel of the mirrored pixel is at 210.
+    // The voxel of the numbered case 8 is at 30 degrees from +x to +z. The voxel of the mirrored pixel is at 210
+    // degrees.
     let total = |x: u32, cut: [f64; 2]| {
         let options = ViewOptions { cut_deg: Some(cut), ..PLAIN };
         view_planes(&one_pixel(33, x, 283), &camera, options, &OneThread).expect("valid").total()[0]

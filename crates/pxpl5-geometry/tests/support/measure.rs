@@ -11,7 +11,6 @@ use std::ops::RangeInclusive;
 /// Finer and coarser grids with which the formats are tested, in bits of subpixels.
 pub const SUBPIXEL_BITS: [u32; 6] = [0, 2, 4, 6, 8, 12];
 
-/// Measurements of one case.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
     pub triangles: usize,

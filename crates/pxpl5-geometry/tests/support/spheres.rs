@@ -15,14 +15,12 @@ use pxpl5_wire::format;
 const NEAR: f32 = 1.0;
 const FAR: f32 = 16_384.0;
 
-/// A family of spheres.
 #[derive(Clone, Debug)]
 pub struct SphereCase {
     pub name: &'static str,
     pub spheres: Vec<WorldSphere>,
 }
 
-/// Measurements of one family.
 #[derive(Clone, Debug, Default)]
 pub struct SphereRow {
     pub spheres: usize,

@@ -238,7 +238,7 @@ mod tests {
     fn intervals_of_correlated_series_cover_the_true_mean_at_their_confidence() {
         const SERIES: u64 = 200;
         let true_mean = 20.0;
-        // None for a series that seems to have fewer than ten blocks.
+        // The result is `None` for a series that seems to have fewer than ten blocks.
         let covers = |seed: u64| {
             let series: Vec<f64> = ar1(0.8, 600, mix(seed + 991)).iter().map(|x| x + true_mean).collect();
             let mean = series.iter().sum::<f64>() / series.len() as f64;
@@ -248,7 +248,7 @@ mod tests {
         let covering: Vec<bool> = (0..SERIES).filter_map(covers).collect();
         assert!(covering.len() as u64 > SERIES * 9 / 10, "{} of {SERIES} series have an interval", covering.len());
         let share = covering.iter().filter(|covers| **covers).count() as f64 / covering.len() as f64;
-        // Two standard errors of 200 draws are 0.03; a finite series loses some more.
+        // Two standard errors of 200 draws are 0.03. The bootstrap of a finite series covers a little less.
         assert!((0.87..=0.98).contains(&share), "{share}");
     }
 

@@ -258,7 +258,7 @@ mod tests {
 
     #[test]
     fn the_answer_lies_below_an_island() {
-        // The sizes 796 to 806 miss because of an almost empty clump. 807 does not miss.
+        // The sizes 796 to 806 miss the goal because of an almost empty clump. The size 807 reaches the goal.
         for near in [None, Some(700), Some(807), Some(900)] {
             let hints = Hints { near, ..Hints::default() };
             let found = with(CEILING, &hints, |size| size <= 795 || size == 807);

@@ -147,9 +147,9 @@ fn torn(outcome: &Outcome) -> usize {
     [CubeFace::NegX, CubeFace::NegZ, CubeFace::PosX].into_iter().filter_map(of_face).sum()
 }
 
-/// E7 on the machine: pieces that were drawn from different positions leave gaps, and warped pieces do not. A memory
-/// that begins 6 m away may be wrong by 3 degrees, which is 8.5 texels. The papers' angle, half a texel, would be
-/// visible in few fields.
+/// Experiment E7 on the machine: pieces that were drawn from different positions leave gaps, and warped pieces do not.
+/// A memory that begins 6 m away may be wrong by 3 degrees, which is 8.5 texels. The papers' angle, half a texel, would
+/// be visible in few fields.
 #[test]
 fn segments_tear_without_warping_and_meet_with_it() {
     let plain = along_the_wall(CELLS, 3.0);

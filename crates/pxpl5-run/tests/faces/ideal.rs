@@ -70,7 +70,6 @@ fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
     }
 }
 
-/// The renderer of the faces does not affect rotation.
 #[test]
 fn the_latency_of_a_turn_is_that_of_faces_drawn_by_the_machine() {
     for latch in [Latch::Field, Latch::Line, Latch::Pixel] {

@@ -66,7 +66,8 @@ fn a_host_predicts_for_every_line_or_for_as_many_pixels_as_its_link_allows() {
         let tuned = outcome.head().expect("tracked").head();
         let ahead_ms =
             |training: Option<&tracking::predict::Training>| training.expect("tuned").interval_ps / 1_000_000_000;
-        // 33 ms of the tracker and up to one field, compared with TRANSFORM, RENDER, COPY and retraces in addition.
+        // For turns, pictures are predicted by the 33 ms of the tracker and up to one field. For positions, TRANSFORM,
+        // RENDER, COPY and the waits for retraces are additional.
         assert!((33..=60).contains(&ahead_ms(tuned.training_of_turns())), "{:?}", tuned.training_of_turns());
         assert!(ahead_ms(tuned.training()) > ahead_ms(tuned.training_of_turns()));
     }

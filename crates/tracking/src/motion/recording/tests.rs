@@ -275,7 +275,7 @@ fn samples_made_by_a_program_are_checked_like_samples_of_a_file() {
     let at = |s: f64| (s, Pose { position: DVec3::new(s.sin(), 1.7, -0.1), ..Pose::IDENTITY });
     let given = Recording::from_samples([at(0.0), at(0.125), at(1.0 / 3.0)]).expect("samples");
     assert_eq!((given.n_samples(), given.span_ps()), (3, (0, 333_333_333_333)));
-    // The numbers stay the same bits.
+    // The stored numbers keep all of their bits.
     assert_eq!(given.pose(125_000_000_000), at(0.125).1);
     let turned = Pose { orientation: glam::DQuat::from_xyzw(0.0, 0.0, 0.0, 2.0), ..Pose::IDENTITY };
     for (samples, says) in [
