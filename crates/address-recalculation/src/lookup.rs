@@ -91,7 +91,7 @@ impl<'a> Addressing<'a> {
             if is_filled {
                 batch.inside().for_each(|index| self.mark_square(index, touched));
             }
-            // The others are computed one by one.
+            // The other footprints are computed one by one.
             for i in (0..here.len()).filter(|i| !is_filled || batch.leaves(*i)) {
                 self.mark_footprint(vectors.map(|axis| axis[i]), matrix, touched);
             }
@@ -301,7 +301,7 @@ impl Drop for Lookup<'_> {
             colours: std::mem::take(&mut self.composed.colours),
             is_done: std::mem::take(&mut self.composed.is_done),
         };
-        // The access fails only while the thread ends. Then the buffer is dropped.
+        // The thread-local variable is unavailable only while the thread ends. Then the buffer is dropped.
         let _ = SPARE.try_with(|spare| spare.set(Some(left)));
     }
 }

@@ -73,7 +73,7 @@ impl WalkTally {
         for (memory, tally) in self.memories.iter_mut().enumerate() {
             tally.missed += u64::from(outcome.missed[memory]);
             let Some(content) = &simulation.shown()[memory] else { continue };
-            // Contents and age of what the memory shows.
+            // Count the contents and the age of the picture that the memory shows.
             let segments = content.segments.len() as u64;
             tally.segment_frames += segments;
             tally.age_m += content.eye.distance(outcome.eye);

@@ -153,13 +153,13 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
     // Joint: machines with all parameters drawn at random.
     let joint = crate::parallel::map(&samples, |sample| measure(&bench, draw(&variations, *sample)));
     let neighbours = bench.reading.neighbours();
-    // Interpretations: one question answered otherwise.
+    // Interpretations: another answer to one question at a time.
     let read = crate::parallel::map(&neighbours, |reading| measure(&bench.with(*reading), Vec::new()));
     // After a stop, values are missing.
     if bench.stop.is_stopped() {
         return Vec::new();
     }
-    // Collect the designs for each figure. A missing value counts as the value for the presets.
+    // Collect the three kinds of values for each figure. A missing value counts as the value for the presets.
     let mut intervals = Vec::new();
     for (index, figure) in FIGURES.iter().enumerate().filter(|(_, figure)| !WITHOUT_CLOSED_FORM.contains(&figure.id)) {
         let nominal = nominal[index].unwrap_or(f64::NAN);

@@ -245,7 +245,7 @@ impl Target {
         let [top, bottom] = [&pairs.rows[0][..count], &pairs.rows[1][..count]];
         let [near, far] = [&pairs.near[..count], &pairs.far[..count]];
         for x in 1..count {
-            // Corners behind the eye have no finite depth, and are no surface.
+            // Corners behind the eye have no finite depth and belong to no surface.
             let farthest = far[x - 1].max(far[x]);
             let is_surface = farthest < f32::INFINITY && farthest <= near[x - 1].min(near[x]) * SAME_SURFACE;
             if !is_surface {

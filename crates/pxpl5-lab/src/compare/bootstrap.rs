@@ -165,7 +165,7 @@ fn block_length(series: &[f64]) -> usize {
         |lag: usize| (lag + 1..=lag + run).all(|k| covariances.get(k).is_none_or(|c| c.abs() < bound * covariances[0]));
     let flat_from = (0..=greatest).find(|lag| is_flat(*lag)).unwrap_or(greatest);
     let window = (2 * flat_from).clamp(1, greatest);
-    // The flat-top window is 1 up to the half, then falls to 0.
+    // The flat-top window is 1 up to half of its length, then falls to 0.
     let weight = |lag: usize| (2.0 * (1.0 - lag as f64 / window as f64)).clamp(0.0, 1.0);
     let weighted = |of: fn(f64) -> f64| {
         let both_sides: f64 = (1..=window).map(|lag| weight(lag) * of(lag as f64) * covariances[lag]).sum();

@@ -59,7 +59,7 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
     let patched = TrackerConfig::fastrak();
     let polled = patched.clone().with_polling_by(&Tables::PAPERS);
     let mut waits_ms = Vec::new();
-    // Each seed gives the kernel another phase relative to the tracker.
+    // With each seed, the polls of the operating system have another phase relative to the tracker.
     for seed in 1..=SEEDS {
         let arrivals = |config: &TrackerConfig| {
             let reports: Vec<TrackerReport> =
