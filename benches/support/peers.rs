@@ -108,7 +108,7 @@ impl Euc {
     }
 }
 
-/// A vertex of `retrofire`: its number.
+/// A vertex for `retrofire` is the number of a vertex of the scene.
 type Numbered = u32;
 
 pub(crate) struct Retrofire {

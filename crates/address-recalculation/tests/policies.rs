@@ -86,8 +86,8 @@ fn an_eye_that_stays_in_place_needs_no_updates_however_the_head_turns() {
     }
 }
 
-/// The margin before a new assignment lies between 0 and D_3. For a = 5 m, D_3 is at least 46.0 mm (15 m x 2 sin(theta
-/// / 2)).
+/// Cells are assigned again after the eye has moved beyond its cell by a margin between 0 and D_3, the allowed movement
+/// for memory 3. For cells of 5 m, D_3 is at least 46.0 mm (15 m x 2 sin(theta / 2)).
 #[test]
 fn moving_to_and_fro_across_a_border_assigns_objects_at_most_once() {
     let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
@@ -165,8 +165,9 @@ fn a_warped_border_is_closed_in_every_frame() {
 }
 
 proptest! {
-    /// If updates take no time, nothing in memory k is off by more than asin(D_k / d_k). This is theta, except for the
-    /// chord rule.
+    /// If updates take no time, no point in memory k has a larger error than asin(D_k / d_k). D_k is the allowed
+    /// movement of the eye, and d_k is the distance at which memory k begins. This error is theta, except for the chord
+    /// rule.
     #[test]
     fn no_point_is_ever_wrong_by_more_than_the_threshold(
         steps in prop::collection::vec((-0.05..0.05_f64, -0.05..0.05_f64), 1..200),
@@ -308,7 +309,7 @@ fn distances_can_be_limited_to_cells_with_objects() {
     }
 }
 
-/// The only occupied cell is two rings away in memory 1, and later one ring away in memory 0.
+/// The only occupied cell is first two rings away, in memory 1, and then one ring away, in memory 0.
 #[test]
 fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
     let mut cells = Cells::new(&EQUAL_RINGS, [Cell { x: 2, z: 0 }], false);

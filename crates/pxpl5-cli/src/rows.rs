@@ -142,7 +142,7 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
 /// this path, an object in a list is named by its member `cause` or `kind`.
 fn flatten(path: &str, value: Value, row: &mut Row) {
     match value {
-        // A row without a bootstrap keeps the column of rows.csv.
+        // A row without a bootstrap still has this column of rows.csv.
         Value::Null if path == "error.bootstrap" => row.push((format!("{path}.block_fields"), Value::Null)),
         Value::Object(inner) => {
             for (key, value) in inner {

@@ -11,7 +11,8 @@ use support::{Board, MESSAGE, colour, n_parts, target};
 
 const FIELDS: u64 = 8;
 
-/// The arrival time of a region, given by one word of the region. `later` is the time from the beam to this word.
+/// The arrival of a region relative to the beam, given for one word of the region. `later` is the time from the beam to
+/// this word.
 #[derive(Clone, Copy, Debug)]
 struct Met {
     field: u64,

@@ -60,7 +60,7 @@ P_ONE       = 344         // 1.0
 P_TWO23     = 348         // 2^23
 P_LEAST_W   = 352         // words: least and greatest w, as in P_GUARD
 P_MOST_W    = 356
-P_NEARLY    = 360         // 20 << 23, to test w <= (w - z) * 2^20: the bits of singles are nearly logarithms
+P_NEARLY    = 360         // 20 << 23, which is added to the bits of w - z to test w <= (w - z) * 2^20: these bits are nearly a logarithm
 P_ROUND_LINE = 364        // 1.5 * 2^23, minus 16 in a field that begins with line 1
 P_DEPTH_BIAS = 368        // double: 1.5 * 2^52 + near
 P_ROUND56   = 376         // double: 1.5 * 2^56

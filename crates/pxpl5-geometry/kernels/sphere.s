@@ -182,7 +182,7 @@ component: ld.b 0(r9), r8
         ixfr    r30, f29
         fsub.dd f28, f10, f28               // the component
         fld.d   S_DIFFUSE(r20), f30
-        fmul.dd f28, f30, f12               // what the root contributes
+        fmul.dd f28, f30, f12               // part of the root
         fld.d   TOWARDS(r2), f8
         fmul.dd f12, f8, f12
         fld.d   S_256(r20), f8

@@ -363,7 +363,7 @@ fn a_snapshot_shows_each_account_of_the_memory() {
         for (bytes, account) in (1..).zip(Account::ALL) {
             gp.reserve(account, bytes, None)?;
         }
-        // Contexts alternate, so number 2 is context 0.
+        // The numbers use contexts 0 and 1 in turn, so number 2 uses context 0.
         gp.reserve(Account::Commands(2), 30, None)?;
         gp.reserve(Account::Bins(3), 60, None)
     });
@@ -463,8 +463,8 @@ fn answers(orders: &[Order], foreground: &[u64], delays: &[u64]) -> (Vec<(Time, 
     (sent.collect(), rig.board.busy())
 }
 
-/// Reception and work take 0.3 us together, and then each message follows. The second message begins at the acceptance
-/// of the first message, which is a cycle and 0.1 us after the end of the first message's software.
+/// Reception and work take 0.3 us together, and the messages follow. The second message begins at the acceptance of the
+/// first message. This is a cycle and 0.1 us after the end of the first message's software.
 #[test]
 fn an_answer_takes_the_time_of_one_received_and_of_each_sent_message() {
     for (count, expected_ns) in [(0, vec![3_300]), (1, vec![3_300, 4_300]), (2, vec![3_300, 4_425, 5_425])] {

@@ -1,4 +1,5 @@
-//! Tests of a moving head before the volume: errors of a late head-mounted display, and errors of voxels.
+//! Tests of a head that moves in front of the volume: errors of a head-mounted display with latency, and errors of
+//! voxels.
 
 use pxpl5_scene::builtin;
 use pxpl5_sim::parameters::PathSettings;

@@ -108,7 +108,8 @@ fn a_cutaway_leaves_out_a_range_of_angles() {
 
 #[test]
 fn lamberts_factor_is_the_cosine_between_screen_and_eye() {
-    // Seen along +z from afar, slice k's screen has e_s = (-sin, 0, cos): |view . e_s| is about |cos theta|.
+    // Seen along +z from far away, the screen of slice k has the normal e_s = (-sin, 0, cos), so |view . e_s| is about
+    // |cos theta|.
     let camera = Camera { azimuth_deg: 0.0, elevation_deg: 0.0, distance: 1e6, focal: 5e5, size: [512, 512] };
     let lambert = ViewOptions { lambert: true, ..PLAIN };
     for k in [0, 33, 66, 99, 150] {

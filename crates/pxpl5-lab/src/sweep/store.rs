@@ -249,7 +249,7 @@ pub(crate) fn lock(folder: &Path) -> Result<File, FileError> {
             let reason = "another process is writing here; wait for it, or choose another folder";
             Err(FileError::because(FileErrorKind::Locked, reason).in_file(folder.display()))
         }
-        // On a file system without locks, a sweep without protection is better than no sweep.
+        // If the file system has no locks, the sweep continues without protection.
         _ => Ok(file),
     }
 }

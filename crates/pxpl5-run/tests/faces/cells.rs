@@ -187,7 +187,8 @@ fn far_cells_are_drawn_less_often_than_near_ones() {
     let updates = |outcome: &Outcome| (0..4).map(|k| memory(outcome.record(), k).stats().swaps).collect::<Vec<_>>();
     let [plain, warped] = [&plain, &warped].map(updates);
     println!("updates {plain:?} {warped:?}");
-    // With warping, the memories of a cycle are shown together, so the fastest memory waits for the others.
+    // With warping, memories that are drawn in one cycle are shown together, so the fastest memory waits for the slower
+    // memories.
     assert!(warped[0] <= plain[0]);
     let ideal = updates_by_the_rule(200);
     println!("by the rule {ideal:?}");

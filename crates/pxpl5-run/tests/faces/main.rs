@@ -136,7 +136,8 @@ fn copying_all_regions_takes_only_the_time_of_the_ports() {
         let (copies, of_each) = copies(texels, packed);
         assert!(of_each.abs_diff(regions) <= 1, "{of_each} regions of {regions}");
         let fastest = copies.iter().map(|span| span.as_ms()).fold(f64::INFINITY, f64::min);
-        // The port is busy from the first to the last region of an update, except before the last region.
+        // From the first to the last region of an update, the port is always busy, except for a wait before the last
+        // region.
         assert!(copies.iter().skip(1).all(|span| span.as_ms() >= 0.999 * port_ms || texels == 512), "{copies:?}");
         assert!(fastest >= 0.5 * port_ms && fastest <= 1.05 * port_ms, "{texels}: {fastest} {port_ms}");
     }

@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn in_the_long_run_the_mean_age_of_a_pixel_is_half_a_pass() {
-        // Ages in steps after each update of the third pass; at any moment they are 0..n-1, mean (n - 1) / 2.
+        // After each update of the third pass, the ages of the pixels are 0 to n - 1 steps. Their mean is (n - 1) / 2.
         let n = 1000u64;
         let order = RandomOrder::new(n as u32, 3).unwrap();
         let mut updated = vec![0; n as usize];
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn the_order_is_spread_over_the_picture() {
-        // The first 3,000 of 300,000 pixels: 300 +- 17 in each tenth of the picture.
+        // Each tenth of the picture contains 300 +- 17 of the first 3,000 of 300,000 pixels.
         let order = RandomOrder::new(300_000, 9).unwrap();
         let mut tenths = [0; 10];
         (0..3000).for_each(|step| tenths[(order.pixel(step) / 30_000) as usize] += 1);
