@@ -12,7 +12,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Displays of a pipeline, each with its periods in 2.5 s.
+/// Displays of a pipeline, each with its number of periods in 2.5 s.
 type Displays = &'static [(&'static str, i64)];
 
 /// Pipelines with a setting each, and the displays that they can draw for.

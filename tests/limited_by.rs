@@ -55,7 +55,7 @@ fn the_head_on_the_largest_machine_is_limited_by_one_renderer() {
     assert!(executing.max > 0.97 && executing.busiest == 0 && executing.idle == 9, "{executing:?}");
 }
 
-/// The followed latency is that of the report: from the start of TRANSFORM to the retrace.
+/// The latency along the critical path equals the latency of the report: from the start of TRANSFORM to the retrace.
 #[test]
 fn the_links_of_the_critical_path_add_up_to_the_latency() {
     let report = report("full-screen:12", (13, 5), 60);

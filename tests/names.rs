@@ -26,7 +26,7 @@ where
         let name = value.to_string();
         assert!(!name.is_empty() && names.insert(name.clone()), "{value:?}: {name:?} is empty or taken");
         assert_eq!(name.parse::<T>().unwrap_or_else(|error| panic!("{name}: {error}")), value);
-        // A name is found as a whole only.
+        // Only the complete name is accepted.
         for other in [format!("{name}x"), format!(" {name}"), String::new()] {
             let error = other.parse::<T>().expect_err("no name");
             assert!(!error.to_string().is_empty());

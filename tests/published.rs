@@ -144,7 +144,7 @@ fn every_row_names_its_source_and_every_miss_its_cause() {
 
 #[test]
 fn the_joint_sample_of_machines_lies_on_both_sides_of_the_presets() {
-    // The presets are not part of the sample, so its range could miss them.
+    // The presets are not part of the sample, so the range of the sample could miss their values.
     for interval in &FIGURES.intervals {
         let [low, high] = interval.joint;
         assert!(

@@ -1,4 +1,4 @@
-//! Short programs with the prelude alone: what a researcher writes first.
+//! Short programs with the prelude alone, like the first programs of a researcher.
 
 use pxpl5::prelude::*;
 use std::sync::Arc;

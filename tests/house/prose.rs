@@ -33,7 +33,7 @@ struct Counts {
     wide_lines: usize,
 }
 
-/// Fails if a count is above its limit, and names the places. The names help to find the new one.
+/// Fails if a count is above its limit, and names the places, among which is the new place.
 pub(crate) fn check(members: &[Crate]) {
     let mut counts = Counts::default();
     let mut places = Vec::new();

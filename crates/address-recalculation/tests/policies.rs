@@ -32,7 +32,7 @@ fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64)
 }
 
 /// Returns the update rates of the memories over two minutes of straight walking at 1 m/s. `heading` is the direction
-/// of the path in radians, and `lane_m` is its distance to the side of a parallel line through the origin.
+/// of the path in radians, and `lane_m` is the sideways distance of the path from the origin.
 fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
     let timing = PriorityTiming { cell_m: side_m, ..EQUAL_RINGS };
     let mut cells = Cells::new(&timing, square(60), false);
@@ -64,7 +64,7 @@ fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
     }
 }
 
-/// Along a row of cells, the distance to the nearest side of the border determines the rates.
+/// If the viewer walks along a row of cells, the distance to the nearest side of the border determines the rates.
 ///
 /// In the middle half of the row, all lateral positions give equal rates. Near the row's edge, the second memory is
 /// drawn in every frame. There, 2 x 5.3 m x sin(theta / 2) is less than the distance walked in a frame.
@@ -273,8 +273,8 @@ fn cells_are_assigned_again_when_the_eye_leaves_its_cell_and_the_slowest_memory_
 
 /// The eye walks through the middle of a hall of seven cells of 5 m.
 ///
-/// From the middle cell, the hall reaches three rings. The slowest of four memories is empty, and must not delay a new
-/// assignment.
+/// Around the middle cell, the hall has three rings of cells. The slowest of four memories is empty, and must not delay
+/// a new assignment.
 #[test]
 fn a_memory_without_cells_is_never_due_and_does_not_delay_an_assignment() {
     let timing = PriorityTiming { to_held_cells: 1, ..EQUAL_RINGS };
@@ -291,7 +291,7 @@ fn a_memory_without_cells_is_never_due_and_does_not_delay_an_assignment() {
     assert_eq!(cells.dealing().home, Cell { x: 3, z: 4 });
 }
 
-/// The hall has seven cells in a row along z, and the eye is in the last one, 2 m from the border to the next.
+/// The hall has seven cells in a row along z. The eye is in the last cell, 2 m from the border to the cell before.
 ///
 /// The nearest cell of ring 2 begins 5 m + 3 m behind the eye. The block's border in front is 7 m away (7.5 m to the
 /// sides), where no cell is occupied.

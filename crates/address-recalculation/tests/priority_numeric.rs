@@ -115,8 +115,8 @@ fn places_of_the_cube() -> impl Iterator<Item = DVec3> {
 
 /// Checks angles that follow from the symmetry of the cube.
 ///
-/// Seen along a corner, an edge's middle or a face's middle, the nearest direction of any face is again one of these.
-/// From an edge's middle, the opposite faces are 90 degrees away.
+/// If the viewer looks towards a corner, the middle of an edge or the middle of a face, the nearest direction of any
+/// face is again such a direction. From an edge's middle, the opposite faces are 90 degrees away.
 #[test]
 fn angles_agree_with_the_symmetry_of_the_cube() {
     for view in places_of_the_cube() {
@@ -147,7 +147,7 @@ fn case_22_borders_distances_and_periods() {
         near((way * 60.0).ceil(), frames, 0.0);
     }
     assert_eq!(dealing().distance(eye, 0), 0.0);
-    // A memory ends at the border where the slower memory begins.
+    // A memory ends at the border where the next slower memory begins.
     assert_eq!([0, 1, 2, 3].map(|k| dealing().to_slower(eye, k)), [Some(6.0), Some(11.0), Some(16.0), None]);
     assert_eq!(dealing().to_slower(at(99.0, 1.0), 1), Some(0.0), "outside");
     assert_eq!(dealing().distance(at(99.0, 1.0), 2), 0.0, "outside");

@@ -282,7 +282,7 @@ fn adjacent_contexts_keep_their_words_and_overlapping_contexts_are_refused() {
     assert!(
         (0..20).all(|region| of_code(&processor, &made, region, 30) == native(&passes[0], RegionId(region as u16)))
     );
-    // In the opposite order the lower context is rejected.
+    // If the contexts are placed in the opposite order, the lower context is rejected.
     let (mut processor, passes) = both_contexts(fits - 1);
     passes[1].run_code(&mut processor, 1).expect("it is alone");
     let error = passes[0].run_code(&mut processor, 0).expect_err("they would meet");

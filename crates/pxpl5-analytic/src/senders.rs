@@ -163,7 +163,7 @@ impl Renderer {
         let first = self.words_in;
         let last = first + command.words - 1.0;
         let mut complete = from_ns + command.words * word_ns;
-        // Departures make room for words one FIFO depth later.
+        // A word that leaves the FIFO makes room for the word that is one FIFO depth later.
         while let Some(room) = self.departures.front() {
             let made_room_for = room.first_word + depth_words;
             if made_room_for > last {

@@ -317,7 +317,7 @@ mod tests {
     #[test]
     fn an_array_fits_the_limit_of_slurm_and_no_task_is_empty() {
         let million = Sample { points: 1_000_000, mean_s: 10.0, ..SAMPLED };
-        // 11,112 tasks were wanted; 999 is the greatest number below 1,000 without the factors 2 and 5.
+        // The formula gives 11,112 tasks. The greatest number below 1,000 without the factors 2 and 5 is 999.
         assert_eq!(Resources::of(million, None, 1).tasks, 999);
         assert_eq!(Resources::of(Sample { points: 3, mean_s: 1e4, ..SAMPLED }, None, 1).tasks, 2);
         assert_eq!(Resources::of(Sample { points: 3, ..SAMPLED }, Some(9), 1).tasks, 3);
@@ -331,7 +331,7 @@ mod tests {
             assert_eq!(chosen.len() as u64, points.min(SAMPLE), "{points}");
             assert!(chosen.iter().all(|point| *point < points));
         }
-        // Axes of 10, the last of which changes fastest.
+        // All axes have 10 values, and the last axis changes fastest.
         for place in [1, 10, 100, 1_000] {
             for value in 0..10 {
                 let met = spread(10_000, SAMPLE).filter(|point| point / place % 10 == value).count();

@@ -168,7 +168,7 @@ fn a_comparison_is_a_point_for_each_pipeline() {
     );
 }
 
-/// Returns the outlines of hollow and of filled circles in a figure.
+/// Returns the number of hollow circles (if `is_hollow` is true) or of filled circles in a figure.
 fn circles(svg: &str, is_hollow: bool) -> usize {
     svg.lines().filter(|line| line.contains("<circle") && line.contains("fill=\"none\"") == is_hollow).count()
 }

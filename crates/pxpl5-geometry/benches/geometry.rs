@@ -117,7 +117,7 @@ fn transform(c: &mut Criterion) {
     group.finish();
 }
 
-/// Adds triangles that need no clipping to the lanes.
+/// Adds to the lanes those triangles that need no clipping.
 fn fill<'a>(lanes: &mut TriangleLanes<'a>, some: &[[u32; 3]], vertices: &'a [SurfaceVertex]) {
     lanes.clear();
     for corners in some {

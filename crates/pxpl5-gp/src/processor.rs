@@ -299,7 +299,7 @@ impl Processor {
             _ => (lower.as_ref().map_or(end_of_data, |lower| lower.end), self.memory_bytes()),
         };
         let first = first.next_multiple_of(LINE);
-        // Context 0 begins at the lowest line of the range, context 1 at the highest that fits.
+        // Context 0 begins at the lowest cache line of the range, and context 1 at the highest cache line that fits.
         let available_bytes = last.saturating_sub(first);
         let highest = last.checked_sub(bytes).map(|begin| begin / LINE * LINE).filter(|begin| *begin >= first);
         let no_room = ProcessorFault::NoRoom { gp: self.gp, context, needed_bytes: bytes, available_bytes };

@@ -95,7 +95,7 @@ fn messages_of_one_instant_are_processed_together_once() {
         }
     });
     rig = rig.fed(500, message(4)).fed(500, message(2)).fed(500, message(3)).fed(800, message(1));
-    // The first poll, four arrivals, and a poll for each of two instants.
+    // The events are the first poll, four arrivals, and a poll for each of two instants.
     assert_eq!(rig.events(), 1 + 4 + 2);
     assert_eq!(*notes.borrow(), [(ns(500), 2), (ns(500), 3), (ns(500), 4), (ns(800), 1)]);
 }
@@ -108,7 +108,7 @@ fn an_event_that_ends_no_wait_does_not_wake_the_board() {
         Ok(())
     });
     rig = rig.fed(1_000, message(1)).fed(2_000, message(2)).fed(3_000, GpEvent::Retrace(PeriodNumber(7)));
-    // The first poll, three arrivals during work, and its end.
+    // The events are the first poll, three arrivals during work, and the end of the work.
     assert_eq!(rig.events(), 1 + 3 + 1);
 }
 
@@ -123,7 +123,8 @@ fn acceptances_wake_the_board_when_the_next_chain_can_start() {
     });
     rig = rig.fed(10_000, accepted(1, 2)).fed(11_000, accepted(1, 0)).fed(12_000, accepted(1, 1));
     rig = rig.fed(20_000, accepted(2, 0));
-    // The first poll, two software costs, four acceptances, and a poll at the acceptance after which the DMA is free.
+    // The events are the first poll, two software costs, four acceptances, and a poll at the acceptance after which the
+    // DMA is free.
     assert_eq!(rig.events(), 1 + 2 + 4 + 1);
     let sent: Vec<_> = rig.bench.outputs.iter().map(|(time, GpOutput::Send { ticket, .. })| (*time, *ticket)).collect();
     let first = (0..3).map(|place| (ns(MESSAGE_NS) + CYCLE, 1 << PLACE_BITS | place));

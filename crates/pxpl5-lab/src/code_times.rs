@@ -176,7 +176,7 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
     let token_entry_ns = messages::token_entry_ns(&traffic);
     let messages: Vec<f64> = traffic.iter().map(|traffic| traffic.message_ns(token_entry_ns)).collect();
     let range = [0.0; 2];
-    // Times that other times influence start at zero.
+    // Times that depend on other times start at zero.
     let mut times = CodeTimes {
         triangle_ns: 0.0,
         triangle_range_ns: range,

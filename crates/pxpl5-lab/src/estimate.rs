@@ -295,7 +295,7 @@ impl Study {
         match self {
             Self::Figures => FIGURES_S,
             Self::Readings { seeds, frames, best } => {
-                // The aircraft has all seeds, the molecules a third of the seeds, the head a fifth.
+                // The aircraft runs with all seeds, the molecules with a third of the seeds, and the head with a fifth.
                 let frames = frames * (seeds + seeds.div_ceil(3) + seeds.div_ceil(5));
                 READINGS_FRAME_S * frames as f64 * (1.0 + READINGS_BEST * best as f64)
             }

@@ -53,8 +53,8 @@ fn on_a_still_head_a_tuned_filter_adds_no_error() {
         shown(name, &all);
         let none = mean(&all, PredictorKind::None);
         let kalman = mean(&all, PredictorKind::Kalman);
-        // Each picture shows one report, and 60 independent reports come each second. The lengths of their errors
-        // without prediction deviate by at most their mean.
+        // Each picture shows one report, and 60 independent reports come each second. Without prediction, the standard
+        // deviation of the errors' lengths is at most their mean.
         let independent =
             all.of(PredictorKind::None).and_then(|one| one.error.as_ref()).expect("evaluated").by_field.len() / 2;
         let tolerance = 3.0 / (independent as f64).sqrt();

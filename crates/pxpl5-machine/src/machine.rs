@@ -370,7 +370,7 @@ impl Machine {
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         let Record { ports, renderers, ring, .. } = &self.record;
-        // Programs. A program that waits for a message does not state the sender of the message.
+        // Programs that wait. A program that waits for a message does not state the sender of the message.
         let processors = self.processors.iter().enumerate().filter_map(|(port, processor)| {
             let waits_for = processor.blocked()?.to_owned();
             Some(Blocked { board: Board::of_processor(port), waits_on: None, waits_for })

@@ -256,9 +256,9 @@ impl Target {
                 }
                 continue;
             }
-            // The cell is the box around its corners, because views of one head a few milliseconds apart roll by
-            // little. The cell covers pixels from its left and upper sides up to, and without, its right and lower
-            // sides.
+            // The cell is the box around its corners. This is exact enough, because views of one head a few
+            // milliseconds apart roll by small angles only. The cell covers pixels from its left and upper sides up to
+            // its right and lower sides, without the latter sides.
             let columns = left[x - 1].min(left[x])..right[x - 1].max(right[x]);
             for row in top[x - 1].min(top[x])..bottom[x - 1].max(bottom[x]) {
                 for column in columns.clone() {

@@ -54,7 +54,7 @@ impl Screen {
 
     fn arrive(&mut self, arrival: &Arrival) {
         let target = arrival.target;
-        // Find the division that the region belongs to, or add a new one.
+        // Find the division of the picture into regions to which this region belongs, or add a new division.
         let place = self.cuts.iter().position(|cut| Cut::key(&cut.of) == Cut::key(&target)).unwrap_or_else(|| {
             self.cuts.push(Cut { of: target, regions: vec![Vec::new(); target.grid.regions() as usize] });
             self.cuts.len() - 1

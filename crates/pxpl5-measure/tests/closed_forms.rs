@@ -53,8 +53,8 @@ fn aimed_between(aim: Aim, field: u64, first: f64, last: f64) -> f64 {
 
 /// Returns the pixels that use the same load of the orientation register, with a latch per pixel.
 ///
-/// The host sends nine words per load, one load after the other. It starts anew with each line, which has room for
-/// eight loads.
+/// The host sends nine words per load, one load after the other. The loads start again with each line, which has room
+/// for eight loads.
 fn of_one_load(x: u64) -> (u64, u64) {
     let pixels = ORIENTATION_S / (LINE_S / 780.0);
     let load = (x as f64 / pixels).floor().min(7.0);

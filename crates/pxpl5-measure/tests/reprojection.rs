@@ -83,7 +83,7 @@ fn aim(field: u64) -> f64 {
 /// Returns the instant for which the pose of a part of a field is predicted, in seconds: halfway between the lighting
 /// of its first and last pixel.
 fn middle_of(every: Every, field: u64, row: u64) -> f64 {
-    // Lines of a frame, of which a field lights every second.
+    // The number of the line in the frame. A field lights every second line.
     let line = 2 * row + field % 2;
     let [from, to] = match every {
         Every::Field => [0, 239],
@@ -211,7 +211,7 @@ fn on_panel(config: PanelConfig, rate: f64) -> Outcome {
 /// Returns the error, in pixels, in the middle of a picture that is lit `seconds` after the instant for which it was
 /// drawn.
 fn off_px(seconds: f64, rate: f64) -> f64 {
-    // The middle of the middle pixel.
+    // The position of the middle of the middle pixel.
     let [seen_right, seen_up] = after(0.5, -0.5, rate * seconds, focal_px(128.0));
     (seen_right - 0.5).hypot(seen_up + 0.5)
 }

@@ -155,7 +155,8 @@ impl BitSerial {
             tile.clock = 0;
             tile.field_instruction(&self.controller, instruction)?;
         }
-        // All tiles work in step, so one tile gives the number of clocks of all tiles. A skipped tile counts no clocks.
+        // All tiles work at the same time, so one tile gives the number of clocks of all tiles. A skipped tile counts
+        // no clocks.
         self.clock += if self.skipping { instruction.bit_clocks().into() } else { self.tiles[0].clock };
         Ok(())
     }

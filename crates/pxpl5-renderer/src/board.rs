@@ -330,7 +330,8 @@ impl Renderer {
         if self.storing {
             return;
         }
-        // This comparison is the only use of the capacity, so a larger store changes nothing if it never fails.
+        // This comparison is the only use of the capacity. If the comparison never fails, a larger store changes
+        // nothing.
         if held + blocks > self.timing.backing_regions() {
             self.waited_for_room = true;
             return;

@@ -275,7 +275,7 @@ impl Ring {
     /// Schedules an arbitration at the next relevant end of a message. An end is relevant if a waiting message needs
     /// it, or if [`Ring::watch`] was called.
     fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
-        // If a source is at its limit or no channel is free, every end is relevant.
+        // If a source is at its limit or no channel is free, the end of every message is relevant.
         let any_end = self.watched || self.at_limit > 0;
         let next = if any_end || self.is_channel_missing() {
             self.channels.first_end()

@@ -96,7 +96,7 @@ fn with_a_backup_only_complete_fields_are_shown() {
             assert_eq!(torn.count(), 0, "{scene}, {field:?}: {picture:?}");
             seen_pictures[parity as usize].push(**picture);
         }
-        // New fields of both parities keep coming.
+        // Fields of both parities show new pictures until the end.
         for of_lines in &mut seen_pictures {
             assert!(of_lines.len() >= 9, "{scene}: {of_lines:?}");
             of_lines.dedup();

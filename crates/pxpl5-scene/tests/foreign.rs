@@ -227,7 +227,7 @@ const DART: [(f64, f64); 4] = [(0.0, 2.0), (-2.0, -2.0), (0.0, -1.0), (2.0, -2.0
 fn the_notch_of_a_polygon_stays_open_for_any_start_and_orientation() {
     let polygons: [&[(f64, f64)]; 6] = [
         &DART,
-        // L, U, and a star; a comb with points on straight lines, and one with a point twice.
+        // The letters L and U, a star, a comb with points on straight lines, and a polygon with a repeated point.
         &[(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)],
         &[(0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (2.0, 2.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)],
         &[(0.0, 3.0), (-0.5, 0.5), (-3.0, 0.0), (-0.5, -0.5), (0.0, -3.0), (0.5, -0.5), (3.0, 0.0), (0.5, 0.5)],

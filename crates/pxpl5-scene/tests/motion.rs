@@ -58,7 +58,8 @@ fn the_mean_translation_is_about_that_of_recorded_heads() {
 
 #[test]
 fn practically_all_energy_of_yaw_lies_below_2_hz_and_95_percent_below_0_14_hz() {
-    // Discrete Fourier transform of 400 s at 8 Hz, mean removed; a Hann window keeps lines from leaking upwards.
+    // The discrete Fourier transform of 400 s at 8 Hz, without the mean. A Hann window prevents leaks of lines to
+    // higher frequencies.
     let motion = swaying(5);
     let count = 3_200_usize;
     let mut previous = 0.0_f64;

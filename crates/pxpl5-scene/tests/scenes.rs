@@ -214,11 +214,12 @@ fn full_screen_triangles_lie_at_different_depths() {
 
 #[test]
 fn the_first_atoms_of_molecules_are_those_of_myoglobin() {
-    // The entry has 783 carbons, 216 nitrogens, 215 oxygens and 2 sulphurs. The scene adds a water molecule.
+    // The molecule's PDB entry has 783 carbons, 216 nitrogens, 215 oxygens and 2 sulphurs. The scene adds a water
+    // molecule.
     let molecules = scene("molecules");
     let colours = [[144, 144, 144], [48, 80, 248], [255, 216, 48], [240, 24, 24], [255, 255, 255]];
     let counts = colours.map(|colour| molecules.spheres().iter().filter(|s| s.colour == colour).count());
-    // Carbon, nitrogen, sulphur, oxygen, hydrogen.
+    // The counts are of carbon, nitrogen, sulphur, oxygen and hydrogen.
     assert_eq!(counts, [783, 216, 2, 216, 2]);
 }
 

@@ -148,7 +148,7 @@ fn clocks_and_words_follow_from_the_programs() {
     assert_eq!((work.regions, work.triangles, work.commands, work.left_out), (36, 1, 1, 0));
     assert_eq!(work.clocks, 36 * (6 + 62 + 72) + 238);
     assert_eq!(work.command_words, 36 * (2 + 5 + 12) + 38);
-    // Clearing all regions of 198 slices: 11.05 ms of one renderer.
+    // Clearing all regions of 198 slices takes one renderer 11.05 ms.
     let layout = Layout::rendering_control_phong();
     let clears = 198 * 36 * CommandKind::Clear.clocks(&layout).expect("every layout");
     assert!((f64::from(clears) / 40e6 * 1e3 - 11.05).abs() < 0.005);

@@ -152,8 +152,8 @@ fn pictures_show_the_slices() {
     }
 }
 
-/// Checks that a sheet has rows of 22 thumbnails of 64 px. A tile map has as many white pixels as occupied tiles are
-/// counted.
+/// Checks that a sheet has rows of 22 thumbnails of 64 px. The number of white pixels of a tile map must equal the
+/// number of occupied tiles.
 #[test]
 fn sheets_and_maps_show_all_slices() {
     let volume = drawn(&small());
@@ -174,8 +174,8 @@ fn a_missing_slice_is_refused() {
     assert_eq!(error.to_string(), "slice: expected 0 to 35, found 36");
 }
 
-/// Checks the variants of a comparison: six clips with three projections, and three more. Passes are as published (P5),
-/// and clips with enlarged volumes accept at least as many fragments.
+/// Checks the variants of a comparison: six clips with three projections, and three further variants. Passes are as
+/// published (P5), and clips with enlarged volumes accept at least as many fragments.
 #[test]
 fn a_comparison_has_a_row_and_a_picture_for_each_variant() {
     let viewpoint = ComparePoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: 32 };

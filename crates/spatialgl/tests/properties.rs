@@ -163,7 +163,7 @@ proptest! {
     fn a_shared_edge_is_lit_by_one_of_its_triangles(
         x in prop::array::uniform4(-28i32..28), y in prop::array::uniform4(-28i32..28),
     ) {
-        // Multiples of a half pixel, so that edges run through pixel centres.
+        // Coordinates are multiples of half a pixel, so that edges run through pixel centres.
         let [a, b, c, d] = [0, 1, 2, 3].map(|i| [f64::from(x[i]) / 2.0, f64::from(y[i]) / 2.0, 0.0]);
         let side = |p: [f64; 3]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
         prop_assume!(side(c) * side(d) < 0.0);

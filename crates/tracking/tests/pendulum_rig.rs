@@ -7,7 +7,8 @@ use tracking::rig::{
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, ntsc_lines_ps, seconds};
 use tracking::tracker::{SerialLine, SerialRead, TrackerConfig, TrackerFault, TrackerModel};
 
-/// Returns the instant at which a frame is shown: 57 ms after its start (Rendering Control), at the next field.
+/// Returns the instant at which a frame is shown. This is the start of the next field after 57 ms from the frame's
+/// start (Rendering Control).
 fn pipeline(start_ps: u64) -> u64 {
     (start_ps + 57 * PS_PER_MS).div_ceil(NTSC_FIELD_PS) * NTSC_FIELD_PS
 }

@@ -90,7 +90,8 @@ fn a_tuned_filter_is_near_the_optimum_on_unseen_motion_and_noise() {
             found.mean_deg,
             least_deg
         );
-        // Trained on 19 s of another motion of the kind: the means of two such spells differ, but the best jerk hardly.
+        // The filter was trained on 19 s of another motion of the same kind. The mean errors of two such motions
+        // differ, but the best jerk hardly differs.
         assert!(found.mean_m < 1.1 * least_m && found.mean_deg < 1.1 * least_deg);
     }
 }

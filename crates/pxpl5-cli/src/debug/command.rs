@@ -161,7 +161,7 @@ fn whole((board, rest): (Board, &[&str])) -> Result<Board, String> {
 }
 
 fn pane_of(name: &str) -> Option<Pane> {
-    // The pane shows everything that the ring has as a board, so "show ring" names the pane.
+    // The pane shows the whole state of the ring as a board, so "show ring" means the pane.
     Pane::ALL.iter().find(|(known, _)| *known == name).map(|(_, pane)| *pane)
 }
 

@@ -14,7 +14,7 @@ pub(super) fn chart(args: &PlotArgs, groups: &[Group]) -> Chart {
             curves.push(&group.by);
         }
     }
-    // A name in the legend without a point would look like a point that another one covers.
+    // A curve without points gets no name in the legend. Otherwise, other points would seem to hide its points.
     let series = curves.iter().map(|by| series_of(by, groups, names.as_deref())).filter(has_a_point).collect();
     let axes = ChartAxes {
         title: args.title.clone(),

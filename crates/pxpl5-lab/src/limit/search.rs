@@ -152,7 +152,7 @@ impl<F> Tried<F> {
         let first_miss = self.first_miss();
         let triangles = first_miss.map_or(ceiling, |miss| miss - 1);
         let island = self.answers.iter().rev().find(|(size, reached)| **reached && **size > triangles);
-        // Walk down while every size was tried.
+        // Go to smaller sizes as long as every size was tried.
         let mut unbroken_from = triangles;
         while unbroken_from > 1 && self.answers.contains_key(&(unbroken_from - 1)) {
             unbroken_from -= 1;
@@ -180,7 +180,7 @@ impl<F> Tried<F> {
 pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<Limit, E> {
     let mut tried = Tried { answers: BTreeMap::new(), reached };
     tried.find_limit(ceiling, hints)?;
-    // Islands above the first miss do not change the limit, but the result reports them.
+    // Islands (sizes above the first miss that reach the goal) do not change the limit, but the result reports them.
     let limit = tried.limit(ceiling).triangles;
     for size in above(limit, ceiling) {
         tried.ask(size)?;
@@ -213,7 +213,7 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
 /// the goal.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
-    // All sizes directly below, from the largest down.
+    // Try all sizes directly below the limit, from the largest to the smallest.
     let near = (limit.saturating_sub(in_a_row)..limit).rev();
     let far = (1..=5).rev().map(move |halvings| limit - (limit >> halvings));
     near.chain(doubtful.iter().copied().filter(move |size| *size < limit)).chain(far).filter(|size| *size > 0)

@@ -62,7 +62,7 @@ impl Store {
     pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, FileError> {
         check_command(folder)?;
         fs::create_dir_all(folder).map_err(FileError::io(folder, "cannot be made"))?;
-        // The lock comes before any change to the folder.
+        // The folder is locked before any change.
         let lock = lock(folder)?;
         remove_leftover_files(folder);
         let path = folder.join(ROWS_FILE);

@@ -30,7 +30,7 @@ fn objects_fixed_to_the_head_are_drawn_in_its_direction() {
             let scene = builtin("full-screen:2").expect("built in");
             let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
             let head = if deg_per_s == 0.0 { head(Still(tracking::Pose::IDENTITY)) } else { head(Pan::at(deg_per_s)) };
-            // Half a second at 180 deg/s.
+            // The head turns for half a second at 180 deg/s.
             after(&Experiment::new(config, pipeline, scene).head(head), 30).into_record()
         };
         let drawn_on = |deg_per_s: f64| {

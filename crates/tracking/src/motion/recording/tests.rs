@@ -112,9 +112,9 @@ fn bytes_that_are_not_text_are_an_error() {
     assert_eq!(Recording::read(&b"\xff\xfe"[..]).expect_err("no UTF-8").kind, FileErrorKind::Unreadable);
 }
 
-// One motion in three kinds of file. The head stands at (0, 1.7, 0) and looks along -z. Half a second later it has
-// made a quarter turn to the left and moved to (0.25, 1.7, -0.5). Then it looks 30 degrees up. In the other two files up
-// is z, and y replaces -z. The quaternions were computed by hand from matrices whose columns are the directions of the
+// One motion in three kinds of file. The head stands at (0, 1.7, 0) and looks along -z. Half a second later it has made
+// a quarter turn to the left and moved to (0.25, 1.7, -0.5). Then it looks 30 degrees up. In the other two files up is
+// z, and y replaces -z. The quaternions were computed by hand from matrices whose columns are the directions of the
 // sensor's axes. At the start the optical frame has x east, y down, z north: (w, x, y, z) = (s, -s, 0, 0) with s =
 // sqrt(1/2). EuRoC's frame has x up, y east, z north: (1, -1, -1, -1) / 2.
 const OWN: &str = "time_s,x,y,z,qw,qx,qy,qz
