@@ -291,10 +291,10 @@ fn a_memory_without_cells_is_never_due_and_does_not_delay_an_assignment() {
     assert_eq!(cells.dealing().home, Cell { x: 3, z: 4 });
 }
 
-/// The hall has seven cells in a row along z. The eye is in the last cell, 2 m from the border to the cell before.
+/// The hall has seven cells of 5 m in a row along z. The eye is in the last cell, 2 m from the cell's border in front.
 ///
-/// The nearest cell of ring 2 begins 5 m + 3 m behind the eye. The block's border in front is 7 m away (7.5 m to the
-/// sides), where no cell is occupied.
+/// The nearest cell of ring 2 begins 5 m + 3 m behind the eye. The block's border in front is 5 m + 2 m away (7.5 m to
+/// the sides), where no cell is occupied.
 #[test]
 fn distances_can_be_limited_to_cells_with_objects() {
     let row = || (0..7).map(|z| Cell { x: 0, z });

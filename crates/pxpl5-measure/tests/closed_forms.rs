@@ -146,8 +146,9 @@ impl Run {
 
     /// Returns the content of a pixel that an address recalculation display shows.
     ///
-    /// Faces are rotated by the newest orientation in the register. It is predicted for the aim within its field, line,
-    /// or group of pixels per load. A load is in the register at the latch of its first pixel, or slightly earlier.
+    /// Faces are rotated by the newest orientation in the register. The orientation is predicted for the aim within its
+    /// field, line, or group of pixels per load. A load is in the register at the latch of its first pixel, or slightly
+    /// earlier.
     fn content_of_faces(&self, field: u64, row: u64, x: u64) -> Content {
         let stages =
             if ["arp-full", "arp-ideal"].iter().any(|one| self.pipeline.starts_with(one)) { 24.0 } else { 26.0 };

@@ -214,7 +214,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     fn move_word(&mut self, slots: &mut ChannelSlots, now: Time) {
         let destination = self.traffic[slots.message].destination;
         let seen_at = now + slots.latency;
-        // The slots of the overhead pass without an offer to the receiver.
+        // In the slots of the overhead, no word is offered to the receiver.
         if slots.overhead_left > 0 {
             slots.overhead_left -= 1;
             slots.slot_began = now;

@@ -109,7 +109,8 @@ fn with_noise_the_mean_latencies_still_agree() {
 
 #[test]
 fn the_sign_of_the_velocity_fails_with_a_millimetre_of_noise() {
-    // The default method detects the crossing of the low point, because the height of the arc hardly changes there.
+    // The arc is flat at the low point, so noise changes the sign of the velocity. The default method therefore detects
+    // the crossing.
     let rig = PendulumRig { detection: Detection::VelocitySign, ..PendulumRig::assumed() };
     let measured = measure(rig, TrackerConfig::fastrak());
     let passes = measured.outside_passes.iter().zip(&measured.inside_passes);

@@ -131,7 +131,7 @@ fn family(name: &'static str, seed: u64, pixels: f32, count: usize, on_centre: b
         }
         let scale = 2.0;
         let centre = at_pixel(x, y, scale);
-        // A pixel at this distance is 3 * scale wide.
+        // At the distance of the centre, a pixel is 3 * scale wide.
         WorldSphere { centre, radius: pixels * 3.0 * scale, colour: random.colour() }
     });
     SphereCase { name, spheres: spheres.collect() }
