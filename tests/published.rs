@@ -111,8 +111,8 @@ fn the_first_copy_of_a_full_field_begins_after_about_12_8_ms() {
 
 #[test]
 fn with_a_photodiode_low_on_the_screen_the_rig_measures_the_published_latency() {
-    // The published range is 54 to 57 ms, without the position of the photodiode. Both copies take 31.2 ms. The wait
-    // for the retrace is 8.3 ms on average over all phases. A field has 240 lines of 63.6 us.
+    // The published range is 54 to 57 ms. The position of the photodiode is not published. Both copies take 31.2 ms.
+    // The wait for the retrace is 8.3 ms on average over all phases. A field has 240 lines of 63.6 us.
     let [first, last] = row("17").unprinted.expect("the line is not printed");
     assert!((last - first - 239.0 * 0.063_556).abs() < 0.05, "{first} to {last}");
     assert!(first > 31.2 + 8.3 - 1.0 && first < 54.0 && last > 54.0, "{first} to {last}");

@@ -161,8 +161,8 @@ fn row_1_a_cached_line_costs_nothing() {
 fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
     let t = dram();
     let others = FreezeRules::none().with(Freeze::InstructionMiss);
-    // The data lie in another DRAM row and come after the instructions. The next line is needed after the first word,
-    // mov, ld, the turns and four nops.
+    // The data lie in another DRAM row and come after the instructions. The next line is needed after the first word of
+    // the instructions, mov, ld, the turns of the loop and four nops.
     let fill = 2 * (t.first_miss + 3 * t.next);
     let turns_until_full = (fill - t.first_miss - 6).div_ceil(2);
     let row = Freeze::InstructionMissBehindData;

@@ -273,7 +273,7 @@ oriented\@: fst.l f16, DX1(r2)
         surfaceof 2
         call    plane
         adds    108, r18, r11
-        // Instruction heads.
+        // Store the instruction heads.
         ld.l    P_HEADS(r20), r10
         ld.l    P_HEADS+4(r20), r11
         st.l    r10, 0(r18)

@@ -480,10 +480,10 @@ $pc     = sub.dd $pte, $pbc
         fst.l $pc, AT_$p+8(r18)
         endfor
 .if PHONG
-        // Instruction heads, and the colour of the first corner.
+        // Store the instruction heads, and load the colour of the first corner.
 colour  = ld.l R_COLOUR(r3)
 .else
-        // Instruction heads.
+        // Store the instruction heads.
 .endif
         st.l r24, 0(r18)
         st.l r25, 4(r18)

@@ -38,7 +38,7 @@ columns: regionnumber r15, r23
 COMMAND_BYTES = 152
 
         .macro  surface
-        fld.d   PEAK_VALUE(r2), f16         // the root at the middle; z is a quarter of it
+        fld.d   PEAK_VALUE(r2), f16         // the root at the middle of the sphere; z is a quarter of it
         call    root
         nop
         fmul.dd f16, f18, f18
@@ -465,7 +465,7 @@ PIXEL   = 224      // pixel around which planes are rounded, double
 PIXEL_X = 240      // the same pixel as words, with high words of 0
 PIXEL_Y = 248
 TOWARDS = 256      // Gouraud: direction towards the eye; its part along the light
-ACROSS  = 280      // parts of the other axes along the light
+ACROSS  = 280      // parts along the light of the unit vectors across and up (see macro `across`)
 UP      = 288
 PER_ROOT = 296
 
