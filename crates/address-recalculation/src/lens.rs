@@ -18,10 +18,7 @@ pub enum Lens {
     /// A radial polynomial that multiplies the distance rho from the middle by 1 + k1 rho^2 + k2 rho^4.
     ///
     /// rho is 1 at the left and right ends of the middle line.
-    Radial {
-        k1: f64,
-        k2: f64,
-    },
+    Radial { k1: f64, k2: f64 },
     /// A lens for which the viewing angle is proportional to the distance from the middle of the picture. Pictures can
     /// be up to 360 degrees wide.
     Equidistant,

@@ -27,10 +27,7 @@ pub enum GpEvent {
     Retrace(PeriodNumber),
     /// The status signal of another board has changed. A status signal carries one number, for example the number of
     /// swaps of a frame buffer. The event belongs to phase `Arrive`.
-    Status {
-        from: NodeId,
-        value: u64,
-    },
+    Status { from: NodeId, value: u64 },
     /// The programs of the board continue. They can read all inputs that have arrived at this instant.
     Poll,
     /// The current CPU work ends at this instant. The event has no effect if an interrupt has delayed the end.
@@ -231,7 +228,7 @@ impl GpBoard {
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;
-        // Stop after a full round without progress.
+        // Stop after one poll of every program without progress.
         for place in (0..self.tasks.len()).cycle() {
             let before = self.shared.borrow().progress;
             self.poll(place, &mut task_context);

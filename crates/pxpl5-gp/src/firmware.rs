@@ -26,10 +26,7 @@ pub enum Fault {
     #[error(transparent)]
     Memory(#[from] OutOfMemory),
     #[error("node {}: unexpected message {found}", node.0)]
-    Protocol {
-        node: NodeId,
-        found: String,
-    },
+    Protocol { node: NodeId, found: String },
     /// The i860 code trapped, did not return, or needed more memory than was free.
     #[error(transparent)]
     Processor(#[from] ProcessorFault),
@@ -153,7 +150,8 @@ impl Shared {
     /// no effect.
     pub(crate) fn latch(&mut self, Message { source, body, .. }: Message) -> Cause {
         let arrived = self.now;
-        // Insert after all messages of earlier instants and lower senders.
+        // Insert after messages of earlier instants, and after messages of the same instant from ports with lower
+        // numbers.
         let before = self.inbox.iter().rposition(|other| (other.arrived, other.source) <= (arrived, source));
         self.inbox.insert(before.map_or(0, |place| place + 1), Received { arrived, source, body });
         Cause::Arrival
