@@ -42,13 +42,13 @@ const SAMPLE: u64 = 300;
 /// Seconds to start a task and load its scenes. Assumed.
 const START_S: f64 = 60.0;
 /// Factor on the estimated time of a task, because Slurm kills a task at its time limit. The points of one pipeline
-/// together took at most three times their estimate (docs/sweeps.md, "What a point costs").
+/// together took at most three times their estimate (docs/guide/sweep-times.md, "What a point costs").
 const TIME_MARGIN: f64 = 5.0;
 /// Factor on the estimated memory: the maximum measured ratio of used to estimated memory (docs/hardening.md).
 const MEMORY_MARGIN: f64 = 2.0;
-/// Seconds to merge one row, rounded up (docs/sweeps.md, "A million points").
+/// Seconds to merge one row, rounded up (docs/guide/sweep-times.md, "A million points").
 const MERGE_ROW_S: f64 = 40e-6;
-/// Bytes held for one row during a merge, rounded up (docs/sweeps.md, "A million points").
+/// Bytes held for one row during a merge, rounded up (docs/guide/sweep-times.md, "A million points").
 const MERGE_ROW_BYTES: f64 = 16.0;
 /// Bytes held for the files of one task during a merge, rounded up.
 const MERGE_TASK_BYTES: f64 = 32e3;

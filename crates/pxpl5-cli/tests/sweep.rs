@@ -205,7 +205,7 @@ fn wrong_use_is_refused() {
     assert!(err(&output).contains("file"), "{}", err(&output));
 }
 
-/// Runs the script from docs/sweeps.md that the repository contains.
+/// Runs the script from docs/guide/clusters.md that the repository contains.
 fn script(folder: &Folder, args: &[&str], task: Option<&str>) -> std::process::Output {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments/sweep-shards.sh");
     let mut command = Command::new("sh");

@@ -24,9 +24,9 @@
 //!
 //! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and
 //! sweep-costs-heads.toml, release build). The fit minimizes the error of the logarithms, so that overestimates and
-//! underestimates count alike. docs/sweeps.md, "What a point costs", lists the errors of single points. The cost also
-//! depends on the visible part of a scene and on repeated head poses, which no formula predicts. An estimate is good
-//! enough to distinguish minutes from weeks. Running experiments are monitored as well.
+//! underestimates count alike. docs/guide/sweep-times.md, "What a point costs", lists the errors of single points. The
+//! cost also depends on the visible part of a scene and on repeated head poses, which no formula predicts. An estimate
+//! is good enough to distinguish minutes from weeks. Running experiments are monitored as well.
 
 use crate::Plan;
 use pxpl5_run::{KeyValue, Level, Pixels};
