@@ -60,6 +60,22 @@ fn each_item_of_the_facade_has_one_path() {
 }
 
 #[test]
+fn each_comment_of_a_re_export_describes_one_item_and_begins_with_a_summary() {
+    for file in FILES {
+        let text = source(file);
+        let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
+        // A list of several names repeats the comment on the page of each name.
+        let ends = (1..lines.len()).filter(|&n| lines[n].starts_with("pub use ") && lines[n - 1].starts_with("///"));
+        for end in ends {
+            assert!(lines[end].ends_with(';') && !lines[end].contains('{'), "{file}: {}", lines[end]);
+            let begin = lines[..end].iter().rposition(|line| !line.starts_with("///")).map_or(0, |before| before + 1);
+            // The first paragraph is the summary on the index page.
+            assert!(lines[begin].ends_with('.') && lines[begin + 1] == "///", "{file}: {}", lines[begin]);
+        }
+    }
+}
+
+#[test]
 fn each_type_at_the_root_is_used_in_an_example() {
     let examples: String = FILES.map(|file| examples(&source(file))).concat();
     let words: BTreeSet<&str> = examples.split(|c: char| !c.is_alphanumeric() && c != '_').collect();

@@ -14,8 +14,10 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program on a board. The program runs forever or ends with a fault. A program must await only one future at a time,
-/// because the board records only one wait for each program.
+/// A program on a board.
+///
+/// The program runs forever or ends with a fault. A program must await only one future at a time, because the board
+/// records only one wait for each program.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
@@ -49,8 +51,9 @@ pub struct Received {
     pub body: Body,
 }
 
-/// The number of a batch of messages that a program has passed to the DMA. The DMA (direct memory access) is the part
-/// of the board that sends messages in the background.
+/// The number of a batch of messages that a program has passed to the DMA.
+///
+/// The DMA (direct memory access) is the part of the board that sends messages in the background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticket(pub(crate) u64);
 
@@ -215,7 +218,9 @@ impl Shared {
     }
 }
 
-/// A program's handle to its board. The handle contains the CPU priority of the program.
+/// A program's handle to its board.
+///
+/// The handle contains the CPU priority of the program.
 #[derive(Clone, Debug)]
 pub struct Gp {
     pub(crate) shared: Rc<RefCell<Shared>>,

@@ -55,7 +55,9 @@ impl GpTiming {
     };
 }
 
-/// A pipeline with its own i860 code for triangles and spheres. The times in the timing table depend on this code.
+/// A pipeline with its own i860 code for triangles and spheres.
+///
+/// The times in the timing table depend on this code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CodeUse {
     /// PPHIGS: whole frames, Phong shading, commands in bins.

@@ -1,5 +1,6 @@
-//! Measures the times of primitives by executing i860 code. The results fill the timing table, from which the levels of
-//! modelling without executed code take their times.
+//! Measures the times of primitives by executing i860 code.
+//!
+//! The results fill the timing table, from which the levels of modelling without executed code take their times.
 //!
 //! The measurement executes the transformation of the application scenes on one board (a *pass*), and attributes the
 //! board's clocks to primitives:

@@ -10,8 +10,9 @@ use pxpl5_wire::display::{
 };
 use pxpl5_wire::{NodeId, PeriodNumber};
 
-/// Panels with their frame buffer boards, which share a sync generator. There is one board, or two boards for the eyes
-/// of a stereo pair.
+/// Panels with their frame buffer boards, which share a sync generator.
+///
+/// There is one board, or two boards for the eyes of a stereo pair.
 ///
 /// A board writes regions into the buffer that is not shown. A swap request takes effect at the next retrace.
 ///

@@ -10,8 +10,9 @@ const MOST_REGIONS: u64 = 128;
 
 const US_PER_S: u64 = 1_000_000;
 
-/// The parameters of a panel, a display without NTSC timing. [`PanelNumbers::of`] reads these parameters from a table
-/// and uses a default for each missing parameter.
+/// The parameters of a panel, a display without NTSC timing.
+///
+/// [`PanelNumbers::of`] reads these parameters from a table and uses a default for each missing parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelNumbers {
     /// Width of the panel: visible pixels in each line.

@@ -13,7 +13,9 @@ use std::collections::BTreeMap;
 use std::fmt;
 use toml::Value;
 
-/// Effective settings by path. `Display` writes the settings as the text of an experiment file with the same meaning.
+/// The effective settings of an experiment, by path.
+///
+/// `Display` writes the settings as the text of an experiment file with the same meaning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Values of the settings as TOML, by the path of their key.

@@ -28,6 +28,7 @@ impl fmt::Display for KeyValue {
     }
 }
 
+/// The values that a [`Key`] permits.
 #[derive(Clone, Copy, Debug)]
 pub enum KeyValues {
     Flag,
