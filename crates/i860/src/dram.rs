@@ -1,5 +1,5 @@
-//! The external bus and the page-mode memory on the bus. The model computes the arrival time of all data at the
-//! request, without an event for each transfer.
+//! The external bus, and the page-mode memory on this bus. At a request, the model computes the arrival times of all
+//! data, without an event for each transfer.
 
 use crate::timing::{ChipSizes, DramTiming};
 
@@ -9,16 +9,14 @@ const BUS_DEPTH: usize = ChipSizes::PAPERS.bus_depth as usize;
 /// The clocks at which the 8-byte transfers of a request arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Transfer {
-    /// Clock at which the first 8 bytes arrive. These bytes contain the requested data.
+    /// Clock at which the first 8 bytes arrive. They contain the requested data.
     pub(crate) first: u64,
-    /// Clock at which the last 8 bytes arrive.
     pub(crate) last: u64,
-    /// Number of clocks between successive transfers of 8 bytes.
     step: u64,
 }
 
 impl Transfer {
-    /// Returns the clock at which transfer `number` arrives. Transfer 0 has the requested 8 bytes.
+    /// Returns the clock at which transfer `number` arrives. Transfer 0 contains the requested data.
     pub(crate) fn arrival(&self, number: u32) -> u64 {
         self.first + u64::from(number) * self.step
     }
@@ -27,16 +25,16 @@ impl Transfer {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Dram {
     timing: DramTiming,
-    /// First clock at which a read of the open DRAM row can start. The data of the previous read can still arrive at
+    /// First clock at which a read of the open DRAM row can start. Data of the previous read can still be on the bus at
     /// this clock.
     free: u64,
-    /// Clock at which the transfer of the data of all requests ends. A write, or a request to another DRAM row, starts
-    /// at this clock or later.
+    /// Clock at which the data transfers of all requests end. A write, or a request to another DRAM row, cannot start
+    /// earlier.
     data_end: u64,
     open_page: u64,
     next_refresh: u64,
     next_dma: u64,
-    /// Clocks at which the latest requests end, the oldest request first.
+    /// End of each of the latest requests, in clocks, the oldest request first.
     outstanding: [u64; BUS_DEPTH],
     pub(crate) transfers: u64,
     pub(crate) page_misses: u64,
@@ -59,18 +57,17 @@ impl Dram {
         }
     }
 
-    /// Returns the first clock at which the bus's address pipe can take a request.
+    /// Returns the first clock at which the address pipe of the bus has room for a request.
     pub(crate) fn accepts_at(&self) -> u64 {
         self.outstanding[0]
     }
 
-    /// Returns the clock at which all earlier requests are complete.
     pub(crate) fn idle_at(&self) -> u64 {
         self.data_end.max(self.free)
     }
 
-    /// Adds the time of a refresh and of a transfer by another bus master, if they are due before a request at clock
-    /// `now`. Of several refreshes or transfers that are due, only the latest takes time (assumed).
+    /// Adds the time of a refresh, and of a transfer by another bus master, if they are due before a request at clock
+    /// `now`. Of several that are due, only the latest takes time (assumed).
     fn steal(&mut self, now: u64) {
         let t = self.timing;
         for (interval, clocks, due) in [
@@ -102,7 +99,6 @@ impl Dram {
 
     fn finish(&mut self, transfer: Transfer) -> Transfer {
         self.data_end = self.data_end.max(transfer.last);
-        // The address pipe holds the latest requests.
         self.outstanding.rotate_left(1);
         self.outstanding[BUS_DEPTH - 1] = self.data_end;
         transfer
@@ -110,9 +106,8 @@ impl Dram {
 
     /// Reads `beats` transfers of 8 bytes. The requested 8 bytes arrive first.
     ///
-    /// Requests to the open DRAM row overlap. If the next request is to the same row, its first data follow
-    /// [`DramTiming::next`] clocks after the last data of this request. A row is closed only after the transfer of its
-    /// last data.
+    /// Requests to the open DRAM row overlap: the first data of a request follow [`DramTiming::next`] clocks after the
+    /// last data of the previous request. A row is closed only after the transfer of its last data.
     pub(crate) fn read(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);
@@ -126,7 +121,7 @@ impl Dram {
         self.finish(Transfer { first, last, step: t.next })
     }
 
-    /// Writes `beats` transfers of 8 bytes within one DRAM row. The write begins after the transfers of all reads.
+    /// Writes `beats` transfers of 8 bytes to one DRAM row. The write begins after the transfers of all reads.
     pub(crate) fn write(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);

@@ -60,7 +60,6 @@ fn text() -> String {
     text
 }
 
-/// Returns the citation of a work on one line.
 fn citation(work: &Work) -> String {
     let number = work.number.map(|number| format!(", {number}")).unwrap_or_default();
     let pages = work.pages.map(|[first, last]| format!(", pages {first} to {last}")).unwrap_or_default();

@@ -7,12 +7,12 @@
 //!
 //! - `drawn = ROWS slices width + AREAS width height` is the number of pixels that triangles and spheres touch.
 //! - `targets` is the number of slices that all threads together draw at a time.
-//! - The bits of all slices count in full, although the operating system may allocate only pages that are written.
+//! - All bits of all slices count, although the operating system may allocate only pages with data.
 //!
 //! A volume needs `samples (SLICE_S slices primitives + DRAWN_S drawn) + WORD_S slices width height / 8` seconds.
 //!
-//! If simulated renderers of Pixel-Planes 5 draw the volume, the volume takes `PLANES` times as long and `PLANES_BYTES`
-//! more memory.
+//! If simulated renderers of Pixel-Planes 5 draw the volume, the time is `PLANES` times as long. The memory then grows
+//! by `PLANES_BYTES`.
 //!
 //! A walk needs `BASE + TEXEL 6 face_texels^2 + FRAME frames + WALKED primitives` bytes and `FACE_S 6 face_texels^2 +
 //! FRAME_S frames primitives` seconds.
@@ -25,7 +25,6 @@ pub(crate) use pxpl5::lab::estimate::{Estimate, RunWork, Study};
 use pxpl5::scene::Scene;
 use pxpl5::volume::{RendererKind, VolumeSettings};
 
-/// Quantities that determine the memory and time to compute a volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct VolumeWork {
     pub(crate) slices: u64,
@@ -35,11 +34,9 @@ pub(crate) struct VolumeWork {
     pub(crate) samples: u64,
     pub(crate) primitives: u64,
     pub(crate) threads: u64,
-    /// True if simulated renderers of Pixel-Planes 5 draw the volume.
     pub(crate) is_pixel_planes: bool,
 }
 
-/// Quantities that determine the memory and time to compute a walk of a viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WalkWork {
     pub(crate) frames: u64,
@@ -48,20 +45,18 @@ pub(crate) struct WalkWork {
     pub(crate) face_texels: u64,
 }
 
-/// Memory in bytes of the process without any work.
+/// Memory in bytes of the process before any work.
 const BASE: f64 = 15e6;
-/// Memory in bytes of a primitive, including its entries in all lists.
+/// Bytes for one primitive, including its entries in all lists.
 const PRIMITIVE: f64 = 200.0;
-/// Memory in bytes for each pixel in the buffer of a slice while the slice is drawn: three colour channels and one
-/// stencil bit.
+/// Bytes for each pixel in the buffer of a slice while the slice is drawn: three colour channels and one stencil bit.
 const TARGET: f64 = 3.125;
-/// Memory in bytes of a pixel that a triangle or sphere covers, including the unused capacity of the list that stores
-/// covered pixels.
+/// Bytes for one pixel that a triangle or sphere covers, including unused capacity of the list of covered pixels.
 const SAMPLE: f64 = 12.0;
 /// Estimated number of pixels that triangles and spheres touch in each column of a slice.
 const ROWS: f64 = 2.0;
-/// Estimated number of additional pixels that triangles and spheres touch, over all slices together, in multiples of
-/// the pixels of one slice.
+/// Estimated number of touched pixels in addition to `ROWS`, over all slices together, in multiples of the pixels of
+/// one slice.
 const AREAS: f64 = 2.0;
 /// Seconds to process one primitive for one slice.
 const SLICE_S: f64 = 30e-9;
@@ -75,28 +70,27 @@ const PLANES: f64 = 15.0;
 /// Memory in bytes of the simulated pixel arrays of Pixel-Planes 5.
 const PLANES_BYTES: f64 = 60e6;
 
-/// Memory in bytes of a texel of a cube face.
+/// Bytes for one texel of a cube face.
 const TEXEL: f64 = 10.0;
-/// Memory in bytes of one frame of a walk.
+/// Bytes for one frame of a walk.
 const FRAME: f64 = 3e3;
-/// Memory in bytes of a primitive of the scene of a walk.
+/// Bytes for one primitive of the scene of a walk.
 const WALKED: f64 = 2e3;
 /// Seconds to process one texel of a cube face.
 const FACE_S: f64 = 15e-9;
 /// Seconds to process one primitive for one frame of a walk.
 const FRAME_S: f64 = 65e-9;
 
-/// Slowdown factor on a computer that is busy with other work. Assumed, as for simulation runs.
+/// Factor on all times for a computer that is busy with other work. Assumed, as for simulation runs.
 const BUSY: f64 = 2.5;
 
-/// Returns the number of primitives of a scene: triangles and spheres.
 pub(crate) fn primitives(scene: &Scene) -> u64 {
     (scene.triangles().len() + scene.spheres().len()) as u64
 }
 
 impl VolumeWork {
-    /// Returns the quantities that determine the cost of a volume. The settings must be valid, and `threads` threads
-    /// draw the volume.
+    /// Returns the quantities that determine the cost of a volume, which `threads` threads draw. The settings must be
+    /// valid.
     pub(crate) fn of(settings: &VolumeSettings, scene: &Scene, threads: usize) -> Self {
         Self {
             slices: settings.display.slices,

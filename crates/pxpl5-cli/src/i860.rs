@@ -110,11 +110,6 @@ impl Warnings {
     }
 }
 
-/// Runs the command `pxpl5 i860`.
-///
-/// # Errors
-///
-/// Returns the message that the command prints before it ends with an exit code above 0.
 pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     match args.command {
         Command::Asm { file, base, output, warnings } => asm(&file, base, output.as_deref(), &warnings),
@@ -136,7 +131,7 @@ pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     }
 }
 
-/// Parses a memory size of at most 1 GiB. The size is limited because a run keeps a second copy of the memory.
+/// Parses the size of a memory: at most 1 GiB, because a run keeps a second copy of the memory.
 fn memory(text: &str) -> Result<u32, String> {
     let most = 1 << 30;
     Some(address(text)?)
@@ -153,8 +148,7 @@ fn text_of(file: &Path, bytes: Vec<u8>) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
-/// Assembles a file. Returns the assembled program and the source text. Comments in the source text may have any text
-/// encoding.
+/// Assembles a file. Returns the program and the source text. Comments in the source text may have any text encoding.
 fn assembled(file: &Path, base: u32) -> Result<(Program, String), String> {
     let source = String::from_utf8_lossy(&read(file)?).into_owned();
     let program = assemble(&file.display().to_string(), base, &source).map_err(|e| e.to_string())?;
@@ -208,11 +202,8 @@ fn check_vectors(file: &Path, json: bool, show: usize) -> Result<(String, usize)
 /// limit guards against gzip bombs.
 const MOST_VECTOR_BYTES: u64 = 256 << 20;
 
-/// Returns the contents of a file, unpacked if the first two bytes are the gzip signature.
-///
-/// # Errors
-///
-/// Fails if the unpacked data exceed `most` bytes.
+/// Returns the contents of a file, unpacked if the first two bytes are the gzip signature. Fails if the unpacked data
+/// exceed `most` bytes.
 fn unpacked(file: &Path, bytes: Vec<u8>, most: u64) -> Result<Vec<u8>, String> {
     if !bytes.starts_with(&[0x1F, 0x8B]) {
         return Ok(bytes);

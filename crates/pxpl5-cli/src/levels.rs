@@ -1,4 +1,4 @@
-//! The command `pxpl5 levels`, which compares the speed and accuracy of the levels of modelling.
+//! The command `pxpl5 levels`, which compares the speed and accuracy of the analytic, transaction and cycle level.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -50,7 +50,6 @@ pub(crate) struct LevelsArgs {
     budget: BudgetArgs,
 }
 
-/// The recorded measurement of the levels of modelling, as JSON.
 const RECORD: &str = include_str!("levels.json");
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
@@ -81,7 +80,6 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&record)? } else { text(&record) })
 }
 
-/// Measures all levels of modelling now, and adds today's date and a description of this computer.
 fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
     let study = Study::Levels { experiments: args.experiments, measures_speeds: !args.errors_only };
     args.budget.admit_study(study, "take fewer --experiments")?;

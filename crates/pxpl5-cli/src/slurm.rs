@@ -21,62 +21,54 @@ use crate::version::LONG_VERSION;
 use pxpl5::sweep::Sweep;
 use std::path::{Path, PathBuf};
 
-/// Inputs and outputs of a sweep, and its division into tasks.
+/// A sweep's inputs, outputs and division into tasks of Slurm.
 #[derive(Clone, Debug)]
 pub(crate) struct Jobs<'a> {
     pub(crate) file: &'a Path,
     /// Settings shared by all points of the sweep, as `path=value`.
     pub(crate) sets: &'a [String],
-    /// Folder for the merged rows of all tasks.
     pub(crate) out: &'a Path,
-    /// Number of tasks in the Slurm array. `None` computes the number from an estimate of the work.
+    /// Number of tasks in the Slurm array. `None` computes the number from the estimated work.
     pub(crate) tasks: Option<u64>,
-    /// Number of points that a task simulates in parallel.
     pub(crate) threads: u64,
 }
 
-/// Seconds of work in one task. Longer tasks would delay the end of the sweep. Shorter tasks would not be worth the
-/// time to start a task.
+/// Seconds of work in one task. Longer tasks would delay the end of the sweep. Shorter tasks would waste time on their
+/// start.
 const TASK_S: f64 = 900.0;
 /// Maximum number of tasks in an array: Slurm's default (`MaxArraySize` 1001).
 const MOST_TASKS: u64 = 1_000;
-/// Number of points of the sweep whose cost is estimated.
 const SAMPLE: u64 = 300;
 /// Seconds to start a task and load its scenes. Assumed.
 const START_S: f64 = 60.0;
-/// Safety factor on the estimated time of a task, because Slurm kills a task at its time limit. The points of one
-/// pipeline together took at most three times their estimate (docs/sweeps.md, "What a point costs").
+/// Factor on the estimated time of a task, because Slurm kills a task at its time limit. The points of one pipeline
+/// together took at most three times their estimate (docs/sweeps.md, "What a point costs").
 const TIME_MARGIN: f64 = 5.0;
-/// Safety factor on the estimated memory: the maximum measured ratio of used to estimated memory (docs/hardening.md).
+/// Factor on the estimated memory: the maximum measured ratio of used to estimated memory (docs/hardening.md).
 const MEMORY_MARGIN: f64 = 2.0;
 /// Seconds to merge one row, rounded up (docs/sweeps.md, "A million points").
 const MERGE_ROW_S: f64 = 40e-6;
-/// Memory in bytes held for one row while rows are merged, rounded up (docs/sweeps.md, "A million points").
+/// Bytes held for one row during a merge, rounded up (docs/sweeps.md, "A million points").
 const MERGE_ROW_BYTES: f64 = 16.0;
-/// Memory in bytes held for the files of one task while rows are merged, rounded up.
+/// Bytes held for the files of one task during a merge, rounded up.
 const MERGE_TASK_BYTES: f64 = 32e3;
-/// Memory in bytes of the merging process without rows, rounded up.
+/// Memory in bytes of the merging process before the first row, rounded up.
 const MERGE_BYTES: f64 = 50e6;
 
-/// Estimated cost of a sweep, from a sample of its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sample {
-    /// Number of points of the whole sweep.
     points: u64,
     /// Mean time to simulate a point, in seconds on one core.
     mean_s: f64,
-    /// Maximum time to simulate a point, in seconds on one core.
     most_s: f64,
-    /// Largest memory that a point needs, in bytes.
     most_bytes: f64,
 }
 
-/// Time and memory requested from Slurm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Resources {
     tasks: u64,
     threads: u64,
-    /// Time limit of one task in minutes. Members with the prefix `merge` are for the job that merges the rows.
+    /// Time limit of one task in minutes. Members with the prefix `merge` belong to the job that merges the rows.
     minutes: u64,
     megabytes: u64,
     merge_minutes: u64,
@@ -84,7 +76,6 @@ struct Resources {
 }
 
 impl Sample {
-    /// Estimates the cost of points that are spread evenly over the parameter space.
     fn of(sweep: &Sweep) -> Self {
         let points = sweep.space().points();
         let chosen: Vec<u64> = spread(points, SAMPLE).collect();
@@ -105,9 +96,9 @@ impl Sample {
     }
 }
 
-/// Returns at most `most` distinct indices of points that are spread evenly over every axis. The step between indices
-/// is 0.618 times the number of points (golden section). The step is increased until it has no common factor with the
-/// number of points, so that no index occurs twice.
+/// Returns at most `most` distinct indices of points, spread evenly over every axis of the sweep. The step between
+/// indices is 0.618 times the number of points (golden section). The step is increased until it has no common factor
+/// with the number of points, so that no index occurs twice.
 fn spread(points: u64, most: u64) -> impl Iterator<Item = u64> {
     let golden = (points as f64 * 0.618_033_988_75) as u64;
     let step = (golden..).find(|step| common_factor(*step, points) == 1).unwrap_or(1);
@@ -118,7 +109,6 @@ const fn common_factor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { common_factor(b, a % b) }
 }
 
-/// Estimates the cost of a whole sweep on a number of threads from a sample of its points.
 pub(crate) fn estimate(sweep: &Sweep, threads: usize) -> Estimate {
     Sample::of(sweep).whole(threads)
 }
@@ -151,8 +141,8 @@ impl Resources {
     }
 }
 
-/// Returns the smallest number of tasks, at least `wanted`, that has no common factor with the number of points.
-/// Returns a smaller number if the array would exceed [`MOST_TASKS`].
+/// Returns the smallest number of tasks, at least `wanted`, without a common factor with the number of points. Returns
+/// a smaller number if the array would exceed [`MOST_TASKS`].
 fn even_tasks(wanted: u64, points: u64) -> u64 {
     let most = MOST_TASKS.min(points).max(1);
     let wanted = wanted.clamp(1, most);
@@ -160,7 +150,6 @@ fn even_tasks(wanted: u64, points: u64) -> u64 {
     (wanted..=most).find(is_even).or_else(|| (1..wanted).rev().find(is_even)).unwrap_or(wanted)
 }
 
-/// Resources that the scripts request, and the path of the script that submits the jobs.
 #[derive(Debug)]
 pub(crate) struct Written {
     resources: Resources,
@@ -168,7 +157,6 @@ pub(crate) struct Written {
 }
 
 impl Written {
-    /// Returns a message for the user: which jobs were written and how to submit them.
     pub(crate) fn text(&self) -> String {
         let Resources { tasks, threads, minutes, megabytes, .. } = self.resources;
         format!(
@@ -180,11 +168,6 @@ impl Written {
     }
 }
 
-/// Writes the three scripts into a folder.
-///
-/// # Errors
-///
-/// Fails when the folder cannot be written.
 pub(crate) fn write(sweep: &Sweep, jobs: &Jobs, folder: &Path) -> Result<Written, CliError> {
     let sample = Sample::of(sweep);
     let resources = Resources::of(sample, jobs.tasks, jobs.threads);

@@ -2,16 +2,16 @@
 
 use std::ops::Range;
 
-/// Memory range of the message software, which is the last 64 KB of the first megabyte. No program may use this range
-/// for other data.
+/// Memory range of the message software, the last 64 KB of the first megabyte. Programs may not use this range for
+/// other data.
 pub const RING_MEMORY: Range<u32> = 0xF_0000..0x10_0000;
 
-/// First address of the uncached part of memory. This part extends to the end of [`RING_MEMORY`]. The ring interface
-/// reads and writes this part directly. The i860 does not snoop the bus, so the board keeps these addresses out of the
-/// caches (KEN# pin).
+/// First address of the uncached memory, which extends to the end of [`RING_MEMORY`]. The ring interface reads and
+/// writes this memory directly. The i860 does not snoop the bus, so the board excludes this memory from the caches
+/// (KEN# pin).
 pub(crate) const WINDOW: u32 = 0xF_4000;
 
-/// Returns true if the caches can hold the data at an address.
+/// Returns true if the caches can hold the data at `address`.
 pub(crate) const fn is_cacheable(address: u32) -> bool {
     address < WINDOW || address >= RING_MEMORY.end
 }

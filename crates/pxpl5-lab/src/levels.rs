@@ -1,4 +1,4 @@
-//! A common interface to all levels of modelling, and a comparison of the levels by speed and error.
+//! A common interface to all levels of detail, and a comparison of the levels by speed and error.
 
 mod compare;
 mod random;
@@ -10,12 +10,12 @@ pub use record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
 
 use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Summary};
 
-/// Runs an experiment at its level of modelling, without pixels, and returns the summary.
+/// Runs an experiment at its level of detail without pixels, and returns the summary.
 ///
 /// # Errors
 ///
 /// Fails in the same cases as [`Experiment::run`]. At the analytic level, returns the error of the pipeline's closed
-/// form, or [`ExperimentError::Level`] if the pipeline has none.
+/// form, or [`ExperimentError::Level`] if the pipeline has no closed form.
 pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary, ExperimentError> {
     if experiment.modelling_level() != Level::Analytic {
         return Ok(experiment.run()?.summary());
@@ -27,7 +27,7 @@ pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary
     }
 }
 
-/// Returns the deviation of a value from the same quantity at the cycle level, in percent.
+/// Returns the deviation in percent of a value from the same quantity at the cycle level.
 ///
 /// - The deviation is 0 if neither level has a value, because pictures that are never in time have no latency.
 /// - The deviation is 0 if both values are 0.

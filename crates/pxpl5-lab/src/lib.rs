@@ -7,7 +7,7 @@
 //! | values of the published figures in the model, with intervals | [`figures`], [`intervals`], [`pipeline_figures`] |
 //! | the interpretation of the papers that explains the figures best | [`readings`] |
 //! | effect of the host application's time, which no paper prints | [`application_time`] |
-//! | differences between the levels of modelling | [`levels`] |
+//! | differences between the levels of detail | [`levels`] |
 //! | times of primitives in executed code | [`code_times`] |
 //! | largest number of triangles drawn in time, growth of the cost | [`limit`], [`growth`] |
 //! | range of any setting in which an experiment reaches a goal | [`limit::OverQuery`] |
@@ -79,7 +79,6 @@ pub fn registry() -> Arc<Registry> {
     Arc::clone(&OF_PAPERS)
 }
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

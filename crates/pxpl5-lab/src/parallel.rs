@@ -1,12 +1,10 @@
-//! Parallel execution of independent runs on all threads of this computer. Results keep the order of the inputs. A run
+//! Parallel execution of independent runs on all threads of this computer. Results have the order of the inputs. A run
 //! may start further parallel runs.
 
 use rayon::prelude::*;
 
-/// Applies `run` to every item in parallel, and returns the results in the order of the items.
-///
-/// The items are independent experiments or their settings. All cores of this computer work. A run may start further
-/// parallel runs.
+/// Applies `run` to every item on all cores of this computer, and returns the results in the order of the items. `run`
+/// may itself start parallel work.
 ///
 /// ```
 /// assert_eq!(pxpl5_lab::in_parallel(&[1, 2, 3], |n| n * n), [1, 4, 9]);

@@ -10,7 +10,7 @@
 //! therefore identical to the original run. Restoring takes as long as the original simulation up to that field
 //! (thousands of fields a second for small scenes).
 //!
-//! The file is JSON with a version and a checksum. Damaged and foreign files are refused with the reason.
+//! The file is JSON with a version and a checksum. Damaged files and other files are refused with the reason.
 
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_machine::Machine;
@@ -36,11 +36,11 @@ pub struct Snapshot {
     pub machine: String,
     /// Hash of all settings on which the trace of the whole run depends.
     pub config_hash: String,
-    /// Name of the level of modelling: `transaction` or `cycle`.
+    /// Name of the level of detail: `transaction` or `cycle`.
     pub level: String,
     /// Seed of the head motion.
     pub seed: u64,
-    /// Number of the field that begins at the instant of the checkpoint. No event of this field has happened yet.
+    /// Field that begins at the instant of the checkpoint. No event of this field has happened yet.
     pub field: PeriodNumber,
     /// Instant of the checkpoint in picoseconds.
     pub time_ps: u64,
@@ -59,7 +59,7 @@ impl Snapshot {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-snapshot/1";
 
-    /// Creates a checkpoint of a machine that has just reached the retrace at which a field begins.
+    /// Creates a checkpoint of a machine that has just reached the retrace at the start of a field.
     #[must_use]
     pub fn of_machine(
         plan: &Plan,
@@ -116,8 +116,8 @@ impl Snapshot {
         })
     }
 
-    /// Repeats the run of an experiment up to the saved period, and returns the run at this point. Error messages call
-    /// the checkpoint's file `file`.
+    /// Repeats the run of an experiment up to the saved field, and returns the run at this point. `file` is the name of
+    /// the checkpoint in error messages.
     ///
     /// # Errors
     ///
@@ -144,7 +144,7 @@ impl Snapshot {
         text
     }
 
-    /// Reads the text of a checkpoint's file. Error messages call the file `file`.
+    /// Reads the text of a checkpoint's file. `file` is its name in error messages.
     ///
     /// # Errors
     ///
@@ -181,12 +181,12 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns a [`FileError`] if this version cannot read the experiment, or if the checkpoint has no experiment file.
+    /// Returns a [`FileError`] if this version cannot read the experiment, or if the checkpoint holds no experiment.
     pub fn experiment(&self, file: &str) -> Result<ExperimentFile, FileError> {
         self.experiment_with(crate::registry(), file)
     }
 
-    /// Returns the saved experiment, which may name the pipelines and displays of `registry`.
+    /// Returns the saved experiment, which may use pipelines and displays of `registry`.
     ///
     /// # Errors
     ///
@@ -208,8 +208,8 @@ impl Snapshot {
         self.same("the scene's fingerprint", &self.scene_hash, Fingerprint::of_scene(scene).to_string(), file)
     }
 
-    /// Compares the trace hash and the number of events of `machine` with the values in the checkpoint. The machine
-    /// must have repeated the run up to the saved field.
+    /// Compares the trace hash and the number of events of `machine` with the checkpoint. The machine must have
+    /// repeated the run up to the saved field.
     ///
     /// # Errors
     ///
@@ -237,7 +237,6 @@ fn foreign(file: &str, reason: impl Display) -> FileError {
     FileError::because(FileErrorKind::Foreign, reason).in_file(file)
 }
 
-/// A checkpoint with its checksum, in the form that is written to the file.
 #[derive(Serialize, Deserialize)]
 struct Sealed {
     #[serde(flatten)]

@@ -7,12 +7,12 @@ use pxpl5_sim::Time;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Result of testing one pipeline on a machine.
+/// Result of a test of one pipeline on a machine.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Suitability {
     /// Name of the tested pipeline.
     pub pipeline: &'static str,
-    /// Reason why the machine cannot run the pipeline. `None` if the pipeline runs.
+    /// Reason why the machine cannot run the pipeline. `None` if the machine can run the pipeline.
     pub lacks: Option<String>,
 }
 
@@ -31,8 +31,8 @@ pub fn suitability(registry: &Registry, config: &MachineConfig) -> Vec<Suitabili
     registry.pipelines().iter().map(tried).collect()
 }
 
-/// Simulated time after which a missing resource has caused an error. This time suffices because programs reserve all
-/// memory before the first wait.
+/// Simulated time after which a missing resource has caused an error. This time suffices, because programs reserve all
+/// memory before their first wait.
 const BEGIN: Time = Time(1_000_000);
 
 fn begins(

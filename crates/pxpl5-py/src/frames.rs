@@ -13,7 +13,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Greatest number of computed pictures that wait for Python to read them.
+/// Maximum number of computed pictures that wait for Python.
 const WAITING: usize = 4;
 
 /// An iterator over the pictures of a run, one for each display period. A separate thread runs the experiment.
@@ -83,7 +83,6 @@ fn next<T>(pictures: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
     pictures.recv_timeout(Duration::from_millis(50))
 }
 
-/// Writes a film on a separate thread and returns its bytes (animated PNG).
 pub(crate) fn film_bytes(
     py: Python<'_>,
     film: Film,

@@ -1,4 +1,5 @@
-//! The command `pxpl5 arp figures`, which compares the papers' figures with an ideal renderer.
+//! The command `pxpl5 arp figures`, which compares figures of the papers on address recalculation with an ideal
+//! renderer.
 
 use super::settings::put;
 use crate::error::CliError;

@@ -1,4 +1,4 @@
-//! Citations as BibTeX.
+//! Writer of citations in the format of BibTeX.
 
 use super::works::{Kind, WORKS, Work};
 use super::{AUTHOR, REPOSITORY, TITLE};
@@ -35,7 +35,8 @@ fn of(work: &Work) -> String {
     entry(kind, work.key, &fields)
 }
 
-/// Protects the capital letters of a title, because bibliography styles change capital letters to small letters.
+/// Puts the capital letters of a title in braces, because bibliography styles change unprotected capital letters to
+/// small letters.
 fn protected(title: &str) -> String {
     format!("{{{title}}}")
 }

@@ -1,4 +1,4 @@
-//! Citations in the Citation File Format, version 1.2: the file CITATION.cff.
+//! Writer of citations in the Citation File Format, version 1.2, for the file CITATION.cff.
 
 use super::works::{Kind, Name, WORKS, Work};
 use super::{AUTHOR, REPOSITORY, TITLE};

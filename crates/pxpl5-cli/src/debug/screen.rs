@@ -16,23 +16,18 @@ struct ScreenState {
     line: String,
     /// Executed command lines, oldest first.
     history: Vec<String>,
-    /// Number of command lines by which the user has moved back in the history.
+    /// Number of command lines by which the user has gone back in the history.
     back: usize,
-    /// Number of lines by which the pane of boards is scrolled.
     scroll: u16,
 }
 
 /// Minimum width of the terminal, in columns, at which panes are placed side by side.
 const WIDE: u16 = 100;
 
-/// Maximum number of output lines that the log keeps.
+/// Maximum number of output lines that are kept.
 const LOG: usize = 2_000;
 
-/// Shows the screen and executes the user's commands until the user quits.
-///
-/// # Errors
-///
-/// Fails when the terminal cannot be used.
+/// Shows the screen and executes the user's commands until the user quits. Fails when the terminal cannot be used.
 pub(super) fn run(session: Session) -> io::Result<()> {
     let mut session = session.interrupted_by(key_waits);
     let mut terminal = ratatui::try_init()?;
@@ -57,7 +52,6 @@ pub(super) fn run(session: Session) -> io::Result<()> {
     result
 }
 
-/// Returns true if the user pressed a key during a run. The session then interrupts the run.
 fn key_waits() -> bool {
     event::poll(Duration::ZERO).unwrap_or(false)
 }

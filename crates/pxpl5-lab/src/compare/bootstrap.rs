@@ -1,9 +1,8 @@
-//! Moving-block bootstrap: the interval of a mean over time, from one series of values that depend on each other.
+//! Moving-block bootstrap: a confidence interval for the mean of one series of dependent values.
 //!
-//! Successive fields of a run have similar errors. The values are therefore not independent, and an interval from their
-//! standard deviation would be too narrow. The bootstrap draws blocks of successive values, so that each block keeps
-//! the dependence. H. R. Künsch, "The jackknife and the bootstrap for general stationary observations", Annals of
-//! Statistics 17 (1989).
+//! Successive fields of a run have similar errors. An interval from their standard deviation would therefore be too
+//! narrow. The bootstrap draws blocks of successive values, so that each block keeps the dependence. H. R. Künsch, "The
+//! jackknife and the bootstrap for general stationary observations", Annals of Statistics 17 (1989).
 //!
 //! The block length follows the data: D. N. Politis and H. White, "Automatic block-length selection for the dependent
 //! bootstrap", Econometric Reviews 23 (2004), with the correction of A. Patton, D. N. Politis and H. White, Econometric
@@ -13,27 +12,27 @@ use distrs::{Normal, StudentsT};
 use pxpl5_sim::mix;
 use serde::{Deserialize, Serialize};
 
-/// Number of resampled means.
+/// Number of resampled series that a bootstrap draws from one series of values.
 pub const RESAMPLES: usize = 2_000;
 
-/// Minimum number of values for an interval. Assumed, because a shorter series does not show how its values depend on
-/// each other. In tests with a known dependence, the intervals of shorter series were much too narrow.
+/// Minimum number of values for an interval (assumed). A shorter series does not show how its values depend on each
+/// other. In tests with a known dependence, the intervals of shorter series were much too narrow.
 pub const MIN_BOOTSTRAP_VALUES: usize = 100;
 
 /// Minimum number of blocks in a series for an interval (assumed).
 const MIN_BLOCKS: usize = 10;
 
-/// Seed of the random blocks, so that the same values give the same interval.
+/// Fixed seed of the random blocks, so that the same values give the same interval.
 const SEED: u64 = 0xB10C_B007;
 
-/// Size of a moving-block bootstrap: length of the series, length of a block, and number of resampled means.
+/// Size of a moving-block bootstrap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BootstrapSize {
     /// Number of display fields in the series of values.
     pub fields: usize,
     /// Number of successive display fields whose values form a block.
     pub block_fields: usize,
-    /// Number of resampled means.
+    /// Number of resampled series, each of which gives one mean.
     pub resamples: usize,
 }
 
@@ -45,8 +44,8 @@ pub struct BlockBootstrap {
 }
 
 impl BlockBootstrap {
-    /// Resamples a series of finite numbers. Returns `None` for fewer than [`MIN_BOOTSTRAP_VALUES`] numbers, and for a
-    /// series whose values depend on each other over more than a tenth of its length.
+    /// Resamples a series of finite numbers. Returns `None` for fewer than [`MIN_BOOTSTRAP_VALUES`] numbers, and if
+    /// values depend on each other over more than a tenth of the series.
     #[must_use]
     pub fn of(series: &[f64]) -> Option<Self> {
         if series.len() < MIN_BOOTSTRAP_VALUES {
@@ -63,13 +62,13 @@ impl BlockBootstrap {
         Some(Self { size, means })
     }
 
-    /// Returns the length of the series, the length of a block, and the number of resampled means.
+    /// Returns the lengths of the series and of a block, and the number of resampled series.
     #[must_use]
     pub const fn size(&self) -> BootstrapSize {
         self.size
     }
 
-    /// Returns the variance of the resampled means, an estimate of the variance of the mean.
+    /// Returns the variance of the resampled means, which estimates the variance of the mean.
     #[must_use]
     pub fn variance(&self) -> f64 {
         let centre = self.centre();
@@ -82,8 +81,8 @@ impl BlockBootstrap {
     ///
     /// - Values at the ends of the series are in fewer blocks than other values. The percentiles are therefore shifted,
     ///   so that the mean of the resampled means becomes `mean`. The shift multiplies by a factor if `mean` is positive
-    ///   and all resampled means are at least 0. Otherwise the shift adds a difference. With the factor, the interval
-    ///   of a quantity that is never negative has no negative end.
+    ///   and no resampled mean is negative. Otherwise the shift adds a difference. With the factor, the interval of a
+    ///   quantity that is never negative has no negative end.
     /// - A series of k blocks gives the variance as imprecisely as k independent values do. The distance of both ends
     ///   from the mean is therefore multiplied by two factors. The first is the ratio of Student's t with k - 1 degrees
     ///   of freedom to the normal distribution. The second is the root of k / (k - 1). If a factor shifts the
@@ -100,7 +99,7 @@ impl BlockBootstrap {
         }
     }
 
-    /// Returns the factor by which an interval is widened because the series has few blocks. The factor is at least 1.
+    /// Returns the factor, at least 1, by which an interval is widened because the series has few blocks.
     fn widening(&self, confidence: f64) -> f64 {
         let blocks = self.size.fields as f64 / self.size.block_fields as f64;
         let quantile = 0.5 + confidence / 2.0;
@@ -118,7 +117,7 @@ impl BlockBootstrap {
     }
 }
 
-/// Returns the sums of the first 0, 1, 2, ... numbers. The difference of two sums is the sum of a block.
+/// Returns the sums of the first 0, 1, 2, ... numbers. The sum of a block is the difference of two of these sums.
 fn running_sums(series: &[f64]) -> Vec<f64> {
     let mut sums = vec![0.0];
     let mut sum = 0.0;
@@ -129,8 +128,8 @@ fn running_sums(series: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Returns the mean of random blocks that follow each other up to the length of the series. The last block may be
-/// shortened.
+/// Returns the mean of one resampled series, which consists of random blocks and is as long as the original series. The
+/// last block may be cut.
 fn resampled_mean(sums: &[f64], block: usize, resample: u64) -> f64 {
     let n = sums.len() - 1;
     let starts = (n - block + 1) as u64;
@@ -148,8 +147,8 @@ fn resampled_mean(sums: &[f64], block: usize, resample: u64) -> f64 {
     sum / n as f64
 }
 
-/// Returns the number of values in a block, chosen for the least mean square error of the resampled variance (Politis
-/// and White). The length is at least 1 and at most a third of the length of the series.
+/// Returns the number of values in a block that minimizes the mean square error of the estimated variance (Politis and
+/// White). The number is at least 1 and at most a third of the length of the series.
 fn block_length(series: &[f64]) -> usize {
     let n = series.len() as f64;
     let log = n.log10();
@@ -179,7 +178,6 @@ fn block_length(series: &[f64]) -> usize {
     if length.is_finite() { length.ceil().clamp(1.0, most) as usize } else { most as usize }
 }
 
-/// Returns the covariance between each value of a series and the value `lag` places later.
 fn covariance(series: &[f64], lag: usize) -> f64 {
     let mean = series.iter().sum::<f64>() / series.len() as f64;
     let products = series.iter().zip(&series[lag..]).map(|(one, later)| (one - mean) * (later - mean));

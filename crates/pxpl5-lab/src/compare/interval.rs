@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 pub enum IntervalMethod {
     /// No interval, because the runs are too few or too short.
     None,
-    /// Student's t over the means of the seeds.
+    /// Student's t over the mean of each seed.
     StudentT,
-    /// Student's t over the means of the seeds, with an interval for the logarithm of the mean (delta method).
+    /// Student's t over the mean of each seed, with an interval for the logarithm of the mean (delta method).
     StudentTOfLogarithm,
-    /// Moving-block bootstrap over the fields of one motion ([`BlockBootstrap`](super::BlockBootstrap)).
+    /// Moving-block bootstrap over the fields of one motion of the head ([`BlockBootstrap`](super::BlockBootstrap)).
     MovingBlockBootstrap,
 }
 
@@ -37,7 +37,7 @@ impl IntervalMethod {
 /// A mean over seeds with its confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeanInterval {
-    /// Mean of the seeds' means. NaN if there are no seeds.
+    /// Mean over the means of all seeds. NaN if there are no seeds.
     #[serde(deserialize_with = "number_or_nan")]
     pub mean: f64,
     /// Lower end of the confidence interval. NaN without an interval.
@@ -102,8 +102,7 @@ impl MeanInterval {
     }
 }
 
-/// Returns the quantile of Student's t distribution for a two-sided interval. `freedom` is the number of degrees of
-/// freedom.
+/// Returns the quantile of Student's t distribution with `freedom` degrees of freedom, for a two-sided interval.
 fn quantile_of_t(freedom: usize, confidence: f64) -> f64 {
     StudentsT::ppf(0.5 + confidence / 2.0, freedom as f64)
 }

@@ -1,24 +1,25 @@
-//! The precision that a comparison requires, which is the greatest width of the interval of a mean error. The module
-//! also estimates the number of seeds that this precision needs.
+//! The precision that a comparison requires, and an estimate of the number of seeds for this precision. The precision
+//! is the greatest width of the confidence interval of a mean error.
 
 use super::interval::{IntervalMethod, MeanInterval};
 use pxpl5_sim::parameters::SettingError;
 use std::fmt;
 use std::str::FromStr;
 
-/// Greatest width of the interval of a mean error, from its lower to its upper end.
+/// Greatest width of the confidence interval of a mean error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Precision {
-    /// Width divided by the mean, above 0.
+    /// Width divided by the mean error, above 0.
     Share(f64),
     /// Width in pixels, above 0.
     Pixels(f64),
 }
 
-/// Goal of a comparison that adds seeds to a row until the interval of the row's mean error is narrow enough.
+/// Goal of a comparison that adds seeds to a row until the confidence interval of the row's mean error is narrow
+/// enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UntilPrecise {
-    /// Greatest width of the interval of the mean error.
+    /// Greatest width of the confidence interval of the mean error.
     pub width: Precision,
     /// Maximum number of seeds for each row of the comparison.
     pub max_seeds: usize,
@@ -29,17 +30,18 @@ pub const MAX_SEEDS: usize = 50;
 
 impl UntilPrecise {
     /// Returns true if the interval exists and is narrow enough. An interval over the fields of one seed does not
-    /// count, because such an interval leaves out the differences between motions.
+    /// count, because it leaves out the differences between motions of the head.
     #[must_use]
     pub fn is_reached(&self, error: &MeanInterval) -> bool {
         let is_over_seeds = error.method != IntervalMethod::MovingBlockBootstrap;
         is_over_seeds && error.width().is_some_and(|width| width <= self.greatest_width(error.mean))
     }
 
-    /// Returns the number of seeds to add to a row, and 0 if the interval is narrow enough or the maximum is reached.
+    /// Returns the number of seeds to add to a row. The number is 0 if the interval is narrow enough or `max_seeds` is
+    /// reached.
     ///
-    /// The width falls with the square root of the number of seeds. A step at most doubles the number, because the
-    /// first widths are uncertain.
+    /// The width falls with the square root of the number of seeds. A step at most doubles the number of seeds, because
+    /// the first widths are uncertain.
     #[must_use]
     pub fn seeds_to_add(&self, error: &MeanInterval, seeds: usize) -> usize {
         if self.is_reached(error) {

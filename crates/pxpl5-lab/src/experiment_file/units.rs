@@ -25,12 +25,8 @@ const KINDS: [Kind; 8] = [TIMES, LENGTHS, ANGLES, RATES, TURNS, SPEEDS, SIZES, P
 
 /// Converts a text such as `20us` to a number in the unit of a key.
 ///
-/// Returns `Ok(None)` if the text is not a number with a unit, or if the key has no unit. In these cases the text is
-/// used unchanged.
-///
-/// # Errors
-///
-/// For a number with a wrong unit, returns a text with the units that the key accepts.
+/// Returns `Ok(None)` if the text is not a number with a unit, or if the key has no unit. In these cases, the text is
+/// used unchanged. The error for a wrong unit lists the units that the key accepts.
 pub(super) fn converted(registry: &Registry, key: &str, text: &str) -> Result<Option<Value>, String> {
     let Some((number, unit)) = split(text) else { return Ok(None) };
     let Some(wanted) = unit_of(registry, key) else { return Ok(None) };
@@ -48,7 +44,7 @@ pub(super) fn converted(registry: &Registry, key: &str, text: &str) -> Result<Op
     Ok(Some(value(number * from / to)))
 }
 
-/// Splits a text into a number and a unit. Returns `None` if the number or the unit is missing.
+/// Splits a text into a number and a unit. Returns `None` if either is missing.
 fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     // An exponent belongs to the number; no unit begins with e.
@@ -70,7 +66,6 @@ fn value(number: f64) -> Value {
     Value::Float(number)
 }
 
-/// Returns the unit of a key, or `None` if the key has no unit.
 fn unit_of(registry: &Registry, key: &str) -> Option<String> {
     let own = keys::common(key).map(|key| key.unit).or_else(|| display::unit_of(key));
     if let Some(unit) = own {

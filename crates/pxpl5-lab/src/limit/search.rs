@@ -1,59 +1,56 @@
-//! Searches for the smallest number of triangles (size of a scene) that misses a goal, by simulating scenes of several
-//! sizes.
+//! Search for the smallest number of triangles that misses a goal, by simulating scenes of several sizes.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Result of a search for the largest number of triangles, with facts about the sizes that were tried.
+/// Result of a search for the largest number of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Limit {
-    /// Largest number of triangles below the first miss. Every tried size up to this size reached the goal. 0 if one
-    /// triangle already misses the goal.
+    /// Largest number of triangles below the first miss. All smaller tried sizes reached the goal. 0 if one triangle
+    /// already misses the goal.
     pub triangles: u32,
     /// Smallest tried number of triangles that missed the goal. `None` if all tried sizes reached the goal.
     pub first_miss: Option<u32>,
     /// Largest tried number of triangles above the first miss that nevertheless reached the goal, if any.
     pub island: Option<u32>,
-    /// Smallest number of triangles from which on all sizes up to `triangles` were tried. Below this size only some
-    /// sizes were tried.
+    /// Smallest number of triangles from which on all sizes up to `triangles` were tried. Only some smaller sizes were
+    /// tried.
     pub unbroken_from: u32,
-    /// Number of scene sizes that were simulated.
+    /// Number of simulated scene sizes.
     pub tried: usize,
 }
 
 impl Limit {
-    /// Returns true if a number of triangles missed the goal, or if the search ended below [`CEILING`](super::CEILING)
-    /// at the last triangle of a model. Otherwise the pipeline has no limit.
+    /// Returns true if a number of triangles missed the goal. Also returns true if the search ended below
+    /// [`CEILING`](super::CEILING) at the last triangle of a model. Otherwise the pipeline has no limit.
     #[must_use]
     pub const fn has_limit(&self) -> bool {
         self.first_miss.is_some() || self.triangles < super::CEILING
     }
 }
 
-/// Hints about the limit, which reduce the number of trials. Hints do not change the result of any trial.
+/// Hints about the limit, which reduce the number of simulations but do not change their results.
 #[derive(Clone, Debug, Default)]
 pub struct Hints {
-    /// Number of triangles near the limit. Without this hint the search starts with one triangle.
+    /// Number of triangles near the limit. Without this hint, the search starts with one triangle.
     pub near: Option<u32>,
-    /// Numbers of triangles that may miss the goal although larger numbers reach the goal. The search tries these
-    /// numbers too.
+    /// Numbers of triangles that may miss the goal although larger numbers reach the goal, and that are therefore
+    /// tried.
     pub doubtful: Vec<u32>,
 }
 
-/// Maximum number of sizes (numbers of triangles) directly below the result that are all tried: 60 sizes, or two clumps
-/// of 30 triangles. The search also tries about as many sizes above the result, because some of these may reach the
-/// goal.
+/// Maximum number of consecutive sizes that are tried below the result: 60 sizes, or two clumps of 30 triangles. About
+/// as many sizes are tried above the result, because some may reach the goal.
 const LOOK: u32 = 60;
 
-/// Maximum sum of the triangles of all scenes that are tried directly below the result. Larger scenes take longer to
-/// simulate, so fewer large scenes are tried.
+/// Maximum sum of the triangles of all consecutive scenes below the result. Larger scenes take longer to simulate, so
+/// fewer large scenes are tried.
 const TRIANGLES_IN_A_ROW: u32 = 60_000;
 
-/// Minimum number of consecutive scene sizes that are tried directly below the result.
+/// Minimum number of consecutive scene sizes below the result.
 const LEAST_IN_A_ROW: u32 = 4;
 
-/// The scene sizes (numbers of triangles) that were tried so far. The boolean of a size is true if the size reached the
-/// goal.
+/// The tried scene sizes. The boolean is true if the size reached the goal.
 struct Tried<F> {
     answers: BTreeMap<u32, bool>,
     reached: F,
@@ -72,12 +69,11 @@ impl<F> Tried<F> {
         Ok(answer)
     }
 
-    /// Returns the smallest tried size (number of triangles) that missed the goal.
     fn first_miss(&self) -> Option<u32> {
         self.answers.iter().find(|(_, reached)| !**reached).map(|(size, _)| *size)
     }
 
-    /// Returns the largest tried number of triangles below `size`, or 0 if no smaller number was tried.
+    /// Returns the largest tried number of triangles below `size`, or 0 if there is none.
     fn before(&self, size: u32) -> u32 {
         self.answers.range(..size).next_back().map_or(0, |(size, _)| *size)
     }
@@ -102,7 +98,7 @@ impl<F> Tried<F> {
         Ok(())
     }
 
-    /// Bisects the gap below the first miss, until the number of triangles directly before the first miss was tried.
+    /// Bisects the gap below the first miss, until the number directly before the first miss was tried.
     fn bisect<E>(&mut self) -> Result<(), E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -161,8 +157,7 @@ impl<F> Tried<F> {
     }
 }
 
-/// Searches for the first miss: the smallest size (number of triangles) up to `ceiling` for which `reached` returns
-/// false, which means that the goal is missed.
+/// Searches for the first miss: the smallest number of triangles up to `ceiling` for which `reached` returns false.
 ///
 /// Sizes above the first miss may reach the goal, because a nearly empty clump (group of triangles) costs as many
 /// messages as a full clump. The search tries only some sizes, but guarantees three facts:
@@ -171,7 +166,7 @@ impl<F> Tried<F> {
 /// - All sizes from [`Limit::unbroken_from`] to the size before the first miss were tried and reached the goal.
 /// - No smaller size that was tried missed the goal.
 ///
-/// Below [`Limit::unbroken_from`] the search tries the sizes of the hints, and five sizes at growing distances. A miss
+/// Below [`Limit::unbroken_from`], the search tries the sizes of the hints and five sizes at growing distances. A miss
 /// at any size between them is not found.
 ///
 /// # Errors
@@ -188,8 +183,8 @@ pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<b
     Ok(tried.limit(ceiling))
 }
 
-/// Returns [`Limit::triangles`] of [`most`], without a search for islands (sizes above the first miss that reach the
-/// goal). An island never changes the limit, so about half of the trials are left out.
+/// Returns [`Limit::triangles`] of [`most`], without the sizes above the first miss. These sizes never change the limit
+/// and are about half of all tried sizes.
 ///
 /// # Errors
 ///
@@ -200,7 +195,7 @@ pub fn most_triangles<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -
     Ok(tried.limit(ceiling).triangles)
 }
 
-/// Returns the limit found by bisection alone, as a hint for a search at another level of modelling.
+/// Returns the limit found by bisection alone, as a hint for a search at another level of detail.
 pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<u32, E> {
     let mut tried = Tried { answers: BTreeMap::new(), reached };
     tried.bracket(1, ceiling)?;
@@ -208,9 +203,8 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
     Ok(tried.limit(ceiling).triangles)
 }
 
-/// Returns the numbers of triangles to try below `limit`: consecutive numbers directly below `limit`, the numbers in
-/// `doubtful`, and five numbers whose distances from `limit` double. According to the hints, doubtful numbers may miss
-/// the goal.
+/// Returns the numbers of triangles to try below `limit`. These are consecutive numbers directly below `limit`, the
+/// numbers in `doubtful`, which may miss the goal, and five numbers at doubling distances.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
     // All sizes directly below, from the largest down.
@@ -219,7 +213,7 @@ fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     near.chain(doubtful.iter().copied().filter(move |size| *size < limit)).chain(far).filter(|size| *size > 0)
 }
 
-/// Returns how many numbers of triangles to try on either side of `limit`. The numbers below `limit` are consecutive.
+/// Returns the number of consecutive sizes to try below `limit`. About as many sizes are tried above `limit`.
 fn in_a_row(limit: u32) -> u32 {
     (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(LEAST_IN_A_ROW, LOOK)
 }

@@ -9,16 +9,16 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Cross-validation of a figure: its prediction by the interpretation that fits all other figures best.
+/// Prediction of a figure by the interpretation that fits all other figures best (cross-validation).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeaveOneOut {
     /// Number of the figure in ACCURACY.md.
     pub id: &'static str,
-    /// Interpretation with the smallest mean error over the other figures.
+    /// Interpretation with the smallest mean error over all other figures.
     pub chosen: Reading,
-    /// The chosen interpretation in words.
+    /// The interpretation `chosen` in words.
     pub words: String,
-    /// Relative error, in percent, of the figure's value under the chosen interpretation.
+    /// Relative error in percent of the figure under the interpretation `chosen`.
     pub error_percent: f64,
 }
 
@@ -27,22 +27,21 @@ pub struct LeaveOneOut {
 pub struct Readings {
     /// Name and version of the JSON layout.
     pub schema: &'static str,
-    /// Fit of every interpretation at the analytic level, by ascending mean error.
+    /// Fits of all interpretations at the analytic level, by ascending mean error.
     pub analytic: Vec<Fit>,
-    /// Fit of the best interpretations at the transaction level, by ascending mean error.
+    /// Fits of the best interpretations at the transaction level, by ascending mean error.
     pub transaction: Vec<Fit>,
     /// Prediction of each figure by the interpretation that fits all other figures best, at the analytic level.
     pub left_out: Vec<LeaveOneOut>,
-    /// Number of interpretations whose mean error equals the error of the best interpretation, within the printed
-    /// digits.
+    /// Number of interpretations with the same mean error as the best interpretation, within the printed digits.
     pub as_good: usize,
     /// Part of a mean error, in percent, that the rounding of printed digits can explain.
     pub rounding_percent: f64,
 }
 
 /// Ranks all interpretations at the analytic level, with the numbers of seeds and frames in `bench`. The first `best`
-/// interpretations are then simulated at the transaction level. `finished` is called with the number of finished runs
-/// and the number of all runs.
+/// interpretations are then simulated at the transaction level. Calls `finished` with the number of finished runs and
+/// the number of all runs.
 ///
 /// # Errors
 ///
@@ -79,9 +78,8 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
     Ok(Readings { schema: "pxpl5-readings/1", analytic, transaction, left_out, as_good, rounding_percent })
 }
 
-/// Groups the interpretations whose runs differ at most in the number of regions that a renderer keeps. Within a group,
-/// the interpretation with the smallest number comes first. If no backing store is full in its run, the run also serves
-/// the larger numbers.
+/// Groups the interpretations that differ at most in the number of regions in a backing store. Each group begins with
+/// the smallest number. If no backing store is full in its run, the run also serves the larger numbers.
 fn groups(readings: &[Reading]) -> Vec<Vec<Reading>> {
     let mut groups: BTreeMap<Reading, Vec<Reading>> = BTreeMap::new();
     for reading in readings {
@@ -104,8 +102,8 @@ fn left_out(fits: &[Fit], id: &'static str) -> Option<LeaveOneOut> {
     Some(LeaveOneOut { id, chosen: chosen.reading, words: chosen.words.clone(), error_percent: figure.error_percent })
 }
 
-/// Returns the mean rounding error of the figures in percent: half of the last printed digit. Papers print three
-/// digits.
+/// Returns the mean rounding error of the figures in percent. The rounding error of a figure is half of its last digit,
+/// with three printed digits.
 fn rounding_percent(fits: &[Fit]) -> f64 {
     let published = fits.first().into_iter().flat_map(|fit| &fit.figures).map(|figure| figure.published);
     let halves: Vec<f64> = published.map(|value| 100.0 * half_a_digit(value) / value).collect();

@@ -1,5 +1,4 @@
-//! Simulates some points of a sweep within a time limit. Programs that distribute the points of a sweep over computers
-//! call this module.
+//! Simulates some points of a sweep within a time limit, for programs that distribute the points over computers.
 
 use super::point::row;
 use super::{Status, Sweep, SweepRow};
@@ -8,7 +7,7 @@ use std::time::{Duration, Instant};
 
 impl Sweep {
     /// Simulates `points` one after the other on the calling thread, until the time `at_most` has passed. Returns each
-    /// row with the seconds that its simulation took.
+    /// row with the seconds of its simulation.
     ///
     /// The first point is always simulated, and no point is interrupted. Repeated calls with the remaining points
     /// therefore reach the end. A row depends only on the file and the point. An error of a point, even a panic, is

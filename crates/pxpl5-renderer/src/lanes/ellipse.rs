@@ -11,11 +11,12 @@ const MARGIN: f64 = 1e-3;
 /// Upper limit of the rounding error of a discriminant `b^2 - 4 a c`, as a fraction of its two terms.
 const ROUNDING: f64 = 1e-9;
 
-/// The pixels at which a quadratic expression can be positive. The origin of the expression is the array's upper left
-/// pixel.
+/// The pixels at which a quadratic expression can be positive. The expression has the upper left pixel of the array as
+/// origin of coordinates.
 pub(super) struct Ellipse {
     rows: Range<usize>,
-    /// The quadratic expression that limits the columns of each row. `None` if all columns of every row must be tested.
+    /// The quadratic expression, which limits the columns of each row. `None` if all columns of all rows must be
+    /// tested.
     quadratic: Option<Quadratic>,
 }
 
@@ -25,8 +26,8 @@ impl Ellipse {
             return Self { rows: 0..SIZE, quadratic: None };
         }
         let [xx, xy, yy, x, y, one] = [q.xx, q.xy, q.yy, q.x, q.y, q.one].map(|c| c as f64);
-        // A row has pixels inside if the discriminant of the quadratic expression in x is positive. The discriminant is
-        // a quadratic function of y.
+        // A row contains pixels inside if the discriminant of the expression, as a polynomial in x, is positive. The
+        // discriminant is a quadratic function of y.
         let rows = positive(xy * xy - 4.0 * xx * yy, 2.0 * xy * x - 4.0 * xx * y, x * x - 4.0 * xx * one);
         Self { rows, quadratic: Some(*q) }
     }
@@ -35,7 +36,6 @@ impl Ellipse {
         self.rows.clone()
     }
 
-    /// Returns the columns of a row at which the quadratic expression can be positive.
     #[inline(always)]
     pub(super) fn columns(&self, row: usize) -> Range<usize> {
         let Some(q) = &self.quadratic else { return 0..SIZE };
@@ -44,8 +44,8 @@ impl Ellipse {
     }
 }
 
-/// Reduces the expression `q` to a polynomial in x for row `row`. Returns the coefficient of x and the constant. The
-/// coefficient of x squared is the same in all rows.
+/// Returns the coefficient of x and the constant of `q` as a polynomial in x along row `row`. The coefficient of x
+/// squared is the same in all rows.
 #[inline(always)]
 pub(super) const fn along_row(q: &Quadratic, row: usize) -> (i64, i64) {
     let y = row as i64;
@@ -60,8 +60,8 @@ fn stays_in_48_bits(q: &Quadratic) -> bool {
     (xx + xy + yy) * last * last + (x + y) * last + one < (1_u64 << 46) as f64
 }
 
-/// Returns the indices t of the array's columns at which `a t^2 + b t + c` can be positive. These are the integers
-/// between the zeros, with a margin. Unless `a < 0`, the function returns all columns of the array.
+/// Returns the columns t of the array at which `a t^2 + b t + c` can be positive. If `a < 0`, these are the columns
+/// between the zeros, with a margin. Otherwise, these are all columns.
 #[inline(always)]
 fn positive(a: f64, b: f64, c: f64) -> Range<usize> {
     if a >= 0.0 {
