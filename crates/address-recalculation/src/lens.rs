@@ -10,6 +10,7 @@ use std::sync::Arc;
 /// Widest angle of a flat picture or a radial lens, in degrees. All displays with flat pictures have the same limit.
 const WIDEST_FLAT_DEG: f64 = 170.0;
 
+/// The distortion of the lens in front of a display.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Lens {
     /// No lens distortion: the pixels lie on a plane.
@@ -18,10 +19,7 @@ pub enum Lens {
     /// A radial polynomial that multiplies the distance rho from the middle by 1 + k1 rho^2 + k2 rho^4.
     ///
     /// rho is 1 at the left and right ends of the middle line.
-    Radial {
-        k1: f64,
-        k2: f64,
-    },
+    Radial { k1: f64, k2: f64 },
     /// A lens for which the viewing angle is proportional to the distance from the middle. Pictures can be up to 360
     /// degrees wide.
     Equidistant,
@@ -29,6 +27,7 @@ pub enum Lens {
     Table(Arc<[Vector]>),
 }
 
+/// The size and the horizontal angle of the picture behind a [`Lens`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LensPicture {
     pub width: u32,

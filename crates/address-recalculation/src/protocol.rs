@@ -68,10 +68,16 @@ pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ArpMessage {
-    Begin { buffer: u8, regions: Vec<u16> },
+    Begin {
+        buffer: u8,
+        regions: Vec<u16>,
+    },
     /// Requests to show a buffer at the same retrace as buffers of other memories. Bit k of `together` stands for
     /// memory k. If `together` is 0, the memory swaps alone.
-    Swap { buffer: u8, together: u8 },
+    Swap {
+        buffer: u8,
+        together: u8,
+    },
     /// Sets an orientation that is not yet checked.
     Matrix([Vector; 3]),
 }

@@ -6,9 +6,7 @@ use crate::syntax::register_mask;
 /// A word that does not encode an instruction of the i860 XR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:08x} is not an i860 XR instruction")]
-pub struct IllegalWord(
-    pub u32,
-);
+pub struct IllegalWord(pub u32);
 
 const D_BIT: u32 = 1 << 9;
 /// Number of epsr, the last control register of the i860 XR. The later i860 XP has more control registers: bear, ccr

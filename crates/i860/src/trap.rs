@@ -5,9 +5,7 @@
 pub enum TrapCause {
     /// A word that does not encode an XR instruction.
     #[error("{word:08x} is not an i860 XR instruction")]
-    Illegal {
-        word: u32,
-    },
+    Illegal { word: u32 },
     /// A pair that does not consist of a floating-point instruction and then a core instruction.
     #[error("a pair must be one floating-point and one core instruction")]
     IllegalPair,
@@ -28,15 +26,10 @@ pub enum TrapCause {
     InstructionAccess,
     /// A load or store at an address at which no memory or device answers.
     #[error("no memory at {address:#010x}")]
-    DataAccess {
-        address: u32,
-    },
+    DataAccess { address: u32 },
     /// A load or store at an address that is not a multiple of the access size.
     #[error("{address:#010x} is not a multiple of {size}")]
-    Unaligned {
-        address: u32,
-        size: u32,
-    },
+    Unaligned { address: u32, size: u32 },
     /// The interrupt pin was raised while psr.IM was set.
     #[error("interrupt")]
     Interrupt,

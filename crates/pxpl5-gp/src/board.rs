@@ -27,10 +27,7 @@ pub enum GpEvent {
     Retrace(PeriodNumber),
     /// The status signal of another board has changed. A status signal carries one number, for example the number of
     /// swaps of a frame buffer. The event belongs to phase `Arrive`.
-    Status {
-        from: NodeId,
-        value: u64,
-    },
+    Status { from: NodeId, value: u64 },
     /// The programs of the board continue. They can read all inputs that have arrived at this instant.
     Poll,
     /// The current CPU work ends at this instant. The event has no effect if an interrupt has delayed the end.
@@ -80,6 +77,7 @@ struct Task {
     has_ended: bool,
 }
 
+/// A graphics processor board with its programs.
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,

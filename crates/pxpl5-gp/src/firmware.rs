@@ -14,8 +14,10 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program on a board. It runs forever or ends with a fault. It must await only one future at a time, because the
-/// board records one wait for each program.
+/// A program on a board.
+///
+/// It runs forever or ends with a fault. It must await only one future at a time, because the board records one wait
+/// for each program.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
@@ -26,15 +28,13 @@ pub enum Fault {
     #[error(transparent)]
     Memory(#[from] OutOfMemory),
     #[error("node {}: unexpected message {found}", node.0)]
-    Protocol {
-        node: NodeId,
-        found: String,
-    },
+    Protocol { node: NodeId, found: String },
     /// The i860 code trapped, did not return, or needed more memory than was free.
     #[error(transparent)]
     Processor(#[from] ProcessorFault),
 }
 
+/// A received message, with the arrival time of its last word.
 #[derive(Clone, Debug)]
 pub struct Received {
     /// Arrival time of the last word of the message.
@@ -43,8 +43,9 @@ pub struct Received {
     pub body: Body,
 }
 
-/// Number of a batch of messages that a program has passed to the DMA. The DMA (direct memory access) is the part of
-/// the board that sends messages in the background.
+/// Number of a batch of messages that a program has passed to the DMA.
+///
+/// The DMA (direct memory access) is the part of the board that sends messages in the background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticket(pub(crate) u64);
 

@@ -53,10 +53,7 @@ pxpl5_sim::parameters::named!(
 #[non_exhaustive]
 pub enum ProcessorFault {
     #[error("graphics processor at node {}: {trap}", gp.0)]
-    Trap {
-        gp: NodeId,
-        trap: Trap,
-    },
+    Trap { gp: NodeId, trap: Trap },
     /// The code used up its instruction budget before it returned.
     #[error("graphics processor at node {}: no return within {budget} instructions, at {address:#010x}", gp.0)]
     Endless {
@@ -67,11 +64,7 @@ pub enum ProcessorFault {
     },
     /// An access from outside the i860 to addresses without memory.
     #[error("graphics processor at node {}: no memory for {words} words at {address:#010x}", gp.0)]
-    Unmapped {
-        gp: NodeId,
-        address: u32,
-        words: usize,
-    },
+    Unmapped { gp: NodeId, address: u32, words: usize },
     /// The memory is too small for the outputs of the two bin contexts (sets of bins).
     #[error("graphics processor at node {}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available", gp.0)]
     NoRoom {
@@ -85,10 +78,7 @@ pub enum ProcessorFault {
     },
     /// The program has no label with the requested name.
     #[error("graphics processor at node {}: the program has no label `{label}`", gp.0)]
-    NoEntry {
-        gp: NodeId,
-        label: String,
-    },
+    NoEntry { gp: NodeId, label: String },
 }
 
 /// Return address of every call. There is no code at this address, and the i860 stops when its program counter reaches

@@ -21,9 +21,7 @@ pub enum RingEvent {
     },
     /// Internal event: the time slot of one word ends. Only a ring that [moves every
     /// word](crate::Ring::move_every_word) has such events. The event belongs to phase `Arrive`.
-    Slot {
-        channel: usize,
-    },
+    Slot { channel: usize },
     /// Internal event: frees the channels of ended messages, then grants channels to waiting messages. The event
     /// belongs to phase `Work`.
     Arbitrate,
@@ -58,10 +56,7 @@ pub enum RingOutput {
     /// Delivery of a message to its receiver, which accepts every word immediately. The last word has just arrived.
     Delivered(Message),
     /// Answer to the sender: the receiver has accepted the last word.
-    Sent {
-        source: NodeId,
-        ticket: u64,
-    },
+    Sent { source: NodeId, ticket: u64 },
     /// Answer to the sender: the ring has refused the message.
     Refused {
         /// Ring port of the sender, according to the message.
@@ -95,9 +90,7 @@ pub enum RingError {
     },
     /// A receiver answered without an announcement, or answered an announcement twice.
     #[error("ring port {} accepted a message that was not announced to it", .destination.0)]
-    NothingAnnounced {
-        destination: NodeId,
-    },
+    NothingAnnounced { destination: NodeId },
     /// A receiver answered with a time at which the last word cannot have arrived yet.
     #[error("ring port {} accepted the last word at {found}, but it cannot enter before {expected}", .destination.0)]
     AcceptedEarly {

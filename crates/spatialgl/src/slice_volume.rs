@@ -90,10 +90,7 @@ pub enum SliceVolume {
     /// All points between the near and far planes.
     Frustum,
     /// A slab low <= s < high parallel to the slice, where s is the distance from the slice in pixels.
-    Slab {
-        low: f64,
-        high: f64,
-    },
+    Slab { low: f64, high: f64 },
     /// A double wedge around the axis y: its planes, and its test.
     Wedge(WedgePlanes, WedgeTest),
     /// The volume |s| <= offset + slope |u|, bounded by clip planes. s is the distance from the slice, and u the
