@@ -222,7 +222,8 @@ pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u
 /// The reason is that 255 * 4^4 plus half a unit is below 2^16.
 const MAX_PACKED_WEIGHT_BITS: u32 = 4;
 
-/// Interpolates colours. One product contains red and blue, and another product contains green.
+/// Interpolates colours with two products for each texel: one product for red and blue together, and one product for
+/// green.
 #[inline(always)]
 fn two(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) {
     let one = 1 << weight_bits;

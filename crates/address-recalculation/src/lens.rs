@@ -20,8 +20,8 @@ pub enum Lens {
     ///
     /// rho is 1 at the left and right ends of the middle line.
     Radial { k1: f64, k2: f64 },
-    /// A lens for which the viewing angle is proportional to the distance from the middle. Pictures can be up to 360
-    /// degrees wide.
+    /// A lens for which the viewing angle is proportional to the distance from the middle of the picture. Pictures can
+    /// be up to 360 degrees wide.
     Equidistant,
     /// Viewing vectors from a file, in row order (see [`Lens::read`]).
     Table(Arc<[Vector]>),
@@ -32,7 +32,7 @@ pub enum Lens {
 pub struct LensPicture {
     pub width: u32,
     pub height: u32,
-    /// Angle between the left and the right edge if there is no lens, in degrees.
+    /// Angle between the left and the right edge of the picture if there is no lens, in degrees.
     pub horizontal_deg: f64,
 }
 

@@ -18,8 +18,8 @@ pub(crate) struct CoreAction {
     /// Base register that receives the address of a load or store with auto-increment. It is 0 (r0) for other
     /// instructions.
     pub(crate) increments: u8,
-    /// Immediate operand, or displacement that is added to the first source register. It is 0 if the instruction has
-    /// neither.
+    /// Immediate operand, or displacement that is added to the first source register. The value is 0 if the instruction
+    /// has neither an immediate operand nor a displacement.
     pub(crate) immediate: u32,
 }
 

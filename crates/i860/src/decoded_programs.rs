@@ -16,8 +16,8 @@ pub struct DecodedPrograms {
     pub(crate) numbers: Box<Numbers>,
     /// Programs with their decoded code. The code is `None` while a processor uses it.
     codes: Vec<(Arc<Program>, Option<Code>)>,
-    /// Highest number that a state of an instruction cache has had so far. All processors that have used the store
-    /// count.
+    /// Highest number that a state of an instruction cache has had so far, over all processors that have used this
+    /// store of decoded programs.
     pub(crate) cache_states: u64,
 }
 

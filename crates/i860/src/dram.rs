@@ -9,7 +9,7 @@ const BUS_DEPTH: usize = ChipSizes::PAPERS.bus_depth as usize;
 /// The clocks at which the 8-byte transfers of a request arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Transfer {
-    /// Clock at which the first 8 bytes arrive. They contain the requested data.
+    /// Clock at which the first 8 bytes arrive. These bytes contain the requested data.
     pub(crate) first: u64,
     pub(crate) last: u64,
     step: u64,
@@ -66,8 +66,9 @@ impl Dram {
         self.data_end.max(self.free)
     }
 
-    /// Adds the time of a refresh, and of a transfer by another bus master, if they are due before a request at clock
-    /// `now`. Of several that are due, only the latest takes time (assumed).
+    /// Adds the times of a refresh of the DRAM and of a transfer by another bus master. Each time is added only if the
+    /// refresh or transfer is due at clock `now` or earlier. If several refreshes are due, only the latest refresh
+    /// takes time, and the same holds for transfers (assumed).
     fn steal(&mut self, now: u64) {
         let t = self.timing;
         for (interval, clocks, due) in [

@@ -50,8 +50,8 @@
 //! # Timing
 //!
 //! An instruction or pair is issued in one clock unless a row of [`timing::FREEZES`] delays it. Of several simultaneous
-//! freezes, only the longest counts. The times of cache misses are added. Every row can be disabled or given another
-//! cost. Every DRAM time is a parameter with an allowed range. A [`Profile`] accounts for every clock.
+//! freezes, only the longest counts. The times of cache misses are added. An experiment can disable every row or change
+//! its cost. Every DRAM time is a parameter with an allowed range. A [`Profile`] accounts for every clock.
 //!
 //! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte cache
 //! lines and pseudo-random replacement. A write miss allocates no cache line. The TLB has 64 entries.

@@ -41,9 +41,9 @@
 //! that begins with the first unissued line. From the operations in the window that can be issued, the scheduler
 //! selects the operation with the longest path to the end of the stretch.
 //!
-//! The first line in the window can take the last free registers. Later lines must leave a *reserve* of free registers.
-//! For each 64 lines of distance from the first line, the reserve increases by *slope* registers. With this reserve, no
-//! schedule runs out of registers.
+//! Only the first line in the window may use the last free registers. Later lines must leave a *reserve* of free
+//! registers. For each 64 lines of distance from the first line, the reserve increases by *slope* registers. With this
+//! reserve, no schedule runs out of registers.
 //!
 //! An operation without operands pushes a pipe (a *drain*) in two cases. In the first case, no operation can be issued.
 //! In the second case, a value in the pipe has a longer path than the best operation, by more than the *eagerness*. An

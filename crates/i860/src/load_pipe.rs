@@ -30,7 +30,8 @@ impl LoadPipe {
     }
 }
 
-/// Returns the clock at which data from the cache are ready, which is after the end of all earlier bus cycles.
+/// Returns the clock at which data from the cache are ready. The data are ready only after the end of all earlier bus
+/// cycles.
 fn from_cache(common: &mut Common) -> u64 {
     if common.costs.applies(Freeze::PipelinedLoadHit) {
         let until = common.bus.idle_at().max(common.now) + common.costs.clocks(Freeze::PipelinedLoadHit);

@@ -16,7 +16,8 @@ use rustc_hash::FxHashMap;
 /// Longest wait, in clocks, in a numbered scoreboard state. States with longer waits get no number, so their clocks are
 /// not memoized.
 pub(crate) const MOST_CLOCKS: u8 = 15;
-/// Greatest number of scoreboard states that get a number. Code that starts in another state is not memoized.
+/// Greatest number of scoreboard states that get a number. Code that starts in a state without a number is not
+/// memoized.
 const MOST_NUMBERS: usize = 1 << 15;
 
 /// The number of a scoreboard state (the remaining waits for registers and units). The highest bit is set if an

@@ -120,10 +120,10 @@ impl fmt::Debug for BlockOrder {
 pub struct Wanted {
     /// Number of the view: see [`JitpConfig::view_number`].
     pub number: ViewNumber,
-    /// The view must depend only on reports that the host received before this instant, because later reports have not
-    /// reached the master.
+    /// Instant until which reports count. The view must depend only on reports that the host received before this
+    /// instant, because later reports have not reached the master.
     pub known: Time,
-    /// Instant for which the view is drawn.
+    /// Instant for which the pose of the view is predicted.
     pub shown_at: Time,
 }
 

@@ -24,7 +24,7 @@ pub(crate) enum DrawingOrder {
     Blocks { update: PictureNumber, step: u64, view: FrameView },
     /// A tracker report from the host. The master may use all reports that the host received before `known`.
     Report { known: Time },
-    /// The slave can take another order.
+    /// The slave has finished an order and is ready for the next order.
     Done { slave: u32 },
 }
 

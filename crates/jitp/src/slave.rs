@@ -19,8 +19,8 @@ use std::sync::Arc;
 /// Number of transformed fields in memory, including the current and the next field.
 const FIELDS_KEPT: usize = 3;
 
-/// Number of parts of the slave's memory for fields: the stored fields, and the field that is being transformed. A
-/// further part is for a strip between two views.
+/// Number of parts into which the slave's memory for fields is divided: one part for each stored field, and one part
+/// for the field that is being transformed. One more part, not counted here, is for a strip between two views.
 const PARTS_OF_FIELDS: u8 = FIELDS_KEPT as u8 + 1;
 const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS as usize, PARTS_OF_FIELDS + 1);
 
@@ -33,7 +33,8 @@ struct SlaveFields {
     n_transformed: usize,
 }
 
-/// A transformed field. The list `whole`, for the first view, serves all strips if the field has only one view.
+/// A transformed field. The list `whole` has the primitives in the first view. If the field has only one view, all
+/// strips use this list.
 #[derive(Clone)]
 struct Field {
     ends: Ends,

@@ -224,8 +224,8 @@ impl Pass {
         TransformCost { clipped: self.stats().clipped, entries: self.entries(), ..counted }
     }
 
-    /// Executes the kernels for all primitives on a board that holds the display list. `context` is the set of bins, 0
-    /// or 1.
+    /// Executes the kernels for all primitives. The board's memory must already contain the display list. `context` is
+    /// the set of bins, 0 or 1.
     ///
     /// Returns `None` if no kernel can draw this kind of picture.
     ///

@@ -47,8 +47,8 @@ pub struct CubeTransformOutput {
 }
 
 impl CubeTransform<'_> {
-    /// Executes the code on a board that holds the display list. Returns `None` if no kernel can draw this kind of
-    /// picture.
+    /// Executes the i860 code of TRANSFORM for the six views. The board's memory must already contain the display list.
+    /// Returns `None` if no kernel can draw this kind of picture.
     ///
     /// # Errors
     ///

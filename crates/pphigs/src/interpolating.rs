@@ -1,8 +1,8 @@
 //! CPU work of interpolating triangles between two views (a *dual display list*).
 //!
-//! The code records each triangle's corners in the views at the start and at the end of a field. For each strip of
-//! lines, the code then makes commands for a view between these views. The code is `ends.s` and `compiled.s` of
-//! `pxpl5-geometry`. No paper describes the code; kernels/between_rules.md states its rules.
+//! The i860 code records each triangle's corners in the views at the start and at the end of a field. For each strip of
+//! lines, the i860 code then makes commands for a view between these views. The sources are `ends.s` and `compiled.s`
+//! of `pxpl5-geometry`. No paper describes the code; kernels/between_rules.md states its rules.
 
 use crate::code::{BUDGET, Next, Programs, TRIANGLE_BYTES, budget, kept};
 use crate::layout::{BLENDED, BLENDED_ELEMENTS, CODE, DISPLAY_LIST, PARAMETERS, STACK};
@@ -34,8 +34,8 @@ pub struct TriangleEndsRecorder<'a> {
 }
 
 impl TriangleEndsRecorder<'_> {
-    /// Executes the code on a board that holds the display list, and returns the simulated time. The time includes the
-    /// preparation of structures for both views.
+    /// Executes the i860 code that records the corners, and returns the simulated time. The board's memory must already
+    /// contain the display list. The time includes the preparation of structures for both views.
     ///
     /// Returns `None` if no kernel can draw this kind of picture.
     ///
@@ -97,8 +97,9 @@ pub struct StripInterpolation<'a> {
 }
 
 impl StripInterpolation<'_> {
-    /// Executes the code on a board that holds the recorded corners. Returns `None` if no kernel can draw this kind of
-    /// picture.
+    /// Executes the i860 code that makes the strip's commands, and returns the simulated time. The board's memory must
+    /// already contain the corners that a [`TriangleEndsRecorder`] has recorded. Returns `None` if no kernel can draw
+    /// this kind of picture.
     ///
     /// # Errors
     ///

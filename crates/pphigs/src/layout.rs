@@ -6,7 +6,8 @@
 //!   | table of bins, stack             | of context 0          |  of context 1  |
 //! ```
 
-/// Address of the code for triangles, with the clipper. The processor's trap vectors are below this address.
+/// Address of the i860 code for triangles, with the clipper (the program that cuts triangles at the guard band). The
+/// processor's trap vectors are below this address.
 pub(crate) const CODE: u32 = 0x1000;
 pub(crate) const SORT_CODE: u32 = 0xB000;
 pub(crate) const BEGIN_CODE: u32 = 0xC000;

@@ -157,8 +157,8 @@ impl Share {
         &self.list
     }
 
-    /// Returns the same primitives of another list. The other list must have the same structures, but its vertices may
-    /// be in another order.
+    /// Returns a share with the same indices of primitives in the display list `list`. This list must have the same
+    /// structures as the current list, but its vertices may be in a different order.
     #[must_use]
     pub fn with_list(&self, list: Arc<DisplayList>) -> Self {
         Self { list, ..self.clone() }

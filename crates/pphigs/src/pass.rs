@@ -73,8 +73,8 @@ struct Found {
 struct PrimitiveCounter {
     /// For each region, the number of triangles that touch only this region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// For each region, the number of triangles that also touch another region, and the number of spheres that touch
-    /// this region.
+    /// Two counts for each region: triangles that touch this region and at least one other region, and spheres that
+    /// touch this region.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,

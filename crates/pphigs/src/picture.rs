@@ -36,7 +36,7 @@ pxpl5_sim::parameters::named!(RegionBinning, "choice of regions", RegionBinning:
 /// Settings for the drawing of a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture {
-    /// Lines of the frame in the picture, and division into regions.
+    /// The lines of the video frame that the picture has (all, even or odd), and the picture's division into regions.
     pub viewport: Viewport,
     pub shading: Shading,
     pub binning: RegionBinning,

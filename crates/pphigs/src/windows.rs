@@ -125,7 +125,7 @@ impl Pass {
     ///
     /// # Errors
     ///
-    /// Returns [`ProcessorFault`] if the code does not end, or its data do not fit.
+    /// Returns [`ProcessorFault`] if the i860 code of TRANSFORM does not end, or if its data do not fit.
     pub fn keep(
         &self,
         timing: &GpTiming,
@@ -228,8 +228,8 @@ impl WindowSearchWork<'_> {
         self.counts.iter().map(|counts| counts.total()).sum()
     }
 
-    /// Executes the code on a board with commands that [`Pass::keep`] stored. Returns `None` if there are no stored
-    /// commands.
+    /// Executes the i860 code of the search. The board's memory must already contain the commands that [`Pass::keep`]
+    /// stores. Returns `None` if there are no stored commands.
     ///
     /// # Errors
     ///
@@ -329,7 +329,8 @@ fn line_registers(viewport: &Viewport, first: usize) -> [(usize, Word); 2] {
     [(first, viewport.first_line()), (first + 1, viewport.line_step() - 1)]
 }
 
-/// Executes the code that computes the limits of the windows, which are cut off at the edges of the picture.
+/// Executes the code that computes the first and last columns and rows of the windows. Windows are cut off at the edges
+/// of the picture.
 fn make_windows(
     processor: &mut Processor,
     grid: RegionGrid,
@@ -373,8 +374,8 @@ pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)
 }
 
-/// The code that searches windows and lists messages. Every message has room for the copy command, as in the messages
-/// that the simulator makes without code.
+/// The i860 code that finds the primitives in windows and lists the messages. Every message has room for the copy
+/// command, as in the messages that the simulator makes without code.
 static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
     let token = token_source([MAX_MESSAGE_WORDS - CLOSING, MAX_MESSAGE_WORDS]);
     let sources = [("windows", include_str!("../kernels/windows.s")), ("token", token.as_str())];

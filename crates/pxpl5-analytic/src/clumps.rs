@@ -158,7 +158,8 @@ impl<const N: usize> Channels<N> {
         Self { soonest: free, others: [free; MAX_CHANNELS - 1], number: number - 1 }
     }
 
-    /// Marks the channel that becomes free first as busy until `free`, and restores the ascending order.
+    /// Marks the channel that becomes free first as busy until `free`. Then sorts the channels by the time at which
+    /// they become free.
     #[inline(always)]
     fn give_back(&mut self, free: Times<N>) {
         let mut here = free;

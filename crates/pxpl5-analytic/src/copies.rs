@@ -37,8 +37,8 @@ impl Queue {
 
     /// Returns the same copies in an order that alternates between the left and the right frame buffer.
     ///
-    /// If `begins_right` is true, the order begins with a copy to the right frame buffer, if any exists. Otherwise the
-    /// first copy stays the first.
+    /// If `begins_right` is true, the new order begins with a copy to the right frame buffer, if any exists. Otherwise
+    /// the new order begins with the same copy as the old order.
     pub(super) fn alternated(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];
@@ -172,8 +172,8 @@ impl<const N: usize> Ports<N> {
         }
     }
 
-    /// Copies one region on each machine, to the right frame buffer if the mask is set, otherwise to the left. Returns
-    /// the end times.
+    /// Copies one region on each machine, to the right frame buffer if `to_right` is set, otherwise to the left frame
+    /// buffer. Returns the end times.
     #[inline(always)]
     fn copy_where(&mut self, ready: Times<N>, to_right: Mask<N>, region: Times<N>) -> Times<N> {
         let [left, right] = self.free;

@@ -8,8 +8,9 @@
 //!                        --> StereoModel::frames --> times of a frame     (pictures x regions)
 //! ```
 //!
-//! The closed forms have no events, programs or pixels. A configuration takes a few hundred additions and maxima, so a
-//! sweep over many thousand configurations takes seconds. The formulas follow these rules of the boards:
+//! The closed forms have no events, programs or pixels. The times of one configuration need a few hundred additions and
+//! comparisons, so a sweep over many thousand configurations takes seconds. The formulas follow these rules of the
+//! boards:
 //!
 //! - The messages of a clump leave in order. A renderer's full input FIFO delays a message.
 //! - A renderer executes commands in order. While a renderer copies a region, the renderer executes no other command.
@@ -19,7 +20,7 @@
 //! channels (`senders`). The functions return an error for other pipelines, for displays other than NTSC, and for heads
 //! with a tracker.
 //!
-//! Times are nanoseconds in f64. Rounding errors are far below 1 ns, and differences that matter are much larger.
+//! Times are nanoseconds in f64. Rounding errors are far below 1 ns. Only differences of much more than 1 ns matter.
 //!
 //! # Not modelled
 //!

@@ -156,8 +156,9 @@ impl Renderer {
     /// Receives a command whose words arrive without gaps from `from_ns` on. Returns the time at which the last word
     /// has entered the FIFO.
     ///
-    /// A full FIFO accepts a word when the word that lies one FIFO depth earlier has left. The words of a command leave
-    /// when the command starts. A command starts when all its words have arrived and the previous command has ended.
+    /// A full FIFO accepts a word when the word has left that entered one FIFO depth earlier in the sequence of words.
+    /// The words of a command leave when the command starts. A command starts when all its words have arrived and the
+    /// previous command has ended.
     fn take(&mut self, from_ns: f64, command: Cost, depth_words: f64, word_ns: f64) -> f64 {
         let first = self.words_in;
         let last = first + command.words - 1.0;

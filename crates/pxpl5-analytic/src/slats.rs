@@ -64,8 +64,8 @@ fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTri
     fields_at_once(models, triangles, each)
 }
 
-/// Returns the times of a field on `N` machines, which have one graphics processor and equal values of
-/// [`SlatsModel::structure`].
+/// Returns the times of a field on `N` machines. Each machine has one graphics processor, and all machines have equal
+/// values of [`SlatsModel::structure`].
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
     let mut arrays = [Array::idle(); MAX_RENDERERS];

@@ -47,7 +47,7 @@ impl WalkFaces {
         self.background
     }
 
-    /// Returns the same faces viewed through another lens.
+    /// Returns the same faces viewed through the lens `lens`.
     #[must_use]
     pub fn through(mut self, lens: address_recalculation::Lens) -> Self {
         self.config.lens = lens;

@@ -172,8 +172,8 @@ const WHITE: u32 = 0x00FF_FFFF;
 
 /// Approximate limit of the number of frames that are examined for the best view of a tear (gap between two memories).
 const TRIED: u64 = 63;
-/// Smallest distance, in frames, between two frames that are examined for the best view of a tear. A longer walk has
-/// larger distances.
+/// Smallest distance, in frames, between two frames that are examined for the best view of a tear. In a long walk, the
+/// distance is larger, so that only about `TRIED` frames are examined.
 const EVERY: u64 = 29;
 
 /// Returns the frame and orientation at which a tear (gap between two memories) shows the largest number of background

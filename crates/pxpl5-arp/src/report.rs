@@ -92,7 +92,7 @@ pub struct PriorityReport {
     pub draws_per_s: f64,
     /// Percentage of draws that the policy saves, relative to drawing everything in every frame.
     pub saved_percent: f64,
-    /// Number of times that an object changed to another memory. Null unless the policy is `objects`.
+    /// Number of times that an object moved from one memory to another. Null unless the policy is `objects`.
     pub moved_objects: Option<u64>,
     /// Number of times that cells (squares of the floor) were assigned to memories anew. Null without cells.
     pub redeals: Option<u64>,
@@ -123,7 +123,7 @@ pub struct WalkLatency {
 /// Counts for a view at the end of the viewer's walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewStatistics {
-    /// Counts of extra memory accesses for the pixels of the view.
+    /// Counts of extra memory accesses for the pixels of the view, beyond one access per pixel and memory.
     pub stats: LookStats,
     /// Counts of the triangles drawn into the cube faces for the view.
     pub drawing: DrawCounts,
@@ -188,8 +188,8 @@ fn ms(span: Span) -> f64 {
     span.0 as f64 / 1e9
 }
 
-/// Returns the mean time from reading the orientation to displaying a pixel, over both fields, in ms. Returns `None` if
-/// the scan is invalid.
+/// Returns the mean time from reading the orientation to displaying a pixel, without the stages of the pixel pipeline,
+/// in ms. The mean is over the pixels of an even and an odd field. Returns `None` if the scan is invalid.
 fn scan_ms(display: &ArpConfig, from: Latch) -> Option<f64> {
     let scan = display.scan().ok()?;
     let mut sum = 0.0;

@@ -62,8 +62,8 @@ pub struct WalkSettings {
     pub policy: PolicyKind,
     /// True if objects are cut into segments at the borders of cells.
     pub is_segmented: bool,
-    /// Rule by which warping moves vertices less at a larger distance from the border to a less often drawn memory.
-    /// [`Falloff::None`] disables warping, so gaps appear at cuts.
+    /// Rule by which warping moves vertices near the border to a less often drawn memory. The displacement decreases
+    /// with the distance from the border. [`Falloff::None`] disables warping, so gaps appear at cuts.
     pub falloff: Falloff,
     /// True if an update of a memory makes all more often drawn memories due for an update.
     pub has_cascade: bool,
@@ -101,7 +101,7 @@ impl WalkSettings {
     /// error below the threshold.
     pub const OBJECTS: Self = Self { policy: PolicyKind::Objects, is_segmented: false, ..Self::CELLS };
 
-    /// Returns the settings with another number of memories, for both the policy and the display.
+    /// Returns the settings with `memories` display memories, for both the policy and the display.
     #[must_use]
     pub const fn with_memories(mut self, memories: u64) -> Self {
         self.numbers.memories = memories;
@@ -109,7 +109,7 @@ impl WalkSettings {
         self
     }
 
-    /// Returns the settings with another side of a cell, in metres.
+    /// Returns the settings with `side_m` as the side of a cell, in metres.
     #[must_use]
     pub const fn with_cells(mut self, side_m: f64) -> Self {
         self.numbers.cell_m = side_m;

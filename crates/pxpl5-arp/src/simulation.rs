@@ -17,7 +17,7 @@ struct Unit {
 }
 
 impl Unit {
-    /// Returns the distance, size and speed of the unit relative to an eye that moves at `speed` m/s.
+    /// Returns the distance, size and speed of this object or segment relative to an eye that moves at `speed` m/s.
     fn seen(&self, eye: DVec3, speed: f64) -> ObjectView {
         let distance_m = self.centre.distance(eye);
         ObjectView { distance_m, radius_m: self.radius, speed, turn: 0.0, animation_s: f64::INFINITY }
@@ -117,7 +117,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the number of times that an object changed to another memory. Returns `None` unless the policy is
+    /// Returns the number of times that an object moved from one memory to another. Returns `None` unless the policy is
     /// `objects`.
     #[must_use]
     pub const fn moved_objects(&self) -> Option<u64> {

@@ -41,7 +41,7 @@ pub struct WalkTally {
     pub memories: Vec<MemoryTally>,
     /// Number of times that cells (squares of the floor) were assigned to memories anew.
     pub redeals: u64,
-    /// Number of times that an object changed to another memory, or `None` unless the policy is `objects`.
+    /// Number of times that an object moved from one memory to another, or `None` unless the policy is `objects`.
     pub moved_objects: Option<u64>,
     /// Angles of the tears (gaps between memories) at shared vertices, over all frames.
     pub tears: Tears,

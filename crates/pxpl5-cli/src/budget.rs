@@ -130,9 +130,9 @@ impl Taken {
 }
 
 impl BudgetArgs {
-    /// Returns the reason to stop a run, if any. `before` is the cost before the first check, which is not
-    /// extrapolated. `taken` is the cost since this check, in which the fraction `part` (0 to 1) of all fields was
-    /// simulated.
+    /// Returns the reason to stop a run, if any. `before` is the cost up to the first check of the budget. This cost is
+    /// not extrapolated. `taken` is the cost since this check. In this time, the fraction `part` (0 to 1) of all fields
+    /// was simulated.
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
         // The costs of short and small runs are too inaccurate to extrapolate.
         let megabytes = if taken.bytes > MIN_EXTRAPOLATED_BYTES { taken.bytes / part / 1e6 } else { 0.0 };

@@ -47,8 +47,7 @@ pub(crate) struct RigArgs {
     json: bool,
 }
 
-/// Number of display fields in one second, which is the maximum time between two passes of the pendulum through its
-/// lowest point.
+/// Greatest number of display fields between two passes of the pendulum through its lowest point: one second.
 const FIELDS_OF_PASS: u64 = 60;
 
 /// Keys with values from the command itself, which the user must not set.

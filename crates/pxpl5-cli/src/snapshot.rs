@@ -99,7 +99,7 @@ impl SnapshotArgs {
         Ok(Snapshot::read(text, &name)?)
     }
 
-    /// Simulates an experiment. The options may ask to save a checkpoint at a field, or to continue from a restored
+    /// Simulates an experiment. Depending on the options, saves a checkpoint at a field, or continues from a restored
     /// checkpoint. Fails if the restored run differs from its checkpoint.
     pub(crate) fn simulate(&self, plan: &Plan, how: How<'_>) -> Result<Simulated, CliError> {
         let saving = self.saving(plan)?;

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// [`BufferContents`](crate::BufferContents)) share it.
 pub(crate) type Regions = Arc<[Arc<RegionWrite>]>;
 
-/// Number of kept regions above which the buffer searches for regions that newer regions cover completely. The search
+/// Number of stored regions above which the buffer searches for regions that newer regions cover completely. The search
 /// compares single pixels, so a search at every retrace would take too long.
 const FEW: usize = 128;
 

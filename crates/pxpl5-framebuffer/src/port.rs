@@ -58,7 +58,7 @@ pub enum FrameBufferFault {
         /// Ring port of the frame buffer for which the sender meant the pixels.
         found: NodeId,
     },
-    /// A swap request asks for a buffer that is neither 0 nor 1.
+    /// A swap request contains the number of a buffer that does not exist (neither 0 nor 1).
     #[error("expected buffer 0 or 1, found {found}")]
     NoSuchBuffer {
         /// Number of the requested buffer.

@@ -179,8 +179,8 @@ impl Binner {
 }
 
 impl Outline {
-    /// Returns true if the triangle meets the box around the pixel centres of a rectangle, by the same rule as for
-    /// regions.
+    /// Returns true if the triangle touches the box around the pixel centres of a rectangle of the screen. The test is
+    /// the same as for regions.
     ///
     /// `across` has the first and the last pixel column of the rectangle, and `lines` its first and last line in the
     /// video frame.

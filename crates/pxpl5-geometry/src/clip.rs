@@ -4,8 +4,9 @@
 //! plane (z = w), and the four planes of a guard band. The guard band extends about 4,000 px beyond the picture. A
 //! triangle outside the picture but inside the guard band needs no clipping.
 //!
-//! If two triangles share an edge, both are cut at exactly the same point, bit for bit, and no gap opens. For this, the
-//! cut is always computed from the same end of the edge, independent of the winding of the triangle.
+//! If two triangles share an edge, both triangles are cut at exactly the same point of this edge, bit for bit, and no
+//! gap opens. For this, the cut is always computed from the same end of the edge, independent of the winding of the
+//! triangle.
 //!
 //! Cuts are computed in double precision. Close to the eye, the small coordinates of a long edge are differences of
 //! large numbers. In single precision, their error could reach several pixels, and the pieces of a triangle could
@@ -70,8 +71,8 @@ impl<const N: usize> Polygon<N> {
         &self.corners[..self.len]
     }
 
-    /// Adds a corner, up to nine. Because of rounding, a polygon can be slightly concave and have more corners, which
-    /// are left out.
+    /// Adds a corner, if the polygon has fewer than nine corners. Because of rounding, a polygon can be slightly
+    /// concave and get more than nine corners. The additional corners are left out.
     fn push(&mut self, corner: Corner<N>) {
         if let Some(slot) = self.corners.get_mut(self.len) {
             *slot = corner;

@@ -30,8 +30,9 @@ pub(crate) struct Conic {
     pub(crate) yy: f64,
 }
 
-/// A conic in fixed point, with two shifts for the renderer. The renderer computes a depth from the conic's square
-/// root.
+/// A conic in fixed point. The renderer computes the depth of a sphere from the conic's square root. Before the root,
+/// the renderer shifts the conic to the right by `root_shift` bits. After the root, it shifts the root to the left by
+/// `depth_shift` bits.
 ///
 /// The value is `Q = 2^root_shift (bulge / 2^depth_shift)^2`. The bulge is the depth by which the sphere's surface is
 /// nearer than the plane through its silhouette.

@@ -14,12 +14,12 @@
 //!                                             clipper -> the same for pieces
 //! ```
 //!
-//! The Rust code of this crate makes the same computation, so both give the same words, bit for bit. The reciprocal of
-//! w is computed from a first approximation by two Newton steps, in single precision. A matrix rotates the normals,
-//! which are not normalized again. Light is computed in the coordinates of the normals. kernels/parameters.s defines
-//! registers and memory layouts. A [`Kernel`] concatenates source files, like a linker, and defines constants. The
-//! conditions in the files (`.if`) use these constants to select lines. This crate neither assembles nor runs the
-//! sources.
+//! The Rust code of this crate makes the same computation, so the Rust code and the i860 code give the same words, bit
+//! for bit. The reciprocal of w is computed from a first approximation by two Newton steps, in single precision. A
+//! matrix rotates the normals, which are not normalized again. Light is computed in the coordinates of the normals.
+//! kernels/parameters.s defines registers and memory layouts. A [`Kernel`] concatenates source files, like a linker,
+//! and defines constants. The conditions in the files (`.if`) use these constants to select lines. This crate neither
+//! assembles nor runs the sources.
 
 mod between;
 
@@ -75,8 +75,8 @@ pub enum KernelPicture {
     Frame,
     /// An NTSC field: 640 x 240 pixels in regions of 128 x 120.
     Field,
-    /// A video frame of another size in regions of 128 x 128, for example a face of a cube. The size is a parameter of
-    /// the code.
+    /// A video frame of any size in regions of 128 x 128, for example a face of a cube. The size is a parameter of the
+    /// i860 code.
     Grid,
 }
 

@@ -290,8 +290,8 @@ fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     away
 }
 
-/// Returns one component of the normals at the corners, plus `half` for rounding. The normals of triangles that face
-/// away from the eye are reversed.
+/// Returns one component of the normals at the corners of all triangles, plus `half` for rounding. The normals of
+/// triangles that face away from the eye are reversed.
 #[inline(always)]
 fn component([p, q, r]: &[EachLane<f32>; 3], away: &EachLane<bool>, half: f32) -> [EachLane<f64>; 3] {
     [values(p, away, half), values(q, away, half), values(r, away, half)]
@@ -396,8 +396,8 @@ impl LanePlanes {
         Self { twice_area, x, y, per_pixel, to_reference, reference }
     }
 
-    /// Returns the planes through the values at the corners. Planes that are steeper than `MAX_SLOPE` become constant
-    /// and are counted in `flattened`.
+    /// Returns the plane of each triangle through the values at the triangle's corners. Planes that are steeper than
+    /// `MAX_SLOPE` become constant and are counted in `flattened`.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> LinearLanes {
         let mut out = LinearLanes::default();

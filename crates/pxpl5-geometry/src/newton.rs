@@ -2,7 +2,8 @@
 //!
 //! The i860 has the instructions `frcp` and `frsqr`, which give a first approximation with 8 bits of fraction. Newton
 //! steps then increase the precision. To round a number, the code adds a large constant and subtracts the constant
-//! again. The Rust code of this crate performs the same steps as the i860 kernels, so both give the same words.
+//! again. The Rust code of this crate performs the same steps as the i860 kernels, so the Rust code and the kernels
+//! give the same words.
 
 /// Mask of the bits that a first approximation in double precision has: sign, exponent and 8 bits of fraction.
 const SEED: u64 = !((1 << (52 - 8)) - 1);

@@ -8,8 +8,8 @@
 //! therefore at most half of width plus height. On the largest picture, the error is below 1,026.
 //!
 //! A depth slope can need more than 32 bits: the depth of a wall seen edge-on can change by the whole range within a
-//! pixel. Expressions are therefore evaluated modulo 2^32. The result is right at every pixel whose true value fits 32
-//! bits, which includes all covered pixels.
+//! pixel. Expressions are therefore evaluated modulo 2^32. The result is correct at every pixel whose true value fits
+//! 32 bits, which includes all covered pixels.
 
 use crate::newton::reciprocal_double;
 use crate::outline::Outline;
@@ -72,7 +72,8 @@ impl Planes {
         }
     }
 
-    /// Returns the plane through the values `v` at the corners, which must be integers below 2^32 in absolute value.
+    /// Returns the plane through the values `v` at the three corners of the triangle. The values must be integers below
+    /// 2^32 in absolute value.
     ///
     /// A cross product is a sum of two products below 2^32 * 2^17, so it is exact.
     #[inline(always)]

@@ -32,8 +32,8 @@ pub(crate) const MAX_COORDINATE: f64 = 1e30;
 /// The elliptic image of a sphere on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenSphere {
-    /// Regions that meet the bounding box of the sphere's image. Near the corners of the box, the image itself may not
-    /// touch a region.
+    /// Regions that the bounding box of the sphere's image overlaps. Near the corners of the box, the image itself may
+    /// not touch a region.
     pub regions: RegionMask,
     /// Red, green and blue, 0 to 255 each.
     pub colour: [u8; 3],
@@ -49,7 +49,7 @@ pub struct ScreenSphere {
 }
 
 impl ScreenSphere {
-    /// Returns true if the bounding box of the sphere's image meets a rectangle.
+    /// Returns true if the bounding box of the sphere's image overlaps a rectangle.
     ///
     /// `across` has the first and the last pixel column of the rectangle, and `lines` its first and last line in the
     /// video frame.

@@ -5,8 +5,8 @@
 //! commands into bins. The steps are: centre and radius in eye coordinates, tests against the near and far plane,
 //! conic, bounding box, regions, conic in fixed point, and planes of depth and surface. There is only one version of
 //! the sphere code, in the style of the compiled triangle kernels. This version is used with every optimization level
-//! of the triangle kernels. The Rust code of this crate makes the same computation, so both give the same words, bit
-//! for bit.
+//! of the triangle kernels. The Rust code of this crate makes the same computation, so the Rust code and the i860 code
+//! give the same words, bit for bit.
 //!
 //! kernels/sphere_parameters.s defines the parameter block. On the processor, the code at the label `place` writes the
 //! parameters that depend on the view ([`crate::kernel::place_source`]).

@@ -151,7 +151,7 @@ impl CornerLanes {
 /// Results of a first search, which compares only the bounding boxes of the triangles with the regions.
 struct LaneTouches {
     /// Codes of the triangles, as in [`Touched`]. The code [`SEVERAL`] without an index marks a triangle whose bounding
-    /// box meets several regions. The edges of this triangle must still be tested.
+    /// box overlaps several regions. The edges of this triangle must still be tested.
     codes: EachLane<u32>,
     any_several: bool,
     x: [EachLane<i32>; 2],

@@ -133,8 +133,8 @@ impl From<Viewport> for PictureFields {
 
 /// The columns of a 4 x 4 matrix.
 ///
-/// Products are computed in the same order on every computer. The library glam uses another order with vector units
-/// than in scalar code.
+/// Products are computed in the same order on every computer. The library glam computes products in different orders
+/// with and without vector instructions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Columns(pub(crate) [[f32; 4]; 4]);
 

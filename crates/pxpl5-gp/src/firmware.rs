@@ -86,8 +86,8 @@ pub(crate) struct Shared {
     /// Receivers that have not accepted any message of the current batch yet.
     pub(crate) unaccepting_receivers: Vec<NodeId>,
     pub(crate) marks: Vec<Mark>,
-    /// Ends of stages that are recorded later, when the receivers have accepted a batch of messages. Each entry has the
-    /// number of the batch and the record. The list is sorted by batch.
+    /// Ends of stages that are not recorded yet. An end is recorded when the receivers have accepted the last batch of
+    /// messages of the stage. Each entry has the number of this batch and the record. The list is sorted by batch.
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,

@@ -87,8 +87,8 @@ impl Memory {
     ///
     /// # Errors
     ///
-    /// Returns [`OutOfMemory`] if the bytes do not fit beside those of the other purposes. In this case, nothing
-    /// changes.
+    /// Returns [`OutOfMemory`] if the bytes do not fit into the memory that the other purposes leave free. In this
+    /// case, nothing changes.
     pub fn set(&mut self, account: Account, bytes: u64, region: Option<RegionId>) -> Result<(), OutOfMemory> {
         // The request replaces the old value of the account, so only the other accounts count.
         let others = self.used() - self.used[account.slot()];

@@ -54,7 +54,7 @@ impl StageEdge {
 
 pxpl5_sim::parameters::named!(StageEdge, "edge of a stage", StageEdge::ALL);
 
-/// A record of the begin or the end of a stage.
+/// A record that a stage began or ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Mark {
     pub time: Time,

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The original message software is not published. The file kernels/ring_rules.md states the assumptions about this
-//! software, and how the code was written.
+//! software, and the rules by which its i860 code was written.
 //!
 //! Before each call, Rust code does the work of the ring interface's DMA. The simulated inbox holds any number of
 //! messages, but there are few receive buffers. The Rust code therefore puts a message into the next receive buffer
@@ -90,8 +90,8 @@ impl Processor {
 
     /// Runs the i860 code that sends a chain of messages, and returns its time. The code writes a header and a
     /// descriptor for each message, and releases the descriptors of earlier chains. The boolean of a message is true if
-    /// the receiver's port stays reserved after this message. Messages for which there is no descriptor form further
-    /// chains.
+    /// the receiver's port stays reserved after this message. If the descriptors are not sufficient for all messages,
+    /// the remaining messages form one or more separate chains.
     ///
     /// # Errors
     ///

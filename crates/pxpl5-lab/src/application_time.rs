@@ -7,9 +7,9 @@
 //! are set. This module varies both parameters and reports the mean and standard deviation of each figure. No parameter
 //! is fitted to the results.
 //!
-//! TR94 prints 30 frames/s for a trivial scene, which limits the time of the application there. TR94 prints no rate for
-//! the fly-throughs, whose application may therefore have been slower. This module assumes mean times up to 40 ms and
-//! jitters up to 30 ms. A Unix host polled its serial ports once in 30 ms (TR94).
+//! TR94 prints 30 frames/s for a trivial scene. This rate limits the application's time for the trivial scene. TR94
+//! prints no rate for the fly-throughs, whose application may therefore have been slower. This module assumes mean
+//! times up to 40 ms and jitters up to 30 ms. A Unix host polled its serial ports once in 30 ms (TR94).
 
 use crate::figures::{Bench, FIGURES};
 use crate::parallel;

@@ -85,7 +85,7 @@ const MORE_STRUCTURES: usize = 8;
 /// Memory of a graphics processor in bytes (published in TR94).
 const MEMORY: u64 = 8 << 20;
 
-/// Times of primitives in nanoseconds, measured by executing code.
+/// Times of primitives in nanoseconds, measured by executing i860 code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CodeTimes {
     /// Time to transform an unclipped triangle, averaged over each scene and then over the scenes.

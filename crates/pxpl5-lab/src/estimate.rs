@@ -9,7 +9,7 @@
 //!   last pictures has `kept = fields STATISTICS + min(fields, WINDOW) BLOCK blocks`.
 //! - A tracked head adds `min(fields, JUDGED) ERRORS` to `kept`.
 //! - `batch` is the number of blocks of pixels drawn with one head pose. `blocks` is the greatest number of blocks that
-//!   the ring can carry in a field. Both are 0 except in frameless rendering.
+//!   the ring can carry in a field. `batch` and `blocks` are 0 except in frameless rendering.
 //!
 //! The constants of memory come from the measured peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
 //!

@@ -1,4 +1,5 @@
-//! Experiments as text: TOML files, single settings `path=value`, and the checked [`Plan`] that results from both.
+//! Experiments as text: TOML files and single settings `path=value`. A checked [`Plan`] results from a file and the
+//! settings that are added to it.
 //!
 //! ```
 //! use pxpl5_lab::ExperimentFile;
@@ -56,7 +57,7 @@ use std::sync::Arc;
 use toml::Value;
 use toml::de::DeTable;
 
-/// The value of a setting, with its origin, which is a file and line or an option.
+/// The value of a setting with its origin: a file and line, or an option of the command line.
 #[derive(Clone, Debug)]
 pub(crate) struct Setting {
     pub(crate) value: Value,

@@ -96,7 +96,7 @@ impl PixelWorker for PixelThreads {
     }
 
     /// Computes the pixels of all waiting regions and ends the worker threads. Returns the number of all computed
-    /// regions. Panics if a worker has panicked, which is a bug.
+    /// regions. Panics if a worker thread has panicked because of a bug.
     fn finish(self: Box<Self>) -> u64 {
         let Self { regions, waiting, threads, own } = *self;
         // Closing the queue ends the workers once it is empty.

@@ -65,7 +65,7 @@ pub struct Interval {
     /// Value of the figure for the presets at the analytic level. A figure without a closed form is simulated with
     /// events instead.
     pub nominal: f64,
-    /// Minimum and maximum of the figure while one parameter at a time takes either end of its range.
+    /// Minimum and maximum of the figure if one parameter at a time is set to each end of its range.
     pub one_at_a_time: [f64; 2],
     /// Minimum and maximum of the figure over the interpretations that change one answer at a time.
     pub readings: [f64; 2],
@@ -177,8 +177,8 @@ const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
 /// Machine parameters without a source, which vary for figures that need a simulation with events.
 const OF_EVENTS: [&str; 2] = ["renderer.fifo_words", "ring.source_channels"];
 
-/// Computes the interval of a figure that needs a simulation with events. One parameter of [`OF_EVENTS`] at a time
-/// takes both ends of its range.
+/// Computes the interval of a figure that needs a simulation with events. One parameter of [`OF_EVENTS`] at a time is
+/// set to each end of its range.
 fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     let variations: Vec<_> = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str())).collect();
     let nominal = bench.measure(id).ok()?.value;

@@ -21,7 +21,7 @@
 //! | experiments in text files, and saved runs that can be continued | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
 //!
 //! [`registry`] lists the built-in pipelines and displays. A pipeline's entry contains its closed form, if there is
-//! one. An experiment file may use another registry.
+//! one. An experiment file may also use a registry with pipelines and displays of the caller.
 
 #![warn(missing_docs)]
 

@@ -57,7 +57,7 @@ pub struct Model {
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
-    /// Decimation of `whole`. Its first steps (collapses of edges) serve all numbers of triangles.
+    /// Decimation of `whole`. Its first steps (collapses of edges) are the same for all numbers of triangles.
     decimation: Arc<Decimation>,
 }
 
@@ -161,8 +161,8 @@ impl LimitQuery {
         Ok(limit)
     }
 
-    /// Returns [`Limit::triangles`] of [`search`](Self::search). This search is shorter, because no sizes above the
-    /// first miss are tried.
+    /// Returns [`Limit::triangles`] of [`search`](Self::search). This function takes less time than
+    /// [`search`](Self::search), because no sizes above the first miss are tried.
     ///
     /// # Errors
     ///
@@ -195,7 +195,7 @@ impl LimitQuery {
         )))
     }
 
-    /// Searches for the limit without the hints of the analytic level, which takes longer.
+    /// Searches for the limit without the hints of the analytic level. This search takes longer.
     ///
     /// # Errors
     ///

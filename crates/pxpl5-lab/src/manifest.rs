@@ -1,4 +1,4 @@
-//! The manifest of an output folder, which lists the files of the last command that wrote there.
+//! The manifest of an output folder, which lists the files of the last command that wrote into the folder.
 //!
 //! A folder may hold files of several runs and files of the user. The manifest distinguishes these files. Readers use
 //! only listed and unchanged files. The next run removes all listed files that it does not write again.
@@ -135,7 +135,7 @@ impl Manifest {
         self.put(ManifestEntry { name: name.to_owned(), contents: None });
     }
 
-    /// Adds all files of another manifest.
+    /// Adds all files of the manifest `other`.
     pub fn add_all(&mut self, other: &Self) {
         other.files.iter().for_each(|entry| self.put(entry.clone()));
     }

@@ -50,7 +50,7 @@ pub struct Snapshot {
     pub events: u64,
     /// Hash of the scene's contents.
     pub scene_hash: String,
-    /// Text of the experiment file. `None` for an experiment that was built in code.
+    /// Text of the experiment file. `None` for an experiment that a program built without a file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub experiment: Option<String>,
 }
@@ -84,7 +84,7 @@ impl Snapshot {
         }
     }
 
-    /// Creates a checkpoint of a run of an experiment that was built in code.
+    /// Creates a checkpoint of a run of an experiment that a program built without a file.
     ///
     /// The file of the checkpoint does not describe such an experiment, so [`Snapshot::resume`] needs the same
     /// experiment as its argument.

@@ -14,7 +14,8 @@ pub struct WhatIf {
     pub key: &'static str,
     /// Value of the setting on the unchanged machine.
     pub from: u64,
-    /// Value of the setting on the changed machine: 10 % better, and at least one step better.
+    /// Value of the setting on the changed machine: a time divided by 1.1 and rounded up, or any other value increased
+    /// by 10 % (at least by 1).
     pub to: u64,
     /// Mean latency in milliseconds before and after the change. `None` if no picture was complete.
     pub latency_ms: [Option<f64>; 2],
@@ -29,7 +30,7 @@ pub struct WhatIf {
 struct Knob {
     resource: &'static str,
     key: &'static str,
-    /// True if the setting is a time, so that a smaller value is better.
+    /// True if the setting is a time, so that a faster machine has a smaller value.
     is_time: bool,
 }
 
@@ -53,7 +54,7 @@ impl Knob {
     }
 
     /// Returns the old value of the setting, the new value, and the machine with 10 % more of the resource. Returns
-    /// `None` if the machine cannot have more of it.
+    /// `None` if the machine cannot have more of the resource.
     fn more(&self, config: &MachineConfig) -> Option<(u64, u64, MachineConfig)> {
         let from = self.value(config)?;
         let to = if self.is_time { from.min((from * 10).div_ceil(11)) } else { from + (from / 10).max(1) };

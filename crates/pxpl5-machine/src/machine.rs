@@ -137,8 +137,8 @@ impl Machine {
         self.pixels = Some(worker);
     }
 
-    /// Makes the graphics processors execute i860 code, whose clocks then determine the times of their work. The call
-    /// has an effect only if the configuration has a code version.
+    /// Makes the graphics processors execute i860 code. The clocks of this code then determine the times of the
+    /// processors' work. The call has an effect only if the configuration has a code version.
     ///
     /// Call this method before loading programs.
     pub fn run_code(&mut self) {

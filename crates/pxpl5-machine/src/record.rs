@@ -123,8 +123,8 @@ impl Record {
     /// Returns the pictures that a double-buffered port has shown, in the order of swaps.
     ///
     /// The picture of a swap is the newest picture of which a region arrived before the swap. No region of the next
-    /// picture can have arrived, because the other buffer is not free yet. Pictures with discarded observations are
-    /// missing.
+    /// picture can have arrived before the swap, because the port's second buffer becomes free only at the swap.
+    /// Pictures with discarded observations are missing.
     #[must_use]
     pub fn shown_by(&self, port: NodeId) -> Vec<Shown> {
         // Sort the arrivals at this port by time.

@@ -1,5 +1,4 @@
-//! Ray casting into the scene. Finds the scene point that a pixel shows, and the position of this point at another
-//! time.
+//! Ray casting into the scene. Finds the scene point that a pixel shows, and the position of this point at any time.
 
 use glam::{DMat4, DVec3};
 use pxpl5_scene::{Frame, Hinge, HmdConfig, Scene, Structure};

@@ -1,5 +1,5 @@
-//! Moves a picture with depth to another pose. The picture's pixels form a mesh in space. The cells of this mesh are
-//! drawn as seen from the new pose.
+//! Changes a picture with depth to a new pose of the head. The picture's pixels form a mesh in space. The cells of this
+//! mesh are drawn as seen from the new pose.
 //!
 //! No crate for warping images is used. `imageproc` maps pictures by one homography, and supports neither depth nor the
 //! rows of a field.
@@ -353,7 +353,7 @@ fn next(position: f32, least: f32, greatest: f32) -> i32 {
     before + i32::from((before as f32) < inside)
 }
 
-/// Moves a whole picture from the pose for which the picture was drawn to another pose, by the depths of the picture's
+/// Changes a whole picture from the pose for which it was drawn to the pose `now`, by the depths of the picture's
 /// pixels.
 ///
 /// Each pixel of the result shows the nearest content that falls on this pixel. A pixel is black if its content lies

@@ -25,7 +25,7 @@ pub struct FieldMisregistration {
 }
 
 /// Prints the name that this type had when hashes of reports were first published. The hash of a report covers this
-/// text, so the name must stay.
+/// text, so the printed name must not change.
 impl fmt::Debug for FieldMisregistration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { field, time_s, mean_px, centre_px } = self;

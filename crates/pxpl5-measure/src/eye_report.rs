@@ -59,8 +59,8 @@ pub(crate) struct EyeSum {
 }
 
 impl EyeSum {
-    /// Creates empty sums that keep up to `limit` smears and pose ages individually. `smears` is true if pixels are lit
-    /// for more than an instant.
+    /// Creates empty sums. Percentiles of smears and of pose ages are exact for up to `limit` values each, which stay
+    /// in memory. `smears` is true if pixels are lit for more than an instant.
     pub(crate) fn keeping(limit: usize, smears: bool, device: Option<Device>) -> Self {
         // The limit is the same in every run. Beyond the limit, numbers are summed in another way, which can change the
         // last digit of a mean.
@@ -79,7 +79,7 @@ impl EyeSum {
         }
     }
 
-    /// Counts a pixel whose content the evaluation has searched in the picture.
+    /// Counts a pixel after the evaluation has searched the picture for the pixel's content.
     pub(crate) fn looked_at(&mut self, is_beyond: bool, is_hidden: bool) {
         self.looked_at += 1;
         self.beyond += u64::from(is_beyond);

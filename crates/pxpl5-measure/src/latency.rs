@@ -34,7 +34,7 @@ pub struct LatencyPartStatistics {
 }
 
 /// Prints the name that this type had when hashes of reports were first published. The hash of a report covers this
-/// text, so the name must stay.
+/// text, so the printed name must not change.
 impl fmt::Debug for LatencyPartStatistics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, in_published_latency, statistics } = self;

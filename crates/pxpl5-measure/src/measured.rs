@@ -1,4 +1,4 @@
-//! Measurements as methods of an outcome.
+//! Measurements of a run, as methods of the run's outcome.
 
 use crate::Report;
 use crate::errors::PixelErrors;

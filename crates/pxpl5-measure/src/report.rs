@@ -115,8 +115,8 @@ pub struct Report {
     /// Results of an address recalculation display. `None` for any other display.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arp: Option<FacesReport>,
-    /// Head-mounted display before the viewer's eyes. A display with cube faces around the head uses other optics
-    /// instead, which belong to its own settings.
+    /// Head-mounted display before the viewer's eyes. A display with cube faces around the head does not use this
+    /// display, but has settings for its own optics.
     pub hmd: HmdConfig,
     /// Share of time in which each kind of board was busy. `None` if the machine has not run.
     pub utilisation: Option<Utilisation>,

@@ -1,4 +1,4 @@
-//! Moves pictures to another pose: computes the source of each pixel, and copies the pixels.
+//! Moves pictures to a new pose of the head: computes the source of each pixel, and copies the pixels.
 
 use crate::rows::Rows;
 use glam::{DQuat, DVec2, DVec3};
@@ -13,7 +13,8 @@ pub(crate) fn direction(view: &Hmd, place: DVec2) -> DVec3 {
     DVec3::new(from_centre.x, -from_centre.y, -1.0)
 }
 
-/// The mapping from screen positions to positions in a picture that was drawn for another pose. Depth is ignored.
+/// The mapping from positions on the screen to positions in a picture that was drawn for an earlier pose. Depth is
+/// ignored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Move {
     Shift(DVec2),
@@ -103,7 +104,7 @@ pub(crate) fn move_row(
     }
 }
 
-/// Moves a whole picture from the pose for which it was drawn to another pose, by a shift or a rotation.
+/// Moves a whole picture from the pose `drawn_for` to the pose `now`, by a shift or a rotation.
 ///
 /// Each pixel of the result is the nearest pixel of the picture. Pixels without a source are black. Returns the result
 /// and the number of these black pixels, or `None` if the picture and the view differ in size. [`Warp::Depth`] is

@@ -20,7 +20,7 @@ pub(crate) enum Seen {
     Incomplete,
     /// The pixel belongs to a complete picture that was shown before the result window.
     Before,
-    /// The pixel belongs to a picture shown within the result window, complete and in time.
+    /// The pixel belongs to a complete picture that was shown in time and within the result window.
     Complete(Drawn),
 }
 
@@ -140,7 +140,7 @@ impl Shown {
     }
 
     /// Replaces the poses of the views `of` by the poses that the run would have had without the cause of error
-    /// `without`. All other views show nothing afterwards.
+    /// `without`. Views that are not in `of` show nothing afterwards.
     pub(crate) fn replace_poses(&mut self, head: &Arc<HeadViews>, of: &BTreeSet<ViewNumber>, without: Cause) {
         let mut estimator = Estimator::new(head, Some(without));
         let mut sampled: Vec<SampledPose> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();

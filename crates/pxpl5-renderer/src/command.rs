@@ -265,8 +265,8 @@ impl Command {
     }
 }
 
-/// Returns the error for instructions whose first word has the label of a command, but which differ from this command's
-/// program. `label` is the opcode of the command's kind.
+/// Returns the error for instructions that begin like the program of a command, but differ from this program later.
+/// `label` is the opcode of the command's kind, which the first instruction contains.
 fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
     DecodeError { position, word: words[position], kind: DecodeErrorKind::NotTheCommand(label) }
 }

@@ -77,8 +77,8 @@ impl Controller {
         [self.left.into(), self.top.into()]
     }
 
-    /// Converts an expression from coordinates of the picture to coordinates of the array. Both have their origin at
-    /// the upper left pixel.
+    /// Converts an expression from coordinates of the picture to coordinates of the array. The origins are the upper
+    /// left pixels of the picture and of the array.
     #[inline(always)]
     pub(crate) fn localise(&self, e: &Linear) -> Linear {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }

@@ -8,9 +8,9 @@ use std::ops::RangeInclusive;
 
 /// An unchecked division of pixel memory into bit fields. [`Layout::new`] checks it.
 ///
-/// The addresses of a context's bit fields count from the first bit of the context, which is bit `i * context_bits` for
-/// context `i`. The address of the scratch memory is absolute, and all contexts share it. Sharing is safe, because no
-/// command reads data that an earlier command has left in the scratch memory.
+/// The addresses of a context's bit fields count from the first bit of the context. Context `i` begins at bit `i *
+/// context_bits` of pixel memory. The address of the scratch memory is absolute, and all contexts share it. Sharing is
+/// safe, because no command reads data that an earlier command has left in the scratch memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContextPlan {
     /// Name of the layout in error messages.

@@ -1,8 +1,8 @@
 //! All numbers of the renderer board: times, rates and sizes.
 //!
-//! The clocks of a command are the clocks of its program in the layout of Rendering Control ([`CommandKind::clocks`]).
-//! A test checks this equality. The table nevertheless contains the clocks as separate numbers, so that experiments can
-//! change them.
+//! The table contains an execution time in clocks for each command. By default, this time equals the sum of the clocks
+//! of the instructions in the command's program, in the layout of Rendering Control ([`CommandKind::clocks`]). A test
+//! checks this equality. The times are nevertheless separate numbers of the table, so that experiments can change them.
 
 use crate::command::CommandKind;
 use pxpl5_sim::{Clock, Cycles, Span};

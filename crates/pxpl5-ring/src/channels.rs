@@ -30,7 +30,7 @@ pub(crate) struct MessageInFlight {
     /// Number of word times until the message ends. Only used after
     /// [`Ring::move_every_word`](crate::Ring::move_every_word).
     pub(crate) slots_left: u64,
-    /// The message, until the receiver gets it. Only used after
+    /// The content of the message. `None` after the receiver has got the message. Only used after
     /// [`Ring::move_every_word`](crate::Ring::move_every_word).
     pub(crate) message: Option<Box<Message>>,
 }

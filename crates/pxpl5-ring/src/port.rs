@@ -45,7 +45,7 @@ pub struct Request {
 
 #[derive(Clone, Debug)]
 pub enum RingOutput {
-    /// Announcement of a message to its receiver, which has a FIFO. The receiver answers with [`RingEvent::Accept`].
+    /// Announcement of a message to a receiver with a FIFO. The receiver answers with [`RingEvent::Accept`].
     Announce {
         message: Message,
         /// Time at which the first word begins to arrive. It can enter the receiver one word time (`word`) later.

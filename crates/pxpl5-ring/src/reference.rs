@@ -1,5 +1,5 @@
 //! The reference model of the ring. It moves each word separately, so it is slow and obvious. Tests compare the fast
-//! ring with it.
+//! ring with this model.
 //!
 //! Time advances in equal time steps. In every time step, the model does three things, in this order:
 //!

@@ -29,7 +29,7 @@ pub struct Ring {
     unblocked: bool,
     /// Times at which an arbitration (a pass that grants channels to waiting messages) is scheduled.
     arbitrations: Vec<Time>,
-    /// True if every end of a message causes an event, even if no message waits for it.
+    /// True if every end of a message causes an event, even if no other message waits for this end.
     watched: bool,
     /// True if every word causes an event.
     word_by_word: bool,
@@ -281,8 +281,8 @@ impl Ring {
         }
     }
 
-    /// Returns the earliest known time at which a destination becomes free that a waiting message needs. Only messages
-    /// at the head of their queue count.
+    /// Returns the earliest known time when a destination of a waiting message becomes free. Only messages at the head
+    /// of their queue count.
     fn first_end_waited_for(&self) -> Option<Time> {
         let waited_for = |flight: &MessageInFlight| self.destinations[usize::from(flight.destination.0)].heads > 0;
         self.channels.ends().find(|(_, flight)| waited_for(flight)).map(|(end, _)| end)

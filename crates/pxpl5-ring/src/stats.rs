@@ -55,9 +55,9 @@ pub struct WaitingMessage {
 pub enum WaitReason {
     /// The receiver must still answer the announcement of the message.
     Acceptance,
-    /// The receiver is busy with a message from the port in this variant.
+    /// The receiver is busy with a message from this port.
     DestinationBusy(NodeId),
-    /// The receiver is reserved for a transfer from the port in this variant.
+    /// The receiver is reserved for messages from this port.
     DestinationReserved(NodeId),
     /// All channels that the message can use are occupied.
     Channel,

@@ -291,7 +291,7 @@ impl Experiment {
         self
     }
 
-    /// Returns the same experiment on another machine.
+    /// Returns the same experiment on the machine `config`.
     #[must_use]
     pub fn with_machine(self, config: MachineConfig) -> Self {
         Self { config, ..self }
@@ -419,7 +419,7 @@ impl Experiment {
         self.level
     }
 
-    /// Returns which pixels the run computes.
+    /// Returns the choice of the pixels that the run computes.
     #[must_use]
     pub const fn pixels_wanted(&self) -> Pixels {
         self.pixels

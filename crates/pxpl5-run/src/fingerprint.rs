@@ -33,7 +33,8 @@ impl Fingerprint {
     /// Returns a hash of everything in a scene that affects pictures or times: primitives, structures, light and
     /// motion.
     ///
-    /// The hash omits the scene's name, and the seed of the motion, which is a setting of an experiment.
+    /// The hash omits the scene's name. The hash also omits the seed of the motion, because this seed is a setting of
+    /// the experiment.
     ///
     /// Numbers are hashed with the least significant byte first. A list is hashed as its length (64 bits), then its
     /// entries. The value of an enum is hashed as a byte, counted from 0 in the order of declaration.

@@ -26,8 +26,8 @@ struct Begin {
     next: usize,
 }
 
-/// A decoded entry: number, instant in picoseconds, and the last two differences of successive instants, the older
-/// difference first.
+/// A decoded entry: number, instant in picoseconds, and the last two differences of successive instants, the difference
+/// of the earlier instants first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct At {
     number: u64,

@@ -128,8 +128,8 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         CodeUse::Pphigs
     }
 
-    /// Returns the configuration of the machine with the changes that this variant of the pipeline needs, for example
-    /// the times of other code.
+    /// Returns the configuration of the machine with the changes that this variant of the pipeline needs. For example,
+    /// a variant with a different version of the i860 code changes the times of triangles.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         config
     }
@@ -223,8 +223,8 @@ pub trait PictureRules {
     /// Returns one sentence that defines latency for this pipeline.
     fn latency_definition(&self) -> &'static str;
 
-    /// Returns a sentence that defines the time at which a picture is due, and the time up to which the picture is in
-    /// time. For pipelines without due pictures, the sentence gives the reason.
+    /// Returns a sentence that defines two times: when a picture is due, and up to when the picture is in time. For
+    /// pipelines without due pictures, the sentence states why no picture is due.
     fn due_definition(&self) -> &'static str;
 
     /// Returns the number of entries in the list of [`PictureRules::pictures`] that together make one whole picture.

@@ -27,7 +27,7 @@ const PERIODS_HELD: u64 = 32;
 ///
 /// A picture is final after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`] display periods. Records older than
 /// the first picture that is not final are kept for [`PERIODS_HELD`] periods. Requested head poses are kept twice as
-/// long, because views are predicted from older reports.
+/// long, because views are predicted from reports that arrived earlier than these records.
 #[derive(Debug)]
 pub(crate) struct Window {
     tally: Tally,

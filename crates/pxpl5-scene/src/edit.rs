@@ -41,8 +41,8 @@ impl Hinge {
         self.amplitude_deg * trig::sin_turns(turns + self.phase_turns)
     }
 
-    /// Returns the model matrix at simulated time `time_ps` (picoseconds), which is a rotation about the axis of the
-    /// swing.
+    /// Returns the model matrix at simulated time `time_ps` (picoseconds). The matrix is a rotation about the axis of
+    /// the swing.
     #[must_use]
     pub fn model(&self, time_ps: u64) -> Mat4 {
         let rotation = rotation_about(self.axis.as_dvec3(), self.angle_deg(time_ps));

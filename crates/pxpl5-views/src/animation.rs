@@ -35,8 +35,8 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// Returns [`PictureError`] if the picture has another size, or if the animation already has all announced
-    /// pictures.
+    /// Returns [`PictureError`] if the picture's size differs from the animation's size, or if the animation already
+    /// has all announced pictures.
     pub fn add(&mut self, picture: &RgbImage) -> Result<(), PictureError> {
         Ok(self.writer.write_image_data(picture.as_raw())?)
     }

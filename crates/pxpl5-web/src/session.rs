@@ -23,7 +23,7 @@ pub(crate) struct Session {
     /// True if all fields of the experiment have been simulated.
     is_over: bool,
     plan: Plan,
-    /// Motion of the head that the visitor moves, or `None` if the experiment has another motion.
+    /// Recorded motion of a head that the visitor moves, or `None` if the settings give the motion.
     moves: Option<GrowingRecording>,
 }
 

@@ -104,8 +104,8 @@ impl Completed {
         self.transformed > drawing.0 && self.rendered >= drawing.0
     }
 
-    /// Returns true if the hidden buffer for a drawing is free. This is so when a swap has made the previous frame
-    /// visible.
+    /// Returns true if the hidden buffer for a drawing is free. The buffer is free when a swap has made the previous
+    /// frame visible.
     #[must_use]
     pub const fn frame_buffer_available(&self, drawing: Drawing) -> bool {
         self.swapped >= drawing.picture(self.eyes).0

@@ -1,10 +1,11 @@
 //! Binning finds, for each primitive, the groups of slices that can show the primitive. Binning takes place once per
 //! volume, and only uses the signs of a few plane equations.
 //!
-//! The code of a vertex has one bit per plane, which is set on the positive side. The `and` of a primitive's codes
-//! gives the planes with the whole primitive on their positive side. The complement of the `or` gives the planes with
-//! the whole primitive on their negative side. A region of space is defined by the signs of the plane equations at its
-//! points. A primitive cannot touch a region if one plane separates the primitive from the region.
+//! The code of a vertex has one bit per plane. A bit is set if the vertex is on the positive side of its plane. The
+//! `and` of a primitive's codes gives the planes with the whole primitive on their positive side. The complement of the
+//! `or` gives the planes with the whole primitive on their negative side. A region of space is defined by the signs of
+//! the plane equations at its points. A primitive cannot touch a region if one plane separates the primitive from the
+//! region.
 
 use serde::{Deserialize, Serialize};
 

@@ -9,13 +9,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SliceClip {
-    /// Clipping uses only the near and far planes of an orthographic projection. The volume is a prism as thick as the
-    /// exact slice at the rim.
+    /// Clipping uses only the near and far planes of an orthographic projection. The clipped volume is a prism with the
+    /// same thickness everywhere. The exact volume of a slice has this thickness only at the rim of the display.
     Prism,
     /// Each pass clips with two user clip planes. The volume of a slice is a double wedge around the axis, and each
     /// half (lobe) of the double wedge has its own pass.
     UserPlanes,
-    /// The fragment program tests the product of the interpolated distances from both boundary planes of the slice.
+    /// The fragment program tests the product of the interpolated distances from the two boundary planes of the slice.
     /// This gives the exact volume in one pass.
     ShaderPlanes,
     /// Clip planes whose distance from the slice grows from q pixels at the axis to the exact half thickness at the
@@ -24,14 +24,15 @@ pub enum SliceClip {
         /// Half thickness q of the volume at the axis, in pixels.
         f64,
     ),
-    /// Both boundary planes are moved outwards by q pixels.
+    /// The two boundary planes of the exact slice are moved outwards by q pixels.
     Parallel(
-        /// Distance q by which both planes are moved outwards, in pixels.
+        /// Distance q by which the two planes are moved outwards, in pixels.
         f64,
     ),
-    /// The product of the distances from both boundary planes, plus a bias b, is tested.
+    /// The fragment program tests the sign of a sum: the product of a point's distances from the two boundary planes,
+    /// plus a bias b.
     Hyperbolic(
-        /// Bias b that is added to the product, in square pixels.
+        /// Bias b that is added to the product of the distances, in square pixels.
         f64,
     ),
 }

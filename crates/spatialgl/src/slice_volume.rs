@@ -2,15 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The rule for a point exactly on a boundary plane of a slice's volume, which is a double wedge around the axis. The
-/// SpatialGL paper's rule "signs equal" is ambiguous for such a point.
+/// The rule for a point exactly on a boundary plane of a slice's volume. The volume is a double wedge around the axis.
+/// The SpatialGL paper's rule "signs equal" is ambiguous for such a point.
 ///
 /// The values `a` and `b` are the signed distances of the point from the two boundary planes. Both are positive in the
 /// positive lobe: the half of the double wedge with horizontal coordinate u > 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
-    /// Each boundary plane belongs to only one of the two slices at this plane, the slice that begins there. Every
+    /// Each boundary plane belongs to only one of its two adjacent slices, the slice that begins at this plane. Every
     /// point off the axis is therefore in exactly one slice. This rule is not from the SpatialGL paper.
     #[default]
     HalfOpen,
@@ -20,8 +20,8 @@ pub enum TieRule {
     /// The rule as printed in the SpatialGL paper: the signs are equal, and zero counts as positive. A slice contains
     /// both planes of the positive lobe (half of the double wedge), no plane of the negative lobe, and the axis.
     SameSign,
-    /// Both planes belong to both lobes (halves of the double wedge), as with user clip planes. The product of the
-    /// distances is not negative.
+    /// Points on a boundary plane belong to both lobes (halves of the double wedge), as with user clip planes. The
+    /// product of the distances is not negative.
     Closed,
 }
 
@@ -75,12 +75,14 @@ pub enum WedgeTest {
     /// Two user clip planes for each lobe (half of the double wedge), with one drawing pass per lobe. Fragments outside
     /// the planes are not generated.
     UserPlanes(TieRule),
-    /// The distances from both boundary planes are interpolated, and one test compares their signs.
+    /// A point's distances from the two boundary planes are interpolated, and one test compares the signs of the
+    /// distances.
     Shader(TieRule),
-    /// Both planes are moved outwards by this number of pixels before the product of the distances is tested.
+    /// A distance in pixels by which both boundary planes are moved outwards. The test then checks the sign of the
+    /// product of a point's distances from the two moved planes.
     Parallel(f64),
-    /// This number of square pixels is added to the product of the distances from both planes before the sign is
-    /// tested.
+    /// A bias in square pixels. The test multiplies a point's distances from the two boundary planes, adds the bias,
+    /// and checks the sign of the sum.
     Hyperbolic(f64),
 }
 

@@ -116,8 +116,9 @@ impl PredictorConfig {
     }
 }
 
-/// Writes a parameter only if its value differs from the papers' value. Earlier versions did not write this parameter,
-/// and an experiment with the papers' values must keep its name.
+/// Passes a parameter to `settings` only if the parameter's value differs from the papers' value. Earlier versions
+/// passed no such parameters. With the papers' values, an experiment therefore keeps the hash of its settings from
+/// earlier versions.
 fn write_unusual(settings: &mut SettingSink, of: &str, entry: &Entry) {
     if entry.value != entry.info.papers {
         settings(&format!("{of}.{}", entry.info.name), &entry.value);

@@ -61,8 +61,8 @@ pub trait Motion: Debug {
         }
     }
 
-    /// Returns the time (ps) at which the motion ends, if a run must stop there. Returns `None` if the motion continues
-    /// for ever or the head stands still at the end.
+    /// Returns the time (ps) at which the motion ends, if a run must stop at this time. Returns `None` if the motion
+    /// continues for ever or the head stands still at the end.
     fn ends_ps(&self) -> Option<u64> {
         None
     }
@@ -91,9 +91,9 @@ pub trait Motion: Debug {
         false
     }
 
-    /// Returns another motion of the same kind with different random numbers. Returns `None` if the motion has no
-    /// random numbers. Prediction filters are tuned on this other motion, so the evaluated motion has no influence on
-    /// the tuning.
+    /// Returns a motion of the same kind with different random numbers. Returns `None` if the motion has no random
+    /// numbers. Prediction filters are tuned on the returned motion, so the evaluated motion has no influence on the
+    /// tuning.
     fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
         None
     }

@@ -48,12 +48,12 @@ impl Pose {
         }
     }
 
-    /// Returns the distance to another pose in metres.
+    /// Returns the distance from this pose to `other` in metres.
     pub fn distance_m(&self, other: &Self) -> f64 {
         self.position.distance(other.position)
     }
 
-    /// Returns the angle to another pose in degrees, 0 to 180.
+    /// Returns the angle between the orientations of this pose and `other` in degrees, 0 to 180.
     pub fn angle_deg(&self, other: &Self) -> f64 {
         rotation::angle_deg(self.orientation, other.orientation)
     }

@@ -57,8 +57,8 @@ pub struct CellAssignment {
     pub side_m: f64,
     /// Number of rings of cells around the home cell that memory 0 holds.
     pub inner_rings: u64,
-    /// Number of rings of cells in a memory divided by the number in the previous memory, from memory 2 on. Memory 1
-    /// holds one ring of cells, memory 2 holds `ring_growth` rings of cells, and so on.
+    /// Number of rings of cells in memory k divided by the number of rings in memory k - 1, for k of 2 or more. Memory
+    /// 1 holds one ring of cells, memory 2 holds `ring_growth` rings of cells, and so on.
     pub ring_growth: u64,
     pub memories: usize,
 }
@@ -71,8 +71,8 @@ impl CellAssignment {
         (0..self.memories - 1).find(|memory| ring <= self.last_ring(*memory)).unwrap_or(self.memories - 1)
     }
 
-    /// Returns the number of the outermost ring of cells that memory k = `memory` holds. The value does not apply to
-    /// the last memory (the least often drawn), which has no outer limit.
+    /// Returns the number of the outermost ring of cells that memory k = `memory` holds. The last memory (the least
+    /// often drawn) has no outer limit, so the result does not apply to this memory.
     ///
     /// The result is the number of inner rings of cells plus 1 + g + g^2 + ... + g^(k-1), where g is
     /// [`CellAssignment::ring_growth`].
@@ -94,8 +94,8 @@ impl CellAssignment {
     }
 
     /// Returns the horizontal distance, in metres, from a position inside the outer border of memory k = `memory` to
-    /// this border. Beyond the border lie the cells of memory k + 1, which is drawn less often. Outside the border, the
-    /// distance is 0.
+    /// this border. Memory k + 1 holds the cells beyond the border, and is drawn less often. For a position beyond the
+    /// border, the distance is 0.
     ///
     /// Returns `None` for the last memory (the least often drawn), which has no outer border.
     #[must_use]
@@ -233,8 +233,8 @@ impl Cells {
         Update { due, together, deals_anew: deals_anew && !is_first }
     }
 
-    /// Assigns cells to memories around another home cell. Returns, for each memory, true if the cells of the memory
-    /// have changed.
+    /// Assigns cells to memories around `home`, the new home cell. Returns, for each memory, true if the cells of the
+    /// memory have changed.
     fn deal(&mut self, home: Cell) -> Vec<bool> {
         let before = self.dealing;
         self.dealing.home = home;

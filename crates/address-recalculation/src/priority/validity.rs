@@ -55,7 +55,7 @@ pub struct ObjectView {
     pub speed: f64,
     /// Speed of the object's rotation about its own axis, in rad/s.
     pub turn: f64,
-    /// Duration for which an image of the animated object stays right, in seconds. The duration is infinite for an
+    /// Duration for which an image of the animated object stays correct, in seconds. The duration is infinite for an
     /// object without animation.
     pub animation_s: f64,
 }
@@ -122,7 +122,7 @@ impl Threshold {
         }
     }
 
-    /// Returns the duration, in seconds, for which the image of an object stays right while the object rotates at
+    /// Returns the duration, in seconds, for which the image of an object stays correct while the object rotates at
     /// `turn` rad/s.
     #[must_use]
     pub fn turn_s(&self, nearest_m: f64, radius_m: f64, turn: f64) -> f64 {

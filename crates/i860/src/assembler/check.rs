@@ -124,8 +124,8 @@ impl PipeUse {
     }
 }
 
-/// Finds reads of results that a scalar operation has destroyed in their pipe. The contents of the pipes are unknown
-/// after each label and branch.
+/// Finds instructions that take a result out of a pipe (adder or multiplier) after a scalar operation in the same pipe
+/// has destroyed the result. After each label and branch, the function assumes nothing about the contents of the pipes.
 fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
     let mut pipes = [PipeFill::default(); 2];
@@ -212,7 +212,8 @@ fn writable_float_mask(dest: u8, bytes: u8) -> u64 {
     float_mask(dest, bytes) & !(3 << 32)
 }
 
-/// Returns the bit of integer register `n` in a mask of written registers, or 0 for r0, which is always 0.
+/// Returns the bit of integer register `n` in a mask of written registers, or 0 for r0, because writes to r0 have no
+/// effect.
 fn integer_mask(n: u8) -> u64 {
     1 << n & !1
 }

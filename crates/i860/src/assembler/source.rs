@@ -25,7 +25,7 @@ struct Budget {
     text: usize,
     /// Number of the line that is being expanded, and the budget that was left at the start of this expansion.
     current: (usize, usize),
-    /// Number of the source line that has used the most of the budget so far, and the amount that it has used.
+    /// The source line that has used the most of the budget so far: its number, and the amount that the line has used.
     largest_user: (usize, usize),
 }
 

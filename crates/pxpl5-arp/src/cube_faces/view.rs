@@ -58,7 +58,7 @@ impl CubeView {
     ///
     /// # Panics
     ///
-    /// Panics if the faces have another number of texels than `geometry`.
+    /// Panics if the number of texels along an edge of the faces differs from the number in `geometry`.
     pub fn draw(
         &self,
         eye: DVec3,

@@ -85,7 +85,7 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          moves segments to slower memories and saves drawing, and the cuts cause tears.\n\n\
          The table has only rows for which the code under test could have given another value. The section\n\
          [Definitions](#definitions) lists the numbers that follow from other numbers by arithmetic.\n\n\
-         The model meets {met} of {} rows that can be reproduced. Of the {} rows that cannot be reproduced, {shown} have the printed shape.\n\n",
+         The model reproduces {met} of the {} rows that can be reproduced. Of the {} rows that cannot be reproduced, {shown} have the printed shape.\n\n",
         numbers.count(),
         shapes.count()
     );
@@ -172,11 +172,12 @@ fn fits(text: &mut String, all: &Experiments) {
 #[must_use]
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
-         The paper CPR05 does not print the widths of the rings of cells, how distances are measured, the path or the hall. The\n\
-         table of rules combines each set of rules with each of four halls and paths. For each combination, the side of a cell is\n\
-         fitted to the rates of memories 1 to 3. The error of a fit is the root mean square over memories 1 to 3. For the column\n\
-         *left out*, each rate is predicted with the side of a cell that fits the other two rates best. The rules are ranked by\n\
-         their mean error over all four halls and paths, because the paper's hall and path are unknown.\n\n"
+         The paper CPR05 does not print the widths of the rings of cells or the rule by which distances are measured. The paper\n\
+         also does not print the hall and the viewer's path through the hall. The table of rules combines each set of rules with\n\
+         each of four pairs of a hall and a path. For each combination, the side of a cell is fitted to the rates of memories 1\n\
+         to 3. The error of a fit is the root mean square over memories 1 to 3. For the column *left out*, each rate is predicted\n\
+         with the side of a cell that fits the other two rates best. The rules are ranked by their mean error over all four\n\
+         pairs, because the paper's hall and path are unknown.\n\n"
         .to_owned();
     // The table has one column for each hall and path.
     let situations = Situation::ALL.map(Situation::text).join(" | ");

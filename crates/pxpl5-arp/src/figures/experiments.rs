@@ -188,7 +188,7 @@ pub struct SizeRow {
     pub size_s: [f64; 2],
 }
 
-/// Returns rows for diameters from 0.1 to 20 times the distance.
+/// Returns rows for objects with diameters from 0.1 to 20 times their distance from the eye.
 #[must_use]
 pub fn size_rows() -> Vec<SizeRow> {
     let threshold = Threshold::of_degrees(THETA_DEG);
@@ -214,11 +214,11 @@ pub struct SizeLimit {
     /// Allowed change of the angle that the sphere's radius covers, divided by the threshold for translation of the
     /// eye. Both are angles.
     pub factor: f64,
-    /// Greatest ratio of the sphere's diameter to the distance of its middle at which translation, not growth, limits
-    /// the validity period.
-    pub of_middle: f64,
-    /// Greatest ratio of the sphere's diameter to the distance of its nearest point at which translation, not growth,
+    /// Greatest diameter of the sphere, divided by the distance of its middle, for which translation and not growth
     /// limits the validity period.
+    pub of_middle: f64,
+    /// Greatest diameter of the sphere, divided by the distance of its nearest point, for which translation and not
+    /// growth limits the validity period.
     pub of_nearest: f64,
 }
 

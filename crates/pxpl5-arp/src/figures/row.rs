@@ -1,4 +1,4 @@
-//! Rows of the comparison: published number, simulated number, and how the simulated number was obtained.
+//! Rows of the comparison: the published number, the simulated number, and the provenance of the simulated number.
 
 use pxpl5_sim::figures::{Basis, FigureRow, around};
 

@@ -8,7 +8,8 @@ use serde::Serialize;
 pub struct Rules {
     /// Number of rings of cells around the viewer's cell in memory 0.
     pub inner_rings: u64,
-    /// Number of rings of cells in a memory, divided by the number in the previous memory, which is drawn more often.
+    /// Number of rings of cells in memory k (2 or more), divided by the number of rings in memory k - 1. Memory k - 1
+    /// is drawn more often.
     pub ring_growth: u64,
     /// Way of measuring the distance that determines when a memory is due. True: to the nearest cell with segments
     /// (parts of objects). False: to the border of a block of cells.
@@ -28,7 +29,7 @@ impl Rules {
 
     /// Returns all sets of rules that are compared.
     ///
-    /// In some sets, memory 0 holds 0, 1 or 2 inner rings of cells, and each further memory holds one ring. In other
+    /// In some sets, memory 0 holds 0, 1 or 2 inner rings of cells, and every other memory holds one ring. In other
     /// sets, memory 0 holds 1 inner ring, and the number of rings doubles from memory to memory.
     #[must_use]
     pub fn all() -> Vec<Self> {

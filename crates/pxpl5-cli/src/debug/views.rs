@@ -143,8 +143,8 @@ pub(super) fn base_of_code(stepper: &Stepper, board: Board) -> Result<u32, Strin
     program.map(|program| program.base).ok_or_else(|| format!("{board} has run no code yet"))
 }
 
-/// Returns the address that `text` denotes, as a number or a label. A label is searched in the code of `board`, or of
-/// all graphics processors if `board` is `None`. An error lists the known labels.
+/// Returns the address that `text` denotes, as a number or a label. The function searches for a label in the i860 code
+/// of `board`, or of all graphics processors if `board` is `None`. An error lists the known labels.
 pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str) -> Result<u32, String> {
     let all = (0..stepper.record().ports().gps.len()).map(Board::Gp);
     let boards = board.map_or_else(|| all.collect(), |board| vec![board]);

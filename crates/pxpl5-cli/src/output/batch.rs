@@ -52,7 +52,7 @@ fn is_temporary(name: &OsStr) -> bool {
     })
 }
 
-/// Removes temporary files of processes that have ended, which are the files that no process has locked.
+/// Removes temporary files that no process has locked. Their processes have ended.
 ///
 /// The folder must be locked during the call. Otherwise, another process may have created a file and not yet locked the
 /// file, or may be replacing files.

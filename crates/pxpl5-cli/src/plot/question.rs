@@ -67,8 +67,8 @@ impl Counts {
 }
 
 impl Question {
-    /// Returns the groups of rows in the order of their first rows. Fails if no row has a named column, or if another
-    /// setting varies within a group.
+    /// Returns the groups of rows in the order of their first rows. Fails if no row has a named column, or if a setting
+    /// that is not named varies within a group.
     pub(super) fn groups(&self, results: &ResultRows) -> Result<Vec<Group>, CliError> {
         self.check_names(results)?;
         let counted: Vec<&Row> = results.rows.iter().filter(|row| self.counts(row)).collect();

@@ -13,7 +13,8 @@ use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
 
 const SCENE: &str = "mig";
 /// Number of boards that share the scene in the second measurement. In the first measurement, one board has the whole
-/// scene. The difference of both results gives the time of one triangle.
+/// scene. The difference of the two results, divided by the difference of the numbers of triangles, is the time of one
+/// triangle.
 const SMALLER: usize = 12;
 
 const FIELD_PS: u64 = 16_683_333_333;
@@ -29,9 +30,9 @@ const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 /// Times in nanoseconds of the search for triangles in strips, and of the interpolation between two head poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripTimes {
-    /// Time to compare one triangle's bounding box with a strip that the box does not meet.
+    /// Time to compare one triangle's bounding box with a strip that the box does not touch.
     pub box_ns: f64,
-    /// Additional time of a bin entry for a triangle that meets one of the five windows (128 pixels wide) of a strip.
+    /// Additional time of a bin entry for a triangle that touches one of the five windows (128 pixels wide) of a strip.
     /// The time includes the search and the transfer of the entry, and the comparison with nearby triangles that miss
     /// the strip.
     pub entry_ns: f64,
@@ -74,9 +75,9 @@ pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> 
 
 struct Measured {
     triangles: f64,
-    /// Mean time to search the triangles for a strip that no triangle meets.
+    /// Mean time to test all triangles against a strip that no triangle touches.
     search_ns: f64,
-    /// Additional time of each bin entry, measured in strips that triangles meet.
+    /// Additional time of each bin entry, measured in strips that triangles touch.
     entry_ns: f64,
     ends_ns: f64,
     /// Time to compute the commands for an instant between two head poses if no triangle is near the strip.
@@ -117,7 +118,7 @@ fn ns(span: Span) -> f64 {
     span.0 as f64 / 1e3
 }
 
-/// Returns the number of bin entries and the search time in nanoseconds for each strip, which is one line here.
+/// Returns the number of bin entries and the search time in nanoseconds for each strip. Here, every strip is one line.
 fn searches(rig: &mut Rig) -> Result<Vec<[f64; 2]>, ProcessorFault> {
     let pass = rig.share.transform(&rig.view(0), 0, PICTURE);
     pass.keep(&GpTiming::PAPERS, &mut rig.processor, MemoryPart::WHOLE)?;

@@ -10,9 +10,10 @@ use serde::{Deserialize, Serialize};
 pub enum IntervalMethod {
     /// No interval, because the runs are too few or too short.
     None,
-    /// Student's t over the mean of each seed.
+    /// Interval of Student's t distribution, computed from one mean for each seed.
     StudentT,
-    /// Student's t over the mean of each seed, with an interval for the logarithm of the mean (delta method).
+    /// Interval of Student's t distribution, computed from one mean for each seed, for the logarithm of the mean (delta
+    /// method).
     StudentTOfLogarithm,
     /// Moving-block bootstrap over the fields of one motion of the head ([`BlockBootstrap`](super::BlockBootstrap)).
     MovingBlockBootstrap,

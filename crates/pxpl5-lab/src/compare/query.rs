@@ -85,9 +85,8 @@ pub struct Comparison {
     pub until_precision: Option<String>,
     /// Maximum number of seeds of a row. `None` if no width of the intervals was required.
     pub max_seeds: Option<usize>,
-    /// First display period in which rows are evaluated. The evaluation of a row begins with the first picture that is
-    /// due after this period. The evaluation begins even later if the warm-up of the row ends later
-    /// ([`ComparisonRow::window`]).
+    /// Earliest display period in which any row is evaluated. The evaluation of a row can begin later, because the
+    /// row's warm-up is longer or because its pictures are due only every few periods ([`ComparisonRow::window`]).
     pub evaluated_from: PeriodNumber,
     /// One row for each compared pipeline, in the order of the registry.
     pub pipelines: Vec<ComparisonRow>,

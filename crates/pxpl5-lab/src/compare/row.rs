@@ -36,11 +36,11 @@ pub struct ErrorSpread {
 pub struct CauseShare {
     /// The cause of the error. `None` means the interaction of all causes.
     pub cause: Option<Cause>,
-    /// Contribution in pixels, as a mean over the seeds. Negative if the error is larger without the cause.
+    /// Contribution in pixels, as a mean over the seeds. Negative if the error grows when the cause is turned off.
     pub px: MeanInterval,
 }
 
-/// Mean pixel error of a row with another predictor.
+/// Mean pixel error of a row in a run with a different predictor.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PredictorMean {
     /// Predictor that replaced the predictor of the row.
@@ -103,16 +103,16 @@ pub struct ComparisonRow {
     /// Display periods over which the run with the first seed was evaluated. `None` if there is no seed, or if the run
     /// was too short.
     pub window: Option<ResultWindow>,
-    /// Contributions of all causes to the mean error, which is their sum. Empty if the comparison did not include
-    /// causes.
+    /// Contributions of all causes to the mean error. The mean error is the sum of all contributions. Empty if the
+    /// comparison did not include causes.
     pub causes: Vec<CauseShare>,
     /// Mean error of the first seed with each predictor. Empty if the comparison did not include predictors. Also empty
     /// for the row `ideal`, because predictors do not change its pictures.
     pub predictors: Vec<PredictorMean>,
-    /// Largest number of triangles that meets `triangles_definition`. `None` without a search, after a failed search,
-    /// or if the pipeline has no limit.
+    /// Largest number of triangles that satisfies the condition in `triangles_definition`. `None` without a search,
+    /// after a failed search, or if the pipeline has no limit.
     pub triangles_possible: Option<u32>,
-    /// True if the search found no limit: [`CEILING`](crate::limit::CEILING) triangles meet the criterion.
+    /// True if the search found no limit: [`CEILING`](crate::limit::CEILING) triangles satisfy the condition.
     pub has_no_limit: bool,
     /// Criterion of `triangles_possible`, in words.
     pub triangles_definition: String,
@@ -255,7 +255,7 @@ fn causes(trials: &[&Trial], sampling: Sampling) -> Vec<CauseShare> {
 
 impl ErrorSpread {
     /// Combines the errors of all runs. Several motions give a confidence interval over the seeds. One motion gives an
-    /// interval over time, because further seeds do not change the motion.
+    /// interval over time, because a different seed would not change the motion.
     pub(super) fn of(trials: &[&Trial], sampling: Sampling) -> Self {
         let confidence = sampling.confidence;
         let evaluated: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.evaluated > 0).collect();

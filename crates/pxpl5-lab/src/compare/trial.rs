@@ -53,10 +53,11 @@ impl ComparedPipeline {
     }
 }
 
-/// Returns the first evaluated display period of runs with `fields` fields. This period comes after a quarter of the
-/// run and after the warm-up.
+/// Returns the earliest evaluated display period of runs with `fields` fields. This period comes after a quarter of the
+/// run and after the shortest warm-up.
 ///
-/// All rows are thus evaluated over the same periods, although the warm-up of some pipelines is longer.
+/// Most rows are thus evaluated over the same periods. A pipeline with a longer warm-up is evaluated from a later
+/// period.
 pub(super) fn common_window_from(fields: u64) -> PeriodNumber {
     PeriodNumber(WARM_UP_PERIODS.max(fields / 4))
 }

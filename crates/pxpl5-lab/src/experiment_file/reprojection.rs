@@ -7,7 +7,7 @@ use pxpl5_run::{Coverage, Every, Pipeline, Raster, Reprojection, Warp};
 use pxpl5_sim::parameters::SettingError;
 use toml::Value;
 
-/// Key of the part of a scan (a field, a strip or a line) for which a device that moves pictures takes a new pose.
+/// Key of the part of a scan (a field, a strip or a line) for which a device that moves pictures uses a new pose.
 pub(super) const EVERY: &str = "head.reprojection.every";
 pub(super) const LATENCY: &str = "head.reprojection.latency_us";
 

@@ -6,7 +6,8 @@ use pxpl5_sim::parameters::SettingError;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The scene of an experiment: its name or file, its number of primitives, and the head motion in front of it.
+/// The scene of an experiment: its name or file, its number of primitives, and the motion of the head in front of the
+/// scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneChoice {
     /// Name of a built-in scene, or path of a model file.

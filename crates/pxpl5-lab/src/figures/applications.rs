@@ -21,9 +21,10 @@ type LoadsOfSeeds = Arc<Vec<Vec<Load>>>;
 /// The master's rule for finished regions, and the changed parameters.
 pub(super) type RigKey = (FinishedRegions, Vec<(String, u64)>);
 
-/// Results by the number of finished regions that a backing store holds.
+/// Results by the capacity of a backing store, in finished regions.
 ///
-/// If no backing store was full in a run ([`Record::met_full_store`]), the result is the same for all larger stores.
+/// If no backing store was full in a run ([`Record::met_full_store`]), the result is the same for all larger
+/// capacities.
 ///
 /// [`Record::met_full_store`]: pxpl5_machine::Record::met_full_store
 #[derive(Debug)]
@@ -42,7 +43,7 @@ impl<K, T> Default for ByCapacity<K, T> {
 
 impl<K: Ord + Clone, T> ByCapacity<K, T> {
     /// Returns the result for a capacity. `make` computes the result, and returns true if a backing store may have been
-    /// full. `make` is not called if a smaller store was never full.
+    /// full. `make` is not called if no backing store was ever full in an earlier run with a smaller capacity.
     fn get(&self, key: K, capacity: u64, make: impl FnOnce() -> Result<(T, bool)>) -> Result<Arc<T>> {
         if let Some((least, known)) = locked(&self.roomy).get(&key)
             && *least <= capacity

@@ -30,11 +30,12 @@ pub fn markdown(figures: &Figures, alternatives: &Alternatives) -> String {
     text
 }
 
-/// Minimum change of a figure, in percent, for which the document lists the figure. The change results from times of
-/// executed code instead of the timing table.
+/// Minimum change of a figure, in percent, for which the document lists the figure. The change results if the times of
+/// primitives are measured by executing i860 code instead of taken from the timing table.
 const MOVED_PERCENT: f64 = 0.05;
 
-/// Writes the figures that change with the times of executed code, and the reason why these times are not the default.
+/// Writes the figures that change if the times of primitives are measured by executing i860 code. Also writes why these
+/// times are not the default.
 fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     let _ = write!(
         text,

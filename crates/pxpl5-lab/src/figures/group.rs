@@ -25,7 +25,7 @@ pub struct FigureGroup {
 pub(super) struct Measurement {
     pub(super) figure: Figure,
     pub(super) measure: fn(&Bench) -> Result<FigureValue>,
-    /// Paths of the parameters that determine the figure's interval. One parameter at a time takes both ends of its
+    /// Paths of the parameters that determine the figure's interval. One parameter at a time is set to each end of its
     /// range.
     pub(super) moved_by: &'static [&'static str],
 }
@@ -93,7 +93,7 @@ impl Measurement {
         Ok(FigureRow { interval, ..self.figure.row(measured) })
     }
 
-    /// Returns the minimum and maximum of the figure while one parameter at a time takes either end of its range. The
+    /// Returns the minimum and maximum of the figure if one parameter at a time is set to each end of its range. The
     /// value `nominal` for the presets is included, and also replaces the result of a failed experiment. Returns `None`
     /// if no parameter varies.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {

@@ -174,8 +174,8 @@ fn slant(picture: &RgbImage) -> f64 {
     up / down * (rows - 1.0)
 }
 
-/// Measures row J5 of ACCURACY.md: the number of vertex transforms in [`COUNTED`] fields. The transforms before these
-/// fields, from a shorter run, are subtracted.
+/// Measures row J5 of ACCURACY.md from the number of vertex transforms per field, over [`COUNTED`] fields. The
+/// transforms before these fields are counted in a run without these fields, and then subtracted.
 fn transforms(bench: &Bench) -> Result<FigureValue> {
     let counted = |viewpoint, fields| -> Result<u64> {
         Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())

@@ -48,8 +48,8 @@ pub struct Bench {
 /// COPY. The results for several times are averaged, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
 
-/// Number of display fields in the runs with full bins (rows 16b and 16c of ACCURACY.md). A frame takes about 30 fields
-/// there.
+/// Number of display fields in the runs with full bins (rows 16b and 16c of ACCURACY.md). In these runs, a frame takes
+/// about 30 fields.
 const FIELDS_OF_FULL_BINS: u64 = 600;
 
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
@@ -74,7 +74,7 @@ impl Bench {
         }
     }
 
-    /// Returns the same settings with other numbers of seeds and frames for the fly-through of the scene "mig".
+    /// Returns the same settings with `seeds` seeds and `frames` frames for the fly-through of the scene "mig".
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
         Self { seeds, frames, ..self }
@@ -179,7 +179,7 @@ impl Bench {
         self.photodiode_line() == other.photodiode_line() && PRESETS.iter().all(is_same)
     }
 
-    /// Returns the same settings with another interpretation of the papers.
+    /// Returns the same settings with `reading` as the interpretation of the papers.
     #[must_use]
     pub fn with(&self, reading: Reading) -> Self {
         Self { reading, ..self.clone() }
@@ -271,8 +271,8 @@ impl Bench {
         self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE).map(|(_, line)| *line)
     }
 
-    /// Returns the measurements of the pendulum rig in one run. They do not depend on the level of detail and on the
-    /// definition of latency samples.
+    /// Returns the measurements of the pendulum rig in one run. The measurements depend neither on the level of detail
+    /// nor on the definition of latency samples.
     fn rig_lines(&self) -> Result<Arc<RigLines>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         // The line does not change the run, so it is no part of the key.
@@ -285,7 +285,7 @@ impl Bench {
     ///
     /// RENDER takes this time because enough triangles cover the screen. Slower renderers would distort the result.
     /// Commands behind a full input FIFO, such as a copy command, would then wait longer by the same factor. TRANSFORM
-    /// takes this time because its code is slow, which delays nothing else.
+    /// takes this time because its code is slow. Slow code of TRANSFORM delays no other stage.
     fn stages_of(&self, ms: f64) -> Result<(MachineConfig, String)> {
         let mut machine = self.machine("small-hmd")?;
         let slaves = machine.n_gps as u64 - 1;

@@ -11,8 +11,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Levels of detail to compare. The boolean is true if the timing table has times of executed code, instead of
-/// published or fitted times. The cycle level appears once, because it does not use the timing table.
+/// Levels of detail to compare. The boolean is true if the timing table has times that were measured by executing i860
+/// code, instead of published or fitted times. The cycle level appears once, because it does not use the timing table.
 const VARIANTS: [(Level, bool); 5] = [
     (Level::Analytic, false),
     (Level::Analytic, true),

@@ -30,7 +30,8 @@ pub struct LevelRecord {
 pub struct LevelReport {
     /// Level of detail of this report.
     pub level: Level,
-    /// True if the timing table has times of executed code, instead of published or fitted times.
+    /// True if the timing table has times that were measured by executing i860 code, instead of published or fitted
+    /// times.
     pub times_of_code: bool,
     /// Mean absolute error in percent over the published figures without fitted parameters.
     pub published_error_percent: Option<f64>,

@@ -34,8 +34,8 @@ impl Limit {
 pub struct Hints {
     /// Number of triangles near the limit. Without this hint, the search starts with one triangle.
     pub near: Option<u32>,
-    /// Numbers of triangles that may miss the goal although larger numbers reach the goal, and that are therefore
-    /// tried.
+    /// Numbers of triangles that may miss the goal although larger numbers of triangles reach the goal. The search
+    /// therefore tries these numbers.
     pub doubtful: Vec<u32>,
 }
 
@@ -43,8 +43,8 @@ pub struct Hints {
 /// as many sizes are tried above the result, because some may reach the goal.
 const LOOK: u32 = 60;
 
-/// Maximum sum of the triangles of all consecutive scenes below the result. Larger scenes take longer to simulate, so
-/// fewer large scenes are tried.
+/// Maximum sum of the triangles of all consecutive scenes below the result. The simulation time grows with the size of
+/// the scene. The limit therefore allows fewer scenes if the scenes are large.
 const TRIANGLES_IN_A_ROW: u32 = 60_000;
 
 /// Minimum number of consecutive scene sizes below the result.

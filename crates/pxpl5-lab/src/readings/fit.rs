@@ -86,8 +86,8 @@ impl FigureFit {
     /// Returns the logarithm of the likelihood of the figure's printed values.
     ///
     /// The error of the mean has a normal distribution. Its variance has three parts: the printed digits, the error of
-    /// a mean of 87 samples, and 2 % for the model. The logarithm of the ratio of both standard deviations has a normal
-    /// distribution with a standard deviation of 0.25.
+    /// a mean of 87 samples, and 2 % for the model. The logarithm of the ratio of the simulated to the published
+    /// standard deviation has a normal distribution. The standard deviation of this distribution is 0.25.
     #[must_use]
     pub fn log_likelihood(&self) -> f64 {
         let of_samples = self.published_sd.map_or(0.0, |sd| sd / SAMPLES.sqrt());

@@ -79,7 +79,8 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
 }
 
 /// Groups the interpretations that differ at most in the number of regions in a backing store. Each group begins with
-/// the smallest number. If no backing store is full in its run, the run also serves the larger numbers.
+/// the interpretation with the fewest regions. If no backing store is ever full in the run of this interpretation, the
+/// result also holds for the rest of the group.
 fn groups(readings: &[Reading]) -> Vec<Vec<Reading>> {
     let mut groups: BTreeMap<Reading, Vec<Reading>> = BTreeMap::new();
     for reading in readings {

@@ -1,4 +1,4 @@
-//! Simulates one point of a sweep, which is an experiment.
+//! Simulates one point of a sweep. Each point of a sweep is one experiment.
 
 use super::header::json;
 use super::{Sweep, SweepSpace, measures};
@@ -22,7 +22,7 @@ pub enum Status {
     Failed,
 }
 
-/// Results of a point of a sweep, which are identical on every computer.
+/// Results of a point of a sweep. The results are identical on every computer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SweepRow {
     /// Index of the point in the parameter space, counted from 0.

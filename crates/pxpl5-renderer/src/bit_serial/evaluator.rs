@@ -1,9 +1,9 @@
 //! Expression evaluator: trees of serial adders. In each clock, the trees deliver one bit of an expression's value to
 //! every pixel.
 //!
-//! A tree multiplies a coefficient by the index of each column (or row), which is a leaf of the tree. Level `l` of the
-//! tree delays the coefficient by `l` clocks. This level adds the delayed coefficient to the leaves whose index has bit
-//! `l` set. Coefficients enter with the least significant bit first.
+//! A tree multiplies a coefficient by the index of each column (or row). Each column (or row) is a leaf of the tree.
+//! Level `l` of the tree delays the coefficient by `l` clocks. This level adds the delayed coefficient to the leaves
+//! whose index has bit `l` set. Coefficients enter with the least significant bit first.
 //!
 //! For a linear expression, every pixel adds the bit stream of its column to the bit stream of its row. For a quadratic
 //! expression, wider trees multiply by the squares of the indices. Each row also has its own coefficient of x, and each
@@ -50,8 +50,8 @@ const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
 /// two lanes of a vector.
 type Streams = [u64; 8];
 
-/// Trees of serial adders, side by side in one vector. Each bit of the vector belongs to one leaf of a tree, which is a
-/// column or a row of pixels. In each leaf, the tree computes a coefficient times the leaf's index, plus an input bit
+/// Trees of serial adders, side by side in one vector. Each bit of the vector belongs to one leaf of a tree. A leaf is
+/// a column or a row of pixels. In each leaf, the tree computes a coefficient times the leaf's index, plus an input bit
 /// stream.
 pub(super) struct Trees<V, const LEVELS: usize> {
     coefficients: [V; 2],
@@ -69,8 +69,8 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self { coefficients, leaves, late: zeros, carries: zeros }
     }
 
-    /// Creates two trees, one for 128 columns and one for 128 rows. The trees take the first eight lanes of a vector,
-    /// and the other lanes are unused.
+    /// Creates two trees, one for 128 columns and one for 128 rows. The two trees use the first eight lanes of a
+    /// vector, and the other lanes are unused.
     #[inline(always)]
     fn of_pair(coefficients: [i64; 2], leaves: &[Leaves; LEVELS]) -> Self {
         let mut vectors = [V::splat(0); LEVELS];
@@ -203,8 +203,8 @@ struct QuadraticBits {
 }
 
 pub(super) struct QuadraticCarries<V> {
-    /// Bits of the coefficient of x. Entry n holds the bit that arrived n clocks ago, which is multiplied by bit n of
-    /// the column's index.
+    /// Bits of the coefficient of x. Entry n holds the bit that arrived n clocks ago. The tree multiplies this bit by
+    /// bit n of the column's index.
     late: [V; NUMBER_BITS],
     product: [V; NUMBER_BITS],
     rows_and_columns: V,

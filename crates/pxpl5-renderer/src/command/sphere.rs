@@ -11,7 +11,7 @@ use pxpl5_wire::{Linear, Quadratic};
 /// Silhouette and depth of a sphere, which both kinds of sphere commands contain.
 ///
 /// With perspective, the inverse depth at a pixel is `linear + k sqrt(Q)`. Q is a quadratic expression in the pixel's
-/// coordinates, which is zero on the silhouette. The sender scales Q so that the root needs no factor:
+/// coordinates. Q is zero on the silhouette. The sender scales Q so that the root needs no factor:
 ///
 /// ```text
 /// root  = floor(sqrt((silhouette >> root_shift) & (2^24 - 1)))        12 bits

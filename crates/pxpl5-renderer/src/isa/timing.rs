@@ -32,8 +32,8 @@ pub const CLOCK_HZ: u64 = 40_000_000;
 /// 2 (Phong takes 272 clocks) to 5 (Gouraud takes 267 clocks).
 pub const SET_UP_CLOCKS: u32 = 4;
 
-/// Number of clocks of an instruction that moves no bit field. Assumed: 2, like "enable all" in the published steps.
-/// The range is 1 to 4.
+/// Number of clocks of an instruction that moves no bit field. The value 2 is assumed, with a range of 1 to 4. It
+/// equals the time of the instruction "enable all" in the published steps of a triangle.
 pub const CONTROL_CLOCKS: u32 = 2;
 
 /// Returns the number of clocks of a square root with a result of `n` bits.

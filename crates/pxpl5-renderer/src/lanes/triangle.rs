@@ -40,7 +40,8 @@ impl<V: SimdVector> Slope<V> {
     }
 }
 
-/// The expressions of a triangle that is wider than one vector. The vectors of each row can begin at another column.
+/// The expressions of a triangle that is wider than one vector. The first vector can begin at a different column in
+/// each row.
 struct WideTriangle<V> {
     edges: [Slope<V>; 3],
     depth: Slope<V>,

@@ -41,8 +41,8 @@ impl Frameless {
         Self { block: 16, batch: 0, seed: 1 }
     }
 
-    /// Returns the number of blocks that are drawn with one view. The default is the number at which the ring sends the
-    /// blocks of all slaves in the time in which one slave transforms the scene.
+    /// Returns the number of blocks that are drawn with one view. With the default number, the ring sends the blocks of
+    /// all slaves in the same time as one slave transforms the scene.
     fn batch(&self, record: &Record, pass: TransformCost, runs_code: bool) -> u32 {
         if self.batch > 0 {
             return self.batch;

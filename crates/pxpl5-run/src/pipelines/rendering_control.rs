@@ -175,8 +175,8 @@ impl PictureRules for RenderingControl {
         true
     }
 
-    /// Returns the time of COPY for all eyes, one after the other, in whole display periods. A stereo pair takes 31.2
-    /// ms, which is two fields (TR94).
+    /// Returns the time of COPY for all eyes, one after the other, in whole display periods. For a stereo pair, COPY
+    /// takes 31.2 ms, so the result is two fields (TR94).
     fn periods_a_picture(&self, record: &Record) -> Option<u64> {
         let surfaces = record.display().surfaces();
         let ports = (record.ports().display().len() / surfaces.len().max(1)).max(1);

@@ -213,7 +213,7 @@ impl PictureRules for Slats {
             arrivals.entry(arrival.target.picture).or_default().note(arrival);
         }
         let backup = (self.copy == CopySchedule::Backup).then(|| Backup::new(record));
-        // The first GP samples a pose at the begin of each picture.
+        // The first GP samples a pose at the start of each picture.
         let leader = record.ports().gps[0];
         let begun = samples(record).filter(|mark| mark.node == leader);
         let times = begun.map(|mark| {
@@ -266,8 +266,8 @@ impl PictureRules for Slats {
         Some(1)
     }
 
-    /// Returns the time from the first to the last light of a field. The display scans these lines once, because the
-    /// next field has the lines between them.
+    /// Returns the time from the first to the last light of a field. The display scans the lines of the field only
+    /// once, because the next field has the lines between them.
     fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightTimes {
         light_span(record, record.display().period_at(times.shown_at), 1)
     }

@@ -1,7 +1,7 @@
 //! A swept-wing jet fighter similar to the MiG-17, with 417 triangles.
 //!
-//! The length is along z with the nose at +z. +y is up, and +x is the left of the aircraft. Lengths are roughly the
-//! metres of the real aircraft, which is 11 m long. The finished aircraft is scaled to a radius of 2 m.
+//! The length is along z with the nose at +z. +y is up, and +x is the left of the aircraft. Lengths are first in metres
+//! and roughly as in the real aircraft, which is 11 m long. The finished model is scaled to a radius of 2 m.
 
 use glam::DVec3;
 
@@ -198,8 +198,8 @@ fn wing(solid: &mut Solid, side: f64) {
 }
 
 /// Adds a control surface: a wedge behind the blunt trailing edge of a wing or fin. `cuts` are the cross-sections at
-/// both ends of the wedge, and `chords` the wedge's lengths there. Returns a point and the direction of the hinge,
-/// which is the blunt edge.
+/// the two ends of the wedge, and `chords` the lengths of the wedge at these ends. The blunt edge is the hinge. Returns
+/// a point on the hinge and its direction.
 fn flap(solid: &mut Solid, cuts: [&Cut; 2], chords: [f64; 2], turned: bool) -> (DVec3, DVec3) {
     let mut sections = [cuts[0].wedge_behind(chords[0]), cuts[1].wedge_behind(chords[1])];
     if turned {

@@ -52,7 +52,7 @@ fn water() -> [Sphere; 3] {
     [sphere(oxygen, 1.52, [240, 24, 24]), sphere(right, 1.20, [255, 255, 255]), sphere(left, 1.20, [255, 255, 255])]
 }
 
-/// A residue (amino acid) of the protein's chain, with the position and shape of the ribbon there.
+/// A residue (amino acid) of the protein's chain, with the position and shape of the ribbon at this residue.
 struct Residue {
     alpha: DVec3,
     /// Direction across the ribbon, from the carbonyl carbon to its oxygen. In a helix this direction is parallel to

@@ -32,8 +32,8 @@ impl Solid {
         });
     }
 
-    /// Adds a surface between successive closed cross-sections with equal numbers of points. Its normals are smooth in
-    /// both directions.
+    /// Adds a surface between successive closed cross-sections with equal numbers of points. The normals of the surface
+    /// are smooth along the cross-sections and from one cross-section to the next.
     ///
     /// The points run anticlockwise as seen from the last cross-section. For n points and m cross-sections the surface
     /// has 2 n (m - 1) triangles.

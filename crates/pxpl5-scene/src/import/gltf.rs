@@ -90,7 +90,7 @@ struct Reader<'a> {
     /// Number of bytes that the parsed JSON and the decoded buffers take in memory.
     held: usize,
     model: Model,
-    /// Number of glTF primitives that consist of points or lines, which are not read.
+    /// Number of glTF primitives that were not read, because they consist of points or lines.
     skipped: usize,
     /// Number of nodes whose meshes are deformed by a skin.
     skinned: usize,
@@ -210,7 +210,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     ///
-    /// Fails if the accessor does not exist, has no bytes, or has another type.
+    /// Fails if the accessor does not exist, has no bytes, or does not have one of the allowed types.
     fn numbers(
         &self,
         accessor: usize,

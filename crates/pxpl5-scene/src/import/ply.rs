@@ -553,8 +553,8 @@ fn number(property: &Property) -> Option<f64> {
     })
 }
 
-/// The corners of a face in the integer type of the file. A conversion of one-byte corners to a wider type would
-/// multiply the memory.
+/// The corners of a face in the integer type of the file. A conversion of one-byte indices to a type with more bytes
+/// would multiply the memory.
 struct FaceRow {
     corners: Property,
     colour: [u8; 3],

@@ -175,7 +175,7 @@ impl FigureRow {
 
 /// A number of a paper that is an input of the model, or that follows from printed numbers by arithmetic alone.
 ///
-/// A simulation cannot give another value, so a definition is neither met nor missed.
+/// A simulation always gives this value, so a definition tests nothing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Definition {
     /// Name under which the documents of the project list the number.

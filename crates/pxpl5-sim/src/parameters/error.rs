@@ -7,8 +7,8 @@ const MAX_LISTED: usize = 12;
 /// Largest number of valid names that an error message lists if the message does not state the most similar name.
 const FEW_NAMES: usize = 4;
 
-/// Error of a setting or an argument that cannot be used. The message states the place, the name, the expected and the
-/// found value.
+/// Error of a setting or an argument that cannot be used. The message states where the setting was written, the name of
+/// the setting, the expected value and the found value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SettingError {
@@ -23,7 +23,7 @@ pub struct SettingError {
     pub expected: Box<str>,
     /// The value or name that the user wrote.
     pub found: Box<str>,
-    /// Valid name that is most similar to an unknown name. Empty for errors of another kind.
+    /// Valid name that is most similar to the unknown name. Empty if the error is not about an unknown name.
     pub nearest: Box<str>,
 }
 
@@ -40,8 +40,8 @@ pub enum SettingErrorKind {
     /// The setting is a fixed property of a chip. Programs can read the property but cannot change the property.
     ReadOnly,
     Missing,
-    /// Two settings exclude each other, a setting does not apply to the experiment, or the text of a setting has
-    /// another fault.
+    /// Two settings exclude each other, or a setting does not apply to the experiment. This kind is also for faults of
+    /// a setting's text that no other kind describes.
     Combination,
     Scene,
     /// A file that the setting names cannot be used.
@@ -142,7 +142,8 @@ impl SettingError {
         if holds { Ok(()) } else { Err(Self::value(name, expected, found)) }
     }
 
-    /// Adds the place of the setting: a file with a line, or a command line option. An empty place adds nothing.
+    /// Adds to the message the place where the setting was written: a file with a line, or a command line option. An
+    /// empty place adds nothing.
     #[must_use]
     pub fn at(self, place: impl Display) -> Self {
         match place.to_string() {

@@ -57,7 +57,8 @@ pub enum FileErrorKind {
 }
 
 impl FileError {
-    /// Creates the error of a text. [`FileError::at`] and [`FileError::in_file`] add the position and the file.
+    /// Creates an error about the content of a file. [`FileError::at`] adds the position in the file, and
+    /// [`FileError::in_file`] adds the name of the file.
     #[must_use]
     pub fn new(kind: FileErrorKind, expected: impl Display, found: impl Display) -> Self {
         let [expected, found] = [expected.to_string().into(), found.to_string().into()];

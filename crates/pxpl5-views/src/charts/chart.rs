@@ -94,7 +94,7 @@ struct Measures {
     width: u32,
     height: u32,
     em: u32,
-    /// Width and height of the chart, and the unit of both in the SVG file.
+    /// Width and height of the chart, and the unit of these two lengths in the SVG file.
     outer: (f64, f64, &'static str),
     names_below: bool,
 }

@@ -18,7 +18,7 @@ pub(super) struct Look {
     place: usize,
     pub(super) colour: RGBColor,
     pub(super) em: u32,
-    /// True if the marker is hollow, which is drawn as a wide ring.
+    /// True if the marker is hollow. A hollow marker is drawn as a wide ring.
     is_hollow: bool,
 }
 

@@ -12,8 +12,8 @@ pub(super) fn utilisation(report: &Value) -> Vec<Element> {
     all
 }
 
-/// A kind of board in the report: its name on the page, and the two keys that lead to its busy fractions. The list has
-/// other fractions of time of this kind, each as its key and its name on the page.
+/// A kind of board in the report: its name on the page, and the two keys that lead to its busy fractions. The list at
+/// the end has more fractions of time for this kind of board, each with its key and its name on the page.
 type Kind = (&'static str, [&'static str; 2], &'static [(&'static str, &'static str)]);
 
 const KINDS: [Kind; 4] = [

@@ -8,7 +8,7 @@ use pxpl5_sim::{Span, Time};
 const WIDTH: i64 = 960;
 const LEFT: i64 = 172;
 const RIGHT: i64 = 14;
-/// Height of the space above the rows, in SVG units.
+/// Height of the space above the rows of the timeline, in SVG units.
 const HEAD: i64 = 84;
 const LANE: i64 = 34;
 const GAP: i64 = 18;

@@ -9,7 +9,7 @@ use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 /// Work on one stage of a picture, drawn as a bar in a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bar {
-    /// Stage of the work.
+    /// Stage of the pipeline to which the work belongs.
     pub stage: Stage,
     /// Number of the picture. If the host sends head poses (views) independently of pictures, a bar of SEND has the
     /// number of the view instead.
@@ -28,7 +28,7 @@ pub struct Bar {
     pub end: Time,
     /// Index of the bar's lane in its row, counted from the top. Lanes divide a row in which bars overlap.
     pub lane: usize,
-    /// Time spans in which the port received data. The list is empty for all stages except COPY.
+    /// Time spans in which the port of the surface received data. The list is empty for all stages except COPY.
     pub receiving: Vec<(Time, Time)>,
 }
 

@@ -59,7 +59,8 @@ fn has_many_surfaces(record: &Record) -> bool {
     record.surfaces().nth(1).is_some()
 }
 
-/// COPY bars of a row. The key of a bar has the number of its picture and the index of the picture's part in this bar.
+/// COPY bars of a row. The key of a bar has two numbers. The first is the number of the copied picture. The second is 1
+/// for the second COPY of the picture, otherwise 0.
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
 /// Returns the COPY bars of a surface or a port. A picture has one bar, or two bars if the picture arrived in two

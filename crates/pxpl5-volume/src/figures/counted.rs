@@ -79,8 +79,9 @@ fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<FigureRo
 }
 
 /// Returns figures D1, D2 and D5, computed from the matrices of the views and the instants of the strobes (flashes). D1
-/// is the angle between neighbouring slices. D2 is the number of distinct planes, and how often per second each plane
-/// is shown. D5 is the distance at the rim between a pixel of one slice and the same pixel of the next slice.
+/// is the angle between neighbouring slices. D2 has two numbers: the number of distinct planes, and the number of times
+/// per second that each plane is shown. D5 is the distance at the rim between a pixel of one slice and the same pixel
+/// of the next slice.
 fn planes(views: &[SliceView]) -> Vec<FigureRow> {
     let across = |k: usize| views[k].view.transpose().x_axis.truncate();
     let angle = |k: usize| {
@@ -142,8 +143,8 @@ fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// Number of steps on a circle around the axis. The circle is tested in the middle of each step, so no tested point
-/// lies in a plane between bins.
+/// Number of equal arcs into which a circle around the axis is divided. The middle of each arc is tested. No middle
+/// lies exactly on a plane that separates bins.
 const STEPS: u32 = 3_600;
 
 /// Returns figure P14: for each region, the number of planes that bound the region. Two conditions make a plane a

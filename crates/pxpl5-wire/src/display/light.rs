@@ -18,7 +18,8 @@ pub enum ScanOrder {
     Global,
 }
 
-/// The brightness of a display's pixels over time: the order in which they start to shine, and for how long they shine.
+/// The brightness of a display's pixels over time: the order in which the pixels start to shine, and the time for which
+/// they shine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PixelLight {
     /// Order in which the pixels start to shine.

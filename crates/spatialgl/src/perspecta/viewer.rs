@@ -80,7 +80,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Options of a view: the part of the volume to show, and how brightness depends on the angle of the screen.
+/// Options of a view: the part of the volume to show, and the dependence of brightness on the angle of the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ViewOptions {
     /// Range of angles around the axis in which nothing is shown (a cutaway), in degrees from +x to +z. `None` shows

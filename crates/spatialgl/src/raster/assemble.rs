@@ -83,14 +83,14 @@ impl SliceTransform {
 }
 
 /// Returns the position at which a line crosses the slice, as a fraction of the line's length. The arguments are the
-/// distances of both ends from the slice. Returns `None` if the line does not cross the slice.
+/// distances of the line's two ends from the slice. Returns `None` if the line does not cross the slice.
 fn crossing([from, to]: [f64; 2]) -> Option<f64> {
     (from * to < 0.0).then(|| from / (from - to))
 }
 
-/// Draws a line. The part between the near and far planes becomes a quad of the line's width. Each end between these
-/// planes gets a round cap. Another cap is drawn where the line crosses the slice, so that a line perpendicular to the
-/// slice is visible.
+/// Draws a line. The part between the near and far planes becomes a quad of the line's width. Each end of the line
+/// between these planes gets a round cap. One more cap is drawn where the line crosses the slice, so that a line
+/// perpendicular to the slice is visible.
 fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut dyn FnMut(&[Corner; 3])) {
     // Cut the line at the near and far planes.
     let Some([begin, end]) = between_planes(from, to) else { return };
@@ -120,8 +120,8 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
     }
 }
 
-/// Returns the part of a line between the near and far planes, as a range of positions from 0 (begin) to 1 (end).
-/// Returns `None` if no part lies there.
+/// Returns the part of a line between the near and far planes, as a range of positions on the line: 0 is the corner
+/// `from`, and 1 is the corner `to`. Returns `None` if no part lies between these planes.
 fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
     let from = &from.place;

@@ -121,8 +121,7 @@ struct Pixels {
     /// Column of the first pixel, in the top row of the block of pixels.
     x: u32,
     y: u32,
-    /// Number of pixels in a row of the block, after which the next row begins. `u32::MAX` if all pixels are in one
-    /// row.
+    /// Number of pixels in a row of the block of pixels. `u32::MAX` if all pixels are in one row.
     width: u32,
 }
 

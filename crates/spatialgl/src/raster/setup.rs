@@ -1,9 +1,9 @@
 //! Set-up of a triangle in the window of a slice, in homogeneous coordinates (Olano and Greer 1997).
 //!
-//! The triangle needs neither clipping nor a division. Each edge is a linear function of the position in the window,
-//! which is positive inside the triangle. The three functions are the weights of the corners at every sample, except
-//! for one common positive factor. Behind the eye, all three functions are negative. Vertex attributes are interpolated
-//! by these weights. Corners behind the eye or 10^6 px away therefore need no special case.
+//! The triangle needs neither clipping nor a division. Each edge is a linear function of the position in the window.
+//! This function is positive inside the triangle. The three functions are the weights of the corners at every sample,
+//! except for one common positive factor. Behind the eye, all three functions are negative. Vertex attributes are
+//! interpolated by these weights. Corners behind the eye or 10^6 px away therefore need no special case.
 
 /// A position in homogeneous window coordinates.
 #[derive(Clone, Copy, Debug)]

@@ -165,7 +165,7 @@ impl Recording {
         self.end == End::Hold && self.gaps.binary_search_by_key(before_ps, |(from_ps, _)| *from_ps).is_ok()
     }
 
-    /// Returns the same recording with another behaviour after its last sample.
+    /// Returns the same recording with the behaviour `end` after its last sample.
     #[must_use]
     pub fn ending(self, end: End) -> Self {
         Self { end, ..self }

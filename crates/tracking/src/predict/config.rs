@@ -16,7 +16,7 @@ const LEAST_NOISE_M: f64 = 1e-6;
 /// Least orientation noise that a Kalman filter may assume, degrees.
 const LEAST_NOISE_DEG: f64 = 1e-4;
 
-/// A prediction method, which computes a pose at another instant from the tracker's reports.
+/// A prediction method, which computes the head's pose at a requested instant from earlier reports of the tracker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PredictorKind {
     /// No prediction: the method returns the pose of the last report.

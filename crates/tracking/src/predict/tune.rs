@@ -10,14 +10,14 @@ use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{TrackerModel, TrackerReport};
 
 /// Length in seconds of the motion on which a filter is tuned. The motion must be long, because periods of fast motion
-/// are rare. With only 20 seconds, the filter tuned for predictions of 200 ms was worse on another motion than the
-/// filter tuned for 50 ms.
+/// are rare. In a test with only 20 seconds, the filter tuned for predictions of 200 ms was worse than the filter tuned
+/// for 50 ms. The test used a motion on which no filter was tuned.
 const TRAINING_S: u64 = 100;
 /// Time at the start of the training motion for which predictions are not evaluated, seconds.
 const SETTLING_S: u64 = 1;
 
 /// Greatest number of reports on which a filter is tuned. A 120 Hz tracker sends this number in `TRAINING_S` seconds. A
-/// faster tracker reaches the limit sooner.
+/// tracker with a higher rate reaches the limit in less time.
 const MOST_REPORTS: usize = 12_000;
 
 /// Seed of the tracker's noise when a filter is tuned. If the noise of the evaluated run has the same seed, the tuning

@@ -104,7 +104,7 @@ pub struct Hmd {
 pub struct Misregistration {
     /// Shown position minus true position, px, x to the right and y down.
     pub offset_px: DVec2,
-    /// Length of the offset, px.
+    /// Distance from the true position to the shown position, px.
     pub pixels: f64,
     /// Angle between the shown and the true direction of the point, seen from the eye, degrees.
     pub degrees: f64,
@@ -129,7 +129,7 @@ impl Hmd {
         Self::new(HmdConfig::unc()).expect("the table's values are in range")
     }
 
-    /// Returns the same display with pictures of another size in pixels.
+    /// Returns the same display with pictures of `width_px` x `height_px` pixels.
     ///
     /// # Panics
     ///

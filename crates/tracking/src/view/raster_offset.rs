@@ -28,16 +28,17 @@ pub struct RasterOffset {
 }
 
 impl RasterOffset {
-    /// Returns the offset at `at_ps` for a picture that was drawn for the pose `predicted` and is seen from the pose
-    /// `actual`. This offset does not change during the field.
+    /// Returns the raster offset at `at_ps` for a picture that was drawn for the pose `predicted` and is seen from the
+    /// pose `actual`. The rates of this offset are 0, so the offset does not change during the field.
     pub fn between(predicted: &Pose, actual: &Pose, at_ps: u64) -> Self {
         let error = actual.orientation.conjugate() * predicted.orientation;
         let (yaw, pitch, _roll) = rotation::to_yaw_pitch_roll(error);
         Self { yaw, pitch, yaw_rate: 0.0, pitch_rate: 0.0, at_ps }
     }
 
-    /// Returns the offset with rates of change for a head that turns with `angular_velocity` (rad/s, world frame) after
-    /// the picture was drawn. The rates are exact for a turn about either axis alone.
+    /// Returns this raster offset with new rates of yaw and pitch. The rates follow from `angular_velocity` (rad/s,
+    /// world frame), with which the head turns after the picture was drawn. The rates are exact if the head turns only
+    /// about its yaw axis or only about its pitch axis.
     pub fn with_rates(self, actual: &Pose, angular_velocity: DVec3) -> Self {
         let of_head = actual.orientation.conjugate() * angular_velocity;
         Self { yaw_rate: -of_head.y, pitch_rate: -of_head.x, ..self }

@@ -57,10 +57,10 @@ impl OrientationTiming {
         self.scan.latches(self.latch, x, y, field)
     }
 
-    /// Returns the first time after an instant at which a new orientation is in the register.
+    /// Returns the first time later than `after` when a new orientation is in the register.
     ///
     /// The first orientation arrives when the machine starts. Each later orientation comes from a report, or from the
-    /// schedule for latching by line or pixel. `reports` returns the arrival time of the first report after an instant.
+    /// schedule for latching by line or pixel. `reports(t)` returns the arrival time of the first report after `t`.
     pub(crate) fn next(&self, after: Time, reports: impl Fn(Time) -> Option<Time>) -> Option<Time> {
         let first = self.loaded(Time::ZERO);
         if after < first {

@@ -139,7 +139,7 @@ pub(super) trait DuePolicy {
 ///
 /// A cycle begins when all display memories of the previous cycle have been sent, but never in the field in which the
 /// previous cycle began. The selected memories are sent in ascending order. On a machine that is fast enough, each
-/// cycle takes one field and begins with the field.
+/// cycle lasts one field and begins with the field.
 pub(super) struct Cycles<P> {
     updates: Updates,
     scan: FaceScan,

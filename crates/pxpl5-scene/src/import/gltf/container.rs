@@ -106,8 +106,8 @@ impl<'a> Chunks<'a> {
 const OBJECT_BYTES: usize = 3 * max(size_of::<gltf_json::Node>(), size_of::<gltf_json::Material>());
 /// Greatest number of bytes that a text takes in a growing list, in addition to its characters.
 const TEXT_BYTES: usize = 3 * size_of::<String>();
-/// Greatest number of bytes that an index or a number takes in a growing list. The numbers of the largest type are the
-/// limits of an accessor, which are stored as JSON values.
+/// Greatest number of bytes that an index or a number takes in a growing list. The largest numbers in memory are the
+/// limits of an accessor, because the parser stores each limit as a JSON value.
 const NUMBER_BYTES: usize = 3 * size_of::<gltf_json::Value>();
 
 const fn max(a: usize, b: usize) -> usize {

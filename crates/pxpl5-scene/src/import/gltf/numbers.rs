@@ -51,7 +51,8 @@ impl<'a> Numbers<'a> {
     ///
     /// # Errors
     ///
-    /// Fails if the accessor or its buffer does not exist, is too short, or has another type.
+    /// Fails if the accessor or its buffer does not exist or is too short. Also fails if the type of the accessor is
+    /// not allowed.
     pub(super) fn of(
         document: &'a Document<'_>,
         index: usize,

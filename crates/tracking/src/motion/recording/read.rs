@@ -292,8 +292,8 @@ impl Layout {
         Err(out_of_range(place(line, &names.join(",")), "a quaternion of length 1", found))
     }
 
-    /// Returns the time stamp of a sample. Checks that the time is not earlier than the previous time and stays below
-    /// the limit.
+    /// Returns the time stamp of a sample. Checks that the time is not earlier than the time of the previous sample and
+    /// is not above the greatest allowed time.
     fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, FileError> {
         let place = || place(line, &self.columns[0].name);
         let found_s = t_ps as f64 / PS_PER_S as f64;
