@@ -51,14 +51,15 @@ pub use pxpl5_run::Outcome;
 
 /// The viewer of an experiment, whose head moves and is tracked.
 ///
-/// In the example, a head turns by 100 degrees a second, with a magnetic tracker and a Kalman filter.
+/// In the example, a head turns by 100 degrees a second, with a magnetic tracker and a Kalman filter. The motion has
+/// the coordinates of the world.
 ///
 /// ```
-/// use pxpl5::prelude::*;
+/// use pxpl5::{HeadPlace, prelude::*};
 /// use std::sync::Arc;
 ///
 /// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(1.745 * seconds), ..Pose::IDENTITY });
-/// let head = Head::new(Arc::new(turn), TrackerConfig::fastrak(), PredictorKind::Kalman, 1)?;
+/// let head = Head::new(Arc::new(turn), TrackerConfig::fastrak(), PredictorKind::Kalman, 1)?.with_place(HeadPlace::World);
 /// let scene = scene::builtin("full-screen:4")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(90).pixels(Pixels::Off);
 /// let report = experiment.head(head).run()?.report();
@@ -88,15 +89,25 @@ pub use pxpl5_run::Stepper;
 
 /// A list of pipelines and displays, from which a program selects by name.
 ///
-/// The example builds a pipeline whose name is chosen at run time.
+/// The example finds a display and a pipeline, and reads the settings of the pipeline.
 ///
 /// ```
-/// use pxpl5::{PipelineEntry, prelude::*};
+/// use pxpl5::{DisplayEntry, Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, TestScene, prelude::*};
 ///
 /// let registry = Registry::of_papers();
-/// let entry: &PipelineEntry = registry.pipeline("jitp-scanline-racing")?;
+/// let ntsc: &DisplayEntry = registry.display("ntsc")?;
+/// assert_eq!((ntsc.config)().name(), "ntsc");
+/// let entry: &PipelineEntry = registry.pipeline("slats")?;
 /// let pipeline = (entry.build)(&PipelineSettings::default());
-/// assert_eq!(pipeline.name(), "jitp-scanline-racing");
+/// assert_eq!(pipeline.name(), "slats");
+/// // The setting `copy` has three values.
+/// let copy: &Key = entry.keys.iter().find(|key| key.name == "copy").ok_or("a key")?;
+/// assert_eq!(copy.values.to_string(), "whole, split or backup");
+/// // A scene is small enough if no retrace is missed.
+/// let LimitCriterion { goal, .. } = (entry.limit)(&Default::default());
+/// assert_eq!(goal, Goal::NoMissedRetrace);
+/// # let _ = TestScene::Typical;
+/// # let _ = (KeyValue::Flag(true), KeyValues::Flag);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub use pxpl5_run::Registry;
@@ -241,29 +252,6 @@ pub use pxpl5_run::Reprojection;
 /// ```
 pub use pxpl5_run::BareHost;
 
-/// An entry of the registry for a display, beside the entries for pipelines.
-///
-/// The example finds a display, a key of Slats, and the criterion for a scene that Slats draws in time.
-///
-/// ```
-/// use pxpl5::{DisplayEntry, Goal, Key, KeyValue, KeyValues, LimitCriterion, Registry, TestScene};
-///
-/// let registry = Registry::of_papers();
-/// let slats = registry.pipeline("slats")?;
-/// let ntsc: &DisplayEntry = registry.display("ntsc")?;
-/// assert_eq!((ntsc.config)().name(), "ntsc");
-/// // The setting `copy` has three values.
-/// let copy: &Key = slats.keys.iter().find(|key| key.name == "copy").ok_or("a key")?;
-/// assert_eq!(copy.values.to_string(), "whole, split or backup");
-/// // A scene is small enough if no retrace is missed.
-/// let LimitCriterion { goal, .. } = (slats.limit)(&Default::default());
-/// assert_eq!(goal, Goal::NoMissedRetrace);
-/// # let _ = TestScene::Typical;
-/// # let _ = (KeyValue::Flag(true), KeyValues::Flag);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub use pxpl5_run::DisplayEntry;
-
 /// An identification of settings or of a scene by their content.
 ///
 /// The example computes a fingerprint, prints it and parses it.
@@ -311,20 +299,6 @@ pub use pxpl5_run::Fingerprint;
 /// ```
 pub use pxpl5_run::PolicyPipeline;
 
-/// A choice between the coordinates of the world and the start of the scene's own motion.
-///
-/// The example gives a motion in the coordinates of the world.
-///
-/// ```
-/// use pxpl5::{HeadPlace, prelude::*};
-///
-/// let motion = std::sync::Arc::new(from_fn(|_| Pose::IDENTITY));
-/// let head = Head::new(motion, TrackerConfig::ideal(), PredictorKind::None, 1)?.with_place(HeadPlace::World);
-/// # drop(head);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub use pxpl5_run::HeadPlace;
-
 /// The prediction of a head's pose, repeated after a run.
 ///
 /// The example lists the poses that Slats requested, and estimates the last pose again.
@@ -349,9 +323,9 @@ pub use pxpl5_run::Estimator;
 
 pub use pphigs::RegionBinning;
 pub use pxpl5_run::{
-    Aim, Cause, Code, Every, FIELDS_RANGE, FinishedRegions, Frameless, Goal, HeadViews, Host, Interpolation, Jitp,
-    Keep, Key, KeyValue, KeyValues, LimitCriterion, Pause, PictureRules, PipelineEntry, PipelineSettings, Pixels,
-    PolicyFrame, Raster, RegionAssignment, RegionPolicy, SampledPose, Setup, SlatsLighting, Source, TestScene,
-    Viewpoint, Warp, out_of_range,
+    Aim, Cause, Code, DisplayEntry, Every, FIELDS_RANGE, FinishedRegions, Frameless, Goal, HeadPlace, HeadViews, Host,
+    Interpolation, Jitp, Keep, Key, KeyValue, KeyValues, LimitCriterion, Pause, PictureRules, PipelineEntry,
+    PipelineSettings, Pixels, PolicyFrame, Raster, RegionAssignment, RegionPolicy, SampledPose, Setup, SlatsLighting,
+    Source, TestScene, Viewpoint, Warp, out_of_range,
 };
 pub use slats::CopySchedule;

@@ -157,20 +157,8 @@ pub mod lab {
     /// ```
     pub use pxpl5_lab::FileKey;
 
-    /// Builds the motion of a head from its name in an experiment file.
-    ///
-    /// The example reads the error for an unknown name.
-    ///
-    /// ```
-    /// use pxpl5::SettingError;
-    /// use pxpl5::lab::motion;
-    ///
-    /// let error: SettingError = motion("pann:200").expect_err("no motion");
-    /// assert!(error.to_string().starts_with("there is no motion `pann:200`"));
-    /// ```
-    pub use pxpl5_lab::motion;
-
     pub use pxpl5_lab::{
-        PREDICTORS, PathChoice, TRACKERS, application_time, code_times, diff, estimate, manifest, predictor, tracker,
+        PREDICTORS, PathChoice, TRACKERS, application_time, code_times, diff, estimate, manifest, motion, predictor,
+        tracker,
     };
 }

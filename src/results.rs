@@ -48,7 +48,7 @@ pub use pxpl5_measure::Report;
 ///
 /// ```
 /// use pxpl5::prelude::*;
-/// use pxpl5::{Budget, EyeReport, HeadReport, Raster, Reprojection, ReprojectionReport, Every, Warp};
+/// use pxpl5::{Budget, Every, EyeReport, HeadReport, Raster, RasterOffsets, Reprojection, ReprojectionReport, Warp};
 /// use std::sync::Arc;
 ///
 /// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(seconds), ..Pose::IDENTITY });
@@ -56,7 +56,9 @@ pub use pxpl5_measure::Report;
 /// let head = head.with_raster(Raster::Reprojected(Reprojection::new(Warp::Rotation, Every::Line)));
 /// let scene = scene::builtin("full-screen:4")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(90).pixels(Pixels::Off);
-/// let report = experiment.head(head).run()?.report();
+/// let outcome = experiment.head(head).run()?;
+/// assert!(RasterOffsets::of(&outcome).is_some());
+/// let report = outcome.report();
 /// let head: HeadReport = report.head.ok_or("a tracked head")?;
 /// let budget: Budget = head.end_to_end;
 /// assert!(budget.total_ms > 0.0);
@@ -148,29 +150,19 @@ pub use pxpl5_measure::LatencyCurve;
 /// ```
 pub use pxpl5_measure::ErrorCauses;
 
-/// A description of a set of numbers by percentiles.
-///
-/// The example describes the numbers from 1 to 100.
-///
-/// ```
-/// use pxpl5::Percentiles;
-///
-/// let hundred = Percentiles::of((1..=100).map(f64::from));
-/// assert_eq!((hundred.mean, hundred.max), (50.5, 100.0));
-/// ```
-pub use pxpl5_measure::Percentiles;
-
 /// A description of a list of numbers by mean and deviation.
 ///
-/// The example computes the statistics of three latencies.
+/// The example computes the statistics of three latencies, and the percentiles of the numbers from 1 to 100.
 ///
 /// ```
-/// use pxpl5::{DefinedStatistics, Samples, Statistics};
+/// use pxpl5::{DefinedStatistics, Percentiles, Samples, Statistics};
 ///
 /// let latencies = Statistics::of([49.0, 50.0, 51.0].into_iter());
 /// assert_eq!((latencies.n, latencies.mean, latencies.sd), (3, 50.0, 1.0));
 /// let defined: DefinedStatistics = latencies.defined("from TRANSFORM to the swap, ms");
 /// assert_eq!(defined.statistics.min, 49.0);
+/// let hundred = Percentiles::of((1..=100).map(f64::from));
+/// assert_eq!((hundred.mean, hundred.max), (50.5, 100.0));
 /// # let _ = Samples::keeping(1);
 /// ```
 pub use pxpl5_run::Statistics;
@@ -247,25 +239,6 @@ pub use pxpl5_measure::HeadSum;
 /// ```
 pub use pxpl5_run::StreamingObserver;
 
-/// The shifts by which a display corrects an error of the pose during scan-out.
-///
-/// The display of the example has the raster offset of VDRT (Breglia 1981).
-///
-/// ```
-/// use pxpl5::prelude::*;
-/// use pxpl5::{Raster, RasterOffsets};
-/// use std::sync::Arc;
-///
-/// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(seconds), ..Pose::IDENTITY });
-/// let head = Head::new(Arc::new(turn), TrackerConfig::ideal(), PredictorKind::None, 1)?.with_raster(Raster::Vdrt);
-/// let scene = scene::builtin("full-screen:4")?;
-/// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
-/// let outcome = experiment.head(head).run()?;
-/// assert!(RasterOffsets::of(&outcome).is_some());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub use pxpl5_measure::RasterOffsets;
-
 /// Computes how a picture looks after the head has moved.
 ///
 /// In the example, a wall is two metres ahead, and the head moves five centimetres to the right.
@@ -286,9 +259,9 @@ pub use pxpl5_measure::RasterOffsets;
 pub use pxpl5_measure::reproject_with_depth;
 
 pub use pxpl5_measure::{
-    Budget, DepthPicture, ErrorPart, EyeReport, FieldMisregistration, LatencyPartStatistics, PathPart, PixelErrors,
-    QUANTITIES, Quantity, Registration, ReprojectionReport, Resource, Results, Showing, SurfaceStatistics, TooHeavy,
-    Utilisation, picture, reproject, side_by_side,
+    Budget, DepthPicture, ErrorPart, EyeReport, FieldMisregistration, LatencyPartStatistics, PathPart, Percentiles,
+    PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, ReprojectionReport, Resource, Results, Showing,
+    SurfaceStatistics, TooHeavy, Utilisation, picture, reproject, side_by_side,
 };
 pub use pxpl5_run::{
     DefinedStatistics, DuePictures, FinalResults, LATENCY_PARTS, LatencyParts, ObserverFactory, PartDefinition,

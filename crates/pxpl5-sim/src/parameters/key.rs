@@ -63,8 +63,9 @@ impl fmt::Display for KeyValues {
     }
 }
 
-/// A setting: `name = value` in experiment files. The settings of pipelines are also options `--name value` of
-/// commands.
+/// A setting: `name = value` in experiment files.
+///
+/// The settings of pipelines are also options `--name value` of commands.
 ///
 /// ```
 /// use pxpl5_sim::parameters::{Key, KeyValues};
