@@ -341,7 +341,7 @@ fn counters_stay_within_the_machine() {
         let channels = machine.ring().stats().channel_busy.len() as i64;
         assert!((1..=channels).contains(&highest["busy channels"]));
         for renderer in 0..machine.renderers().len() {
-            // 448 words of FIFO (derived from TR94's 56.5 ms).
+            // The FIFO holds 448 words (derived from the 56.5 ms of TR94).
             assert!((1..=448).contains(&highest[&format!("FIFO words of renderer {renderer}")]));
         }
     }

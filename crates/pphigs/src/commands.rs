@@ -321,7 +321,7 @@ impl RegionWords {
             match some {
                 SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.gouraud_lanes(lanes, &mut stats);
-                    // A sink that accepts batches needs no words.
+                    // If the sink accepts batches, it needs no words.
                     if !out.triangles(&expressions.batch(entries.len())) {
                         let words = out.words();
                         (0..entries.len()).for_each(|i| encoder.encode(&gouraud_triangle(expressions.get(i)), words));
@@ -364,7 +364,7 @@ impl RegionWords {
                     let colour = |entry: &BinEntry| list.colours[list.triangles[entry.triangle as usize][0] as usize];
                     let mut colours = [0; LANES];
                     colours.iter_mut().zip(entries).for_each(|(out, entry)| *out = rgb(colour(entry)));
-                    // A sink that accepts batches needs no words.
+                    // If the sink accepts batches, it needs no words.
                     if !out.triangles(&expressions.batch(entries.len(), colours)) {
                         let words = out.words();
                         for (i, entry) in entries.iter().enumerate() {

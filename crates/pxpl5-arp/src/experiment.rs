@@ -68,7 +68,6 @@ impl WalkOutcome {
         let (_, stats) =
             faces.seen(ahead(&path, plan.walk.m_per_s * (frames - 1) as f64 / settings.numbers.frame_hz))?;
         let looked = ViewStatistics { stats, drawing: faces.drawing };
-        // Collect the report.
         let report = WalkReport {
             report: ArpReport::of(&world, &settings, &tally, Some(&looked)),
             scene: scene.name().to_owned(),

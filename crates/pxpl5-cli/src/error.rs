@@ -90,7 +90,7 @@ fn with_resume(error: &impl Display) -> String {
 const fn code_of(kind: FileErrorKind) -> u8 {
     match kind {
         FileErrorKind::Locked => BUSY,
-        // The user can choose another folder.
+        // These errors count as wrong usage, because the user can choose another folder.
         FileErrorKind::Occupied | FileErrorKind::Unfinished => USAGE,
         _ => FAILURE,
     }

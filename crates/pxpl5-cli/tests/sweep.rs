@@ -103,7 +103,7 @@ fn a_sweep_killed_repeatedly_loses_and_repeats_no_finished_point() {
     succeeds(&sweep(&folder, &["--out", "killed", "--resume"]));
     succeeds(&sweep(&folder, &["--out", "whole"]));
     assert!(read(&folder, "killed/rows.jsonl") == read(&folder, "whole/rows.jsonl"));
-    // Every computed point adds a line of time. A kill between a row and its time may lose one line.
+    // Every computed point adds a line to times.jsonl. A kill between a row and its time may lose one line.
     let times = points(&folder.0.join("killed/times.jsonl"));
     assert_eq!(times.iter().collect::<BTreeSet<_>>().len(), times.len(), "no point was computed twice");
     assert!(times.len() + kills >= POINTS);

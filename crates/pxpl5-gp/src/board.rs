@@ -229,7 +229,7 @@ impl GpBoard {
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;
-        // Stop after a full round without progress.
+        // Stop after one poll of every program without progress.
         for place in (0..self.tasks.len()).cycle() {
             let before = self.shared.borrow().progress;
             self.poll(place, &mut task_context);

@@ -154,7 +154,8 @@ impl Shared {
     /// no effect.
     pub(crate) fn latch(&mut self, Message { source, body, .. }: Message) -> Cause {
         let arrived = self.now;
-        // Insert after all messages of earlier instants and lower senders.
+        // Insert after messages of earlier instants, and after messages of the same instant from ports with lower
+        // numbers.
         let before = self.inbox.iter().rposition(|other| (other.arrived, other.source) <= (arrived, source));
         self.inbox.insert(before.map_or(0, |place| place + 1), Received { arrived, source, body });
         Cause::Arrival

@@ -206,7 +206,7 @@ impl RunWork {
     #[must_use]
     pub fn bytes(&self) -> f64 {
         let fields = self.fields as f64;
-        // Observations dominate long runs; lists dominate large scenes.
+        // In long runs, observations take most of the memory. In large scenes, lists take most of the memory.
         let kept = if self.keeps_everything {
             fields * (FIELD + COPY * self.most_blocks())
         } else {

@@ -130,7 +130,7 @@ impl Rig {
         pipeline: Arc<dyn Pipeline>,
         sightings: &[LowPointReport],
     ) -> Result<Experiment, StudyError> {
-        // Even sightings make a light frame, odd sightings a dark frame.
+        // Sightings of the pendulum with even numbers make a light frame, and sightings with odd numbers a dark frame.
         let reports = (0..).zip(sightings).map(|(number, sighting)| TrackerReport {
             solution: number,
             measured_ps: sighting.measured_ps,

@@ -114,7 +114,7 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let gp = machine.processor(config.master, Priority::Foreground);
     let views = Arc::clone(&setup.wanted);
     let pass = whole_pass(setup);
-    // The master requests views for the instants that its strips are seen.
+    // The master requests views for the instants at which its strips are visible.
     let view_of = move |wanted: Wanted| views(wanted.number, wanted.known, wanted.shown_at);
     for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);

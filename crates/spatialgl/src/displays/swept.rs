@@ -151,7 +151,7 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
     let (sin, cos) = direction(config, 2 * i64::from(k));
     let rows = [[cos, 0.0, sin, 0.0], [0.0, 1.0, 0.0, 0.0], [-sin, 0.0, cos, 0.0], [0.0, 0.0, 0.0, 1.0]];
     let eye = config.projection.eye(k, wedge.radius, reach);
-    // A little slack keeps rounding from rejecting primitives that touch the slice.
+    // A small tolerance prevents rounding errors from rejecting primitives that touch the slice.
     let slack = reach * (1.0 + 1e-9) + 1e-6;
     let volume = config.clip.volume(boundaries(config, k), config.ties, wedge);
     let view: DMat4 = matrix_of_rows(rows);
