@@ -34,8 +34,9 @@ pub struct RegionEnvelope {
     pub copy: Option<CopyOrder>,
 }
 
-/// Returns the messages with the primitives of a region's bin and with the commands that `envelope` selects. The number
-/// of messages is as small as their maximum length permits.
+/// Returns the messages with the primitives of a region's bin and with the commands that `envelope` selects.
+///
+/// The number of messages is as small as their maximum length permits.
 #[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
     if pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0 {

@@ -77,6 +77,7 @@ struct Task {
     has_ended: bool,
 }
 
+/// A graphics processor board with its programs.
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,

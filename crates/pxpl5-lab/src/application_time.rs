@@ -1,4 +1,6 @@
-//! Effect of the application's time per frame on the latencies of fly-throughs. No paper prints this time.
+//! Effect of the application's time per frame on the latencies of fly-throughs.
+//!
+//! No paper prints this time.
 //!
 //! The host of a real viewer ran a loop under Unix that read input, changed its scene, and asked for the next frame.
 //! The simulated host asks for the next frame immediately unless `host.application_ns` and `host.application_jitter_ns`

@@ -1,5 +1,6 @@
-//! Measures the times of primitives by executing i860 code. These times fill the timing table that the analytic level
-//! and the transaction level use.
+//! Measures the times of primitives by executing i860 code.
+//!
+//! These times fill the timing table that the analytic level and the transaction level use.
 //!
 //! The measurement transforms the application scenes of TR94 on one board (one transformation is a *pass*), and divides
 //! the board's clocks among primitives:

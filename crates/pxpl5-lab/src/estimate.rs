@@ -1,5 +1,6 @@
-//! Estimates of the memory and time of an experiment, computed from its settings before the experiment starts. Budgets,
-//! sweeps and Slurm jobs use these estimates.
+//! Estimates of the memory and time of an experiment, computed from its settings before the experiment starts.
+//!
+//! Budgets, sweeps and Slurm jobs use these estimates.
 //!
 //! Memory in bytes: `BASE + PICTURES + GP gps + PRIMITIVE primitives + WAITING batch + kept`
 //!

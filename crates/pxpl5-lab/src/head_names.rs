@@ -76,8 +76,10 @@ pub fn is_recording(name: &str) -> bool {
 }
 
 /// Builds a motion from its name: `still`, `pan:DEG_PER_S`, `slide:M_PER_S` (to the right), `sine:DEG:HZ` (of the yaw),
-/// `pendulum`, `synthetic:SEED`, or the path of a recording. A recording's path ends in `.csv`, `.txt`, `.tum` or
-/// `.jsonl` ([`Recording::read`]). For the motion `walk`, which needs a scene, see [`walk`].
+/// `pendulum`, `synthetic:SEED`, or the path of a recording.
+///
+/// A recording's path ends in `.csv`, `.txt`, `.tum` or `.jsonl` ([`Recording::read`]). For the motion `walk`, which
+/// needs a scene, see [`walk`].
 ///
 /// # Errors
 ///

@@ -103,6 +103,7 @@ const COLUMNS: [TableColumn<FigureRow>; 9] = [
     ("", |row| verdict(row).to_owned()),
 ];
 
+/// Returns the figures as a Markdown table.
 #[must_use]
 pub fn table(rows: &[FigureRow]) -> String {
     figures::table(&COLUMNS, rows)

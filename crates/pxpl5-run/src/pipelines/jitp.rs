@@ -18,8 +18,10 @@ use std::sync::Arc;
 
 pub use jitp::{Interpolation, Viewpoint};
 
-/// The pipeline of just-in-time pixels (JITP). The pipeline divides a picture into strips of lines and draws each strip
-/// for the instant at which the strip is displayed.
+/// The pipeline of just-in-time pixels (JITP).
+///
+/// The pipeline divides a picture into strips of lines and draws each strip for the instant at which the strip is
+/// displayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Jitp {
     /// Choice of the instants for which the lines of a picture are drawn.

@@ -20,6 +20,7 @@ pub struct FileError {
     pub found: Box<str>,
 }
 
+/// The kind of a [`FileError`], from an unreadable file to invalid content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FileErrorKind {

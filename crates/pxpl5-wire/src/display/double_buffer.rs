@@ -23,7 +23,9 @@ impl PartialRegion {
 
 type Regions = BTreeMap<RegionId, PartialRegion>;
 
-/// Two buffers for one surface. One of the buffers is shown.
+/// Two buffers for one surface.
+///
+/// One of the buffers is shown.
 ///
 /// **Not modelled:** pixels that arrive in the shown buffer during the scan. A display that models such pixels must
 /// keep the arrival times of all messages, like the NTSC frame buffer.

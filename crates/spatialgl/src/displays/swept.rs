@@ -10,6 +10,7 @@ use glam::{DMat4, DVec3};
 use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
+/// The direction in which the screen spins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rotation {
@@ -24,6 +25,7 @@ impl Rotation {
 
 pxpl5_sim::parameters::named!(Rotation, "sense of rotation", Rotation::ALL);
 
+/// The parameters of a display that sweeps a volume with a spinning screen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweptConfig {
