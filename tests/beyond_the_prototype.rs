@@ -31,7 +31,8 @@ fn a_complete_field_goes_to_the_other_buffer_and_is_shown() {
     assert!(buffers.contains(&0) && buffers.contains(&1));
 }
 
-/// The request for each field costs two messages a field more than a split copy, whose limit is 146 triangles.
+/// With a backup, the requests for a field take two messages more than a split copy. The limit of a split copy is 146
+/// triangles.
 #[test]
 fn a_backup_costs_a_few_triangles_of_the_limit_of_a_split_copy() {
     let outcome = run(Slats::backup(), "full-screen:140");

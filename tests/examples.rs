@@ -80,7 +80,7 @@ fn both_pipelines_show_a_model_file_and_slats_shows_it_in_every_field() {
 #[test]
 fn the_loop_finds_the_sum_of_squares() {
     let printed = printed("i860_loop");
-    // 1 + 4 + .. + 100 = 10 x 11 x 21 / 6.
+    // The sum 1 + 4 + .. + 100 is 10 x 11 x 21 / 6 = 385.
     assert!(printed.lines().any(|line| line == "result 385"), "{printed}");
     assert!(printed.contains("Stopped after "));
 }

@@ -78,7 +78,7 @@ fn j1_one_transform_a_field_is_33_pixels_off_at_its_end() {
     let level = FOCAL_PX / f64::hypot(FOCAL_PX, 478.5 - 240.0);
     let turn_deg = 2.0 * f64::asin((last.degrees / 2.0).to_radians().sin() / level).to_degrees();
     assert!((turn_deg - PAN * scan_s).abs() < 0.001, "{turn_deg} {}", PAN * scan_s);
-    // The paper counts up to the next retrace, and 10 pixels a degree.
+    // The paper counts the time up to the next retrace, and 10 pixels for a degree.
     let whole_field_deg = turn_deg / scan_s * seconds(NTSC_FIELD_PS);
     println!("J1: {whole_field_deg:.3} deg, {:.2} px", whole_field_deg * 10.0);
     assert!((whole_field_deg - 3.3).abs() < 0.05 && (whole_field_deg * 10.0 - 33.0).abs() < 0.5);
@@ -397,8 +397,8 @@ fn a_comparison_has_all_pipelines_and_just_in_time_pixels_have_the_smallest_erro
     assert_eq!(json["pipelines"].as_array().map(Vec::len), Some(30));
     let mean = |name: &str| all.row(name).expect("a row").error.mean_px.mean;
     assert!(mean("ideal") < 1e-3 && mean("jitp-scanline-racing") < 0.1 && mean("jitp-dual-view-racing") < 0.1);
-    // All pipelines aim at the middle of their display time. One field gives the same error in both, and two fields
-    // give more.
+    // All pipelines aim at the middle of their display time. Two pipelines whose display time is one field have equal
+    // errors, and a display time of two fields gives a larger error.
     assert!((mean("jitp-field-racing") / mean("slats-touched") - 1.0).abs() < 1e-3);
     assert!((mean("jitp-field") / mean("slats-touched") - 1.0).abs() < 1e-3);
     assert!(mean("jitp-field-racing") > 7.0 && mean("rendering-control") > 2.0 * mean("slats-touched"));

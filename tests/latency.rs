@@ -101,8 +101,8 @@ fn figure_11_half_of_the_field_regions_take_3_9_ms() {
     for bottom in [false, true] {
         let half = |a: &&Arrival| a.target.picture == PictureNumber(6) && (a.target.region.0 >= 5) == bottom;
         let us = copy_us(outcome.observation().arrivals.iter().filter(half));
-        // The changes take less than a microsecond, and the ways of the first and the last renderer differ by up to 8
-        // hops.
+        // The changes between renderers take less than a microsecond. The paths of the first and of the last renderer
+        // differ by up to 8 hops.
         assert!((us - 5.0 * REGION_US).abs() < 1.5, "{us} us");
     }
 }

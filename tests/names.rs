@@ -26,7 +26,7 @@ where
         let name = value.to_string();
         assert!(!name.is_empty() && names.insert(name.clone()), "{value:?}: {name:?} is empty or taken");
         assert_eq!(name.parse::<T>().unwrap_or_else(|error| panic!("{name}: {error}")), value);
-        // A name is found as a whole only.
+        // Only the complete name is accepted.
         for other in [format!("{name}x"), format!(" {name}"), String::new()] {
             let error = other.parse::<T>().expect_err("no name");
             assert!(!error.to_string().is_empty());
@@ -47,7 +47,7 @@ where
 
 #[test]
 fn every_public_name_is_parsed_as_printed() {
-    // Settings of experiments.
+    // Names in settings of experiments.
     round_trip(Level::ALL);
     listed(Pixels::ALL);
     listed(Keep::ALL);
@@ -56,7 +56,7 @@ fn every_public_name_is_parsed_as_printed() {
     listed(Aim::ALL);
     listed(HeadPlace::ALL);
     round_trip(Cause::ALL);
-    // Settings of pipelines.
+    // Names in settings of pipelines.
     listed(CopySchedule::ALL);
     listed(RegionBinning::ALL);
     listed(SlatsLighting::ALL);
@@ -64,19 +64,19 @@ fn every_public_name_is_parsed_as_printed() {
     round_trip(FinishedRegions::ALL);
     listed(FacePolicy::ALL);
     listed(Culling::ALL);
-    // Boards and machines.
+    // Names of boards and machines.
     round_trip([Board::Host, Board::Gp(12), Board::Renderer(0), Board::Display(1), Board::Ring]);
     round_trip(PRESETS);
     round_trip(CodeVersion::ALL);
     listed(Latch::ALL);
     round_trip(Eye::BOTH);
-    // Devices after the frame buffer.
+    // Names of devices after the frame buffer.
     listed(Warp::ALL);
     listed(Every::ALL);
     let devices = Warp::ALL.into_iter().flat_map(|(_, by)| Every::ALL.map(|(_, every)| Reprojection::new(by, every)));
     round_trip(devices.clone());
     round_trip(devices.map(Raster::Reprojected).chain([Raster::Plain, Raster::Vdrt]));
-    // Heads and trackers.
+    // Names of heads and trackers.
     round_trip(PredictorKind::ALL);
     listed(End::NAMES);
     listed(Axes::NAMES);
@@ -86,7 +86,7 @@ fn every_public_name_is_parsed_as_printed() {
     }
     let columns: Columns = "t_ns=stamp,x=px".parse().expect("a mapping");
     assert_eq!(columns.to_string(), "t_ns=stamp,x=px");
-    // Results.
+    // Names of results.
     round_trip(QUANTITIES.iter().map(|quantity| Measure::named(quantity.name).expect("listed")));
     round_trip(Resource::ALL);
     listed(Stage::ALL);
@@ -115,7 +115,6 @@ fn every_pipeline_and_display_of_the_papers_is_found_by_its_name() {
     );
 }
 
-/// Names of volumetric displays.
 #[test]
 fn every_choice_of_volumes_is_parsed_as_printed() {
     use pxpl5::volume::spatialgl::{BinTolerance, Binning, Combine, Coverage, Rotation, Strobes, TieRule};

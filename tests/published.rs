@@ -111,8 +111,8 @@ fn the_first_copy_of_a_full_field_begins_after_about_12_8_ms() {
 
 #[test]
 fn with_a_photodiode_low_on_the_screen_the_rig_measures_the_published_latency() {
-    // The published range is 54 to 57 ms, without the position of the photodiode. Both copies take 31.2 ms. The wait
-    // for the retrace is 8.3 ms on average over all phases. A field has 240 lines of 63.6 us.
+    // The published range is 54 to 57 ms. The position of the photodiode is not published. Both copies take 31.2 ms.
+    // The wait for the retrace is 8.3 ms on average over all phases. A field has 240 lines of 63.6 us.
     let [first, last] = row("17").unprinted.expect("the line is not printed");
     assert!((last - first - 239.0 * 0.063_556).abs() < 0.05, "{first} to {last}");
     assert!(first > 31.2 + 8.3 - 1.0 && first < 54.0 && last > 54.0, "{first} to {last}");
@@ -121,7 +121,7 @@ fn with_a_photodiode_low_on_the_screen_the_rig_measures_the_published_latency() 
 
 #[test]
 fn the_error_at_90_ms_is_1_8_times_the_error_at_50_ms() {
-    // The ratio of the latencies, except for the curvature of the motion within them.
+    // The ratio of the latencies, apart from the curvature of the motion within each latency.
     within("18", 1.75, 1.8);
 }
 
@@ -144,7 +144,7 @@ fn every_row_names_its_source_and_every_miss_its_cause() {
 
 #[test]
 fn the_joint_sample_of_machines_lies_on_both_sides_of_the_presets() {
-    // The presets are not part of the sample, so its range could miss them.
+    // The presets are not part of the sample, so the range of the sample could miss their values.
     for interval in &FIGURES.intervals {
         let [low, high] = interval.joint;
         assert!(
@@ -168,7 +168,7 @@ fn simulated_values_are_within_the_analytic_interval_or_3_percent_of_it() {
         match row.interval {
             // The measuring rig also has its photodiode on the first and on the last line of the screen.
             Some([low, high]) if row.id == "17" => assert!(low < row.simulated && row.simulated < high),
-            // For runs with a tracker, the depth of the FIFO and the channels of a sender are varied, with events.
+            // For runs with a tracker, the depth of the FIFO and the channels of a sender are varied in simulated runs.
             Some([low, high]) => {
                 assert!(["19", "19b"].contains(&row.id) && low <= row.simulated && row.simulated <= high)
             }
@@ -185,8 +185,8 @@ fn every_figure_is_within_reach_of_some_parameters_and_interpretations() {
 
 #[test]
 fn the_analytic_level_agrees_with_the_transaction_level() {
-    // Closed form and events agree within 3 %. Both use the same views of the head, for more than half of the views of
-    // figures 7 and 7b.
+    // The closed form and the simulation agree within 3 %. Both use the same views of the head, for more than half of
+    // the views of figures 7 and 7b.
     let bench = Bench::new(Level::Analytic).with_mig(6, 150);
     for row in varied() {
         let value = bench.measure(row.id).expect("it runs").value;

@@ -341,7 +341,7 @@ fn counters_stay_within_the_machine() {
         let channels = machine.ring().stats().channel_busy.len() as i64;
         assert!((1..=channels).contains(&highest["busy channels"]));
         for renderer in 0..machine.renderers().len() {
-            // 448 words of FIFO (derived from TR94's 56.5 ms).
+            // The FIFO holds 448 words (derived from the 56.5 ms of TR94).
             assert!((1..=448).contains(&highest[&format!("FIFO words of renderer {renderer}")]));
         }
     }
@@ -487,10 +487,10 @@ fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
 
 #[test]
 fn the_documents_define_every_column() {
-    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/results.md")).expect("there");
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/guide/latency.md")).expect("there");
     for column in columns() {
         let row = text.lines().find(|line| line.starts_with(&format!("| `{}` |", column.name)));
-        assert!(row.is_some(), "{} is not in docs/results.md", column.name);
+        assert!(row.is_some(), "{} is not in docs/guide/latency.md", column.name);
     }
     for part in LATENCY_PARTS {
         let row = text.lines().find(|line| line.starts_with(&format!("| `{}_ps` |", part.name))).expect("a row");

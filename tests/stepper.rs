@@ -40,7 +40,7 @@ impl Dice {
     }
 }
 
-/// Advances by a random kind of piece.
+/// Advances the run by a random kind of step.
 fn step(stepper: &mut Stepper, dice: &mut Dice) {
     match dice.below(6) {
         0 => stepper.run_to(stepper.now() + Span::from_us(dice.below(5_000))),

@@ -235,7 +235,6 @@ fn draws_pictures(entry: &PipelineEntry) -> bool {
     (entry.build)(&PipelineSettings::default()).coverage() == Coverage::View
 }
 
-/// Every pipeline must be covered by these tests.
 #[test]
 fn every_pipeline_draws_the_still_scenes() {
     let families = ["rendering-control", "slats", "frameless", "jitp"];

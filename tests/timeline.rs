@@ -40,11 +40,11 @@ fn bars<'a>(timeline: &'a Timeline, row: &str) -> Vec<&'a Bar> {
     timeline.rows.iter().filter(|r| r.name == row).flat_map(|r| &r.bars).collect()
 }
 
-/// Time of COPY: 20 regions of 15 messages with 1,024 words and 16 words of overhead, 50 ns each (specification: 780 us
-/// a region).
+/// Time of COPY: 20 regions of 15 messages with 1,024 words and 16 words of overhead, 50 ns each (TR94: 780 us a
+/// region).
 const COPY: Span = Span(20 * 15 * (1_024 + 16) * 50_000);
 
-/// Difference of ways on the ring. The first region may come from the farthest of five renderers and the last from the
+/// Difference of paths on the ring. The first region may come from the farthest of five renderers and the last from the
 /// nearest: four hops of 50 ns less.
 const WAYS: Span = Span(4 * 50_000);
 

@@ -1,9 +1,9 @@
-//! Short programs with the prelude alone: what a researcher writes first.
+//! Short programs with the prelude alone, like the first programs of a researcher.
 
 use pxpl5::prelude::*;
 use std::sync::Arc;
 
-/// A cube of 12 triangles on a machine of one's own, before a head of one's own motion.
+/// A cube of 12 triangles on a user's own machine, with a user's own motion of the head.
 #[test]
 fn a_cube_with_its_latency_by_stage_error_and_picture_takes_forty_lines() {
     let corners: Vec<Vec3> = (0..8).map(|n| Vec3::new((n & 1) as f32, (n >> 1 & 1) as f32, (n >> 2) as f32)).collect();
@@ -40,8 +40,8 @@ fn a_table_over_renderers_takes_fifteen_lines() {
         let channels = outcome.report().utilisation.expect("it ran").ring.channels;
         (*renderers, channels.mean, outcome.latency().expect("pictures were shown").mean)
     });
-    // COPY sends the same pixels whatever the number of renderers, so the mean stays: 2 x 15.6 ms of 33.37 ms on one of
-    // 8 channels each are 11.7 %, and commands and tokens come to that.
+    // COPY sends the same pixels for any number of renderers, so the mean stays the same. Two copies of 15.6 ms in
+    // 33.37 ms on one of 8 channels are 11.7 %. Commands and tokens are additional.
     assert!(rows.iter().all(|(_, mean, _)| (0.11..0.16).contains(mean)), "{rows:?}");
 }
 
@@ -82,7 +82,7 @@ fn events_have_their_boards_and_are_in_order_of_time() {
     assert_eq!(count(|kind| matches!(kind, ObservedKind::Swapped { .. })), observed.swaps.len());
     let messages = observed.traffic.as_ref().expect("recorded").transfers.len();
     assert_eq!(count(|kind| matches!(kind, ObservedKind::Message { .. })), messages);
-    // Each kind has the boards that can do it: 13 graphics processors, 5 renderers and a stereo display.
+    // Each kind of event comes from a board that can cause it: 13 graphics processors, 5 renderers, a stereo display.
     for event in &events {
         let fits = match (event.kind, event.board) {
             (ObservedKind::Stage { .. }, Board::Host) => true,
@@ -109,7 +109,7 @@ fn a_quantity_is_read_by_its_name_and_a_wrong_name_has_a_nearest() {
     assert_eq!(error, "there is no quantity `latency.mean`; did you mean `latency_ms.mean`?");
 }
 
-/// Nothing is shown of a scene that is far too heavy, so there is no latency, and no number stands for it.
+/// A scene that is far too heavy shows nothing, so the latency is missing and has no substitute number.
 #[test]
 fn a_run_that_shows_nothing_has_no_latency() {
     let scene = scene::builtin("mig").expect("built in");

@@ -164,7 +164,6 @@ fn resolve(
     None
 }
 
-/// Returns true if a source defines an item with a name.
 fn defines(text: &str, name: &str) -> bool {
     let kinds = ["fn", "struct", "enum", "trait", "type", "const", "static", "macro_rules!"];
     kinds.iter().any(|kind| source::has_word(text, &format!("{kind} {name}")))

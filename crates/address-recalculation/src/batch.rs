@@ -90,7 +90,6 @@ impl Batch {
 pub(crate) fn addresses(batch: &mut Batch, unit: &AddressUnit, vectors: [&[i32]; 3], matrix: &MatrixWords) {
     batch.count = vectors[0].len().min(BATCH);
     let met = &mut batch.met;
-    // Load the vectors into the lanes.
     for (lanes, axis) in met.vectors.iter_mut().zip(vectors) {
         lanes[..batch.count].copy_from_slice(&axis[..batch.count]);
     }

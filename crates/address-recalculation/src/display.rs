@@ -38,7 +38,7 @@ impl EyeBoards {
     /// A group of memories that must swap together swaps only if all memories of the group are ready.
     fn retrace(&mut self, now: Time) -> Vec<(usize, u8)> {
         let ready: Vec<Option<u8>> = self.memories.iter().map(|memory| memory.is_ready(now)).collect();
-        // A memory that is ready for another set, or alone, does not count as ready for this set.
+        // A memory that is ready to swap with another set, or alone, does not count as ready for this set.
         let all_ready = |set: u8| (0..u8::BITS as usize).all(|k| set >> k & 1 == 0 || ready.get(k) == Some(&Some(set)));
         let may_swap: Vec<bool> = ready.iter().map(|set| set.is_some_and(all_ready)).collect();
         let memories = (0..).zip(self.memories.iter_mut().zip(may_swap));

@@ -10,6 +10,7 @@ use std::sync::Arc;
 /// Widest angle of a flat picture or a radial lens, in degrees. All displays with flat pictures have the same limit.
 const WIDEST_FLAT_DEG: f64 = 170.0;
 
+/// The distortion of the lens in front of a display.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Lens {
     /// No lens distortion: the pixels lie on a plane.
@@ -26,6 +27,7 @@ pub enum Lens {
     Table(Arc<[Vector]>),
 }
 
+/// The size and the horizontal angle of the picture behind a [`Lens`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LensPicture {
     pub width: u32,

@@ -84,7 +84,7 @@ impl<'a> Addressing<'a> {
         for start in (0..count).step_by(BATCH) {
             let here = start..(start + BATCH).min(count);
             let vectors = vectors.map(|axis| &axis[here.clone()]);
-            // Footprints inside a face come from the group computation.
+            // Footprints that lie inside a face are computed in groups.
             let is_filled = self.fill(&mut batch, vectors, matrix);
             if is_filled {
                 batch.inside().for_each(|index| self.mark_square(index, touched));
@@ -197,14 +197,14 @@ impl<'a> Lookup<'a> {
         let mut stats = LookStats::default();
         let is_filled = self.composition.order == CompositionOrder::DepthFirst
             && self.addressing.fill(&mut self.batch, vectors, matrix);
-        // Group computation for footprints that stay on their face.
+        // Compute footprints that lie inside a face in groups.
         if is_filled {
             self.pixels(out);
             if !self.batch.is_left() {
                 return stats;
             }
         }
-        // Single computation for the remaining pixels.
+        // Compute the remaining pixels one by one.
         for (i, pixel) in out.iter_mut().enumerate().filter(|(i, _)| !is_filled || self.batch.leaves(*i)) {
             let footprint = self.addressing.footprint(vectors.map(|axis| axis[i]), matrix);
             *pixel = footprint.map_or(self.composition.background, |footprint| {
@@ -298,7 +298,7 @@ impl Drop for Lookup<'_> {
             colours: std::mem::take(&mut self.composed.colours),
             is_done: std::mem::take(&mut self.composed.is_done),
         };
-        // The access fails only while the thread ends. Then the buffer is dropped.
+        // The thread-local variable is unavailable only while the thread ends. Then the buffer is dropped.
         let _ = SPARE.try_with(|spare| spare.set(Some(left)));
     }
 }

@@ -94,6 +94,7 @@ struct SwapRequest {
     together: u8,
 }
 
+/// Counts of the regions, updates and delays of a display memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct MemoryStats {
     /// Number of complete regions that arrived.

@@ -74,8 +74,8 @@ fn a_table_of_vectors_lists_the_pixels_row_by_row() {
     assert_eq!(other, "arp.lens: expected 9 vectors for 3 x 3 pixels, found 6 vectors");
 }
 
-/// Checks a lens that has slope zero in the corner of a picture of 2 x 1 pixels. There rho^2 is 1/4, so the slope is
-/// `1 + 3 x 1/4 x -4/3 = 0`.
+/// Checks a lens whose slope is zero in the corner of a picture of 2 x 1 pixels. The squared distance of this corner
+/// from the middle is 1/4, so the slope is `1 + 3 x 1/4 x -4/3 = 0`.
 #[test]
 fn a_lens_without_slope_and_a_picture_without_angle_are_refused() {
     let error = Lens::Radial { k1: -4.0 / 3.0, k2: 0.0 }.check(&TINY).expect_err("flat there").to_string();
@@ -113,8 +113,9 @@ proptest! {
 
     /// Compares the check of a lens with the smallest slope found in a thousand steps from the middle to the corner.
     ///
-    /// The steps are equal in the square of the radius. There the slope is a parabola with the second coefficient 5 k2,
-    /// so between two steps it falls at most 5 |k2| (step / 2)^2 below both. Lenses within this bound are left out.
+    /// The steps are equal in the squared radius. The slope is a parabola of the squared radius with the second
+    /// coefficient 5 k2. Between two steps, it falls at most 5 |k2| (step / 2)^2 below both values. Lenses whose
+    /// smallest slope is positive and within this bound are left out.
     #[test]
     fn a_lens_that_folds_before_the_corner_is_refused(
         k1 in -1.5..1.5_f64,

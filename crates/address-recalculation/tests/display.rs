@@ -358,7 +358,6 @@ fn an_invalid_tracker_orientation_is_refused_and_the_last_valid_one_stays() {
     assert_eq!(bench.display.faults().0, 4, "those that came over the ring");
 }
 
-/// Checks that the last orientation stays valid for any number of fields if the tracker stops sending.
 #[test]
 fn the_last_orientation_stays_if_the_tracker_stops_reporting() {
     let mut bench = Bench::new(&CONFIG);

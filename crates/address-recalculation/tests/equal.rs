@@ -27,8 +27,7 @@ fn by_lookup(
     (pixels, [stats.split, stats.conflicts])
 }
 
-/// Computes every pixel in the reference model through every stage. A pixel leaves after as many clocks as there are
-/// stages.
+/// Passes every pixel through all stages of the reference model, one stage per clock.
 fn by_registers(
     config: &ArpConfig,
     orientation: &Orientation,
@@ -199,8 +198,8 @@ fn split_footprints_occur_only_without_guard_texels() {
     assert_eq!(counts[1], [0, 0]);
 }
 
-/// Checks that consecutive pixels with one orientation can have any number. Small numbers are computed one by one,
-/// others in groups.
+/// Checks all numbers of consecutive pixels with one orientation. Few pixels are computed one by one, more pixels in
+/// groups.
 #[test]
 fn a_picture_is_the_same_in_runs_of_any_length() {
     for guard_texels in [0, 1] {

@@ -15,7 +15,8 @@ const SIZE: u32 = 128;
 const BARE: ArpTiming = ArpTiming { face_texels: SIZE as u64, guard_texels: 0, ..ArpTiming::PAPERS };
 const FACE: FaceGeometry = FaceGeometry { texels: SIZE, guard: 0 };
 
-/// The distance of a face's plane from the eye. It is large enough that directions in words are exact.
+/// The distance of a face's plane from the eye, in units of directions. At this distance, words hold directions
+/// exactly.
 const ONE: i64 = 1 << 20;
 
 /// Returns the texel of the cube in the direction of a position beside a face, computed in floating point.
@@ -38,7 +39,6 @@ const fn middle(n: u32) -> i64 {
     (2 * n as i64 + 1 - SIZE as i64) * ONE / SIZE as i64
 }
 
-/// Checks that beyond each edge of each face, every row continues with the texel of the neighbouring face.
 #[test]
 fn texels_beyond_an_edge_belong_to_the_neighbouring_face() {
     let edge = f64::from(SIZE);
@@ -122,7 +122,6 @@ fn two_texels_of_the_same_parity_need_a_second_access() {
     assert!(!nearest.has_conflict(), "the nearest texel is read once");
 }
 
-/// Checks two lists of texels drawn on top of each other. The nearer texel stays. At equal depth, the first one stays.
 #[test]
 fn drawing_into_faces_keeps_the_nearer_pixel_and_the_first_at_equal_depth() {
     let config = ArpConfig { timing: BARE, ..ArpConfig::MACHINE };
@@ -188,8 +187,8 @@ fn a_corner_shows_the_mean_of_its_three_texels_in_either_order() {
         });
         let memories: Vec<FaceSet> = memories.collect();
         let table = config.table().expect("valid");
-        // A picture of one column and two lines looks almost straight ahead. The head rotates these pixels into the
-        // corner.
+        // Both pixels of this picture (one column, two lines) look almost straight ahead. The rotation of the head
+        // turns the pixels towards the corner.
         let towards = corner_turn(table.entry(0, 0));
         let mut pixel = [0];
         Lookup::new(&config, &table, memories.iter().collect(), None).run(0, &towards.words(16), &mut pixel);
@@ -204,7 +203,6 @@ fn corner_turn(vector: [i32; 3]) -> Orientation {
     turned(DQuat::from_rotation_arc(from, to))
 }
 
-/// Checks that the index of a face is its position in a buffer.
 #[test]
 fn faces_are_numbered_in_the_order_of_the_buffer() {
     let axes: Vec<[i64; 3]> = CubeFace::ALL.into_iter().map(CubeFace::forward).collect();

@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use support::bench::{Bench, CONFIG};
 use support::{texels, turned};
 
-/// Words of a region, with a flag that becomes true when they are read.
+/// Words of a region, with a flag that becomes true when the words are read.
 #[derive(Debug)]
 struct Words {
     words: Arc<[Word]>,
@@ -30,7 +30,7 @@ impl PixelSource for Words {
     }
 }
 
-/// Fills all regions of the first memory with random words. The memory is visible from field 1 on.
+/// Fills each region of the first memory with `parts` messages of random words. The memory is visible from field 1 on.
 fn filled(config: &ArpConfig, parts: u32, seed: u64) -> (Bench, Vec<Arc<Words>>) {
     let mut bench = Bench::new(config);
     let mut random = SplitMix64::new(seed);
@@ -118,7 +118,8 @@ fn only_regions_that_a_pixel_reads_are_computed() {
         let timing = ArpTiming { guard_texels: case / 2 % 2, weight_bits: if case % 5 == 4 { 0 } else { 4 }, ..words };
         let config = ArpConfig { timing, scan, ..CONFIG };
         let mut axis = || f64::from(random.unit()) - 0.5;
-        // Some cases look towards borders between regions. In the middle of a face, four regions meet.
+        // Some cases look at borders: straight ahead at the middle of a face, where four regions meet, and by 45
+        // degrees at an edge between two faces.
         let quaternion = match case / 4 {
             0 => DQuat::IDENTITY,
             1 => DQuat::from_rotation_y(45_f64.to_radians()),
@@ -202,7 +203,7 @@ fn a_line_with_two_orientations_belongs_to_both_pictures() {
         pixels
     });
     for (at, pixel) in (0..).zip(seen.pixels()) {
-        // Odd lines belong to the previous field.
+        // The beam drew the odd lines in the previous field, with the previous matrix.
         let is_later = at / 30 % 2 == 0 && (at / 30, at % 30) >= (y, x);
         let expected = pictures[usize::from(is_later)][at as usize];
         assert_eq!(u32::from_be_bytes([0, pixel[0], pixel[1], pixel[2]]), expected, "{}, {}", at % 30, at / 30);

@@ -1,4 +1,5 @@
-//! Tests of the specification's numeric cases for the display: 640 x 480 pixels, 60 degrees, faces of 512 texels.
+//! Tests of the display against numbered cases that were computed by hand: 640 x 480 pixels, 60 degrees, faces of 512
+//! texels.
 
 use address_recalculation::{
     AddressUnit, ArpConfig, ArpTiming, CubeFace, FaceGeometry, Latch, Lens, LensPicture, Orientation, TexelAddress,
@@ -268,13 +269,14 @@ fn the_pipeline_is_shorter_than_a_microsecond() {
     assert!(slowest.depth().0 < 1_000_000);
     let stages = [1, 2, 3, 4, 5, 8].map(|n| ArpTiming { display_memories: n, ..ArpTiming::PAPERS }.stages());
     assert_eq!(stages, [24, 25, 26, 26, 27, 27]);
-    // The stages after the read are memory, interpolation, and one level of comparators for each doubling of memories.
+    // The stages after the read of the orientation are the memory, the interpolation, and one level of comparators for
+    // each doubling of memories.
     let ahead = [1, 2, 3, 4, 5, 8].map(|n| ArpTiming { display_memories: n, ..ArpTiming::PAPERS }.read_ahead().0);
     assert_eq!(ahead, [2, 3, 4, 4, 5, 5].map(|stages| 25_000 * stages));
 }
 
-/// Checks that the scan equals that of the Pixel-Planes 5 frame buffer. Crates of boards do not depend on each other,
-/// but their numbers must agree.
+/// Checks that the scan equals the scan of the frame buffer of Pixel-Planes 5. Crates of boards do not depend on each
+/// other, but their numbers must agree.
 #[test]
 fn the_scan_is_that_of_the_frame_buffer() {
     let video = pxpl5_framebuffer::VideoTiming::PAPERS.video().expect("valid");

@@ -4,7 +4,8 @@ use address_recalculation::priority::{Cell, Cells, Falloff, Objects, PriorityTim
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// Parameters of the specification's examples: rings of equal width, cells of 5 m, and a threshold of 90/512 degrees.
+/// Parameters of the cases that were computed by hand: rings of equal width, cells of 5 m, and a threshold of 90/512
+/// degrees.
 const EQUAL_RINGS: PriorityTiming =
     PriorityTiming { theta_deg: 90.0 / 512.0, ring_growth: 1, cell_m: 5.0, falloff_m: 5.0, ..PriorityTiming::PAPERS };
 const FRAME_M: f64 = 1.0 / 60.0;
@@ -17,8 +18,8 @@ fn at(x: f64, z: f64) -> DVec3 {
     DVec3::new(x, 1.7, z)
 }
 
-/// Returns the number of updates of each memory along a path, without the first frame. Also returns how often cells
-/// were assigned anew.
+/// Returns the number of updates of each memory along a path, without the first frame. Also returns the number of new
+/// assignments of cells.
 fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64) {
     let mut updates = vec![0; 8];
     let mut deals = 0;
@@ -30,8 +31,8 @@ fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64)
     (updates, deals)
 }
 
-/// Returns the update rates of the memories over two minutes of straight walking at 1 m/s. The path has a given heading
-/// and lateral position.
+/// Returns the update rates of the memories over two minutes of straight walking at 1 m/s. `heading` is the direction
+/// of the path in radians, and `lane_m` is the sideways distance of the path from the origin.
 fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
     let timing = PriorityTiming { cell_m: side_m, ..EQUAL_RINGS };
     let mut cells = Cells::new(&timing, square(60), false);
@@ -44,10 +45,11 @@ fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
     [0, 1, 2, 3].map(|k| updates[k] as f64 / 120.0)
 }
 
-/// Compares rates with E5. Table 1 prints 60.00, 39.25, 28.21 and 16.15 Hz, but not the path.
+/// Compares rates with experiment E5 of docs/address-recalculation.md. The paper's table 1 has 60.00, 39.25, 28.21 and
+/// 16.15 Hz, but not the path.
 ///
-/// With cells of 5 m, fitted to the second rate, the specification's simulation gives 37 to 41, 24 to 30 and 17 to 20
-/// Hz. It misses the printed rates by 10 to 14 percent (root mean square). Walks that cross cells diagonally do the
+/// Cells of 5 m fit the second rate. An independent simulation with such cells gave 37 to 41, 24 to 30 and 17 to 20 Hz.
+/// It misses the rates of the paper by 10 to 14 percent (root mean square). Walks that cross cells diagonally do the
 /// same.
 #[test]
 fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
@@ -62,7 +64,7 @@ fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
     }
 }
 
-/// Along a row of cells, the distance to the nearest side of the border determines the rates.
+/// If the viewer walks along a row of cells, the distance to the nearest side of the border determines the rates.
 ///
 /// In the middle half of the row, all lateral positions give equal rates. Near the row's edge, the second memory is
 /// drawn in every frame. There, 2 x 5.3 m x sin(theta / 2) is less than the distance walked in a frame.
@@ -84,8 +86,8 @@ fn an_eye_that_stays_in_place_needs_no_updates_however_the_head_turns() {
     }
 }
 
-/// The margin before a new assignment lies between 0 and D_3. For a = 5 m, D_3 is at least 46.0 mm (15 m x 2 sin(theta
-/// / 2)).
+/// Cells are assigned again after the eye has moved beyond its cell by a margin between 0 and D_3, the allowed movement
+/// for memory 3. For cells of 5 m, D_3 is at least 46.0 mm (15 m x 2 sin(theta / 2)).
 #[test]
 fn moving_to_and_fro_across_a_border_assigns_objects_at_most_once() {
     let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
@@ -163,8 +165,9 @@ fn a_warped_border_is_closed_in_every_frame() {
 }
 
 proptest! {
-    /// If updates take no time, nothing in memory k is off by more than asin(D_k / d_k). This is theta, except for the
-    /// chord rule.
+    /// If updates take no time, no point in memory k has a larger error than asin(D_k / d_k). D_k is the allowed
+    /// movement of the eye, and d_k is the distance at which memory k begins. This error is theta, except for the chord
+    /// rule.
     #[test]
     fn no_point_is_ever_wrong_by_more_than_the_threshold(
         steps in prop::collection::vec((-0.05..0.05_f64, -0.05..0.05_f64), 1..200),
@@ -270,8 +273,8 @@ fn cells_are_assigned_again_when_the_eye_leaves_its_cell_and_the_slowest_memory_
 
 /// The eye walks through the middle of a hall of seven cells of 5 m.
 ///
-/// From the middle cell, the hall reaches three rings. The slowest of four memories is empty, and must not delay a new
-/// assignment.
+/// Around the middle cell, the hall has three rings of cells. The slowest of four memories is empty, and must not delay
+/// a new assignment.
 #[test]
 fn a_memory_without_cells_is_never_due_and_does_not_delay_an_assignment() {
     let timing = PriorityTiming { to_held_cells: 1, ..EQUAL_RINGS };
@@ -288,10 +291,10 @@ fn a_memory_without_cells_is_never_due_and_does_not_delay_an_assignment() {
     assert_eq!(cells.dealing().home, Cell { x: 3, z: 4 });
 }
 
-/// The hall has seven cells in a row along z, and the eye is in the last one, 2 m from the border to the next.
+/// The hall has seven cells of 5 m in a row along z. The eye is in the last cell, 2 m from the cell's border in front.
 ///
-/// The nearest cell of ring 2 begins 5 m + 3 m behind the eye. The block's border in front is 7 m away (7.5 m to the
-/// sides), where no cell is occupied.
+/// The nearest cell of ring 2 begins 5 m + 3 m behind the eye. The block's border in front is 5 m + 2 m away (7.5 m to
+/// the sides), where no cell is occupied.
 #[test]
 fn distances_can_be_limited_to_cells_with_objects() {
     let row = || (0..7).map(|z| Cell { x: 0, z });
@@ -306,7 +309,7 @@ fn distances_can_be_limited_to_cells_with_objects() {
     }
 }
 
-/// The only occupied cell is two rings away in memory 1, and later one ring away in memory 0.
+/// The only occupied cell is first two rings away, in memory 1, and then one ring away, in memory 0.
 #[test]
 fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
     let mut cells = Cells::new(&EQUAL_RINGS, [Cell { x: 2, z: 0 }], false);
@@ -316,15 +319,15 @@ fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
     assert_eq!((update.together, cells.dealing().memory(Cell { x: 2, z: 0 })), (vec![true, true, false, false], 0));
 }
 
-/// E4 has point objects, uniform on a disc of 100 m around a walker.
+/// Experiment E4 has point objects, uniform on a disc of 100 m around a walker.
 ///
-/// 60 x objects / draws is 6.01 at 1 m/s with four memories, and 13.40 at 0.37 m/s with five.
+/// The quotient 60 x objects / draws is 6.01 at 1 m/s with four memories, and 13.40 at 0.37 m/s with five memories.
 #[test]
 fn far_objects_are_drawn_seldom() {
     let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
     for (speed, memories, expected) in [(1.0, 4, 6.01), (0.37, 5, 13.40)] {
         let objects = 20_000;
-        // Distance of the n-th of many rings with equal area.
+        // Distance of object n if all objects cover rings of equal area.
         let periods: Vec<f64> = (0..objects)
             .map(|n| threshold.way(100.0 * ((f64::from(n) + 0.5) / f64::from(objects)).sqrt()) / speed)
             .collect();

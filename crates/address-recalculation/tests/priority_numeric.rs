@@ -1,4 +1,4 @@
-//! Numeric cases of the specification for the policies: theta = 90/512 degrees, 60 frames per second.
+//! Numeric cases for the policies, computed by hand: theta = 90/512 degrees, 60 frames per second.
 
 use address_recalculation::priority::{
     Cell, CellAssignment, Distance, Falloff, ObjectView, PriorityTiming, RegionWarp, SizeRule, Threshold, Translation,
@@ -51,14 +51,15 @@ fn cases_18_and_19_size() {
     for (c, r, ms) in [(5.0, 1.0, 74.0137), (5.0, 4.0, 11.4550), (2.0, 1.9, 2.00535)] {
         near(1e3 * sphere.max_approach(c, r), ms, 1e-4);
     }
-    // The angle reaches 90 degrees, so the limit is the remaining distance.
+    // An object that is much nearer than its radius reaches an angle of 90 degrees. The limit is then the remaining
+    // distance.
     near(disc.max_approach(1e-3, 5.0), 1e-3, 0.0);
     near(sphere.max_approach(5.000_001, 5.0), 1e-6, 1e-12);
     near(sphere.max_approach(4.0, 5.0), 0.0, 0.0);
 }
 
-/// A8: with a disc, size never decides. With a sphere, it decides for 2 r > 1.411 c. Neither gives the printed factor
-/// of 10.
+/// Tests statement A8 of the papers. If a disc gives the size, the change of size never limits the validity period. If
+/// a sphere gives the size, the change limits the period for 2 r > 1.411 c. Neither gives the published factor of 10.
 #[test]
 fn size_decides_never_for_a_disc_and_beyond_1_411_distances_for_a_sphere() {
     let decides = |size: SizeRule, diameter: f64| {
@@ -114,8 +115,8 @@ fn places_of_the_cube() -> impl Iterator<Item = DVec3> {
 
 /// Checks angles that follow from the symmetry of the cube.
 ///
-/// Seen along a corner, an edge's middle or a face's middle, the nearest direction of any face is again one of these.
-/// From an edge's middle, the opposite faces are 90 degrees away.
+/// If the viewer looks towards a corner, the middle of an edge or the middle of a face, the nearest direction of any
+/// face is again such a direction. From an edge's middle, the opposite faces are 90 degrees away.
 #[test]
 fn angles_agree_with_the_symmetry_of_the_cube() {
     for view in places_of_the_cube() {
@@ -146,7 +147,7 @@ fn case_22_borders_distances_and_periods() {
         near((way * 60.0).ceil(), frames, 0.0);
     }
     assert_eq!(dealing().distance(eye, 0), 0.0);
-    // A memory ends at the border where the slower memory begins.
+    // A memory ends at the border where the next slower memory begins.
     assert_eq!([0, 1, 2, 3].map(|k| dealing().to_slower(eye, k)), [Some(6.0), Some(11.0), Some(16.0), None]);
     assert_eq!(dealing().to_slower(at(99.0, 1.0), 1), Some(0.0), "outside");
     assert_eq!(dealing().distance(at(99.0, 1.0), 2), 0.0, "outside");
@@ -259,8 +260,8 @@ fn periods_of_objects() {
     assert_eq!(threshold().period(&ObjectView { distance_m: 1.0, ..still }).least(), 0.0, "on its surface");
 }
 
-/// Checks the validity periods of the specification (3.6): the relevant distance for translation, and for a rotating
-/// object.
+/// Checks validity periods against values computed by hand. The distance that counts for translation is the nearest
+/// point or the centre. A rotating object also has a period.
 #[test]
 fn the_distance_of_an_object_is_that_of_its_nearest_point_or_of_its_middle() {
     let seen = ObjectView { distance_m: 5.0, radius_m: 0.5, speed: -2.0, turn: -0.5, animation_s: f64::INFINITY };
@@ -315,7 +316,7 @@ fn vertices_are_moved_by_their_distance_from_the_border() {
 }
 
 proptest::proptest! {
-    /// The result is exact regardless of rounding in the division, even next to a border.
+    /// The cell of a position is exact, although the division is rounded, even next to a border.
     #[test]
     fn a_position_lies_between_the_borders_of_its_cell(number in -1_000_000i64..1_000_000, side in 1e-3..1e3_f64, beside in -2i8..3) {
         let border = number as f64 * side;

@@ -70,7 +70,7 @@ proptest! {
         let face = CubeFace::of(seen).expect("a direction");
         let linear = |direction: Vector| { let [u, v] = on_face(face, direction); 0.3 + 0.5 * u - 0.7 * v };
         prop_assert!((interpolated(GUARDED, seen, linear) - linear(seen)).abs() < 1e-9);
-        // The bound of the interpolation error is (h^2 / 8) 400 with h = 2/510.
+        // The interpolation error is at most h^2 / 8 times the second derivative, with h = 2/510 and 20^2 = 400.
         let smooth = |direction: Vector| (20.0 * on_face(face, direction)[0]).sin();
         prop_assert!((interpolated(GUARDED, seen, smooth) - smooth(seen)).abs() <= 7.69e-4);
     }
@@ -260,8 +260,8 @@ fn the_background_memory_shows_only_behind_empty_texels() {
     assert_eq!(upper_half(&look(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x99, 0x99));
 }
 
-/// Checks the rule of experiment E2. Objects distributed over memories, all drawn from one position, give the same bits
-/// as a single memory with all objects.
+/// Checks experiment E2. Objects distributed over several memories, all drawn from one position, give the same bits as
+/// a single memory with all objects.
 #[test]
 fn several_memories_show_the_same_as_one_memory() {
     let timing = ArpTiming { face_texels: 128, ..ArpTiming::PAPERS };

@@ -67,7 +67,7 @@ proptest! {
         }
     }
 
-    /// A line gives bit-identical cut vertices for every triangle that shares it, and for both directions.
+    /// An edge has bit-identical cut vertices for every triangle that shares it, and for both directions of the edge.
     #[test]
     fn both_triangles_of_a_shared_edge_are_cut_at_the_same_points(
         ends in prop::array::uniform2((-12.0..12.0_f64, -3.0..3.0_f64, -12.0..12.0_f64)),
@@ -146,7 +146,7 @@ fn an_empty_mesh_is_in_no_memory() {
 fn more_than_ten_million_segments_are_refused() {
     let from = DVec3::new(100.0, 0.0, -300.0);
     let cut = |columns: f64, rows: f64| {
-        // A triangle without area has few pieces, but the bounding rectangle counts.
+        // This triangle has no area and few pieces, but the check counts the cells of its bounding rectangle.
         let to = from + DVec3::new((columns - 1.0) * 0.5, 7.0, (rows - 1.0) * 0.5);
         Segmentation::new(&[from, to], &[[0, 1, 1]], 0.5)
     };

@@ -92,7 +92,7 @@ impl Fetch {
         if !common.costs.applies(Freeze::InstructionMiss) {
             return;
         }
-        // A word of the line that is still arriving waits for its own transfer.
+        // A word of a line that is still arriving waits for the word's own transfer.
         if pc / LINE_BYTES == self.line {
             let arrival = self.arrivals[(pc / 8 % BEATS) as usize];
             return common.await_instruction(arrival);

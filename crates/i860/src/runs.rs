@@ -75,7 +75,8 @@ impl Clock {
         let whole = self.holds(block);
         while course.at < PLACES * units {
             match self.number() {
-                // With a number, the next run can be memoized. Without a number, one instruction or pair is counted.
+                // If the state has a number, the next run can be memoized. Otherwise, one instruction or pair is
+                // counted.
                 Some(entry) => self.next_run(block, &mut course, entry, whole, bus),
                 None => {
                     let to = (course.at / PLACES + 1) * PLACES;

@@ -84,7 +84,7 @@ fn a_read_of_another_row_waits_for_the_last_word_of_a_fill() {
 /// Intel's list, row 3: the instruction waits for the data. A bus of 64 bits needs two transfers for 16 bytes.
 #[test]
 fn row_3_a_miss_of_16_bytes_waits_for_both_transfers() {
-    // The load is issued at clock 1. The first 8 bytes arrive at 12 and the next at 14. The list adds one clock.
+    // The load is issued at clock 1. The first 8 bytes arrive at 12 and the next at 14. Intel's list adds one clock.
     assert_eq!(clocks(&[Freeze::FloatingLoadMiss], "fld.q 0(r4), f8"), 15);
     assert_eq!(clocks(&[Freeze::FloatingLoadMiss], "fld.d 0(r4), f8"), 13);
 }

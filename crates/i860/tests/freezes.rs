@@ -110,7 +110,7 @@ fn every_freeze_row_costs_its_parameter() {
     }
 }
 
-/// Rows 1a and 16 of the list consist only of waiting: their constant part is 0.
+/// Rows 1a and 16 of Intel's list consist only of waiting: their constant part is 0.
 #[test]
 fn every_freeze_row_with_a_constant_part_has_a_test_program() {
     let sampled: Vec<_> = samples().iter().map(|sample| sample.row).collect();
@@ -128,7 +128,7 @@ fn freeze_rows_and_parameters_have_the_same_order() {
     }
 }
 
-/// The list, 1, I-cache miss: "clocks from ADS# to READY# of the needed word".
+/// Row 1 of Intel's list, I-cache miss: "clocks from ADS# to READY# of the needed word".
 #[test]
 fn row_1_an_instruction_miss_waits_for_the_word_needed() {
     let t = dram();
@@ -137,7 +137,7 @@ fn row_1_an_instruction_miss_waits_for_the_word_needed() {
     assert_eq!(cost(Freeze::InstructionMiss, ".rept 9\nnop\n.endr"), second_line);
 }
 
-/// The list, 1: "+ remaining READY#s of the block if a jump [occurs] meanwhile".
+/// Row 1 of Intel's list: "+ remaining READY#s of the block if a jump [occurs] meanwhile".
 #[test]
 fn row_1_leaving_the_line_early_waits_for_the_rest_of_it() {
     let t = dram();
@@ -156,13 +156,13 @@ fn row_1_a_cached_line_costs_nothing() {
     assert_eq!(cost(Freeze::InstructionMiss, twice), t.first_miss);
 }
 
-/// The list, 1: "+2 if D-cache busy".
+/// Row 1 of Intel's list: "+2 if D-cache busy".
 #[test]
 fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
     let t = dram();
     let others = FreezeRules::none().with(Freeze::InstructionMiss);
-    // The data lie in another DRAM row and come after the instructions. The next line is needed after the first word,
-    // mov, ld, the turns and four nops.
+    // The data lie in another DRAM row and come after the instructions. The next line is needed after the first word of
+    // the instructions, mov, ld, the turns of the loop and four nops.
     let fill = 2 * (t.first_miss + 3 * t.next);
     let turns_until_full = (fill - t.first_miss - 6).div_ceil(2);
     let row = Freeze::InstructionMissBehindData;
@@ -171,8 +171,8 @@ fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
     assert_eq!(cost_beside(others, row, &next_line_behind_load(turns_until_full + 1)), 0);
 }
 
-/// The list, 2, use of the destination of an integer load that missed: "1 + read clocks - instructions executed since
-/// the load".
+/// Row 2 of Intel's list, use of the destination of an integer load that missed: "1 + read clocks - instructions
+/// executed since the load".
 #[test]
 fn row_2_using_the_destination_of_a_missed_load_waits() {
     let t = dram();
@@ -185,7 +185,7 @@ fn row_2_using_the_destination_of_a_missed_load_waits() {
     assert_eq!(cost(Freeze::LoadMissUse, "ld.l 0(r4), r5\nadds r7, r0, r6"), 0);
 }
 
-/// The list, 3, fld miss: "1 + clocks ADS# to READY# (blocking)".
+/// Row 3 of Intel's list, fld miss: "1 + clocks ADS# to READY# (blocking)".
 #[test]
 fn row_3_a_floating_load_that_misses_blocks_and_one_that_hits_does_not() {
     let read = dram().first_miss;
@@ -206,7 +206,8 @@ fn pipelined_loads(n: usize) -> String {
     "pfld.d 8(r4)++, f8\n".repeat(n)
 }
 
-/// The list, 4, call, calli, ixfr, fxfr, ld.c, st.c while a data miss is in progress: "1 + clocks to first READY#".
+/// Row 4 of Intel's list, call, calli, ixfr, fxfr, ld.c, st.c while a data miss is in progress: "1 + clocks to first
+/// READY#".
 #[test]
 fn row_4_transfers_wait_for_the_first_word_of_a_fill() {
     let read = dram().first_miss;
@@ -218,7 +219,8 @@ fn row_4_transfers_wait_for_the_first_word_of_a_fill() {
     }
 }
 
-/// The list, 5, ld, st, fld, fst, pfld while a data miss is in progress: "1 + clocks to last READY# of the line".
+/// Row 5 of Intel's list, ld, st, fld, fst, pfld while a data miss is in progress: "1 + clocks to last READY# of the
+/// line".
 #[test]
 fn row_5_accesses_wait_for_the_whole_line() {
     let t = dram();
@@ -231,7 +233,7 @@ fn row_5_accesses_wait_for_the_whole_line() {
     }
 }
 
-/// The list, 6, destination of ld, ld.c, call, calli, fxfr used by the next instruction: "1".
+/// Row 6 of Intel's list, destination of ld, ld.c, call, calli, fxfr used by the next instruction: "1".
 #[test]
 fn row_6_the_next_instruction_waits_for_a_load_and_the_one_after_does_not() {
     for (load, user) in [
@@ -246,7 +248,8 @@ fn row_6_the_next_instruction_waits_for_a_load_and_the_one_after_does_not() {
     assert_eq!(cost(Freeze::LoadUse, "ld.l 0(r4), r5\nadds r7, r0, r6"), 0);
 }
 
-/// The list, 7, destination of fld, pfld, ixfr used within the next two instructions: "2 in the 1st, 1 in the 2nd".
+/// Row 7 of Intel's list, destination of fld, pfld, ixfr used within the next two instructions: "2 in the 1st, 1 in the
+/// 2nd".
 #[test]
 fn row_7_two_instructions_after_a_floating_load_wait_for_it() {
     for load in ["fld.d 0(r4), f8", "pfld.d 0(r4), f8", "ixfr r5, f8"] {
@@ -259,7 +262,7 @@ fn row_7_two_instructions_after_a_floating_load_wait_for_it() {
     assert_eq!(cost(Freeze::FloatingLoadUse, "fld.d 0(r4), f8\npfadd.ss f10, f2, f3"), 0);
 }
 
-/// The list, 8, bc, bnc right after addu, adds, subu, subs, pfeq, pfgt: "1".
+/// Row 8 of Intel's list, bc, bnc right after addu, adds, subu, subs, pfeq, pfgt: "1".
 #[test]
 fn row_8_a_branch_waits_for_a_condition_just_set() {
     for setter in ["adds 1, r5, r5", "subu r5, r6, r7", "pfgt.ss f8, f9, f0"] {
@@ -272,7 +275,7 @@ fn row_8_a_branch_waits_for_a_condition_just_set() {
     assert_eq!(clocks_with(rules, "and 1, r5, r5\nbnc end"), 3);
 }
 
-/// The list, 9, multiplier operation whose fsrc1 is the result of the operation before: "1".
+/// Row 9 of Intel's list, multiplier operation whose fsrc1 is the result of the operation before: "1".
 #[test]
 fn row_9_the_first_source_of_a_multiply_waits_for_the_result_before_it() {
     let row = Freeze::MultiplierFirstSource;
@@ -283,7 +286,7 @@ fn row_9_the_first_source_of_a_multiply_waits_for_the_result_before_it() {
     assert_eq!(cost(row, "pfadd.ss f8, f9, f10\nr2p1.ss f10, f9, f11"), 0, "r2p1 sends it to the adder");
 }
 
-/// The list, 10, operation while a scalar one is in flight: "2 - instructions since".
+/// Row 10 of Intel's list, operation while a scalar one is in flight: "2 - instructions since".
 #[test]
 fn row_10_a_scalar_operation_occupies_the_unit_for_two_more_clocks() {
     for scalar in ["fadd.ss f8, f9, f10", "fmul.ss f8, f9, f10", "famov.ss f8, f10"] {
@@ -297,7 +300,7 @@ fn row_10_a_scalar_operation_occupies_the_unit_for_two_more_clocks() {
     assert_eq!(cost(Freeze::ScalarBusy, "frcp.ss f8, f10\nfadd.ss f2, f3, f4"), 0);
 }
 
-/// The list, 10: "fmul.dd 3 - instructions since".
+/// Row 10 of Intel's list: "fmul.dd 3 - instructions since".
 #[test]
 fn row_10b_a_double_multiply_occupies_the_unit_for_three_more_clocks() {
     let row = Freeze::ScalarDoubleMultiplyBusy;
@@ -306,7 +309,8 @@ fn row_10b_a_double_multiply_occupies_the_unit_for_three_more_clocks() {
     assert_eq!(cost(row, "fmul.dd f8, f10, f12\nnop\nnop\nnop\nfadd.dd f2, f4, f6"), 0);
 }
 
-/// The list, 10: "+1 if precision changes; +1 if the new operation is pipelined with destination other than f0".
+/// Row 10 of Intel's list: "+1 if precision changes; +1 if the new operation is pipelined with destination other than
+/// f0".
 #[test]
 fn rows_10c_and_10d_only_lengthen_existing_waits() {
     let busy = FreezeRules::none().with(Freeze::ScalarBusy);
@@ -320,8 +324,8 @@ fn rows_10c_and_10d_only_lengthen_existing_waits() {
     }
 }
 
-/// The list, 11, multiplier operation after a double-precision multiply: "1". The 60 MFLOPS in double precision at 40
-/// MHz in the data sheet mean one multiplication every second clock and one addition every clock.
+/// Row 11 of Intel's list, multiplier operation after a double-precision multiply: "1". The 60 MFLOPS in double
+/// precision at 40 MHz in the data sheet mean one multiplication every second clock and one addition every clock.
 #[test]
 fn row_11_the_multiplier_takes_a_double_every_second_clock() {
     let row = Freeze::DoubleMultiply;
@@ -331,7 +335,7 @@ fn row_11_the_multiplier_takes_a_double_every_second_clock() {
     assert_eq!(cost(row, "pfmul.ss f8, f10, f12\npfmul.ss f8, f10, f12"), 0);
 }
 
-/// The list, 12, TLB miss: "5 + two reads".
+/// Row 12 of Intel's list, TLB miss: "5 + two reads".
 #[test]
 fn row_12_the_first_access_to_a_page_costs_five_clocks_and_two_reads() {
     let t = dram();
@@ -344,7 +348,7 @@ fn row_12_the_first_access_to_a_page_costs_five_clocks_and_two_reads() {
     assert_eq!(cost(Freeze::TlbMiss, "ld.l 0(r4), r6"), 0, "translation is off");
 }
 
-/// The list, 13, pfld with three outstanding: "1 + clocks until first returns".
+/// Row 13 of Intel's list, pfld with three outstanding: "1 + clocks until first returns".
 #[test]
 fn row_13_the_fourth_pipelined_load_waits_for_the_first() {
     let t = dram();
@@ -355,7 +359,7 @@ fn row_13_the_fourth_pipelined_load_waits_for_the_first() {
     assert_eq!(cost(Freeze::LoadPipeFull, &late), 0);
 }
 
-/// The list, 14, pfld that hits the data cache: "2 + clocks to finish all outstanding bus cycles".
+/// Row 14 of Intel's list, pfld that hits the data cache: "2 + clocks to finish all outstanding bus cycles".
 #[test]
 fn row_14_a_pipelined_load_that_hits_waits_for_the_bus_and_two_more() {
     let t = dram();
@@ -366,7 +370,8 @@ fn row_14_a_pipelined_load_that_hits_waits_for_the_bus_and_two_more() {
     assert_eq!(cost_apart(row, "ld.l 0(r4), r5", 0, "pfld.d 8(r4), f8"), line - 1 + 2);
 }
 
-/// The list, 15, store pipe full (2 internal and the bus) and a store misses: "1 + clocks to READY# of next write".
+/// Row 15 of Intel's list, store pipe full (2 internal and the bus) and a store misses: "1 + clocks to READY# of next
+/// write".
 #[test]
 fn row_15_the_fourth_store_waits_for_the_first_to_be_written() {
     let t = dram();
@@ -375,7 +380,7 @@ fn row_15_the_fourth_store_waits_for_the_first_to_be_written() {
     assert_eq!(cost(Freeze::StorePipeFull, &stores(4)), t.write_miss + 1 - 4 + 1);
 }
 
-/// The list, 16, address pipe full: "until next address can issue".
+/// Row 16 of Intel's list, address pipe full: "until next address can issue".
 #[test]
 fn row_16_a_fourth_request_waits_for_the_first_to_end() {
     let t = dram();
@@ -384,7 +389,7 @@ fn row_16_a_fourth_request_waits_for_the_first_to_end() {
     assert_eq!(cost(Freeze::AddressPipeFull, &pipelined_loads(4)), 1 + t.first_miss - 4);
 }
 
-/// The list, 17, ld or fld right after a store that hit: "1".
+/// Row 17 of Intel's list, ld or fld right after a store that hit: "1".
 #[test]
 fn row_17_a_load_right_behind_a_store_that_hit_waits() {
     let store = apart("ld.l 0(r4), r5", 30, "st.l r5, 4(r4)");
@@ -393,8 +398,8 @@ fn row_17_a_load_right_behind_a_store_that_hit_waits() {
     assert_eq!(cost(Freeze::LoadAfterStoreHit, "st.l r5, 4(r4)\nld.l 8(r4), r6"), 0, "the store missed");
 }
 
-/// The list, 18, delayed conditional branch not taken: "1". A taken branch takes only the clock of its delay slot. For
-/// example, the loop of a tree code of the period takes 106 clocks with such a branch (anchors.rs).
+/// Row 18 of Intel's list, delayed conditional branch not taken: "1". A taken branch takes only the clock of its delay
+/// slot. For example, the loop of a tree code of the period takes 106 clocks with such a branch (anchors.rs).
 #[test]
 fn row_18_a_delayed_branch_not_taken_costs_one_and_taken_none() {
     let row = Freeze::DelayedBranchNotTaken;
@@ -404,7 +409,7 @@ fn row_18_a_delayed_branch_not_taken_costs_one_and_taken_none() {
     assert_eq!(cost(row, "adds -1, r0, r5\nmov 9, r6\nbla r5, r6, a\nnop\na: bla r5, r6, end\nnop"), 1, "then set");
 }
 
-/// The list, 19, branch without slot taken: "1 bc, bnc; 2 bte, btne".
+/// Row 19 of Intel's list, branch without slot taken: "1 bc, bnc; 2 bte, btne".
 #[test]
 fn row_19_a_branch_without_slot_costs_when_taken() {
     assert_eq!(cost(Freeze::BranchTaken, "bnc end\nnop"), 1);
@@ -413,7 +418,7 @@ fn row_19_a_branch_without_slot_costs_when_taken() {
     assert_eq!(cost(Freeze::CompareBranchTaken, "btne r0, r0, end\nnop"), 0);
 }
 
-/// The list, 20, bri, calli: "1".
+/// Row 20 of Intel's list, bri, calli: "1".
 #[test]
 fn row_20_a_branch_through_a_register_costs_one() {
     assert_eq!(cost(Freeze::IndirectBranch, "mov end, r5\nbri r5\nnop"), 1);
@@ -421,15 +426,15 @@ fn row_20_a_branch_through_a_register_costs_one() {
     assert_eq!(cost(Freeze::IndirectBranch, "br end\nnop"), 0);
 }
 
-/// The list, 21, st.c: "2".
+/// Row 21 of Intel's list, st.c: "2".
 #[test]
 fn row_21_a_write_to_a_control_register_costs_two() {
     assert_eq!(cost(Freeze::ControlStore, "st.c r0, fsr\nld.c fsr, r5"), 2);
     assert_eq!(cost(Freeze::ControlStore, "ld.c fsr, r5"), 0);
 }
 
-/// The list, 22, graphics result used by the next adder or multiplier operation: "1"; by the next graphics operation:
-/// "1".
+/// Row 22 of Intel's list, graphics result used by the next adder or multiplier operation: "1"; by the next graphics
+/// operation: "1".
 #[test]
 fn row_22_a_graphics_result_is_late_by_one() {
     let first = "fiadd.ss f8, f9, f10";
@@ -440,7 +445,7 @@ fn row_22_a_graphics_result_is_late_by_one() {
     assert_eq!(cost(Freeze::GraphicsToGraphics, &format!("{first}\npfadd.ss f10, f2, f3")), 0);
 }
 
-/// The list, 23, flush after flush: "2 - instructions between".
+/// Row 23 of Intel's list, flush after flush: "2 - instructions between".
 #[test]
 fn row_23_a_flush_waits_for_the_flush_before() {
     for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
@@ -449,7 +454,7 @@ fn row_23_a_flush_waits_for_the_flush_before() {
     }
 }
 
-/// The list, 24, fst, pst, then a pipelined operation that overwrites the stored register: "1".
+/// Row 24 of Intel's list, fst, pst, then a pipelined operation that overwrites the stored register: "1".
 #[test]
 fn row_24_a_pipelined_result_waits_for_the_store_of_its_register() {
     let row = Freeze::StoreThenOverwrite;
@@ -459,8 +464,8 @@ fn row_24_a_pipelined_result_waits_for_the_store_of_its_register() {
     assert_eq!(cost(row, "fst.l f8, 0(r4)\nfadd.ss f2, f3, f8"), 0);
 }
 
-/// The list has no such row, because its row 10 does not include frcp and frsqr. A published code for three reciprocal
-/// roots in 39 clocks is possible if the result can be used two instructions later.
+/// Intel's list has no such row, because its row 10 does not include frcp and frsqr. A published code for three
+/// reciprocal roots in 39 clocks is possible if the result can be used two instructions later.
 #[test]
 fn row_25_a_seed_is_late_by_one() {
     assert_eq!(cost(Freeze::SeedUse, "frcp.ss f8, f9\nfmul.ss f9, f9, f10"), 1);

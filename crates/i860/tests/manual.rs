@@ -268,7 +268,7 @@ fn no_instruction_is_missing_from_the_manual() {
             assert!(text.starts_with(".long") || known.contains(&name(&text)), "{word:08x} {text}");
         }
     }
-    // Words of the i860 XP, reserved codes, and precisions that an operation does not have.
+    // These words are invalid: words of the i860 XP, reserved codes, and precisions that an operation does not have.
     for word in [
         0x6044_0804,
         0x4C00_0408,

@@ -26,8 +26,8 @@ impl Twins {
         }))
     }
 
-    /// Executes one step, or up to a number of instructions. If the execution has left the program, the program starts
-    /// again.
+    /// Executes one step, or at most `instructions` instructions. If the execution has left the program, the program
+    /// starts again.
     fn go(&mut self, instructions: u64) -> Result<(), TestCaseError> {
         let [memoised, counted] = self.0.each_mut().map(|(cpu, ram)| {
             let outcome = match instructions {

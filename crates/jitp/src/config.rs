@@ -21,8 +21,9 @@ pub enum Interpolation {
     View,
 }
 
-/// The instants for which the parts of a field are drawn. Each part shows the scene as the viewer sees it at one
-/// instant.
+/// The instants for which the parts of a field are drawn.
+///
+/// Each part shows the scene as the viewer sees it at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Viewpoint {
     /// The whole field shows one instant.

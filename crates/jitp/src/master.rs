@@ -74,14 +74,14 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         let strips = self.config.grid().rows();
         for field in first.onwards() {
             for strip in 0..strips {
-                // Order the fields whose preparation must begin before this strip.
+                // Send the orders for the fields whose preparation must begin before this strip.
                 let order_at = before(self.config.deadline(field, strip), ahead);
                 while viewpoint != Viewpoint::Strip && self.preparation_at(prepared, viewpoint, ahead) <= order_at {
                     self.wait_until(self.preparation_at(prepared, viewpoint, ahead)).await;
                     self.order_field(prepared, viewpoint).await?;
                     prepared = prepared.next();
                 }
-                // The master orders no strip whose deadline has passed.
+                // The master sends no order for a strip whose deadline has passed.
                 self.wait_until(order_at).await;
                 if self.gp.now() < self.config.deadline(field, strip) {
                     self.order_strip(field, strip, viewpoint).await?;

@@ -96,13 +96,13 @@ impl Work for TransformWork<'_> {
             }
             _ => Span::ZERO,
         };
-        // One pass for both eyes, if a kernel supports that.
+        // Use one pass for both eyes if a kernel supports this.
         if let [left, right] = self.passes
             && let Some(outputs) = left.run_code_for_both(right, processor, self.context)?
         {
             return Ok(outputs.iter().fold(span, |all, output| all + output.span));
         }
-        // Otherwise one pass for each eye, in alternating contexts.
+        // Otherwise use one pass for each eye, in alternating contexts.
         for (context, pass) in (self.context..).zip(self.passes) {
             span += match pass.run_code(processor, context % 2)? {
                 Some(output) => output.span,

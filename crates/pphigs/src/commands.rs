@@ -32,8 +32,9 @@ pub struct RegionEnvelope {
     pub copy: Option<CopyOrder>,
 }
 
-/// Returns the messages with the primitives of a region's bin and with the commands that `envelope` selects. The number
-/// of messages is as small as their maximum length permits.
+/// Returns the messages with the primitives of a region's bin and with the commands that `envelope` selects.
+///
+/// The number of messages is as small as their maximum length permits.
 #[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
     if pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0 {
@@ -318,7 +319,7 @@ impl RegionWords {
             match some {
                 SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.gouraud_lanes(lanes, &mut stats);
-                    // A sink that accepts batches needs no words.
+                    // If the sink accepts batches, it needs no words.
                     if !out.triangles(&expressions.batch(entries.len())) {
                         let words = out.words();
                         (0..entries.len()).for_each(|i| encoder.encode(&gouraud_triangle(expressions.get(i)), words));
@@ -361,7 +362,7 @@ impl RegionWords {
                     let colour = |entry: &BinEntry| list.colours[list.triangles[entry.triangle as usize][0] as usize];
                     let mut colours = [0; LANES];
                     colours.iter_mut().zip(entries).for_each(|(out, entry)| *out = rgb(colour(entry)));
-                    // A sink that accepts batches needs no words.
+                    // If the sink accepts batches, it needs no words.
                     if !out.triangles(&expressions.batch(entries.len(), colours)) {
                         let words = out.words();
                         for (i, entry) in entries.iter().enumerate() {

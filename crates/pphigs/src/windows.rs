@@ -155,8 +155,7 @@ impl Pass {
         let first = self.room(processor, kernel, part)?;
         let (of_triangles, next) = triangles(processor, first)?;
         let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), next, None)?;
-        // The distance between the two addresses of boxes gives the number of boxes, which equals the number of
-        // commands.
+        // The number of boxes follows from the two addresses of boxes. It equals the number of commands.
         let commands = |from: Next, to: Next| KeptCommands {
             first: from.command,
             count: (to.table - from.table) / BOX_BYTES,

@@ -276,7 +276,7 @@ fn adjacent_contexts_keep_their_words_and_overlapping_contexts_are_refused() {
     assert!(
         (0..20).all(|region| of_code(&processor, &made, region, 30) == native(&passes[0], RegionId(region as u16)))
     );
-    // In the opposite order the lower context is rejected.
+    // If the contexts are placed in the opposite order, the lower context is rejected.
     let (mut processor, passes) = both_contexts(fits - 1);
     passes[1].run_code(&mut processor, 1).expect("it is alone");
     let error = passes[0].run_code(&mut processor, 0).expect_err("they would meet");
@@ -325,7 +325,6 @@ fn one_pass_for_both_eyes_writes_the_native_words_of_each_eye() {
     }
 }
 
-/// If the left eye cannot draw a structure, the structure must have commands only for the right eye.
 #[test]
 fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
     let mut view = view();

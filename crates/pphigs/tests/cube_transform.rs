@@ -1,5 +1,5 @@
 //! Tests of the i860 code for six views around an eye. Each view's words and bins must equal the words and bins of the
-//! native firmware. The number of primitives that are transformed for a view outside which they lie must be small.
+//! native firmware. Few primitives outside a view may be transformed for this view.
 
 mod native;
 mod numbers;

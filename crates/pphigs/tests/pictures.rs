@@ -12,8 +12,8 @@ const RED: [u8; 3] = [200, 0, 0];
 const GREEN: [u8; 3] = [0, 200, 0];
 const BACKGROUND: [u8; 3] = [1, 2, 3];
 
-/// Returns a display list with one unit for each pixel. x increases to the right, and y increases upwards from the
-/// picture's lower border. The eye looks along -z, from depth 0 to 100.
+/// Returns a display list in which a unit of length is one pixel. x increases to the right, and y increases upwards
+/// from the picture's lower border. The eye looks along -z, from depth 0 to 100.
 fn list() -> DisplayList {
     DisplayList {
         structures: vec![DisplayStructure {

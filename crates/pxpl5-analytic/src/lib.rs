@@ -1,5 +1,7 @@
-//! The analytic level of the model. This crate computes the times of Slats and of Rendering Control by formulas,
-//! without simulation. Such a *closed form* is a recurrence over clumps (groups of triangles), regions and pictures.
+//! The analytic level of the model.
+//!
+//! This crate computes the times of Slats and of Rendering Control by formulas, without simulation. Such a *closed
+//! form* is a recurrence over clumps (groups of triangles), regions and pictures.
 //!
 //! ```text
 //!   MachineConfig + Load --> SlatsModel::field  --> times of one field   (clumps x regions)

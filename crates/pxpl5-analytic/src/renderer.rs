@@ -152,7 +152,8 @@ impl<const N: usize> Commands<N> {
         // A command needs at least the time of its words on the channel.
         let first_wire = each.words * word_ns;
         let slowest = each.ns.later(first_wire);
-        // Word that must have left before the last word has room, counted from the first command.
+        // Number of the word that must have left the FIFO before the last word has room, counted from the first
+        // command.
         let before_last = total - Times::all(1.0) - fifos.depth_words - head.words;
         let room_after = Times::each(|i| {
             let command = sooner((before_last.0[i] / each.words.0[i]).floor(), count);

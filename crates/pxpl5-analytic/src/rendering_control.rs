@@ -192,7 +192,7 @@ impl StereoModel {
         // finishes.
         let application_ns = self.host.application_span(mix(frame as u64)).as_ms() * 1e6;
         let sent_ns = history.edited_ns + self.order_ns() + application_ns + self.host_ns;
-        // EDIT of the first eye also needs earlier pictures to have passed TRANSFORM, RENDER and COPY.
+        // EDIT of the first eye also waits until earlier pictures have passed TRANSFORM, RENDER and COPY.
         let ready =
             [back(&history.transformed, first, 1), back(&history.rendered, first, 2), back(&history.copied, first, 3)];
         let mut begin_ns = ready.into_iter().fold(sent_ns, f64::max) + self.order_ns();

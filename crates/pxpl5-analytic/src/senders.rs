@@ -98,7 +98,8 @@ impl Clumps {
             let clump = |(n, share): (usize, &Share)| {
                 let passes = [0, 1].map(|eye| share.transform(&view, eye, picture));
                 let work = TransformWork { passes: &passes, context: 0, begins: n == 0 };
-                // Order: all columns of the upper half for one eye and the other, then the same for the lower half.
+                // The order is: the columns of the upper half for one eye, then for the other eye, then the same for
+                // the lower half.
                 let bins = std::array::from_fn(|region| {
                     let (kind, column) = (region / COLUMNS, region % COLUMNS);
                     let counts = passes[kind % 2].counts(RegionId((kind / 2 * COLUMNS + column) as u16));
@@ -163,7 +164,7 @@ impl Renderer {
         let first = self.words_in;
         let last = first + command.words - 1.0;
         let mut complete = from_ns + command.words * word_ns;
-        // Departures make room for words one FIFO depth later.
+        // A word that leaves the FIFO makes room for the word that is one FIFO depth later.
         while let Some(room) = self.departures.front() {
             let made_room_for = room.first_word + depth_words;
             if made_room_for > last {

@@ -67,7 +67,6 @@ impl WalkOutcome {
         let faces = WalkFaces::of(&simulation)?;
         let (_, stats) =
             faces.seen(ahead(&path, plan.walk.m_per_s * (frames - 1) as f64 / settings.numbers.frame_hz))?;
-        // Collect the report.
         let report = WalkReport {
             report: ArpReport::of(&world, &settings, &tally).with_view(&stats, &faces.drawing),
             scene: scene.name().to_owned(),

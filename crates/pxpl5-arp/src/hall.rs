@@ -6,6 +6,7 @@ use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use tracking::motion::Walk;
 
+/// The path of the viewer through a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Route {

@@ -227,7 +227,7 @@ fn gaps(
     orientation: DQuat,
 ) -> Result<Vec<ArpPicture>, SettingError> {
     let mut both = Vec::new();
-    // Draw the frame torn, warped and uncut.
+    // Draw the frame with tears, with warped segments, and with uncut objects.
     for (falloff, is_segmented) in [(Falloff::None, true), (Falloff::Linear, true), (Falloff::None, false)] {
         let settings = WalkSettings { falloff, has_cascade: falloff != Falloff::None, is_segmented, ..torn.clone() };
         let simulation = shown(world, &settings, 0..frame + 1, eye)?;

@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 /// Name and version of the layout of the report.
 pub const SCHEMA: &str = "pxpl5-arp/1";
 
+/// The results of a walk through a scene, as written to JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArpReport {
     pub schema: &'static str,
@@ -51,6 +52,7 @@ pub struct ArpReport {
     pub sampling_error_px: Option<f64>,
 }
 
+/// The part of an [`ArpReport`] about one display memory.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WalkMemoryReport {
     /// Number of times per second that the memory shows a new update.

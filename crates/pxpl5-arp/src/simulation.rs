@@ -165,7 +165,7 @@ impl<'a> Simulation<'a> {
         triangles_per_s: f64,
         outcome: &mut FrameOutcome,
     ) {
-        // Queue the new updates, then draw for one frame.
+        // Queue the new updates.
         for (memory, content) in contents {
             let work_s = content.triangles(self.world) as f64 / triangles_per_s;
             let together = if update.together[memory] { update.together_bits() } else { 0 };

@@ -8,6 +8,7 @@ use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
+/// Counts of the updates of one display memory during a walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MemoryTally {
     /// Number of updates that were shown.
@@ -33,6 +34,7 @@ pub struct MemoryTally {
     drawn_in: u64,
 }
 
+/// The results of a walk: counts of each display memory, and the tears between memories.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkTally {
     pub frames: u64,

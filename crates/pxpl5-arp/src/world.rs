@@ -18,6 +18,7 @@ pub struct Segment {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// A part of the world that keeps its name when it is cut into segments.
 #[derive(Clone, Debug)]
 pub struct Object {
     pub name: String,

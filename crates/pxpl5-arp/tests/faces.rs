@@ -152,7 +152,8 @@ fn guard_texels_equal_the_neighbouring_face_in_their_direction() {
     let (faces, _) = drawn(&view(64, 1), DVec3::ZERO, &wall(5.0, 0x77));
     let guard = TexelAddress { face: CubeFace::NegZ, column: 63, row: 32 };
     let inner = TexelAddress { face: CubeFace::NegZ, column: 62, row: 32 };
-    // u = 63/62 meets x = 5 at z = -4.92, and u = 61/62 meets it at -5.08. Both lie on the same plane.
+    // The ray at u = 63/62 meets the plane x = 5 at z = -4.92, and the ray at u = 61/62 meets it at -5.08. Both points
+    // lie on the same plane.
     assert_eq!([guard, inner].map(|texel| faces.texel(texel).map(|texel| texel.0)), [Some(0x77); 2]);
     let distances = [guard, inner].map(|texel| faces.texel(texel).map(|texel| view(64, 1).depth.distance_m(texel.1)));
     assert!((distances[0].expect("drawn") - 5.0 * 62.0 / 63.0).abs() < 1e-4, "{distances:?}");

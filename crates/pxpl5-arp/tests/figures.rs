@@ -121,7 +121,7 @@ fn table_2_cutting_moves_segments_outwards_and_saves_draws() {
     assert!((cut.iter().sum::<f64>() - uncut.iter().sum::<f64>()).abs() < 1e-6, "nothing is lost");
 }
 
-/// Checks that the definitions D1 to D5 equal the values that the specification computed by hand.
+/// Checks that the definitions D1 to D5 equal the values that were computed by hand.
 #[test]
 fn definitions_are_derived_numbers_and_not_rows_of_results() {
     let all = definitions();

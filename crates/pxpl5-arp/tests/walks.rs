@@ -94,7 +94,7 @@ fn no_memory_is_due_while_the_eye_stays_in_place_and_the_head_turns() {
 
 #[test]
 fn only_objects_around_a_still_eye_are_due() {
-    // From inside a bounding sphere an image is wrong immediately (3.6), even if nothing moves. Floor, ceiling and
+    // If the eye is inside a bounding sphere, an image is wrong immediately, even if nothing moves. Floor, ceiling and
     // walls of the gallery are such objects.
     let mut simulation = simulated(&OBJECTS);
     let eye = PATH.place(3.0);
@@ -330,7 +330,7 @@ fn the_report_has_every_key_of_the_schema_and_null_for_missing_results() {
     ] {
         assert!(report["priority"].get(key).is_some(), "{key}");
     }
-    // 26 stages of 25 ns; both buffers of 6 x 512 x 512 texels of 6 bytes.
+    // The display has 26 stages of 25 ns, and both buffers have 6 x 512 x 512 texels of 6 bytes.
     assert_eq!(
         (report["pipeline_ns"].as_f64(), report["memories"][0]["bytes"].as_u64()),
         (Some(650.0), Some(18_874_368))

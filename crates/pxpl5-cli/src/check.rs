@@ -62,7 +62,7 @@ fn of_sweep(file: ExperimentFile) -> Result<(Plan, String), CliError> {
             }
         }
     }
-    // `Sweep::header` found a valid point, which may lie behind the points checked here.
+    // `Sweep::header` found a valid point, which may come after the points checked here.
     let (point, plan) = match first {
         Some(first) => first,
         None => (0, sweep.plan(0)?),

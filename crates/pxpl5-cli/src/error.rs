@@ -85,7 +85,7 @@ impl From<FileError> for CliError {
 const fn code_of(kind: FileErrorKind) -> u8 {
     match kind {
         FileErrorKind::Locked => BUSY,
-        // The user can choose another folder.
+        // These errors count as wrong usage, because the user can choose another folder.
         FileErrorKind::Occupied | FileErrorKind::Unfinished => USAGE,
         _ => FAILURE,
     }

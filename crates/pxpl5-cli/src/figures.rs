@@ -63,7 +63,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     bar.finish_and_clear();
     let figures = figures?;
     chart_file.map(|file| file.write(chart(&figures.rows).svg().as_bytes())).transpose()?;
-    // Only the document and JSON have the figures under other assumptions.
+    // Only the document and the JSON output have the figures under other assumptions.
     if args.json || args.write.is_some() || args.check.is_some() {
         let bar = progress(0, "figures under other assumptions", false);
         let alternatives = alternatives_with(&bench, |done, of| advance(&bar, done, of)).map_err(CliError::failure);

@@ -277,7 +277,7 @@ pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
     let origin: String = origin_lines(report, "").chars().filter(|c| *c == '\n' || !is_forbidden(*c)).collect();
     // XML comments must not contain two hyphens in a row.
     let comment = format!("<!--\n{}-->\n", origin.replace("--", "- -"));
-    // The comment goes behind the XML declaration, which must be the first line.
+    // The comment follows the XML declaration, which must be the first line.
     let at = if svg.starts_with("<?xml") { svg.find('\n').map_or(0, |end| end + 1) } else { 0 };
     format!("{}{comment}{}", &svg[..at], &svg[at..])
 }

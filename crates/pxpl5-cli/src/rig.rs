@@ -102,7 +102,7 @@ fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
         "outside",
         "inside"
     );
-    // The same latencies as seen from outside and from inside.
+    // The table compares the latencies that were measured from outside and from inside.
     let rows: [Column; 3] = [
         ("tracking latency", |side| &side.tracking),
         ("rendering latency", |side| &side.rendering),

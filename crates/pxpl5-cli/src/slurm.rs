@@ -42,13 +42,13 @@ const SAMPLE: u64 = 300;
 /// Seconds to start a task and load its scenes. Assumed.
 const START_S: f64 = 60.0;
 /// Factor on the estimated time of a task, because Slurm kills a task at its time limit. The points of one pipeline
-/// together took at most three times their estimate (docs/sweeps.md, "What a point costs").
+/// together took at most three times their estimate (docs/guide/sweep-times.md, "What a point costs").
 const TIME_MARGIN: f64 = 5.0;
 /// Factor on the estimated memory: the maximum measured ratio of used to estimated memory (docs/hardening.md).
 const MEMORY_MARGIN: f64 = 2.0;
-/// Seconds to merge one row, rounded up (docs/sweeps.md, "A million points").
+/// Seconds to merge one row, rounded up (docs/guide/sweep-times.md, "A million points").
 const MERGE_ROW_S: f64 = 40e-6;
-/// Bytes held for one row during a merge, rounded up (docs/sweeps.md, "A million points").
+/// Bytes held for one row during a merge, rounded up (docs/guide/sweep-times.md, "A million points").
 const MERGE_ROW_BYTES: f64 = 16.0;
 /// Bytes held for the files of one task during a merge, rounded up.
 const MERGE_TASK_BYTES: f64 = 32e3;
@@ -283,22 +283,24 @@ mod tests {
     #[test]
     fn resources_follow_the_formulas() {
         let one = Resources::of(SAMPLED, None, 1);
-        // 60 + 5 (18,000 / 21 + 3) = 4,361 s; 2 x 40 MB; 60 + 40e-6 x 20,000 = 60.8 s; 50 + 0.32 + 0.67 MB.
+        // Time 60 + 5 (18,000 / 21 + 3) = 4,361 s; memory 2 x 40 MB. To merge: time 60 + 40e-6 x 20,000 = 60.8 s;
+        // memory 50 + 0.32 + 0.67 MB.
         let expected =
             Resources { tasks: 21, threads: 1, minutes: 73, megabytes: 80, merge_minutes: 2, merge_megabytes: 51 };
         assert_eq!(one, expected);
-        // Four threads: 4,500 s of work are 5 tasks, and 7 is the next number; 60 + 5 (4,500 / 7 + 3) = 3,289 s.
+        // On four threads, 4,500 s of work are 5 tasks. The next allowed number is 7, which gives 60 + 5 (4,500 / 7 +
+        // 3) = 3,289 s.
         let four = Resources::of(SAMPLED, None, 4);
         assert_eq!((four.tasks, four.minutes, four.megabytes), (7, 55, 320));
         let said = Resources::of(SAMPLED, Some(10), 1);
-        // 60 + 5 (1,800 + 3) = 9,075 s.
+        // Ten tasks take 60 + 5 (1,800 + 3) = 9,075 s.
         assert_eq!((said.tasks, said.minutes), (10, 152));
     }
 
     #[test]
     fn an_array_fits_the_limit_of_slurm_and_no_task_is_empty() {
         let million = Sample { points: 1_000_000, mean_s: 10.0, ..SAMPLED };
-        // 11,112 tasks were wanted; 999 is the greatest number below 1,000 without the factors 2 and 5.
+        // The formula gives 11,112 tasks. The greatest number below 1,000 without the factors 2 and 5 is 999.
         assert_eq!(Resources::of(million, None, 1).tasks, 999);
         assert_eq!(Resources::of(Sample { points: 3, mean_s: 1e4, ..SAMPLED }, None, 1).tasks, 2);
         assert_eq!(Resources::of(Sample { points: 3, ..SAMPLED }, Some(9), 1).tasks, 3);
@@ -312,7 +314,7 @@ mod tests {
             assert_eq!(chosen.len() as u64, points.min(SAMPLE), "{points}");
             assert!(chosen.iter().all(|point| *point < points));
         }
-        // Axes of 10, the last of which changes fastest.
+        // All axes have 10 values, and the last axis changes fastest.
         for place in [1, 10, 100, 1_000] {
             for value in 0..10 {
                 let met = spread(10_000, SAMPLE).filter(|point| point / place % 10 == value).count();

@@ -13,7 +13,7 @@ fn with<'a>(first: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
     [first, more].concat()
 }
 
-/// Asserts that a command is refused with this exit code, and that standard error contains all given texts.
+/// Asserts that a command is refused with the exit code `code`, and that standard error contains all texts in `says`.
 fn refused(args: &[&str], code: i32, says: &[&str]) {
     let folder = Folder::new(&format!(
         "refused-{:x}",
@@ -591,7 +591,7 @@ fn the_files_of_figures_1_2_9_10_and_11_reproduce_them() {
     }
 }
 
-/// Returns the first cell behind the name of a row, in the table that the command prints to the terminal.
+/// Returns the first cell after the name of a row, in the table that the command prints to the terminal.
 fn cell(text: &str, name: &str) -> String {
     let line = text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("no {name}: {text}"));
     line[name.len()..].trim().to_owned()

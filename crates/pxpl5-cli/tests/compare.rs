@@ -59,7 +59,7 @@ fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up
     }
 }
 
-/// Causes and predictors cost time, so a comparison leaves them out unless it is asked. They change no other number.
+/// Causes and predictors take time, so a comparison computes them only on request. They change no other number.
 #[test]
 fn causes_and_predictors_are_added_on_demand_and_change_nothing_else() {
     let shared =

@@ -35,7 +35,7 @@ fn comparison(folder: &Folder, out: &str) -> Value {
     all
 }
 
-/// Leaves the folder as a kill leaves it: one whole row, half of another, and no results.
+/// Leaves the folder in the state after a kill: one complete row, half of a second row, and no results.
 fn interrupt(folder: &Folder, out: &str) -> String {
     let rows = read(folder, &format!("{out}/rows/rows.jsonl"));
     let lines: Vec<&str> = rows.split_inclusive('\n').collect();
@@ -54,7 +54,7 @@ fn an_interrupted_comparison_resumes_and_writes_the_same_files() {
     assert!(err(&whole).contains("row 3 of 3, ") && err(&whole).contains(" s to go"), "{}", err(&whole));
     assert!(folder.run(&with(&["--out", "o"])).status.success());
     let kept = interrupt(&folder, "o");
-    // Without --resume nothing is lost.
+    // Without --resume, the command is refused and the finished rows stay.
     let refused = folder.run(&with(&["--out", "o"]));
     assert_eq!(refused.status.code(), Some(2));
     assert!(

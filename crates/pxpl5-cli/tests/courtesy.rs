@@ -157,7 +157,6 @@ fn fewer_triangles_keep_the_whole_model() {
     assert!(height > 200, "{height} lines");
 }
 
-/// Tests that runs of hours or gigabytes are refused within seconds, with their estimated cost.
 #[test]
 fn a_run_that_needs_too_much_is_refused_with_an_estimate() {
     let folder = Folder::new("budget");
@@ -264,7 +263,6 @@ fn every_command_that_computes_is_estimated_before_it_starts() {
     assert!(err(&output).contains("expected to take 3"), "{}", err(&output));
 }
 
-/// Tests the warning before a run of a scene of which no picture will be shown.
 #[test]
 fn a_scene_too_heavy_to_be_shown_is_reported_before_the_run() {
     let folder = Folder::new("too-heavy");
@@ -279,7 +277,7 @@ fn a_scene_too_heavy_to_be_shown_is_reported_before_the_run() {
     let said = said.expect("it is told");
     assert!(said.contains("20000 primitives on 13 graphics processors") && said.contains("60 fields"), "{said}");
     assert_eq!(code, Some(1));
-    // Without a closed form: 100,000 triangles of 21.7 us on 13 processors take 10 fields.
+    // This pipeline has no closed form. 100,000 triangles of 21.7 us on 13 processors take 10 fields.
     let (said, _) = heavy("jitp-field", "typical:100000", "5");
     assert!(said.is_some_and(|said| said.contains("to transform the whole scene once")));
     for (pipeline, scene, fields) in [("rendering-control", "full-screen:12", "30"), ("slats", "full-screen:12", "30")]
@@ -338,7 +336,6 @@ fn an_invalid_input_is_reported_with_its_limits_and_its_place() {
     }
 }
 
-/// Tests that a scene with fewer triangles than requested is drawn completely.
 #[test]
 fn asking_for_more_triangles_than_a_scene_has_keeps_all() {
     let folder = Folder::new("all-triangles");

@@ -53,7 +53,8 @@ fn a_model_in_an_unknown_format_is_refused_with_the_known_formats() {
     assert!(!run.status.success() && err(&run).contains("point.obj: expected at least one triangle with an area"));
 }
 
-/// A build without the reader of glTF says how to get it. A build with the reader reads the file.
+/// The error of a build without the reader of glTF states how to get the reader. A build with the reader reads the
+/// file.
 #[test]
 fn a_gltf_file_is_read_or_the_feature_that_reads_it_is_named() {
     let folder = Folder::new("foreign-gltf");

@@ -208,7 +208,6 @@ fn a_written_experiment_runs_again_from_any_folder() {
     assert_eq!((&first["trace_hash"], &first["config_hash"]), (&second["trace_hash"], &second["config_hash"]));
 }
 
-/// Tests that a long computation does not start if its output file cannot be written.
 #[test]
 fn a_path_that_cannot_be_written_is_reported_before_the_run() {
     let folder = folder("early");
@@ -269,7 +268,6 @@ fn rows_of_a_sweep_are_not_replaced_and_a_sweep_replaces_no_run() {
     assert!(err(&output).contains("files of `pxpl5 run`"), "{}", err(&output));
 }
 
-/// Tests that the manifest of another program is not replaced.
 #[test]
 fn a_manifest_of_another_program_is_left_alone() {
     let folder = folder("foreign");
@@ -322,7 +320,6 @@ fn a_run_that_is_interrupted_leaves_no_folder() {
     }
 }
 
-/// Tests that an error message names the user's file, and an option that the command has.
 #[test]
 fn an_error_names_the_file_and_the_option_that_were_given() {
     let folder = folder("named");

@@ -50,7 +50,8 @@ fn means_deviations_and_intervals_are_over_the_seeds() {
         let cells: Vec<&str> = line.split(',').collect();
         assert_eq!((cells[0], cells[1], cells[4], cells[7]), (copy, n, "3", "0"), "{line}");
         let number = |i: usize| cells[i].parse::<f64>().expect("a number");
-        // Positive values have the interval of their logarithm: the mean over and times exp(half / mean).
+        // Positive values have the interval of their logarithm: from mean / exp(half / mean) to mean x exp(half /
+        // mean).
         let factor = (2.484_138f64 / mean).exp();
         let expected = [mean, 1.0, mean / factor, mean * factor];
         for (found, expected) in [2, 3, 5, 6].map(number).into_iter().zip(expected) {
@@ -167,7 +168,7 @@ fn a_comparison_is_a_point_for_each_pipeline() {
     );
 }
 
-/// Returns the outlines of hollow and of filled circles in a figure.
+/// Returns the number of hollow circles (if `is_hollow` is true) or of filled circles in a figure.
 fn circles(svg: &str, is_hollow: bool) -> usize {
     svg.lines().filter(|line| line.contains("<circle") && line.contains("fill=\"none\"") == is_hollow).count()
 }

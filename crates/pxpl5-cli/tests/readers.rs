@@ -111,7 +111,7 @@ fn try_all(files: &[(String, Vec<u8>)], rounds: u64, mut read: impl FnMut(&str, 
         let mut numbers = Numbers(round << 8);
         let (extension, file) = &files[numbers.below(files.len())];
         let bytes = damaged(file, files, &mut numbers);
-        // The panic hook prints the last input of the thread.
+        // If the reader panics, the drop of this guard prints the input.
         let _told = Told(round, &bytes);
         accepted += u64::from(read(extension, &bytes));
     }

@@ -145,7 +145,6 @@ fn a_report_of_a_comparison_has_a_row_for_each_pipeline_and_its_pictures() {
     assert!(page.contains("<h2>Comparison</h2>") && page.contains("pipeline</th>"));
 }
 
-/// Tests that files which the manifest does not list, or which have changed, do not appear on a report page.
 #[test]
 fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
     let folder = Folder::new("report-manifest");

@@ -103,7 +103,7 @@ fn a_sweep_killed_repeatedly_loses_and_repeats_no_finished_point() {
     succeeds(&sweep(&folder, &["--out", "killed", "--resume"]));
     succeeds(&sweep(&folder, &["--out", "whole"]));
     assert!(read(&folder, "killed/rows.jsonl") == read(&folder, "whole/rows.jsonl"));
-    // Every computed point adds a line of time. A kill between a row and its time may lose one line.
+    // Every computed point adds a line to times.jsonl. A kill between a row and its time may lose one line.
     let times = points(&folder.0.join("killed/times.jsonl"));
     assert_eq!(times.iter().collect::<BTreeSet<_>>().len(), times.len(), "no point was computed twice");
     assert!(times.len() + kills >= POINTS);
@@ -205,7 +205,7 @@ fn wrong_use_is_refused() {
     assert!(err(&output).contains("file"), "{}", err(&output));
 }
 
-/// Runs the script from docs/sweeps.md that the repository contains.
+/// Runs the script from docs/guide/clusters.md that the repository contains.
 fn script(folder: &Folder, args: &[&str], task: Option<&str>) -> std::process::Output {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments/sweep-shards.sh");
     let mut command = Command::new("sh");

@@ -80,7 +80,6 @@ fn slices_sheets_views_and_films_state_their_origin() {
     }
 }
 
-/// Tests that a cutaway removes light, and that another eye position changes the picture.
 #[test]
 fn a_cutaway_is_darker_and_a_turned_model_gives_other_pictures() {
     let folder = Folder::new("volume-cut");

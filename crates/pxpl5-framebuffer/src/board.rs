@@ -191,7 +191,6 @@ impl FrameBuffer {
     }
 
     fn retrace(&mut self, field: PeriodNumber, context: &mut Out) -> Result<(), FrameBufferFault> {
-        // Keep the field that ends now.
         let now = context.now();
         if let Some(scanned) = self.scanning {
             self.remember(scanned, now);

@@ -175,8 +175,8 @@ fn all_lines_of_a_late_region_show_the_old_picture() {
     let seen = board.device.seen(PeriodNumber(2)).expect("kept");
     let listed = seen.late_regions();
     assert_eq!((listed[0].lines, listed[0].arrived_at), (120, None));
-    // Message 0 arrived 13 messages before the end of the field, and its first word 1,023 words earlier. This word has
-    // the greatest lateness, because words arrive faster than the beam moves.
+    // Message 0 arrived 13 message times before the end of the field, and its first word 1,023 word times earlier. This
+    // word has the greatest lateness, because words arrive faster than the beam moves.
     let first_scan = board.device.video().reaches(&top, PeriodNumber(2)).expect("scanned");
     assert_eq!(listed[0].lateness, end - first_scan - MESSAGE * 13 - WORD * 1_023);
     assert!((0..120).all(|y| word(&seen.picture(), 64, y) == RED));
@@ -251,7 +251,7 @@ fn regions_that_cannot_be_seen_are_discarded() {
             let parity = FieldParity::of_field(PeriodNumber(field / 2));
             board.region(at, field_target((field % 2) as u8, parity, region, field), &image);
         }
-        // A region that never becomes complete.
+        // Send a region that never becomes complete.
         board.part(begin + MESSAGE * 200, target(0, Lines::Frame, RegionGrid::FRAME, 3, field), &colour(GREEN), 2);
         board.run();
     }

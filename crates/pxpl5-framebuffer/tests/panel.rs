@@ -16,7 +16,6 @@ const SIZE: [u32; 2] = [1280, 1024];
 const GRID: RegionGrid = RegionGrid { width: 1280, height: 1024, region_width: 128, region_height: 128 };
 /// Time of a word on the ring.
 const WORD: Span = Span::from_ns(50);
-/// Number of picoseconds in a second.
 const SECOND: u128 = 1_000_000_000_000;
 
 /// A pixel source whose colours encode region and row.
@@ -173,7 +172,7 @@ fn a_board_with_two_ports_takes_regions_at_both() {
     assert_eq!(error, "hires.ports: expected a multiple of 2 nodes, found 3");
 }
 
-/// A panel of 100 x 50 at 100 Hz, whose lines light in the first 8 of 10 ms.
+/// A panel of 100 x 50 pixels at 100 Hz, whose lines light in the first 8 ms of each period of 10 ms.
 fn small() -> PanelConfig {
     PanelConfig { width: 100, height: 50, refresh_hz: 100, active_permille: 800, ..PanelConfig::PAPERS }
 }
@@ -269,7 +268,7 @@ fn panels_keep_the_highest_bits_of_colours() {
     }
     bench.run(|event, context| display.handle(event, context));
     let shown = display.shown(0).expect("a surface");
-    // Two bits of each primary: 200 is 11001000, 127 is 01111111.
+    // The panel shows two bits of each primary colour: 200 is 11001000, and 127 is 01111111.
     assert_eq!(*shown.get_pixel(5, 127), Rgb([0, 0b1100_0000, 0b0100_0000]));
 }
 
@@ -293,7 +292,7 @@ fn invalid_panel_numbers_are_refused_with_the_expected_range() {
     ] {
         assert_eq!(DisplayConfig::check(&config).expect_err("refused").to_string(), expected);
     }
-    // The rules that relate several numbers also apply to numbers without a table.
+    // `PanelNumbers` were not checked against the table of parameters, so their own rules must refuse a zero.
     for (zero, name) in [
         (PanelConfig { width: 0, ..PanelConfig::PAPERS }, "width"),
         (PanelConfig { height: 0, ..PanelConfig::PAPERS }, "height"),

@@ -258,8 +258,8 @@ fn a_field_records_the_scanned_buffer() {
 /// A region is late only if it arrives while the field is scanned.
 #[test]
 fn a_region_that_arrives_during_the_scan_of_its_field_is_late() {
-    // The first of the region's 16 messages arrives 15 messages before the last. At the end of the field, either event
-    // can come first.
+    // The first of the region's 16 messages arrives 15 messages before the last, at the end of the field. Either of the
+    // two simultaneous events can come first.
     let begins_at_the_end = ENDS + MESSAGE.0 * 15;
     let cases = [(BEGINS, false), (BEGINS + MESSAGE.0 * 60, true), (begins_at_the_end, false)];
     for ((last, is_late), shuffle) in cases.into_iter().flat_map(|case| (0..8).map(move |shuffle| (case, shuffle))) {

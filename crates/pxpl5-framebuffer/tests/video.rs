@@ -57,7 +57,8 @@ fn an_even_field_begins_on_a_line_and_an_odd_one_in_the_middle_of_a_line() {
         assert_eq!(even.0, beam_ps(525 * frame + 22, 0));
         let odd = video.line_start(1, odd_field).expect("odd");
         assert_eq!(odd.0, beam_ps(525 * frame + 262 + 23, 0));
-        // 22 lines and 22.5 lines of 4004/63 us. Each instant is rounded down to a picosecond.
+        // The blanking takes 22 lines in one field and 22.5 lines in the other, with 4004/63 us for each line. Each
+        // instant is rounded down to a picosecond.
         let blank_even = even - video.retrace(even_field);
         let blank_odd = odd - video.retrace(odd_field);
         assert!(blank_even.0.abs_diff(22 * 4_004_000_000 / 63) <= 1, "{blank_even}");

@@ -77,6 +77,7 @@ struct Task {
     has_ended: bool,
 }
 
+/// A graphics processor board with its programs.
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,
@@ -228,7 +229,7 @@ impl GpBoard {
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;
-        // Stop after a full round without progress.
+        // Stop after one poll of every program without progress.
         for place in (0..self.tasks.len()).cycle() {
             let before = self.shared.borrow().progress;
             self.poll(place, &mut task_context);

@@ -14,8 +14,10 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program on a board. It runs forever or ends with a fault. It must await only one future at a time, because the
-/// board records one wait for each program.
+/// A program on a board.
+///
+/// It runs forever or ends with a fault. It must await only one future at a time, because the board records one wait
+/// for each program.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
@@ -32,6 +34,7 @@ pub enum Fault {
     Processor(#[from] ProcessorFault),
 }
 
+/// A received message, with the arrival time of its last word.
 #[derive(Clone, Debug)]
 pub struct Received {
     /// Arrival time of the last word of the message.
@@ -40,8 +43,9 @@ pub struct Received {
     pub body: Body,
 }
 
-/// Number of a batch of messages that a program has passed to the DMA. The DMA (direct memory access) is the part of
-/// the board that sends messages in the background.
+/// Number of a batch of messages that a program has passed to the DMA.
+///
+/// The DMA (direct memory access) is the part of the board that sends messages in the background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticket(pub(crate) u64);
 
@@ -150,7 +154,8 @@ impl Shared {
     /// no effect.
     pub(crate) fn latch(&mut self, Message { source, body, .. }: Message) -> Cause {
         let arrived = self.now;
-        // Insert after all messages of earlier instants and lower senders.
+        // Insert after messages of earlier instants, and after messages of the same instant from ports with lower
+        // numbers.
         let before = self.inbox.iter().rposition(|other| (other.arrived, other.source) <= (arrived, source));
         self.inbox.insert(before.map_or(0, |place| place + 1), Received { arrived, source, body });
         Cause::Arrival

@@ -4,6 +4,7 @@ use pxpl5_wire::{NodeId, RegionId};
 use serde::Serialize;
 use std::fmt;
 
+/// A purpose for which a board uses memory, such as bins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 pub enum Account {
     /// The program, its stacks and message buffers.

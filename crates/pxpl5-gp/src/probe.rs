@@ -39,6 +39,7 @@ impl Stage {
 
 pxpl5_sim::parameters::named!(Stage, "stage", Stage::ALL);
 
+/// The begin or the end of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StageEdge {

@@ -6,6 +6,7 @@ use crate::memory::Account;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{NodeId, PeriodNumber};
 
+/// A snapshot of a graphics processor board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GpSnapshot {
     /// Snapshots of the programs, the interrupt program first.
@@ -36,6 +37,7 @@ pub struct ProgramSnapshot {
     pub work_left: Option<Span>,
 }
 
+/// A message that waits in the inbox of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitingMessageInfo {
     /// Arrival time of the last word of the message.

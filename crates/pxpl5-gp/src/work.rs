@@ -82,7 +82,7 @@ mod tests {
 
     const SCHEDULED: Option<CodeVersion> = Some(CodeVersion::Scheduled);
 
-    /// Test work: i860 code with a loop of so many iterations. Without a number, the code executes a trap.
+    /// Test work: i860 code with a loop of so many iterations, or with a trap if there is no number.
     struct Turns(Option<u32>);
 
     impl Work for Turns {

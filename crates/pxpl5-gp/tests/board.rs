@@ -39,7 +39,6 @@ fn accepted(batch: u64, place: u64) -> GpEvent {
     GpEvent::Accepted(batch << PLACE_BITS | place)
 }
 
-/// A board on its test bench.
 struct Rig {
     board: GpBoard,
     bench: TestBench<GpEvent, GpOutput>,
@@ -53,7 +52,6 @@ impl Rig {
         Self { board: GpBoard::new(BOARD, timing, CYCLE), bench }
     }
 
-    /// Adds a program.
     fn with<F>(mut self, priority: Priority, program: impl FnOnce(Gp) -> F) -> Self
     where
         F: Future<Output = Result<(), Fault>> + 'static,
@@ -63,7 +61,6 @@ impl Rig {
         self
     }
 
-    /// Adds an event at an instant.
     fn fed(mut self, at_ns: u64, event: GpEvent) -> Self {
         self.bench.feed(ns(at_ns), Phase::Arrive, event);
         self
@@ -98,7 +95,7 @@ fn messages_of_one_instant_are_processed_together_once() {
         }
     });
     rig = rig.fed(500, message(4)).fed(500, message(2)).fed(500, message(3)).fed(800, message(1));
-    // The first poll, four arrivals, and a poll for each of two instants.
+    // The events are the first poll, four arrivals, and a poll for each of two instants.
     assert_eq!(rig.events(), 1 + 4 + 2);
     assert_eq!(*notes.borrow(), [(ns(500), 2), (ns(500), 3), (ns(500), 4), (ns(800), 1)]);
 }
@@ -111,7 +108,7 @@ fn an_event_that_ends_no_wait_does_not_wake_the_board() {
         Ok(())
     });
     rig = rig.fed(1_000, message(1)).fed(2_000, message(2)).fed(3_000, GpEvent::Retrace(PeriodNumber(7)));
-    // The first poll, three arrivals during work, and its end.
+    // The events are the first poll, three arrivals during work, and the end of the work.
     assert_eq!(rig.events(), 1 + 3 + 1);
 }
 
@@ -126,7 +123,8 @@ fn acceptances_wake_the_board_when_the_next_chain_can_start() {
     });
     rig = rig.fed(10_000, accepted(1, 2)).fed(11_000, accepted(1, 0)).fed(12_000, accepted(1, 1));
     rig = rig.fed(20_000, accepted(2, 0));
-    // The first poll, two software costs, four acceptances, and a poll at the acceptance after which the DMA is free.
+    // The events are the first poll, two software costs, four acceptances, and a poll at the acceptance after which the
+    // DMA is free.
     assert_eq!(rig.events(), 1 + 2 + 4 + 1);
     let sent: Vec<_> = rig.bench.outputs.iter().map(|(time, GpOutput::Send { ticket, .. })| (*time, *ticket)).collect();
     let first = (0..3).map(|place| (ns(MESSAGE_NS) + CYCLE, 1 << PLACE_BITS | place));
@@ -366,7 +364,7 @@ fn a_snapshot_shows_each_account_of_the_memory() {
         for (bytes, account) in (1..).zip(Account::ALL) {
             gp.reserve(account, bytes, None)?;
         }
-        // Contexts alternate, so number 2 is context 0.
+        // The numbers use contexts 0 and 1 in turn, so number 2 uses context 0.
         gp.reserve(Account::Commands(2), 30, None)?;
         gp.reserve(Account::Bins(3), 60, None)
     });
@@ -466,8 +464,8 @@ fn answers(orders: &[Order], foreground: &[u64], delays: &[u64]) -> (Vec<(Time, 
     (sent.collect(), rig.board.busy())
 }
 
-/// Reception and work take 0.3 us together, and then each message follows. The second message begins at the acceptance
-/// of the first message, which is a cycle and 0.1 us after the end of the first message's software.
+/// Reception and work take 0.3 us together, and the messages follow. The second message begins at the acceptance of the
+/// first message. This is a cycle and 0.1 us after the end of the first message's software.
 #[test]
 fn an_answer_takes_the_time_of_one_received_and_of_each_sent_message() {
     for (count, expected_ns) in [(0, vec![3_300]), (1, vec![3_300, 4_300]), (2, vec![3_300, 4_425, 5_425])] {

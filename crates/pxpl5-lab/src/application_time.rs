@@ -1,4 +1,6 @@
-//! Effect of the application's time per frame on the latencies of fly-throughs. No paper prints this time.
+//! Effect of the application's time per frame on the latencies of fly-throughs.
+//!
+//! No paper prints this time.
 //!
 //! The host of a real viewer ran a loop under Unix that read input, changed its scene, and asked for the next frame.
 //! The simulated host asks for the next frame immediately unless `host.application_ns` and `host.application_jitter_ns`
@@ -57,7 +59,7 @@ pub struct ApplicationTime {
 /// Fails in the same cases as [`Bench::measure`].
 pub fn application_times(bench: &Bench) -> Result<Vec<ApplicationTime>, ExperimentError> {
     let times = MEANS_MS.iter().flat_map(|mean| JITTERS_MS.iter().map(|jitter| (*mean, *jitter)));
-    // A jitter beyond the mean would need negative times.
+    // A jitter greater than the mean would need negative times.
     let times: Vec<_> = times.filter(|(mean, jitter)| jitter <= mean).collect();
     parallel::map(&times, |(mean_ms, jitter_ms)| measure(bench, *mean_ms, *jitter_ms)).into_iter().collect()
 }
@@ -65,7 +67,7 @@ pub fn application_times(bench: &Bench) -> Result<Vec<ApplicationTime>, Experime
 fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTime, ExperimentError> {
     let changes = [(MEAN, mean_ms), (JITTER, jitter_ms)].map(|(path, ms)| (path.to_owned(), ms * 1_000_000));
     let changes = bench.changes.iter().cloned().chain(changes).collect();
-    // Only the two parameters differ from the given bench.
+    // This bench differs from the argument only in these two parameters and in the level.
     let bench = Bench { level: Level::Analytic, changes, ..bench.clone() };
     let spread = |id: &'static str| {
         let measured = bench.measure(id)?;

@@ -1,5 +1,6 @@
-//! Measures the times of primitives by executing i860 code. These times fill the timing table that the analytic level
-//! and the transaction level use.
+//! Measures the times of primitives by executing i860 code.
+//!
+//! These times fill the timing table that the analytic level and the transaction level use.
 //!
 //! The measurement transforms the application scenes of TR94 on one board (one transformation is a *pass*), and divides
 //! the board's clocks among primitives:
@@ -195,7 +196,7 @@ impl CodeTimes {
     /// Improves the times of a bin entry, a triangle and the clipper by one iteration. Each time is fitted to measured
     /// passes after the estimated contributions of the other two times are subtracted.
     fn improve(&mut self, of: CodeUse, cut: &[Sample], scenes: &[Vec<Sample>]) {
-        // Clipped triangles are counted apart, so their time is subtracted here.
+        // Clipped triangles are counted separately, so their time is subtracted here.
         let of_clipper = self.triangle_ns + self.guard_ns;
         let uncut = |sample: &Sample| [sample[0], sample[2], sample[3] - of_clipper * sample[1]];
         // Only PPHIGS bins triangles by region; Slats sends every clump to all regions.

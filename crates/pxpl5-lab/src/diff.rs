@@ -71,7 +71,7 @@ pub fn diff(a: &Value, b: &Value) -> Differences {
         flatten(String::new(), report, &mut leaves);
         leaves
     });
-    // A key of only one report counts as different.
+    // A key that only one report has counts as different.
     let keys: BTreeSet<&String> = of_a.keys().chain(of_b.keys()).collect();
     let mut all = Differences {
         same_trace: a["trace_hash"].is_string() && a["trace_hash"] == b["trace_hash"],

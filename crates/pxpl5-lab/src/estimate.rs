@@ -1,5 +1,6 @@
-//! Estimates of the memory and time of an experiment, computed from its settings before the experiment starts. Budgets,
-//! sweeps and Slurm jobs use these estimates.
+//! Estimates of the memory and time of an experiment, computed from its settings before the experiment starts.
+//!
+//! Budgets, sweeps and Slurm jobs use these estimates.
 //!
 //! Memory in bytes: `BASE + PICTURES + GP gps + PRIMITIVE primitives + WAITING batch + kept`
 //!
@@ -24,9 +25,9 @@
 //!
 //! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and
 //! sweep-costs-heads.toml, release build). The fit minimizes the error of the logarithms, so that overestimates and
-//! underestimates count alike. docs/sweeps.md, "What a point costs", lists the errors of single points. The cost also
-//! depends on the visible part of a scene and on repeated head poses, which no formula predicts. An estimate is good
-//! enough to distinguish minutes from weeks. Running experiments are monitored as well.
+//! underestimates count alike. docs/guide/sweep-times.md, "What a point costs", lists the errors of single points. The
+//! cost also depends on the visible part of a scene and on repeated head poses, which no formula predicts. An estimate
+//! is good enough to distinguish minutes from weeks. Running experiments are monitored as well.
 
 use crate::Plan;
 use pxpl5_run::{KeyValue, Level, Pixels};
@@ -205,7 +206,7 @@ impl RunWork {
     #[must_use]
     pub fn bytes(&self) -> f64 {
         let fields = self.fields as f64;
-        // Observations dominate long runs; lists dominate large scenes.
+        // In long runs, observations take most of the memory. In large scenes, lists take most of the memory.
         let kept = if self.keeps_everything {
             fields * (FIELD + COPY * self.most_blocks())
         } else {

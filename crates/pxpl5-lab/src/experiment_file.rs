@@ -273,7 +273,7 @@ impl ExperimentFile {
     pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), SettingError> {
         let canonical = self.canonical_key(path, &place)?;
         if keys::renamed(path) != path {
-            // A call in a program has no place.
+            // A setting that a program has made by a call has no place in a file.
             let place = if place.is_empty() { String::new() } else { format!("{place}: ") };
             self.notes.push(format!("{place}{path} is now {canonical}; the next version does not accept {path}"));
         }

@@ -234,7 +234,7 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
     }
     text.push_str(
         "\nThe latencies are `latency_fields` of the pair of eyes, with back faces. Figure 7 counts whole retraces of each eye\n\
-         without back faces, so its values are lower ([One scene, several latencies](results.md#one-scene-several-latencies)).\n",
+         without back faces, so its values are lower ([One scene, several latencies](guide/latency.md#one-scene-several-latencies)).\n",
     );
     text
 }

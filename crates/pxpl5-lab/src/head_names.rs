@@ -60,7 +60,7 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, SettingError> {
     };
     let no_path = |_| no_path(text);
     let corners: Vec<DVec3> = path.iter().map(|corner| corner.as_dvec3()).collect();
-    // An empty path is the error of a scene without a path.
+    // An empty path shows that the scene has no path, which is an error.
     let ahead = Walk::new(&corners, speed).map_err(no_path)?;
     Ok(match seed {
         Some(seed) => ahead.with_glances(seed),
@@ -76,8 +76,10 @@ pub fn is_recording(name: &str) -> bool {
 }
 
 /// Builds a motion from its name: `still`, `pan:DEG_PER_S`, `slide:M_PER_S` (to the right), `sine:DEG:HZ` (of the yaw),
-/// `pendulum`, `synthetic:SEED`, or the path of a recording. A recording's path ends in `.csv`, `.txt`, `.tum` or
-/// `.jsonl` ([`Recording::read`]). For the motion `walk`, which needs a scene, see [`walk`].
+/// `pendulum`, `synthetic:SEED`, or the path of a recording.
+///
+/// A recording's path ends in `.csv`, `.txt`, `.tum` or `.jsonl` ([`Recording::read`]). For the motion `walk`, which
+/// needs a scene, see [`walk`].
 ///
 /// # Errors
 ///

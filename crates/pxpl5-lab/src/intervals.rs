@@ -143,13 +143,13 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
     let variations = variations();
     let nominal = measure(&bench, Vec::new());
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
-    // One at a time: both ends of every range.
+    // Measure at both ends of each range, one parameter at a time.
     let at_ends = crate::parallel::map(&ends, |(v, value)| measure(&bench, vec![(v.path.clone(), *value)]));
     let samples: Vec<u64> = (0..SAMPLES).collect();
-    // Joint: machines with all parameters drawn at random.
+    // Measure machines with all parameters drawn at random.
     let joint = crate::parallel::map(&samples, |sample| measure(&bench, draw(&variations, *sample)));
     let neighbours = bench.reading.neighbours();
-    // Interpretations: one question answered otherwise.
+    // Measure with other interpretations, each with another answer to one question.
     let read = crate::parallel::map(&neighbours, |reading| measure(&bench.with(*reading), Vec::new()));
     // After a stop, values are missing.
     if bench.stop.is_stopped() {

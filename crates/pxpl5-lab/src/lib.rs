@@ -1,5 +1,6 @@
-//! Tools for questions that need many experiments. This is the only crate that uses files and threads of the host
-//! computer, which a [`Workstation`] represents.
+//! Tools for questions that need many experiments.
+//!
+//! This is the only crate that uses files and threads of the host computer, which a [`Workstation`] represents.
 //!
 //! | question | module |
 //! |---|---|
@@ -65,7 +66,9 @@ pub use what_if::{WhatIf, what_if};
 use pxpl5_run::Registry;
 use std::sync::{Arc, LazyLock};
 
-/// Returns the registry of the built-in pipelines and displays. Some pipelines have a closed form.
+/// Returns the registry of the built-in pipelines and displays.
+///
+/// Some pipelines have a closed form.
 #[must_use]
 pub fn registry() -> Arc<Registry> {
     static OF_PAPERS: LazyLock<Arc<Registry>> = LazyLock::new(|| {

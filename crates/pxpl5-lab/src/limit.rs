@@ -213,7 +213,7 @@ impl LimitQuery {
         if self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();
         }
-        // Small triangles stand for a model, whose sizes are expensive to build.
+        // Small triangles stand for a model, because the decimated sizes of a model are expensive to build.
         let scene = if self.model.is_some() { TestScene::Typical } else { self.criterion.scene };
         let criterion = LimitCriterion { scene, ..self.criterion };
         let analytic = Self { level: Level::Analytic, model: None, criterion, ..self.clone() };

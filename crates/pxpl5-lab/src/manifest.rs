@@ -241,7 +241,7 @@ mod tests {
         let mut next = Manifest::new("run");
         next.add("kept", b"new");
         assert_eq!(next.replace(&before, &folder), [folder.join("gone")]);
-        // A run that ended before it removed a file leaves the removal to the next run.
+        // If a run ended before it removed a file, the next run removes the file.
         let mut third = Manifest::new("run");
         assert_eq!(third.replace(&next, &folder), [folder.join("gone")], "`kept` has the old contents");
         fs::remove_dir_all(folder).expect("ours");

@@ -1,5 +1,6 @@
-//! The pendulum rig in front of the emulated machine. The rig measures latency from outside, and compares the result
-//! with the system's own time stamps.
+//! The pendulum rig in front of the emulated machine.
+//!
+//! The rig measures latency from outside, and compares the result with the system's own time stamps.
 //!
 //! As in I3D95, the host starts a frame when the host detects that the pendulum passes its lowest point. Frames
 //! alternate between dark and light. The output of a D/A converter (the D/A line) changes when the program starts a
@@ -130,7 +131,7 @@ impl Rig {
         pipeline: Arc<dyn Pipeline>,
         sightings: &[LowPointReport],
     ) -> Result<Experiment, StudyError> {
-        // Even sightings make a light frame, odd sightings a dark frame.
+        // Sightings of the pendulum with even numbers make a light frame, and sightings with odd numbers a dark frame.
         let reports = (0..).zip(sightings).map(|(number, sighting)| TrackerReport {
             solution: number,
             measured_ps: sighting.measured_ps,

@@ -153,7 +153,7 @@ impl Snapshot {
         let value: Value =
             serde_json::from_str(text).map_err(|error| no_snapshot(file, format!("not whole JSON: {error}")))?;
         let found = value.get("schema").and_then(Value::as_str).unwrap_or("none");
-        // A foreign file and another version get different errors.
+        // A file of another program and a file of another version get different errors.
         if !found.starts_with("pxpl5-snapshot/") {
             return Err(no_snapshot(file, format!("expected schema {}, found {found}", Self::SCHEMA)));
         }

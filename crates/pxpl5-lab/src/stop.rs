@@ -73,7 +73,7 @@ mod tests {
         let ended = over.search(|_, _| stop.stop());
         assert!(matches!(ended, Err(StudyError::Experiment(ExperimentError::Stopped(_)))), "{ended:?}");
 
-        // The first value runs and misses. A stopped search must not say that no value reaches the goal.
+        // The first value runs and misses the goal. A stopped search must not report that no value reaches the goal.
         let text = "pipeline = \"rendering-control\"\nscene = \"full-screen:10\"\nfields = 120\n";
         let file = ExperimentFile::parse(text, "test").expect("TOML");
         let plan = file.resolve().expect("valid");

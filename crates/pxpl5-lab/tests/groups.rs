@@ -85,8 +85,8 @@ fn the_total_of_the_rig_follows_the_photodiode() {
     assert!((high - low - 239.0 * 0.063_556).abs() < 0.01, "{low} to {high}");
 }
 
-/// Tests the wait for the kernel. A report waits at most for one poll: 30 ms are 1.798 fields. The mean wait is half of
-/// this time.
+/// Tests the wait for the host's operating system, which polls every 30 ms. A report waits at most for one poll: 30 ms
+/// are 1.798 fields. The mean wait is half of this time.
 #[test]
 fn polling_adds_at_most_one_poll_and_half_a_poll_on_average() {
     within("T1", [1.75, 1.799]);

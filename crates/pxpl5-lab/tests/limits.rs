@@ -69,7 +69,7 @@ fn the_analytic_limit_of_slats_is_the_simulated_one_within_its_bound() {
         let analytic = LimitQuery { level: Level::Analytic, ..simulated.clone() };
         let [found, expected] = [&analytic, &simulated].map(|query| query.search().expect("it runs").triangles);
         let percent = 100.0 * (f64::from(found) / f64::from(expected.max(1)) - 1.0);
-        // Between the two limits the analytic level must stay within the bound of missing the goal.
+        // `apart_ms` is the difference of the two limits as a time, by which the first copy begins later.
         let [at_found, at_expected] = [found + 1, expected + 1].map(|size| copies_begin_ms(&analytic, size));
         let apart_ms = (at_found - at_expected).abs();
         let told =

@@ -46,7 +46,7 @@ fn setting_each_machine_parameter_to_its_own_value_changes_nothing() {
 fn setting_each_key_of_an_experiment_to_its_own_value_changes_nothing() {
     for tracker in TRACKERS {
         let tracker = format!("head.tracker={tracker}");
-        // A parameter of the filter that is set is used as given and is not tuned.
+        // A parameter of the filter that the user has set is not tuned.
         let head = ["head.motion=pan:40", &tracker, "head.filter=given"];
         let plain = plan(&head);
         for Parameter { path, value, .. } in plain.parameters().into_iter().filter(|parameter| !parameter.read_only) {

@@ -1,5 +1,5 @@
-//! Tests of the pendulum rig in front of the machine. Outside and inside measurements agree, and each reveals a fault
-//! of the other.
+//! Tests of the pendulum rig in front of the machine. The measurements outside and inside the machine agree, and each
+//! measurement reveals faults of the other.
 
 use pphigs::FrameView;
 use pxpl5_lab::StudyError;

@@ -91,7 +91,7 @@ fn impossible_numbers_of_a_display_are_refused_with_key_and_range() {
 #[test]
 fn numbers_of_a_display_are_valid_up_to_their_limits_and_refused_beyond_them() {
     let whole = |least: &str, greatest: &str| format!("a number from {least} to {greatest}");
-    // Key, other numbers, both ends, a step beyond both ends, and the range in the error.
+    // A row has the key, other numbers, both ends of the range, a step beyond both ends, and the range in the error.
     for (key, others, [least, greatest], [below, above], expected) in [
         ("width", "height = 100, ", ["1", "16384"], ["0", "16385"], whole("1", "16384")),
         ("height", "width = 100, ", ["1", "16384"], ["0", "16385"], whole("1", "16384")),
@@ -140,7 +140,6 @@ fn numbers_of_a_display_are_valid_up_to_their_limits_and_refused_beyond_them() {
     }
 }
 
-/// A pipeline either draws for a progressive panel or says by its name what it needs.
 #[test]
 fn every_pipeline_draws_for_a_panel_or_names_the_missing_requirement() {
     let mut refused = Vec::new();

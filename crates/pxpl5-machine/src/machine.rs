@@ -369,7 +369,7 @@ impl Machine {
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         let Record { ports, renderers, ring, .. } = &self.record;
-        // Programs. A program that waits for a message does not state the sender of the message.
+        // Programs that wait. A program that waits for a message does not state the sender of the message.
         let processors = self.processors.iter().enumerate().filter_map(|(port, processor)| {
             let waits_for = processor.blocked()?.to_owned();
             Some(Blocked { board: Board::of_processor(port), waits_on: None, waits_for })
@@ -380,7 +380,7 @@ impl Machine {
             let waits_for = format!("frame buffer at node {} to take region {}", frame_buffer.0, region.0);
             Some(Blocked { board: Board::Renderer(number), waits_on: Some(ports.board(frame_buffer)), waits_for })
         });
-        // Messages.
+        // Messages that wait on the ring.
         let messages = ring.waiting().into_iter().map(|message| Blocked {
             board: ports.board(message.source),
             waits_on: message.waits_on().map(|node| ports.board(node)),
@@ -467,7 +467,6 @@ impl Machine {
     }
 
     fn gp_event(&mut self, now: Time, board: usize, event: GpEvent) {
-        // Let the processor handle the event.
         let Self { processors, contexts: Contexts { gp: context, .. }, queue, .. } = self;
         let processor = &mut processors[board];
         processor.handle(event, context.at(now));
@@ -492,7 +491,6 @@ impl Machine {
 
     fn renderer_event(&mut self, now: Time, board: usize, event: RendererEvent) {
         let Self { record, contexts: Contexts { renderer: context, .. }, queue, pixels, .. } = self;
-        // Let the renderer handle the event.
         record.renderers[board].handle(event, context.at(now));
         let drawn = record.renderers[board].drain_drawn().map(|region| (board, region));
         record.observation.drawn.extend(drawn);

@@ -207,8 +207,9 @@ impl Observation {
     }
 }
 
-/// A region that arrived after its deadline. The deadline is the instant when the display needs the pixels of the
-/// region.
+/// A region that arrived after its deadline.
+///
+/// The deadline is the instant when the display needs the pixels of the region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct LateRegion {
     /// The display period for which the region was drawn.

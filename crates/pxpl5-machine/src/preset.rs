@@ -21,7 +21,9 @@ pub struct Preset {
     code: CodeVersion,
 }
 
-/// The built-in machines. Machines described in the papers come first.
+/// The built-in machines.
+///
+/// Machines described in the papers come first.
 pub const PRESETS: [Preset; 7] = [
     Preset {
         name: "small-hmd",

@@ -108,7 +108,7 @@ impl BudgetSum {
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let window_from = run.window.map(|window| window.first_period);
         if self.window_from != window_from {
-            // The window has moved: everything summed so far lies before it.
+            // The window has moved. All sums so far belong to periods before the window.
             self.window_from = window_from;
             self.stages_ms = std::array::from_fn(|_| Samples::keeping(run.samples));
         }

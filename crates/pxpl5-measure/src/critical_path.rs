@@ -44,8 +44,9 @@ pub struct CriticalPath {
     pub chain: Vec<String>,
 }
 
-/// Largest number of pictures whose chains of waits are followed back from the screen to TRANSFORM. A long run discards
-/// old records, but keeps all records of its last 24 pictures.
+/// Largest number of pictures whose chains of waits are followed back from the screen to TRANSFORM.
+///
+/// A long run discards old records, but keeps all records of its last 24 pictures.
 pub const PICTURES_FOLLOWED: usize = 24;
 
 const LINKS_PRINTED: usize = 16;

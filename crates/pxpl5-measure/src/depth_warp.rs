@@ -245,7 +245,7 @@ impl Target {
         let [top, bottom] = [&pairs.rows[0][..count], &pairs.rows[1][..count]];
         let [near, far] = [&pairs.near[..count], &pairs.far[..count]];
         for x in 1..count {
-            // Corners behind the eye have no finite depth, and are no surface.
+            // Corners behind the eye have no finite depth and belong to no surface.
             let farthest = far[x - 1].max(far[x]);
             let is_surface = farthest < f32::INFINITY && farthest <= near[x - 1].min(near[x]) * SAME_SURFACE;
             if !is_surface {
@@ -256,9 +256,9 @@ impl Target {
                 }
                 continue;
             }
-            // The cell is the box around its corners, because views of one head a few milliseconds apart roll by
-            // little. The cell covers pixels from its left and upper sides up to, and without, its right and lower
-            // sides.
+            // The cell is the box around its corners. This is exact enough, because views of one head a few
+            // milliseconds apart roll by small angles only. The cell covers pixels from its left and upper sides up to
+            // its right and lower sides, without the latter sides.
             let columns = left[x - 1].min(left[x])..right[x - 1].max(right[x]);
             for row in top[x - 1].min(top[x])..bottom[x - 1].max(bottom[x]) {
                 for column in columns.clone() {
@@ -470,7 +470,7 @@ mod tests {
                 let expected = f64::from(x) + shift(if is_near(from[0], from[1]) { near } else { far });
                 assert!((f64::from(from[0]) - expected).abs() <= 1.0 && from[1] == y, "{step}: {x} {y} {from:?}");
             }
-            // Beside the near plane on its right, and at the right edge of the picture.
+            // The empty columns lie to the right of the near plane, and at the right edge of the picture.
             let expected = (shift(near) - shift(far)) * 200.0 + shift(far) * 480.0;
             let rounding = f64::from(200 + 480);
             assert!((empty as f64 - expected).abs() <= rounding, "{step}: {empty} for {expected}");

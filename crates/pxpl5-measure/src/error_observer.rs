@@ -43,7 +43,7 @@ impl ErrorSum {
         let judging = self.judging.get_or_insert_with(|| Evaluation::begin(run, head, showing, self.without));
         let window_from = run.window.map(|window| window.first_period);
         if self.window_from != window_from {
-            // The window has moved: everything summed so far lies before it.
+            // The window has moved. All sums so far belong to periods before the window.
             self.window_from = window_from;
             self.collected = None;
         }
@@ -252,7 +252,7 @@ impl Evaluation {
     fn error_of(&self, pixel: Pixel, drawn: &Drawn) -> Option<Misregistration> {
         let place = middle(pixel.place[0], pixel.place[1]);
         if matches!(self.content, Content::DelayedVideo) {
-            // The camera moves with the head. Its picture is shown with the picture that was drawn for the same
+            // The camera moves with the head. The picture of the camera is shown with the drawn picture for the same
             // measurement of the head.
             let moment = self.evaluator.moment(drawn);
             let content = self.evaluator.content(drawn, place);

@@ -9,7 +9,7 @@ use pxpl5_wire::display::Display;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Errors of one field (one display period).
+/// Pixel errors of one field (one display period).
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FieldMisregistration {
     /// Number of the display period in which the errors were evaluated.

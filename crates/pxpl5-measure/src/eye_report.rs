@@ -6,8 +6,9 @@ use pxpl5_run::{KEPT_SAMPLES, Reprojection};
 use pxpl5_sim::Time;
 use serde::Serialize;
 
-/// Smear of the lit pixels, and results of a device that moves pictures. The report exists if pixels are lit for more
-/// than an instant, or if a device moves pictures.
+/// Smear of the lit pixels, and results of a device that moves pictures.
+///
+/// The report exists if pixels are lit for more than an instant, or if a device moves pictures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EyeReport {
     /// Distance that the content of a pixel moves across the screen while the pixel is lit, in pixels. `None` if pixels

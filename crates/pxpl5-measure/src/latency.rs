@@ -3,8 +3,9 @@
 use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
 use std::fmt;
 
-/// Returns the latency parts of the complete pictures in the result window. Pictures whose records were discarded
-/// ([`pxpl5_run::Keep`]) are left out.
+/// Returns the latency parts of the complete pictures in the result window.
+///
+/// Pictures whose records were discarded ([`pxpl5_run::Keep`]) are left out.
 #[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
     outcome.latency_parts()
@@ -43,8 +44,9 @@ impl fmt::Debug for LatencyPartStatistics {
     }
 }
 
-/// Latency of one surface or of a pair of surfaces. The latency ends at the end of COPY, at the swap, or when the
-/// pixels are lit.
+/// Latency of one surface or of a pair of surfaces.
+///
+/// The latency ends at the end of COPY, at the swap, or when the pixels are lit.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct SurfaceStatistics {
     /// Label of the surface (`left`, `right`), or `pair`. The latency of a pair lasts from the first TRANSFORM until

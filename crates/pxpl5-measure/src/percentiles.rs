@@ -3,8 +3,9 @@
 use pxpl5_run::number_or_nan;
 use serde::{Deserialize, Serialize};
 
-/// Count, mean, percentiles and maximum of a set of numbers. For an empty set, all numbers except the count are NaN
-/// (null in JSON).
+/// Count, mean, percentiles and maximum of a set of numbers.
+///
+/// For an empty set, all numbers except the count are NaN (null in JSON).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Percentiles {
     /// Number of numbers in the set.

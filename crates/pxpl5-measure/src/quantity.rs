@@ -58,7 +58,9 @@ const ERROR_PX: &str = "distance between a pixel and the right place of its cont
 
 const PATH: &str = "share of the latency that waits for this resource, 0 to 1, over the last complete pictures of the window; the shares of all resources add up to 1";
 
-/// All quantities by name. Quantities that need a simulated run have no value at the analytic level.
+/// All quantities that can be measured, by name.
+///
+/// Quantities that need a simulated run have no value at the analytic level.
 pub static QUANTITIES: [Quantity; 57] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().told().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().told().sd),

@@ -66,8 +66,9 @@ pub(crate) fn offset(
     RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
 }
 
-/// The corrections that a display applies to the pictures of a run. The corrections are a raster offset for every
-/// field, or a device that moves pictures to the newest pose.
+/// The corrections that a display applies to the pictures of a run.
+///
+/// The corrections are a raster offset for every field, or a device that moves pictures to the newest pose.
 #[derive(Clone, Debug)]
 pub struct RasterOffsets<'a> {
     display: &'a dyn Display,

@@ -54,7 +54,7 @@ impl Screen {
 
     fn arrive(&mut self, arrival: &Arrival) {
         let target = arrival.target;
-        // Find the division that the region belongs to, or add a new one.
+        // Find the division of the picture into regions to which this region belongs, or add a new division.
         let place = self.cuts.iter().position(|cut| Cut::key(&cut.of) == Cut::key(&target)).unwrap_or_else(|| {
             self.cuts.push(Cut { of: target, regions: vec![Vec::new(); target.grid.regions() as usize] });
             self.cuts.len() - 1
@@ -129,7 +129,7 @@ mod tests {
     fn a_line_shows_its_own_field() {
         let odd = target(Lines::Field(FieldParity::Odd), 7);
         let screen = screen([(10, odd)]);
-        // Row 128 of a field, of 256: line 257 of the frame.
+        // Row 128 of an odd field of 256 rows is line 257 of the frame.
         assert_eq!(screen.shown(128, 257, PeriodNumber(0), Time(10)), Some(odd));
         assert_eq!(screen.shown(128, 256, PeriodNumber(0), Time(10)), None);
     }

@@ -4,8 +4,9 @@ use pxpl5_run::{DuePictures, Experiment};
 use serde::Serialize;
 use std::fmt;
 
-/// Warning that the load was too heavy ([`DuePictures::is_too_heavy`]). The warning states how many triangles the
-/// pipeline can show in time.
+/// Warning that the load was too heavy ([`DuePictures::is_too_heavy`]).
+///
+/// The warning states how many triangles the pipeline can show in time.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TooHeavy {
     /// Number of pictures that were due.

@@ -33,7 +33,7 @@ pub(crate) struct Turns {
 impl RotationLatencySum {
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let window_from = run.window.map(|window| window.first_period);
-        // The window has moved: everything summed so far lies before it.
+        // The window has moved. All sums so far belong to periods before the window.
         if self.parts.is_empty() || self.window_from != window_from {
             self.window_from = window_from;
             self.total = Samples::keeping(run.samples);

@@ -86,7 +86,7 @@ fn run(experiment: &Experiment, keep: Keep) -> Outcome {
 /// Returns all values of a report except the time on this computer. Numbers have enough digits to be distinguished.
 fn said(outcome: &Outcome) -> String {
     let report = Report { host_seconds: None, ..outcome.report() };
-    // A streaming observer also has the latency of translation of a run that has discarded records.
+    // A streaming observer reports the latency of translation even if the run has discarded records.
     for memory in report.arp.iter().flat_map(|faces| &faces.memories) {
         assert_eq!(memory.translation_latency_ms.is_some(), memory.updates > 0);
     }
@@ -119,8 +119,7 @@ fn discarding_records_changes_no_result_of_a_head() {
 }
 
 /// Shorter runs for the same test: a display drawn field by field, a double-buffered display, and a display with faces.
-///
-/// The first one lasts eighteen seconds after the tracker's last report.
+/// The first run lasts eighteen seconds after the tracker's last report.
 #[test]
 fn discarding_records_changes_no_result_of_a_head_in_shorter_runs() {
     let [slats, _, _, _, control, .., faces, _, _] = &experiments()[..] else { panic!("fourteen") };

@@ -284,8 +284,8 @@ fn a_display_with_faces_is_reported_with_its_memory() {
     let whole = faces.rotation_latency_ms.expect("a head").mean;
     let parts: f64 = faces.rotation_latency_parts_ms.iter().map(|part| part.statistics.mean).sum();
     assert!(whole > 0.0 && (whole - parts).abs() < 1e-9, "{whole} {parts}");
-    // Translation has the same latency up to the retrace before which the ideal renderer draws, so it is at most a
-    // field older.
+    // The ideal renderer draws before each retrace. Up to this retrace, translation has the same latency, so a step is
+    // older by at most a field.
     let step = memory.translation_latency_ms.expect("updates were shown").mean;
     let parts: f64 = memory.translation_latency_parts_ms.iter().map(|(_, mean)| mean).sum();
     assert!(

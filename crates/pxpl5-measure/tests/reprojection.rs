@@ -83,7 +83,7 @@ fn aim(field: u64) -> f64 {
 /// Returns the instant for which the pose of a part of a field is predicted, in seconds: halfway between the lighting
 /// of its first and last pixel.
 fn middle_of(every: Every, field: u64, row: u64) -> f64 {
-    // Lines of a frame, of which a field lights every second.
+    // The number of the line in the frame. A field lights every second line.
     let line = 2 * row + field % 2;
     let [from, to] = match every {
         Every::Field => [0, 239],
@@ -171,7 +171,7 @@ fn the_empty_share_is_the_part_rotated_in_from_beyond_the_edge() {
     assert_eq!(found.looked_at, all);
     assert_eq!(found.empty_share, Some(beyond as f64 / all as f64));
     assert!(beyond > 0 && beyond < all / 10);
-    // Nothing is known of what is hidden without depth.
+    // Without depths, the hidden parts of the scene are unknown.
     assert_eq!(found.disoccluded_share, None);
     let pixels_per_s = 640.0 * 240.0 * 60_000.0 / 1_001.0;
     assert!((found.pixels_per_s / pixels_per_s - 1.0).abs() < 1e-6, "{}", found.pixels_per_s);
@@ -211,7 +211,7 @@ fn on_panel(config: PanelConfig, rate: f64) -> Outcome {
 /// Returns the error, in pixels, in the middle of a picture that is lit `seconds` after the instant for which it was
 /// drawn.
 fn off_px(seconds: f64, rate: f64) -> f64 {
-    // The middle of the middle pixel.
+    // The position of the middle of the middle pixel.
     let [seen_right, seen_up] = after(0.5, -0.5, rate * seconds, focal_px(128.0));
     (seen_right - 0.5).hypot(seen_up + 0.5)
 }
@@ -224,8 +224,8 @@ fn a_global_display_is_correct_everywhere_and_a_rolling_one_in_the_middle_of_its
         outcome.pixel_errors().expect("a head")
     });
     assert!(global.evaluated > 0 && global.pixels.max < 1e-3, "{}", global.pixels.max);
-    // A pixel lights by its number in the scan, of 96 lines of 128; the picture is drawn for half of the number of the
-    // last one.
+    // A pixel lights at an instant proportional to its number in the scan of 96 lines of 128 pixels. The picture is
+    // drawn for half of the last pixel's number.
     let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
     let pixels = places(96).flat_map(|y| places(128).map(move |x| (x, y)));
     let expected = mean(pixels.map(|(x, y)| {
@@ -248,7 +248,7 @@ fn persistence_delays_the_centre_of_light_by_half_and_smears_over_its_whole_time
         let centre = off_px(p / 2.0 + r, RATE);
         assert!((errors.centre_px.mean - centre).abs() < 1e-3, "{} for {centre}", errors.centre_px.mean);
         let smear = EyeReport::shown(&outcome, Showing::Plain).and_then(|eye| eye.smear_px).expect("it smears");
-        // v t in the middle, and by the tangents more towards the edge: 1 + tan^2 of up to 24 degrees.
+        // The error is v t in the middle. Towards the edge it grows with the tangent: by up to 1 + tan^2(24 degrees).
         let width = (p * p + 12.0 * r * r).sqrt();
         let in_the_middle = 2.0 * focal_px(128.0) * (RATE * width / 2.0).tan();
         let mean_factor = smear.mean / in_the_middle;

@@ -30,7 +30,7 @@ impl Frames {
         let (sender, pictures) = sync_channel(WAITING);
         let thread = std::thread::Builder::new().name("pxpl5-frames".to_owned()).stack_size(STACK_BYTES);
         let started = thread.spawn(move || {
-            // The run ends when the receiver of the pictures has gone.
+            // The run ends when the receiver of the pictures no longer exists.
             let result = film.each(|_, picture| sender.send(Ok(picture)).is_ok());
             if let Err(error) = result {
                 let _ = sender.send(Err(error));
@@ -59,7 +59,7 @@ impl Frames {
             py.check_signals().inspect_err(|_| self.progress.stop())?;
             match found {
                 Ok(Ok(picture)) => {
-                    // A motion or a policy that has raised has no pictures.
+                    // If a motion or a policy has raised an exception, there are no more pictures.
                     self.checks.check().inspect_err(|_| self.progress.stop())?;
                     *self.pictures.lock().unwrap_or_else(PoisonError::into_inner) = Some(pictures);
                     return Picture::of(py, picture, Vec::new()).map(Some);

@@ -41,7 +41,7 @@ impl MachineThread {
                     return;
                 }
             };
-            // The caller may have gone meanwhile. The loop then ends at once.
+            // If the caller no longer waits, the loop ends at once.
             let _ = sender.send(Ok(()));
             received.iter().for_each(|job: Job| job(&mut stepper));
         });

@@ -7,13 +7,17 @@ use std::sync::Arc;
 /// Pixels of the array: 128 x 128 (F89).
 pub const PIXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
 
-/// One bit of every pixel. The bit of pixel (x, y) is bit `x % 64` of word `2 y + x / 64`.
+/// One bit of every pixel.
+///
+/// The bit of pixel (x, y) is bit `x % 64` of word `2 y + x / 64`.
 pub type Plane = [u64; PIXELS / 64];
 
 pub const EMPTY_PLANE: Plane = [0; PIXELS / 64];
 
-/// A 128 x 128 array of one-bit processors with 208 bits of memory each. Each pixel has one bit in the *Enable*
-/// register. An instruction writes only to the memory of pixels whose Enable bit is set.
+/// A 128 x 128 array of one-bit processors with 208 bits of memory each.
+///
+/// Each pixel has one bit in the *Enable* register. An instruction writes only to the memory of pixels whose Enable bit
+/// is set.
 ///
 /// All implementations give the same result after every instruction: the same bits of pixel memory and of Enable, and
 /// the same [`Executed`].

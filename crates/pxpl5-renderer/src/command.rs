@@ -46,7 +46,9 @@ use crate::isa::{ArrayInstruction, DecodeError, DecodeErrorKind, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// The kind of a command. The numeric value of the kind is the opcode in [`pxpl5_wire::CommandRun`].
+/// The kind of a command for a renderer.
+///
+/// The numeric value of the kind is the opcode in [`pxpl5_wire::CommandRun`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum CommandKind {

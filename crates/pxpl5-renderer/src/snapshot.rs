@@ -6,6 +6,7 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandContent, CopyOrder, CopyPath, Message, RegionPlace};
 use std::collections::VecDeque;
 
+/// A snapshot of a renderer board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RendererSnapshot {
     /// Number of words of complete commands in the input FIFO. `None` unless

@@ -6,6 +6,7 @@ use pxpl5_wire::{Message, NodeId};
 
 const UNKNOWN: Time = Time(u64::MAX);
 
+/// A snapshot of a message that occupies a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChannelSnapshot {
     pub channel: usize,

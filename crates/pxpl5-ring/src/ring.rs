@@ -267,7 +267,7 @@ impl Ring {
     /// Schedules an arbitration at the next end of a message for which another message waits. After [`Ring::watch`],
     /// schedules it at the next end of any message.
     fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
-        // If a source is at its limit or no channel is free, every end is relevant.
+        // If a source is at its limit or no channel is free, the end of every message is relevant.
         let any_end = self.watched || self.at_limit > 0;
         let next = if any_end || self.is_channel_missing() {
             self.channels.first_end()

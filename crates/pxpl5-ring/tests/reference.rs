@@ -18,7 +18,7 @@ struct RingCase {
 }
 
 /// Returns random transfers. Each transfer has up to four messages to one destination. All messages except the last
-/// have `hold`.
+/// have the flag `hold`.
 fn transfers(n_nodes: u16, tick: Span) -> impl Strategy<Value = Vec<PlannedMessage>> {
     let words = prop_oneof![8 => 1u32..40, 2 => 40u32..200, 1 => Just(1_024u32)];
     let transfer = (0u64..600, 0..n_nodes, 0..n_nodes, words, 1usize..5);

@@ -89,7 +89,7 @@ impl Experiment {
         if !self.on_demand {
             return Ok((setup, Some(head)));
         }
-        // On demand, a frame begins with the first report at which the host is ready.
+        // With frames on demand, a frame begins with the first report at which the host is ready.
         let asked = Arc::clone(&head);
         let free = Arc::clone(&setup.starts);
         Ok((Setup { starts: Arc::new(move |ready| asked.report_from(free(ready)?)), ..setup }, Some(head)))

@@ -12,7 +12,9 @@ use tracking::predict::ExactPredictor;
 use tracking::time::PS_PER_S;
 use tracking::tracker::{TrackerConfig, TrackerModel};
 
-/// A cause of pixel errors. After a run, an [`Estimator`] can compute poses as if one cause did not exist.
+/// A cause of pixel errors.
+///
+/// After a run, an [`Estimator`] can compute poses as if one cause did not exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
@@ -54,7 +56,7 @@ pxpl5_sim::parameters::named!(Cause, "cause", Cause::ALL.map(|cause| (cause.name
 /// Length of the series of reports that a predictor receives for one request, in picoseconds.
 const FED_PS: u64 = 2 * PS_PER_S;
 
-/// Computes the head's pose from the tracker reports that a host has at an instant.
+/// An estimator of the head's pose, from the tracker reports that a host has at an instant.
 pub struct Estimator {
     views: Arc<HeadViews>,
     way: Way,

@@ -16,7 +16,9 @@ use pxpl5_wire::display::Aim;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The pixels that a run computes. The choice changes no simulated time.
+/// The pixels that a run computes.
+///
+/// The choice changes no simulated time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pixels {

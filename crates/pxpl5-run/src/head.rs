@@ -323,7 +323,7 @@ impl Head {
             start,
             ..own
         };
-        // The training for positions stays on record.
+        // The training for positions is kept.
         let of_all = if let Numbers::Tuned(of_all, _) = self.numbers { of_all } else { None };
         Self { predictor, numbers: Numbers::Tuned(of_all, training), ..self.clone() }
     }

@@ -1,4 +1,6 @@
-/// The choice of the observations that a run keeps in memory. The choice changes no time and no trace.
+/// The choice of the observations that a run keeps in memory.
+///
+/// The choice changes no time and no trace.
 ///
 /// Two runs that differ only in this choice have the same statistics. Only the last digits of means over more than
 /// [`KEPT_SAMPLES`](crate::KEPT_SAMPLES) pictures can differ.

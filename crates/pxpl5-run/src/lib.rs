@@ -1,5 +1,6 @@
-//! Runs one experiment on the emulated Pixel-Planes 5: a machine, a pipeline, a scene and a head. The result is an
-//! [`Outcome`].
+//! Runs one experiment on the emulated Pixel-Planes 5: a machine, a pipeline, a scene and a head.
+//!
+//! The result is an [`Outcome`].
 //!
 //! ```text
 //!   MachineConfig --+

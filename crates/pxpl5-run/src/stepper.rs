@@ -163,7 +163,7 @@ impl Stepper {
         // The search for a deadlock simulates time after the end of the run, so its host time is not counted.
         let host_seconds = self.begun_s.zip(self.experiment.host.seconds()).map(|(begin, end)| end - begin);
         let mut error = self.failure().cloned();
-        // With frames on demand, a host without a further report waits for a legitimate reason.
+        // With frames on demand, a host that waits for a further report is not in a deadlock.
         if error.is_none() && !self.experiment.on_demand && self.may_be_deadlocked() {
             error = self.deadlock();
         }

@@ -18,8 +18,9 @@ use std::collections::BTreeMap;
 /// Largest number of late regions that a [`Tally`] lists individually.
 pub const LATE_REGIONS_LISTED: usize = 20;
 
-/// Statistics of a run's results, over the pictures in the result window ([`ResultWindow`](crate::ResultWindow)). Times
-/// are in milliseconds. Latencies cover only the complete pictures.
+/// Statistics of a run's results, over the pictures in the result window ([`ResultWindow`](crate::ResultWindow)).
+///
+/// Times are in milliseconds. Latencies cover only the complete pictures.
 #[derive(Clone, Debug)]
 pub struct Tally {
     /// Number of pictures that were begun and evaluated, complete or not.

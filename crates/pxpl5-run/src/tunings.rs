@@ -32,7 +32,7 @@ impl Tunings {
         motion.identify(&mut |key, value| hash.setting(key, value));
         hash.setting("tracker", format_args!("{:?}", tracker.config()));
         hash.setting("predictor", format_args!("{base:?}"));
-        // The seed of the evaluated run matters only as far as the training avoids it.
+        // The seed of the evaluated run matters only because the training must use another seed.
         let key = (hash, interval_ps, training_seed(evaluated_seed));
         // The map is locked only to find the place. The place itself waits for the result.
         let place = Arc::clone(self.known.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default());

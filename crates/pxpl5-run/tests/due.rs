@@ -157,14 +157,12 @@ proptest! {
         prop_assert!((short.shown as f64 - expected).abs() <= 1.0, "{:?} {:?}", short, long);
     }
 
-    /// A larger distance between pictures never reduces the share of missed pictures.
     #[test]
     fn the_share_missed_rises_with_the_time_a_picture_takes(first in 0u64..40, every in 1u64..4, apart in 1u64..20) {
         let share = |apart| count(&regular(first, apart, 2_000, Shown), every, 2_000).not_shown_share();
         prop_assert!(share(apart + 1) + 1e-2 >= share(apart));
     }
 
-    /// No failure is left out: a picture after the warm-up that was not shown lies in the window.
     #[test]
     fn the_window_holds_every_picture_that_was_not_shown(at in WARM_UP_PERIODS..300, periods in 300u64..400) {
         let mut pictures = regular(0, 1, periods, Shown);

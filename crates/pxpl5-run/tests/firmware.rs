@@ -161,8 +161,9 @@ fn copy_of_an_eye_begins_after_the_end_of_copy_of_the_previous_eye() {
 }
 
 /// COPY of both eyes takes 31.2 ms of the 33.4 ms of two fields. A light scene is thus shown every second field, with
-/// any number of renderers. TRANSFORM of a frame begins at the earliest when COPY of the third previous eye has ended,
-/// 31.2 ms after a swap and three frames before its own swap. Additional renderers only make frames wait longer.
+/// any number of renderers. TRANSFORM of a frame begins at the earliest when COPY of the third previous eye has ended.
+/// This instant is 31.2 ms after a swap and three frames before the swap of the new frame. Additional renderers only
+/// make frames wait longer.
 #[test]
 fn a_scene_limited_by_copy_keeps_rate_and_latency_with_any_number_of_renderers() {
     let scene = builtin("typical:2000").map(Arc::new).expect("built in");

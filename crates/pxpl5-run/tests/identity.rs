@@ -77,12 +77,13 @@ fn a_scene_is_identified_by_the_bits_of_its_numbers_in_order() {
         [0_u32, 1, 2].iter().flat_map(|corner| corner.to_le_bytes()).collect(),
         wholes(&[1]),
         [floats(&[0.0, 0.0, -1.0, 0.125]), vec![7, 8, 9]].concat(),
-        // One structure: three ranges, fixed to the head (1), with a hinge (1).
+        // The words of one structure: three ranges, the mark of a structure that is fixed to the head (1), and the mark
+        // of a hinge (1).
         wholes(&[1, 0, 3, 0, 1, 0, 1]),
         vec![1, 1],
         floats(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0]),
         [reals(&[20.0]), wholes(&[2_000_000_000_000]), reals(&[0.25])].concat(),
-        // Light, path (a pan is the second kind) and sway.
+        // The numbers of the light, the path (a pan is the second kind) and the sway.
         [floats(&[0.0, 0.0, 1.0, 0.25, 0.75]), vec![4, 5, 6]].concat(),
         [vec![1], floats(&[0.0, 0.0, 0.0]), reals(&[30.0]), reals(&[0.0])].concat(),
     ];

@@ -123,8 +123,9 @@ fn recent_records_of_an_observed_run_do_not_grow_with_its_length() {
         (most, stepper.record().trace_hash())
     };
     let [(short, _), (long, hash)] = [600, 1_800].map(most);
-    // The next pass begins at twice the number of records that the last pass has left. This number varies with the
-    // visible part of the scene. Without passes, the number of records would be three times as large.
+    // Old records are discarded in passes. The next pass begins at twice the number of records that the last pass has
+    // left. This number varies with the visible part of the scene. Without passes, the number of records would be three
+    // times as large.
     assert!(long <= short + short / 4, "{long} records, {short} in a third of the time");
     let everything = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1).fields(1_800);
     assert_eq!(hash, everything.run().expect("it runs").record().trace_hash());

@@ -66,12 +66,12 @@ impl Decimation {
     fn surface(&self, wanted: usize) -> Surface {
         let passed = self.passed.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let known = passed.filter(|passed| passed.serves(wanted));
-        // A state far from the wanted number saves little, so a nearer one replaces it.
+        // A stored state far from the wanted number saves little work, so a nearer state replaces it.
         let is_near = known.as_ref().is_some_and(|known| known.left() / 2 <= wanted);
         let mut first = known.map_or_else(|| FirstPass::new(Surface::new(&self.scene)), Arc::unwrap_or_clone);
         if !is_near {
             first.until(wanted + wanted / PASSED_ABOVE, wanted);
-            // A state that was reached only for this number is of no use to others.
+            // A state that was reached only for this number does not help with other numbers, so it is not stored.
             if first.serves(wanted) {
                 *self.passed.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(first.clone()));
             }

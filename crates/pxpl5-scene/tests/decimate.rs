@@ -163,8 +163,8 @@ proptest! {
     }
 }
 
-/// Decimates to numbers in an order in which later calls continue from states of earlier calls, and in which they
-/// cannot.
+/// Decimates a scene to several sizes, one after the other. Some calls can continue from the state of an earlier call,
+/// and others cannot.
 #[test]
 fn decimating_in_two_steps_gives_the_same_scene() {
     for (name, numbers) in [

@@ -23,7 +23,6 @@ fn corners(scene: &Scene, triangle: [u32; 3]) -> [DVec3; 3] {
     triangle.map(|corner| scene.vertices()[corner as usize].position.as_dvec3())
 }
 
-/// Returns the area vectors of all triangles.
 fn areas(scene: &Scene) -> Vec<DVec3> {
     let area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a) / 2.0;
     scene.triangles().iter().map(|triangle| area(corners(scene, *triangle))).collect()
@@ -216,7 +215,7 @@ fn assert_covers(points: &[(f64, f64)], scene: &Scene) {
     let whole = shoelace(points);
     let areas = areas(scene);
     let sum: f64 = areas.iter().map(|area| area.z).sum();
-    // Single precision of the scene's places.
+    // The scene stores positions in single precision.
     assert!((sum - whole).abs() < 1e-5 * whole.abs(), "{points:?}: {sum} for {whole}");
     assert!(areas.iter().all(|area| area.z * whole.signum() > -1e-6 * whole.abs()), "{points:?}: {areas:?}");
 }
@@ -228,7 +227,7 @@ const DART: [(f64, f64); 4] = [(0.0, 2.0), (-2.0, -2.0), (0.0, -1.0), (2.0, -2.0
 fn the_notch_of_a_polygon_stays_open_for_any_start_and_orientation() {
     let polygons: [&[(f64, f64)]; 6] = [
         &DART,
-        // L, U, and a star; a comb with points on straight lines, and one with a point twice.
+        // The letters L and U, a star, a comb with points on straight lines, and a polygon with a repeated point.
         &[(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)],
         &[(0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (2.0, 2.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)],
         &[(0.0, 3.0), (-0.5, 0.5), (-3.0, 0.0), (-0.5, -0.5), (0.0, -3.0), (0.5, -0.5), (3.0, 0.0), (0.5, 0.5)],
@@ -365,7 +364,8 @@ fn faces_of_obj_are_flat_if_smoothing_is_off() {
 fn smoothing_groups_are_shaded_separately() {
     let grouped: String = (1..).zip(FACES).map(|(group, face)| format!("s {group}\n{face}")).collect();
     assert!(is_flat(&obj(format!("{CUBE}{grouped}"))));
-    // Two faces that meet at a right angle in one group: at their edge the mean, elsewhere their own.
+    // Two faces of one group meet at a right angle. At their common edge the normal is the mean, elsewhere each face
+    // has its own normal.
     let scene = obj(format!("{CUBE}s 1\n{}{}s off\n{}", FACES[0], FACES[2], FACES[1]));
     let mean = |v: &&pxpl5_scene::Vertex| (v.normal - Vec3::new(-1.0, -1.0, 0.0).normalize()).length() < 0.4;
     assert_eq!(scene.vertices().iter().filter(mean).count(), 2);
@@ -393,13 +393,14 @@ fn colours_of_obj_vertices_are_drawn_as_fractions_or_bytes() {
         let vertices: String = points.iter().zip(colours).map(|(p, c)| format!("v {p} {c}\n")).collect();
         obj(format!("{vertices}s 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"))
     };
-    // In the order in which the faces name the points: 1, 3, 2, 4.
+    // The colours are in the order in which the faces name the points: 1, 3, 2, 4.
     let of = |scene: &Scene| scene.vertices().iter().map(|v| v.colour).collect::<Vec<_>>();
     let expected = [[255, 0, 0], [0, 0, 255], [0, 128, 0], [255, 255, 255]];
     assert_eq!(of(&with(["1 0 0", "0 0.5 0", "0 0 1.0", "1 1 1"])), expected);
     assert_eq!(of(&with(["255 0 0", "0 128 0", "0 0 255", "255 255 255"])), expected);
     assert_eq!(of(&with(["1.0 0 0 1", "0 5e-1 0 1", "0 0 1 1", "1 1 1 1"])), expected);
-    // A fourth number alone is a weight; a point without colour is grey among those with one.
+    // A fourth number alone is a weight and not a colour. A point without a colour is grey, even if other points have
+    // colours.
     assert!(of(&with(["1", "1", "1.0", "0.5"])).iter().all(|colour| *colour == DEFAULT_COLOUR));
     assert_eq!(of(&with(["1 0 0", "", "", ""]))[..2], [[255, 0, 0], DEFAULT_COLOUR]);
     let error = read(Format::Obj, "v 0 0 0 red 0 0\n").expect_err("no number").to_string();
@@ -574,7 +575,7 @@ fn a_model_without_a_triangle_that_has_an_area_is_refused() {
     }
     let line = ascii_ply(&ELEMENTS).replace("0 1 0\n0 0 1\n", "2 0 0\n3 0 0\n");
     assert!(read(Format::Ply, line).expect_err("a line").to_string().contains("triangle with an area"));
-    // One such triangle is enough, however small and thin.
+    // One triangle with an area is enough, however small and thin.
     let thin = obj("v 0 0 0\nv 1 0 0\nv 0 1e-9 0\nv 2 0 0\nf 1 2 4\nf 1 2 3\n");
     assert_eq!(thin.triangles().len(), 2);
     let fitted = from_bytes(b"v 0 0 0\nv 1e-300 0 0\nv 0 1e-300 0\nf 1 2 3\n", Format::Obj, "test").expect("small");

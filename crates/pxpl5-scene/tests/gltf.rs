@@ -100,7 +100,6 @@ fn scene(bytes: &[u8]) -> Scene {
     read(bytes).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns the corners of all triangles.
 fn corners(scene: &Scene) -> Vec<[Vec3; 3]> {
     scene.triangles().iter().map(|t| t.map(|corner| scene.vertices()[corner as usize].position)).collect()
 }
@@ -307,7 +306,7 @@ fn quantized_interleaved_and_sparse_numbers_are_read() {
     let mut document = writer.one_mesh(json!({"attributes": {"POSITION": positions}}));
     document["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
     assert_eq!(corners(&scene(&writer.binary(&document))), [[at(0), at(1), at(3)]]);
-    // Zeros without a view, of which two vertices are replaced.
+    // A sparse accessor without a buffer view: all vertices are zero, except for two replaced vertices.
     let mut writer = Writer::default();
     let indices = writer.view(&[1, 2]);
     let values: Vec<u8> = [SQUARE[1], SQUARE[3]].as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
@@ -416,7 +415,7 @@ fn errors_name_the_part_of_the_file() {
     );
     refused(&|d| d["accessors"][2]["componentType"] = 5126.into(), &["accessors[2].componentType", "F32"]);
     refused(&|d| d["bufferViews"][1]["byteOffset"] = u64::MAX.into(), &["bufferViews[1]: expected 48 bytes at byte"]);
-    // 0 to 3 are the vertices; the indices of the file now contain a 4.
+    // The vertices have the indices 0 to 3, but the file now contains the index 4.
     let mut writer = Writer::default();
     let positions = writer.vectors(&SQUARE);
     let indices = writer.shorts(&[0, 1, 4]);
@@ -479,7 +478,7 @@ fn small_files_that_ask_for_much_memory_are_refused() {
     let mut document = square().1;
     document["extensionsUsed"] = vec![""; 1_000_000].into();
     assert!(too_much(&writer.binary(&document)), "many empty texts");
-    // One sparse vertex of a thousand millions.
+    // A sparse accessor of a thousand million vertices, of which the file stores one.
     let mut writer = Writer::default();
     let index = writer.view(&[1]);
     let value = writer.view(&[0; 12]);
@@ -522,7 +521,7 @@ proptest! {
         }
     }
 
-    /// Every number of the document becomes any number in turn, which no damage of bytes reaches as often.
+    /// Replaces each number of the document by other numbers. Random damage of bytes seldom changes these numbers.
     #[test]
     fn no_number_in_the_document_causes_a_panic(which in 0..64_usize, number: u64, small in 0..9_u64, is_small: bool) {
         let (writer, document) = square();

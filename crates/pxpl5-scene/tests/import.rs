@@ -63,7 +63,8 @@ fn given_normals_win_over_computed_ones_and_split_a_vertex() {
 
 #[test]
 fn missing_normals_are_the_mean_of_the_triangles_weighted_by_area() {
-    // At the shared corner: a triangle of area 1/2 facing +z, one of area 1 facing +x. Mean (2, 0, 1) / sqrt 5.
+    // Two triangles share a corner: one of area 1/2 faces +z, and one of area 1 faces +x. The mean normal is (2, 0, 1)
+    // / sqrt 5.
     let scene = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0\nv 0 0 1\ns 1\nf 1 2 3\nf 1 4 5\n");
     let expected = Vec3::new(2.0, 0.0, 1.0) / 5.0_f32.sqrt();
     assert!((scene.vertices()[0].normal - expected).length() < 1e-6);
@@ -159,7 +160,8 @@ fn a_scene_written_as_ply_is_read_back() {
     let back = ply(written(&mig));
     let again = ply(written(&back));
     assert_eq!(back.triangles(), mig.triangles());
-    // From a radius of 2 m to the fitted one, and centred as before; then unchanged but for rounding.
+    // The first import scales the radius of 2 m to the radius of imported models and keeps the centre. The second
+    // import changes nothing except for rounding.
     let scale = (IMPORT_RADIUS_M / 2.0) as f32;
     for ((a, b), c) in mig.vertices().iter().zip(back.vertices()).zip(again.vertices()) {
         assert!((a.position * scale - b.position).length() < 1e-6);
@@ -182,14 +184,15 @@ ATOM      6  N   SER A   1      99.000  -2.000   0.500  1.00  0.00           N  
 #[test]
 fn atoms_become_spheres_with_van_der_waals_radii_and_their_colours() {
     let scene = read(Format::Pdb, SERINE).expect("sound");
-    // N, C of the first location, Fe, O; not the second location, not the second model. Radii: Bondi 1964.
+    // The scene has N, the first location of C, Fe and O, but neither the second location nor the second model. The
+    // radii are from Bondi 1964.
     let radii: Vec<f32> = scene.spheres().iter().map(|s| s.radius / scene.spheres()[0].radius).collect();
     for (radius, expected) in radii.iter().zip([1.55, 1.70, 2.00, 1.52]) {
         assert!((radius - expected / 1.55).abs() < 1e-6);
     }
     assert_eq!(radii.len(), 4);
     assert_eq!(scene.spheres()[3].colour, [240, 24, 24]);
-    // 2 Ångström apart along x, as many times as large as the nitrogen's radius of 1.55.
+    // The atoms are 2 Ångström apart along x, on the scale in which the nitrogen has a radius of 1.55.
     let apart = scene.spheres()[1].centre - scene.spheres()[0].centre;
     assert!((apart.x / scene.spheres()[0].radius - 2.0 / 1.55).abs() < 1e-5);
 }
@@ -428,7 +431,7 @@ fn an_atom_has_its_first_alternate_location() {
     let scene = from_bytes(text.concat().as_bytes(), Format::Pdb, "test").expect("atoms");
     let centres: Vec<f32> = scene.spheres().iter().map(|sphere| sphere.centre.x).collect();
     assert_eq!(centres.len(), 4);
-    // The places 1, 2, 4 and 7: steps of 1, 2 and 3.
+    // The atoms lie at 1, 2, 4 and 7, so the steps between them are 1, 2 and 3.
     let step = centres[1] - centres[0];
     let steps: Vec<f32> = centres.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect();
     assert!(steps.iter().zip([1.0, 2.0, 3.0]).all(|(found, expected)| (found - expected).abs() < 1e-4), "{steps:?}");

@@ -115,7 +115,7 @@ fn hostile_obj_files_need_at_most_seven_times_their_size() {
         "window.obj",
         (seen.clone() + &points("v ", 9) + &points("vn ", 9) + &window.repeat(60_000)).into_bytes(),
     );
-    // A polygon of many notches, whose ears are cut, and faces without smoothing.
+    // A polygon with many notches, which is divided by cutting ears, and faces without smoothing.
     let comb: String = (0..15_000).fold(String::new(), |mut text, n| {
         writeln!(text, "v {} {} 0", if n % 2 == 0 { 9.5 } else { 1.25 }, f64::from(n) / 1e3).expect("into a string");
         text

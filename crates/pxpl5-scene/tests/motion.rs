@@ -58,14 +58,15 @@ fn the_mean_translation_is_about_that_of_recorded_heads() {
 
 #[test]
 fn practically_all_energy_of_yaw_lies_below_2_hz_and_95_percent_below_0_14_hz() {
-    // Discrete Fourier transform of 400 s at 8 Hz, mean removed; a Hann window keeps lines from leaking upwards.
+    // The discrete Fourier transform of 400 s at 8 Hz, without the mean. A Hann window prevents leaks of lines to
+    // higher frequencies.
     let motion = swaying(5);
     let count = 3_200_usize;
     let mut previous = 0.0_f64;
     let yaw = (0..count).map(|i| {
         let f = forward(&motion.pose(i as u64 * SECOND / 8));
         let angle = (-f.x).atan2(-f.z);
-        // Unwrapped: the next turn is the nearest one.
+        // Unwrap the angle: a turn between two samples is less than half a circle.
         previous +=
             (angle - previous + 3.0 * std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
         previous
@@ -168,7 +169,7 @@ fn boxed_share(scene: &Scene, time_ps: u64) -> f32 {
 
 #[test]
 fn mig_varies_between_filling_the_view_and_being_small() {
-    // Each at least a twentieth of two laps.
+    // The model is large in at least a twentieth of two laps, and small in another twentieth.
     let mig = builtin("mig").expect("a built-in scene");
     let shares: Vec<f32> = (0..80).map(|i| boxed_share(&mig, i * SECOND / 2)).collect();
     assert!(shares.iter().filter(|&&s| s > 0.9).count() >= 4, "{shares:?}");

@@ -47,7 +47,7 @@ fn check(normal: &str) {
 
 #[test]
 fn a_normal_of_any_length_is_a_direction() {
-    // The square of 3e-162 is not 0, and has one bit.
+    // The square of 3e-162 is not 0, but a subnormal number with a single bit.
     check("3e-162 0 0");
     for exponent in -330..=15 {
         let largest = if exponent == 15 { "1e15" } else { "" };

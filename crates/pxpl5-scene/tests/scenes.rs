@@ -34,7 +34,8 @@ fn each_scene_has_the_stated_number_of_primitives() {
     assert_eq!(counts("full-screen:1"), (1, 0));
     assert_eq!(counts("aircraft"), (100, 0));
     assert_eq!(counts("typical:37"), (37, 0));
-    // Six sides of two triangles, ten boxes without a lower side; 30 whole boxes and ten more without.
+    // The room has six sides of two triangles, and ten boxes without a lower side. The full scene has 30 whole boxes
+    // and ten more boxes without a lower side.
     assert_eq!(counts("gallery"), (6 * 2 + 10 * 10, 0));
     assert_eq!(counts("gallery:full"), (112 + 30 * 12 + 10 * 10, 0));
 }
@@ -94,7 +95,7 @@ fn every_edge_of_the_head_is_used_once_in_each_direction() {
             *edges.entry(edge).or_default() += 1;
         }
     }
-    assert_eq!(edges.len(), 3 * 59_592); // each once
+    assert_eq!(edges.len(), 3 * 59_592); // each directed edge once
     assert!(edges.keys().all(|&(a, b)| edges.contains_key(&(b, a))));
     // Euler: a surface without holes has V - E + F = 2.
     assert_eq!(head.vertices().len() as i64 - edges.len() as i64 / 2 + 59_592, 2);
@@ -178,7 +179,7 @@ fn the_ailerons_of_mig_deflect_oppositely() {
         sum_of_heights(&mig, 1, early) > sum_of_heights(&mig, 1, 0)
             && sum_of_heights(&mig, 2, early) < sum_of_heights(&mig, 2, 0)
     );
-    // The right one is the mirror image of the left one half a swing later.
+    // The right structure is the mirror image of the left structure half a swing later.
     assert!((sum_of_heights(&mig, 1, early) - sum_of_heights(&mig, 2, late)).abs() < 1e-5);
     assert!((sum_of_heights(&mig, 1, late) - sum_of_heights(&mig, 2, early)).abs() < 1e-5);
 }
@@ -213,11 +214,12 @@ fn full_screen_triangles_lie_at_different_depths() {
 
 #[test]
 fn the_first_atoms_of_molecules_are_those_of_myoglobin() {
-    // The entry has 783 carbons, 216 nitrogens, 215 oxygens and 2 sulphurs. The scene adds a water molecule.
+    // The molecule's PDB entry has 783 carbons, 216 nitrogens, 215 oxygens and 2 sulphurs. The scene adds a water
+    // molecule.
     let molecules = scene("molecules");
     let colours = [[144, 144, 144], [48, 80, 248], [255, 216, 48], [240, 24, 24], [255, 255, 255]];
     let counts = colours.map(|colour| molecules.spheres().iter().filter(|s| s.colour == colour).count());
-    // Carbon, nitrogen, sulphur, oxygen, hydrogen.
+    // The counts are of carbon, nitrogen, sulphur, oxygen and hydrogen.
     assert_eq!(counts, [783, 216, 2, 216, 2]);
 }
 

@@ -4,8 +4,9 @@
 use crate::statistics::Statistics;
 use std::ops::Deref;
 
-/// Largest number of samples of each measured quantity that a simulation keeps if it only needs statistics. The samples
-/// of one quantity take 512 KiB.
+/// Largest number of samples of each measured quantity that a simulation keeps if it only needs statistics.
+///
+/// The samples of one quantity take 512 KiB.
 ///
 /// Under Slats, one sample belongs to a field. Under any other pipeline, one sample belongs to a picture.
 pub const KEPT_SAMPLES: usize = 65_536;

@@ -20,8 +20,9 @@ pub const fn mix(value: u64) -> u64 {
     c ^ (c >> 31)
 }
 
-/// The sum of the hashes of all records. A record has the time of an event and numbers that describe the event.
+/// The hash of a run: the sum of the hashes of all its records.
 ///
+/// A record has the time of an event and numbers that describe the event.
 /// The sum depends on every time and every number. The sum does not depend on the order of simultaneous events, because
 /// this order has no meaning.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]

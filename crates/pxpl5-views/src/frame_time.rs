@@ -58,7 +58,8 @@ fn nearest_fraction(exact: Fraction) -> Fraction {
         let times = rest.over / rest.under;
         let fits = last.fits(before);
         if times > fits {
-            // The next fraction of the chain is too large, so the best one lies between it and the last.
+            // The next fraction of the chain is too large, so the best fraction lies between the next and the last
+            // fraction.
             let between = last.followed(fits, before);
             let last_is_nearer = exact.distance(last) * between.under <= exact.distance(between) * last.under;
             return if last_is_nearer && last.under > 0 { last } else { between };

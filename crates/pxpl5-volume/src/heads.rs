@@ -304,7 +304,7 @@ impl<'a> HeadComparison<'a> {
 
     fn head_mounted(&self, time_ps: u64, side: f64, picture_px: u32) -> Result<RgbImage, SettingError> {
         let then = time_ps - self.latency_ps;
-        // Draw the scene for the position of the eye one latency ago.
+        // Draw the scene for the position of the eye one latency before.
         let look = self.look(then, side, picture_px)?;
         let camera = look.camera;
         let azimuth = camera.azimuth_deg.to_radians();

@@ -33,8 +33,8 @@ fn every_row_without_a_scene_is_met() {
     }
 }
 
-/// Checks the numbers that no run can change: inputs from section 2 of the paper's list, and results of plain
-/// arithmetic. They have no verdict.
+/// Checks the numbers that no run can change: inputs that the paper states, and results of plain arithmetic. They have
+/// no verdict.
 #[test]
 fn a_number_independent_of_runs_is_a_definition_without_verdict() {
     let inputs = ["P1", "P6", "P13", "P16", "P18", "P20", "D12"];

@@ -1,4 +1,5 @@
-//! Tests of a moving head before the volume: errors of a late head-mounted display, and errors of voxels.
+//! Tests of a head that moves in front of the volume: errors of a head-mounted display with latency, and errors of
+//! voxels.
 
 use pxpl5_scene::builtin;
 use pxpl5_sim::parameters::PathSettings;
@@ -25,7 +26,7 @@ fn study(motion: &dyn Motion, question: &HeadStudyConfig) -> pxpl5_volume::heads
     before.study(question).expect("valid")
 }
 
-/// Checks that a still head sees no error on the head-mounted display, and still sees errors of the voxels.
+/// Checks that the head-mounted display has no error for a still head, and that the voxels still have errors.
 #[test]
 fn a_still_head_has_no_error_of_latency() {
     let study = study(&Still(Pose::IDENTITY), &QUESTION);
@@ -77,7 +78,7 @@ fn the_error_of_voxels_is_at_most_their_size() {
     let most_deg = (most_mm.hypot(pixel_mm / 2.0) / least_distance_mm).atan().to_degrees();
     assert!(sample.voxel_worst_deg <= most_deg, "{} > {most_deg}", sample.voxel_worst_deg);
     assert!(sample.voxel_mean_mm > 0.2 * pixel_mm, "{sample:?}");
-    // A cell of 8 x 8 pixels, from 508 mm.
+    // A cell of 8 x 8 pixels, seen from a distance of 508 mm.
     let cell = 2.0 * (4.0 * pixel_mm / 508.0).atan().to_degrees();
     assert!((sample.dither_cell_deg - cell).abs() < 1e-9);
 }

@@ -148,14 +148,14 @@ fn clocks_and_words_follow_from_the_programs() {
     assert_eq!((work.regions, work.triangles, work.commands, work.left_out), (36, 1, 1, 0));
     assert_eq!(work.clocks, 36 * (6 + 62 + 72) + 238);
     assert_eq!(work.command_words, 36 * (2 + 5 + 12) + 38);
-    // Clearing all regions of 198 slices: 11.05 ms of one renderer.
+    // Clearing all regions of 198 slices takes one renderer 11.05 ms.
     let layout = Layout::rendering_control_phong();
     let clears = 198 * 36 * CommandKind::Clear.clocks(&layout).expect("every layout");
     assert!((f64::from(clears) / 40e6 * 1e3 - 11.05).abs() < 0.005);
 }
 
-/// Checks the specification's numbers. A tile takes 7.2 us on the ring. 10 % of the tiles of 198 slices take 82 ms of
-/// one channel, or 10.3 ms of eight. Renderers and processors divide their work.
+/// Checks numbers that were computed by hand. A tile takes 7.2 us on the ring. 10 % of the tiles of 198 slices take 82
+/// ms of one channel, or 10.3 ms of eight. Renderers and processors divide their work.
 #[test]
 fn bounds_follow_from_counts() {
     let bounds = SliceBounds { work: RendererWork::default(), tiles: 11_405, tile_words: 128, copies: 0 };

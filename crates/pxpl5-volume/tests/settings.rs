@@ -74,8 +74,8 @@ fn a_tolerance_is_a_name_or_a_number_of_pixels() {
     assert!(refused("bins.tolerance=-1").contains("clip, codes or a number of pixels"));
 }
 
-/// Checks the errors for the invalid inputs of section 9. Each error says what is wrong and where, and names the
-/// expected and the found value.
+/// Checks the errors for invalid inputs. Each error says what is wrong and where, and names the expected and the found
+/// value.
 #[test]
 fn invalid_input_is_refused_with_the_expected_and_found_values() {
     for (assignment, parts) in [

@@ -283,8 +283,8 @@ mod tests {
     }
 
     /// Tests the reports on scenes that are too large. Slats can draw about 140 triangles in a field (TR94), and the
-    /// Mig has ten times as many. For a scene that is too large, the page reports the number of triangles that would be
-    /// drawn in time. With just-in-time pixels, this number must be drawn in time, and twice this number must not.
+    /// Mig has three times as many. For a scene that is too large, the page reports the number of triangles that would
+    /// be drawn in time. With just-in-time pixels, this number must be drawn in time, and twice this number must not.
     #[test]
     fn a_scene_that_is_too_heavy_is_reported_with_a_size_that_fits() {
         let misses_all = |settings: &str| {

@@ -13,6 +13,7 @@ pub struct Message {
     pub body: Body,
 }
 
+/// The content of a message on the ring.
 #[derive(Clone, Debug)]
 pub enum Body {
     /// Commands for a renderer, in the order in which the renderer executes them.
@@ -253,8 +254,9 @@ pub enum Lines {
     Field(FieldParity),
 }
 
-/// The two fields of an interlaced video frame, distinguished by their lines. Line 0 is the top line of the picture and
-/// belongs to the even field.
+/// The two fields of an interlaced video frame, distinguished by their lines.
+///
+/// Line 0 is the top line of the picture and belongs to the even field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FieldParity {

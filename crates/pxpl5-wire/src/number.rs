@@ -85,25 +85,31 @@ macro_rules! count_from_zero {
 }
 
 count_from_zero! {
-    /// The number of a display period. A period is the time from one tick of the display's clock to the next. Number n
-    /// begins at tick n, and tick 0 is the start of simulated time. A period of NTSC video is a field. A retrace has
-    /// the number of the field that begins with it. A period of the high-resolution frame buffer is a refresh.
+    /// The number of a display period.
+    ///
+    /// A period is the time from one tick of the display's clock to the next. Number n begins at tick n, and tick 0 is
+    /// the start of simulated time. A period of NTSC video is a field. A retrace has the number of the field that
+    /// begins with it. A period of the high-resolution frame buffer is a refresh.
     PeriodNumber
 }
 
 count_from_zero! {
-    /// The number of a picture. A picture is everything that a pipeline draws for one moment and shows together, on all
-    /// surfaces. Each pipeline counts its pictures from 0. A picture of Rendering Control is a frame with both eyes. A
-    /// picture of Slats or just-in-time pixels is a field and has the number of its period. A picture of frameless
-    /// rendering is a batch of blocks.
+    /// The number of a picture.
+    ///
+    /// A picture is everything that a pipeline draws for one moment and shows together, on all surfaces. Each pipeline
+    /// counts its pictures from 0. A picture of Rendering Control is a frame with both eyes. A picture of Slats or
+    /// just-in-time pixels is a field and has the number of its period. A picture of frameless rendering is a batch of
+    /// blocks.
     PictureNumber
 }
 
 count_from_zero! {
-    /// The number of a view. A view is one pose of the head, with edits of the scene, as received from the host. The
-    /// program that requests the views also assigns their numbers. Rendering Control and frameless rendering request
-    /// one view for each picture. Slats requests one view for each transmission. Just-in-time pixels request a fixed
-    /// number of views for each field.
+    /// The number of a view.
+    ///
+    /// A view is one pose of the head, with edits of the scene, as received from the host. The program that requests
+    /// the views also assigns their numbers. Rendering Control and frameless rendering request one view for each
+    /// picture. Slats requests one view for each transmission. Just-in-time pixels request a fixed number of views for
+    /// each field.
     ViewNumber
 }
 

@@ -1,6 +1,7 @@
 use crate::REGION_SIZE;
 use serde::{Deserialize, Serialize};
 
+/// An eye of the viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Eye {
@@ -53,8 +54,9 @@ impl From<Eye> for SurfaceId {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct RegionId(pub u16);
 
-/// The division of a picture into a grid of regions. All lengths are in pixels. Regions in the last column and in the
-/// last row can be smaller than all other regions.
+/// The division of a picture into a grid of regions.
+///
+/// All lengths are in pixels. Regions in the last column and in the last row can be smaller than all other regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct RegionGrid {
     pub width: u32,

@@ -296,7 +296,8 @@ impl<D: Drawn> RegionMaster<D> {
         } else if self.stored[renderer].len() < room {
             RegionEnd::Stored
         } else {
-            // Under the other rule, finished regions wait in pixel memory, whatever the capacity of the store is.
+            // Under the other rule for finished regions, the regions wait in pixel memory, for any capacity of the
+            // store.
             if room > 0 {
                 self.gp.note_full_store();
             }

@@ -218,7 +218,7 @@ impl<D: Drawn> Slave<D> {
             shade: last,
             copy: token.end.way().filter(|_| last).map(|way| self.config.copy_order(target, way)),
         };
-        // A region of one of several views has no place on a surface.
+        // A region that belongs to one of several views has no place on a surface of the display.
         let frame_buffer = (D::VIEWS == 1).then_some(target.frame_buffer);
         Some(TokenBin { pass: Arc::clone(bins.passes.get(view)?), context, view, region, envelope, frame_buffer })
     }

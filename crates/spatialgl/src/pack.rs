@@ -9,6 +9,7 @@ pub const DENSE_PIXELS: usize = 10;
 /// Number of pixels in one word of the projector's memory (published in the SpatialGL paper).
 pub const PIXELS_PER_WORD: u32 = 8;
 
+/// The order of eight pixels in a byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BitOrder {
@@ -36,6 +37,7 @@ pub const fn pixel_of_word(word: u32, pixel: u32) -> u8 {
     (column & 1 | column >> 7 & 2 | column >> 14 & 4) as u8
 }
 
+/// Returns a word of eight pixels in the given order of bits.
 #[must_use]
 pub const fn in_bit_order(word: u32, order: BitOrder) -> u32 {
     match order {

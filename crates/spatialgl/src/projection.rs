@@ -53,6 +53,7 @@ impl Jitter {
     }
 }
 
+/// The eye and the shear with which a slice is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliceEye {
     /// Position of the eye: horizontal and vertical position, and distance from the slice, in pixels. `None` for an eye

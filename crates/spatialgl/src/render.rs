@@ -36,6 +36,7 @@ impl Strobes {
 
 pxpl5_sim::parameters::named!(Strobes, "choice of strobes", Strobes::ALL);
 
+/// The choices for drawing a volume.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeConfig {
     pub binning: Binning,

@@ -3,6 +3,7 @@
 use crate::raster::SliceStats;
 use serde::Serialize;
 
+/// Counts of the primitives, slices and passes of a drawn volume.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct VolumeStats {
     pub vertices: u64,

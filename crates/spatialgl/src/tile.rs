@@ -79,7 +79,7 @@ impl TileGrid {
         let rows_of_tiles = image.stencil.chunks(row_bytes * self.tile as usize);
         let mut any = vec![0u8; row_bytes];
         for (rows, tiles) in rows_of_tiles.zip(tiles.chunks_mut(self.columns as usize)) {
-            // Combine the stencil rows of one row of tiles, then look at each tile's bytes once.
+            // Combine the stencil rows of one row of tiles, then read the bytes of each tile once.
             any.fill(0);
             for row in rows.chunks_exact(row_bytes) {
                 any.iter_mut().zip(row).for_each(|(any, byte)| *any |= byte);

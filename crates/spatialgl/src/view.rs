@@ -66,6 +66,7 @@ impl SliceView {
     }
 }
 
+/// The number of bits for each colour of a pixel: 1 or 8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PixelFormat {

@@ -1,5 +1,5 @@
-//! Tests of cases 12 and 21 of the specification: vertex codes, sectors, slices drawn, and fragments that bins without
-//! a tolerance lose.
+//! Tests of the numbered cases 12 and 21, which were computed by hand: vertex codes, sectors, slices drawn, and
+//! fragments that bins without a tolerance lose.
 
 mod support;
 

@@ -1,4 +1,4 @@
-//! Tests with the same recording on three displays, of connectedness (case 28), and of the time model.
+//! Tests of one recording on three displays, of connectedness (numbered case 28), and of the time model.
 
 mod support;
 
@@ -7,7 +7,7 @@ use pxpl5_scene::builtin;
 use spatialgl::*;
 use support::*;
 
-/// Returns a recording of the sphere of section 6: 24 x 48 facets, r = 300.
+/// Returns a recording of a sphere with 24 x 48 facets and a radius of 300 pixels.
 fn sphere() -> CommandBuffer {
     let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 24, [255; 3]);
     let mut context = DrawContext::default();
@@ -22,9 +22,10 @@ fn connected_percent(clip: SliceClip, projection: Projection, coverage: Coverage
     connected(&display, &sphere(), &frame).expect("colours kept").percent()
 }
 
-/// Checks case 28 and the table of section 6 for the sphere. The specification does not define where the samples lie on
-/// a curve. Our samples lie in the middle of equal steps of each facet's part, and give 18.3, 18.8 and 25.4 %. The
-/// specification has 18.7, 19.3 and 26.0 %. With other random eyes, jitter gives the same percentages.
+/// Checks the numbered case 28: the percentages of connected samples on a sphere. The expected percentages, such as
+/// 18.7, 19.3 and 26.0, come from an independent computation, which does not state where the samples lie on a curve.
+/// Samples in the middle of equal steps of each facet's part give 18.3, 18.8 and 25.4 %. With other random eyes, jitter
+/// gives the same percentages.
 #[test]
 fn case_28_connected_surfaces_of_a_sphere() {
     let jittered = Projection::Jittered(Jitter::new(1));
@@ -126,9 +127,9 @@ fn a_scene_does_not_depend_on_the_display() {
     }
 }
 
-/// Checks the formulas of section 6 for 396 slices of 768 x 768 pixels, from counts alone.
+/// Checks the formulas of the time model for 396 slices of 768 x 768 pixels, from counts alone.
 #[test]
-fn the_model_of_time_follows_the_specification() {
+fn the_model_of_time_has_the_rates_of_its_table() {
     let size = [768, 768];
     let pixels = 768 * 768 * 396;
     let stats = VolumeStats {
@@ -150,7 +151,8 @@ fn the_model_of_time_follows_the_specification() {
     let tenth = VolumeStats { bytes_sent: pixels / 20, pixels_packed: pixels / 10, ..stats.clone() };
     near(model.packed(&tenth, size, 32).readback_ms, 58.4);
     near(all.gpu_ms - model.packed(&tenth, size, 32).gpu_ms, 36.5 - 3.65 + 0.005);
-    // 396 colour targets 36.5 ms and 99 stencils a quarter of it, filling queries 9.1 ms, 57,024 queries 114.0 ms.
+    // 396 colour targets take 36.5 ms, 99 stencils a quarter of a target each, the fill for queries 9.1 ms, and 57,024
+    // queries 114.0 ms.
     near(
         model.packed(&VolumeStats { pixels_packed: 0, ..stats.clone() }, size, 32).gpu_ms,
         36.5 * 1.25 + 9.12 + 114.05,
@@ -181,15 +183,14 @@ fn planes_of_few_bits_leave_a_dead_zone() {
         // In the plane of slice 0 A = B = r S.
         let first = (1..10_000).map(|i| f64::from(i) * 1e-3).find(|r| display.accepts(0, DVec3::new(*r, 0.0, 0.0)));
         assert!((first.expect("somewhere") - radius).abs() < 0.002 + radius * 0.002, "{first:?}");
-        // The columns whose centres (0.5, 1.5 ...) lie inside, whatever is drawn.
+        // The dead zone has the columns whose centres (0.5, 1.5 ...) lie inside the radius, whatever is drawn.
         assert_eq!(dead_zone_radius(&display), Some((radius + 0.5).floor() as u32));
     }
     let exact = swept(SliceClip::ShaderPlanes, Projection::Orthographic);
     assert_eq!(dead_zone_radius(&exact), Some(0), "a property of the display, not of what is lit");
 }
 
-/// Checks section 1 of the specification. Near the axis, the prism is bright and exact planes are dark. The hyperbola
-/// is neither.
+/// Checks the brightness near the axis: the prism is bright and exact planes are dark. The hyperbola lies between both.
 #[test]
 fn brightness_over_radius_by_variant() {
     let wall = [[-300.0, -200.2, 1.3], [300.1, -200.2, 1.3], [0.6, 280.7, 1.3]];

@@ -1,5 +1,5 @@
-//! Tests of cases 13 to 20 and 25 of the specification: fragments of every clip variant, by the reference model and by
-//! the fast rasterizer.
+//! Tests of the numbered cases 13 to 20 and 25, computed by hand: fragments of every clip variant, by the reference
+//! model and by the fast rasterizer.
 
 mod support;
 
@@ -10,8 +10,8 @@ const ORTHOGRAPHIC: Projection = Projection::Orthographic;
 const EXACT: SliceClip = SliceClip::ShaderPlanes;
 const HYPERBOLA: SliceClip = SliceClip::Hyperbolic(0.25);
 
-/// Checks that two numbers of fragments are equal within the specification's tolerance. This tolerance allows for other
-/// orders of the same sums in double precision.
+/// Checks that two numbers of fragments are equal within a tolerance. The tolerance allows for other orders of the same
+/// sums in double precision.
 fn same(found: u64, expected: u64, what: &str) {
     assert!(found.abs_diff(expected) <= 2, "{what}: {found}, not {expected}");
 }

@@ -1,4 +1,5 @@
-//! Tests of cases 1 to 11 and 26 of the specification: slices, tie rules, clip variants and projections as numbers.
+//! Tests of the numbered cases 1 to 11 and 26, computed by hand: slices, tie rules, clip variants and projections as
+//! numbers.
 
 mod support;
 
@@ -185,7 +186,7 @@ fn case_9_an_eye_moved_aside_and_a_shear() {
     close(z, 0.090_012, 5.1e-7);
     let [u, v, z, _] = seen(-120.0, 64.0, -3.0);
     close(u, -119.720_858, 5.1e-7);
-    // The specification prints 63.283430; to six digits it is 63.283431 (63.28343080).
+    // The value computed by hand is 63.283430; to six digits it is 63.283431 (63.28343080).
     close(v, 63.283_430_8, 5.1e-8);
     close(z, 0.992_405, 5.1e-7);
 }

@@ -1,4 +1,4 @@
-//! Tests of the hard cases in section 8 of the specification, and of all kinds of input that cannot be drawn.
+//! Tests of hard cases, and of all kinds of input that cannot be drawn.
 
 mod support;
 
@@ -43,7 +43,7 @@ fn triangles_without_area_draw_nothing() {
     let [a, b] = [[-20.3, -10.1, 4.0], [30.1, 12.7, 5.0]];
     let middle = [0, 1, 2].map(|i| (a[i] + b[i]) / 2.0);
     assert!(everywhere(&[[a, a, a], [a, b, a], [a, b, b]]).iter().all(|count| *count == 0));
-    // Three points on a line are one only up to rounding: at most a stray sample.
+    // Because of rounding, three points on a line may form a thin triangle with at most one sample.
     assert!(everywhere(&[[a, middle, b]]).iter().all(|count| *count <= 1));
 }
 
@@ -67,7 +67,7 @@ fn corners_a_million_pixels_away_are_drawn_as_in_the_reference_model() {
 
 #[test]
 fn corners_behind_the_eye_are_drawn_as_in_the_reference_model() {
-    // The eye of `everywhere` is 40 px off the slice; these corners lie up to 400 px off some of them.
+    // The eye of `everywhere` is 40 px off the slice. These corners lie up to 400 px off some slices.
     let counts = everywhere(&[[[-20.0, -20.0, -400.0], [20.0, -20.0, 400.0], [0.0, 25.0, 10.0]]]);
     assert!(counts.iter().any(|count| *count > 0));
     everywhere(&[[[-300.0, -20.0, 100.0], [300.0, -20.0, 120.0], [0.0, 25.0, 400.0]]]);
@@ -75,7 +75,7 @@ fn corners_behind_the_eye_are_drawn_as_in_the_reference_model() {
 
 #[test]
 fn a_plane_perpendicular_to_the_screen_draws_nothing() {
-    // v = 0.5 exactly: a degenerate triangle of which every edge runs through samples.
+    // All corners have v = 0.5 exactly, so the triangle has no area and its edges run through samples.
     let floor = [[-20.3, 0.5, -10.4], [25.6, 0.5, -15.3], [3.7, 0.5, 26.9]];
     let display = SweptDisplay::new(config(36, 96, 64, SliceClip::Prism, ORTHOGRAPHIC)).expect("valid");
     assert_eq!(both(&display, &recording(&[floor]), &VolumeConfig::plain()).stats.fragments_accepted, 0);

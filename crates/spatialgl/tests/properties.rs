@@ -1,4 +1,4 @@
-//! Tests of the properties in section 8 of the specification, on random triangles, points and settings.
+//! Tests of general properties of volumes, on random triangles, points and settings.
 
 mod support;
 
@@ -29,7 +29,7 @@ fn projections() -> impl Strategy<Value = Projection> {
         Just(ORTHOGRAPHIC),
         any::<u64>().prop_map(|seed| Projection::Jittered(Jitter::new(seed))),
         Just(Projection::Perspective { eye: [10.0, -15.0], distance: 60.0, shear: [0.05, 0.1] }),
-        // Near enough for corners behind the eye.
+        // The eye is so near that corners can lie behind the eye.
         Just(Projection::Perspective { eye: [3.0, 5.0], distance: 12.0, shear: [0.0, 0.0] }),
     ]
 }
@@ -59,7 +59,7 @@ fn kept(config: VolumeConfig) -> VolumeConfig {
     VolumeConfig { keeps_colours: true, ..config }
 }
 
-/// Returns index of the slice and index of the pixel for every drawn voxel.
+/// Returns the index of the slice and the index of the pixel for every drawn voxel.
 fn drawn(frame: &VolumeFrame) -> std::collections::BTreeSet<(usize, u32)> {
     let slices = frame.colours.as_ref().expect("kept").iter().enumerate();
     slices.flat_map(|(k, samples)| samples.iter().map(move |sample| (k, sample.pixel))).collect()
@@ -163,7 +163,7 @@ proptest! {
     fn a_shared_edge_is_lit_by_one_of_its_triangles(
         x in prop::array::uniform4(-28i32..28), y in prop::array::uniform4(-28i32..28),
     ) {
-        // Multiples of a half pixel, so that edges run through pixel centres.
+        // Coordinates are multiples of half a pixel, so that edges run through pixel centres.
         let [a, b, c, d] = [0, 1, 2, 3].map(|i| [f64::from(x[i]) / 2.0, f64::from(y[i]) / 2.0, 0.0]);
         let side = |p: [f64; 3]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
         prop_assume!(side(c) * side(d) < 0.0);
@@ -179,7 +179,6 @@ proptest! {
         prop_assert_eq!(fragments, one + other);
     }
 
-    /// Checks that unpacking the words gives the halftoned colours, pixel by pixel.
     #[test]
     fn packed_bits_equal_the_halftone_of_the_colours(triangles in mesh()) {
         let frame = volume(&small(SliceClip::Hyperbolic(0.25), ORTHOGRAPHIC), &mixed(&triangles, Combine::Last), &kept(VolumeConfig::paper()));

@@ -87,7 +87,7 @@ fn more_samples_take_fill_time_and_no_bytes() {
     let one = VolumeStats { slices_rendered: 396, bytes_sent: 1000, samples: 1, ..VolumeStats::default() };
     let many = VolumeStats { samples: 16, ..one.clone() };
     let time = |stats| TimeModel::GEFORCE_6800.packed(stats, size, 32);
-    // 396 targets of 768 x 768 at 6.4 Gpixel/s.
+    // This is the time to fill 396 targets of 768 x 768 pixels at 6.4 Gpixel/s.
     assert!((time(&one).gpu_ms - 36.495_36).abs() < 1e-6);
     assert!((time(&many).gpu_ms - 16.0 * 36.495_36).abs() < 1e-6);
     assert_eq!(time(&many).bus_ms().to_bits(), time(&one).bus_ms().to_bits());

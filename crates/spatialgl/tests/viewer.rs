@@ -49,7 +49,8 @@ fn case_8_a_pixel_is_seen_at_the_position_of_its_voxel() {
         let place = camera.project(world);
         assert!((place[0] - expected[0]).abs() < 6e-5 && (place[1] - expected[1]).abs() < 6e-5, "{place:?}");
         let light = view_planes(&planes, &camera, PLAIN, &OneThread).expect("valid");
-        // Bilinear: the light's centre is the place itself, to 1/256 px and 1/255 of brightness.
+        // With bilinear interpolation, the centre of the light is the exact position, to 1/256 px and 1/255 of
+        // brightness.
         let found = centre(&light.picture(255.0));
         assert!((found[0] - expected[0]).abs() < 0.01 && (found[1] - expected[1]).abs() < 0.01, "{found:?}");
         assert!(light.total().iter().all(|sum| (sum - 1.0).abs() < 1e-9), "one pixel's light");
@@ -85,7 +86,8 @@ fn the_second_half_turn_shows_the_same_voxels() {
 #[test]
 fn a_cutaway_leaves_out_a_range_of_angles() {
     let camera = case_8(10.0, 20.0);
-    // The voxel of case 8 is at 30 degrees from +x to +z; the voxel of the mirrored pixel is at 210.
+    // The voxel of the numbered case 8 is at 30 degrees from +x to +z. The voxel of the mirrored pixel is at 210
+    // degrees.
     let total = |x: u32, cut: [f64; 2]| {
         let options = ViewOptions { cut_deg: Some(cut), ..PLAIN };
         view_planes(&one_pixel(33, x, 283), &camera, options, &OneThread).expect("valid").total()[0]
@@ -106,7 +108,8 @@ fn a_cutaway_leaves_out_a_range_of_angles() {
 
 #[test]
 fn lamberts_factor_is_the_cosine_between_screen_and_eye() {
-    // Seen along +z from afar, slice k's screen has e_s = (-sin, 0, cos): |view . e_s| is about |cos theta|.
+    // Seen along +z from far away, the screen of slice k has the normal e_s = (-sin, 0, cos), so |view . e_s| is about
+    // |cos theta|.
     let camera = Camera { azimuth_deg: 0.0, elevation_deg: 0.0, distance: 1e6, focal: 5e5, size: [512, 512] };
     let lambert = ViewOptions { lambert: true, ..PLAIN };
     for k in [0, 33, 66, 99, 150] {

@@ -1,4 +1,4 @@
-//! Tests of cases 23 and 24 of the specification: the words that the projector receives.
+//! Tests of the numbered cases 23 and 24: the words that the projector receives.
 
 use spatialgl::{
     Combine, CommandBuffer, OneThread, PlaneStack, SliceImage, SliceRenderer, SliceStats, SliceView, SliceWork, Tiling,

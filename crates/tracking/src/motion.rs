@@ -42,8 +42,9 @@ const HALF_STEP_PS: u64 = 50_000_000;
 const SAMPLE_PS: u64 = PS_PER_S / 8;
 const SAMPLES: u64 = 512;
 
-/// The motion of a head as a pure function of simulated time. The trait also describes the pendulum of the latency rig,
-/// because this pendulum carries a tracker.
+/// The motion of a head as a pure function of simulated time.
+///
+/// The trait also describes the pendulum of the latency rig, because this pendulum carries a tracker.
 pub trait Motion: Debug {
     /// Returns the pose of the head in the world at `t_ps` (ps of simulated time).
     fn pose(&self, t_ps: u64) -> Pose;

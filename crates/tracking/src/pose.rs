@@ -3,8 +3,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::rotation;
 
-/// A position in metres and an orientation (head axes to world axes). Axes are right-handed with y up, and the head
-/// looks along its own -z axis.
+/// A position in metres and an orientation (head axes to world axes).
+///
+/// Axes are right-handed with y up, and the head looks along its own -z axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
     /// Position of the head in the world, metres. This is the point between the eyes, or the eye itself if there is

@@ -5,7 +5,8 @@ use tracking::rig::{Detection, InsidePass, LowPointReport, Measurement, Oscillos
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, ntsc_lines_ps, seconds};
 use tracking::tracker::{SerialLine, SerialRead, TrackerConfig, TrackerFault, TrackerModel};
 
-/// Returns the instant at which a frame is shown: 57 ms after its start (Rendering Control), at the next field.
+/// Returns the instant at which a frame is shown. This is the start of the next field after 57 ms from the frame's
+/// start (Rendering Control).
 fn pipeline(start_ps: u64) -> u64 {
     (start_ps + 57 * PS_PER_MS).div_ceil(NTSC_FIELD_PS) * NTSC_FIELD_PS
 }
@@ -106,7 +107,8 @@ fn with_noise_the_mean_latencies_still_agree() {
 
 #[test]
 fn the_sign_of_the_velocity_fails_with_a_millimetre_of_noise() {
-    // Crossing is the default because the arc is flat around the low point.
+    // The arc is flat at the low point, so noise changes the sign of the velocity. The default method therefore detects
+    // the crossing.
     let rig = PendulumRig { detection: Detection::VelocitySign, ..PendulumRig::assumed() };
     let measured = measure(rig, TrackerConfig::fastrak());
     let passes = measured.outside_passes.iter().zip(&measured.inside_passes);
@@ -144,7 +146,7 @@ fn the_low_points_pulse_lasts_as_long_as_the_bob_is_in_the_beam() {
 fn a_silent_tracker_is_an_error() {
     let faults = vec![TrackerFault::Silence { from_ps: 3 * PS_PER_S }];
     let tracker = TrackerModel::new(TrackerConfig { faults, ..TrackerConfig::fastrak() }).unwrap();
-    // Low points at 0.36 s and every 0.71 s: four before the silence.
+    // Low points come at 0.36 s and every 0.71 s. Four of them come before the tracker falls silent.
     let error = PendulumRig::assumed().sightings(&tracker, 1, 100).unwrap_err();
     assert_eq!(error.to_string(), "expected 100 low points, the host detected 4");
 }
@@ -186,11 +188,11 @@ fn an_error_of_one_measurement_is_found_by_the_other() {
     assert!(!agree(&scope, shifted(place_too_late)));
     let measured = rig.compare(&tracker, place_ps(&rig), &scope, shifted(place_too_late)).unwrap();
     assert!(measured.with_frames_counted_in_scan(place_ps(&rig) + 6 * PS_PER_MS).agrees());
-    // The pipeline counts a field too few, or stamps its start 20 ms late.
+    // The pipeline counts a field too few, or its time stamp of the start is 20 ms late.
     assert!(!agree(&scope, shifted(-(NTSC_FIELD_PS as i64))));
     let late_stamp = |pass: &InsidePass| InsidePass { started_ps: pass.started_ps + 20 * PS_PER_MS, ..*pass };
     assert!(!agree(&scope, truth.iter().map(late_stamp).collect()));
-    // The photodiode hangs a field late, or the light comes from the frame before.
+    // The signal of the photodiode is a field late, or the light comes from the previous frame.
     let late = truth.iter().map(|pass| pass.shown_ps + place_ps(&rig) + NTSC_FIELD_PS);
     let late = Oscilloscope { screen: ScopeTrace::toggling("screen", late.collect()), ..scope };
     assert!(!agree(&late, truth.clone()));

@@ -34,7 +34,8 @@ fn mean_degrees(kind: PredictorKind, tracker: fn() -> TrackerConfig) -> [f64; 4]
 
 #[test]
 fn without_prediction_errors_grow_1_93_and_3_64_times() {
-    // Published ratios of 100 and 200 ms to 50 ms. The fit of the generator reaches 3 %.
+    // Published ratios of the errors at 100 and 200 ms to the error at 50 ms. The fitted motion reproduces the ratios
+    // within 3 %.
     let [_, at_50, at_100, at_200] = mean_degrees(PredictorKind::None, TrackerConfig::ideal);
     assert!((at_100 / at_50 / 1.93 - 1.0).abs() < 0.03, "{}", at_100 / at_50);
     assert!((at_200 / at_50 / 3.64 - 1.0).abs() < 0.03, "{}", at_200 / at_50);
@@ -42,8 +43,8 @@ fn without_prediction_errors_grow_1_93_and_3_64_times() {
 
 #[test]
 fn with_the_kalman_filter_errors_grow_about_as_fast_as_azumas() {
-    // Azuma, behind this tracker: 2.3 and 9 times; a constant-velocity Kalman filter on recorded traces: 2.7 and 7.1.
-    // Other motion: a quarter either way of the two published values is allowed.
+    // Azuma's ratios behind this tracker are 2.3 and 9. A constant-velocity Kalman filter on recorded traces has 2.7
+    // and 7.1. The motion here is another one, so a quarter more or less than the published values is allowed.
     let [_, at_50, at_100, at_200] = mean_degrees(PredictorKind::Kalman, TrackerConfig::optical_ceiling);
     println!("growth: {:.2} and {:.2} (Azuma 2.3 and 9)", at_100 / at_50, at_200 / at_50);
     assert!((2.3 * 0.75..2.7 * 1.25).contains(&(at_100 / at_50)), "{}", at_100 / at_50);
@@ -172,7 +173,8 @@ fn faults_of_all_kinds_only_reduce_accuracy() {
         let clean = errors(kind, TrackerConfig::fastrak(), 5, (1, 120));
         let broken = TrackerConfig { faults: faults.clone(), ..TrackerConfig::fastrak() };
         let faulty = errors(kind, broken, 5, (1, 120));
-        // A tenth of the reports useless and a second lost in 120: the mean error at 50 ms rises by less than half.
+        // A tenth of the reports is useless, and one second of 120 is lost. The mean error at 50 ms must rise by less
+        // than half.
         assert!(faulty[1].mean_deg.is_finite() && faulty[1].mean_deg < 1.5 * clean[1].mean_deg, "{kind:?}");
         assert!(faulty[1].max_deg.is_finite() && faulty[1].mean_m < 1.5 * clean[1].mean_m, "{kind:?}");
     }
@@ -180,7 +182,7 @@ fn faults_of_all_kinds_only_reduce_accuracy() {
 
 #[test]
 fn tiny_time_steps_are_handled() {
-    // Reports of a noisy still head 50 us apart, the least that the gate lets through.
+    // A still head with noise has reports 50 us apart, the smallest distance that the gate of the predictors accepts.
     let tracker = TrackerConfig { rate_hz: 10_000, ..TrackerConfig::optical_ceiling() };
     let model = TrackerModel::new(TrackerConfig { serial: None, ..tracker }).unwrap();
     let still = tracking::motion::Still(Pose::IDENTITY);
@@ -196,7 +198,8 @@ fn tiny_time_steps_are_handled() {
     }
     let mut kalman = build(PredictorKind::Kalman, model.config());
     model.reports(&still, 1).take(20_000).for_each(|r| kalman.observe(&r));
-    // Two seconds of 10 kHz: far more than 100 reports share a moment, so the estimate is 10 times better than one.
+    // Two seconds at 10 kHz give far more than 100 reports of about one moment, so the estimate is 10 times better than
+    // one report.
     assert!(kalman.predict(2 * PS_PER_S + 33 * PS_PER_MS).distance_m(&Pose::IDENTITY) < 2e-3);
 }
 

@@ -63,7 +63,7 @@ fn bin_energy(signal: &[f64], mean: f64, bin: usize) -> f64 {
 
 #[test]
 fn ninety_five_percent_of_the_yaw_energy_is_below_0_14_hz() {
-    // 17-minute figures scatter by 0.006.
+    // The fraction of the energy over 17 minutes scatters by 0.006 between seeds.
     let parts: Vec<_> = (0..8).map(|seed| yaw_energy_below(seed, HeadSpeeds::PAPERS.yaw_energy_95, 5)).collect();
     assert!(parts.iter().all(|part| (part - 0.95).abs() < 0.02), "{parts:?}");
     let mean = parts.iter().sum::<f64>() / 8.0;
@@ -78,7 +78,8 @@ fn practically_all_yaw_energy_is_below_2_hz() {
 
 #[test]
 fn the_motion_does_not_drift_within_an_hour() {
-    // Six standard deviations of yaw (47 deg and 9 deg) and of place (0.38 m): a drift would leave them.
+    // The limits are six standard deviations of yaw (47 deg and 9 deg) and of the position (0.38 m). A drift would
+    // exceed them.
     let motion = Synthetic::recorded_use(3);
     for t in at_120_hz(60).flat_map(|t| [t, t + 3540 * PS_PER_S]) {
         assert!(motion.yaw_pitch_roll(t).0.x.abs() < 6.0 * 48f64.to_radians());

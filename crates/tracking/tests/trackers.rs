@@ -73,14 +73,16 @@ fn the_fastraks_filter_has_the_latencies_of_the_manual() {
     assert!((apparent_latency_ms(1.0) - 3.75).abs() < 1e-6, "without a filter");
 }
 
-/// Every serial tracker exists with both kernels, and `host.poll` affects only the polled kernel.
+/// Every serial tracker exists with a host that polls and with a patched host that does not. `host.poll` affects only
+/// the host that polls.
 #[test]
 fn polling_only_adds_the_wait_for_the_next_poll() {
     let mut slow = Tables::PAPERS;
     slow.host.poll = 60.0;
     for by in [TrackerConfig::fastrak_by, TrackerConfig::flock_of_birds_by, TrackerConfig::polhemus_3space_by] {
         let patched = by(&Tables::PAPERS).without_polling();
-        // The Flock's 10 ms divide the kernel's 30, so that one seed has three waits alone.
+        // The Flock's reports are 10 ms apart and the polls 30 ms, so a run with one seed has only three different
+        // waits.
         let greatest_wait_ms = |tables: &Tables| {
             let waits = (0..60).flat_map(|seed| {
                 let polled = reports(by(tables).with_polling_by(tables), &HEAD, seed, 40);
@@ -108,7 +110,7 @@ fn two_receivers_halve_the_rate() {
 
 #[test]
 fn at_9600_baud_five_of_six_fastrak_solutions_are_dropped() {
-    // 48.96 ms of transfer over 8.33 ms of period: the next ready solution after 5.88 periods is the sixth.
+    // The transfer of 48.96 ms takes 5.88 periods of 8.33 ms, so the next ready solution is the sixth.
     let serial = Some(SerialLine { baud: 9600, ..SerialLine::fastrak() });
     let all = reports(TrackerConfig { serial, ..TrackerConfig::fastrak() }, &HEAD, 0, 100);
     assert!(all.windows(2).all(|w| w[1].solution - w[0].solution == 6));
@@ -146,7 +148,8 @@ fn a_polled_line_adds_0_to_30_ms_uniformly_over_seeds() {
         .map(|r| (r.arrives_ps - r.measured_ps - 33 * PS_PER_MS) as f64 / PS_PER_MS as f64)
         .collect();
     assert!(waits.iter().all(|wait| (0.0..30.0).contains(wait)));
-    // Standard errors: of the mean 8.66 ms / sqrt 3000 = 0.16 ms, of a count of 300 in 3000 16.
+    // The standard error of the mean is 8.66 ms / sqrt 3000 = 0.16 ms. The standard error of a count of 300 in 3000 is
+    // 16.
     assert!((mean(waits.iter().copied()) - 15.0).abs() < 0.65);
     for tenth in 0..10 {
         let n = waits.iter().filter(|w| (**w / 3.0) as i32 == tenth).count();

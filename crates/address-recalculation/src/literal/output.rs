@@ -103,7 +103,7 @@ fn mixed(colours: [u32; 4], weights: [Option<u64>; 4], bits: u64) -> u32 {
 /// Returns the weighted sum of four values. The weights add up to 2^bits. If a weight is `None`, returns the mean of
 /// the other three values.
 fn weighed(values: [u32; 4], weights: [Option<u64>; 4], bits: u64, rounding: Rounding) -> u32 {
-    // Beyond a corner, take the mean of the other three.
+    // If a texel is beyond a corner, take the mean of the other three texels.
     if weights.contains(&None) {
         let three: u64 = (0..4).filter(|k| weights[*k].is_some()).map(|k| u64::from(values[k])).sum();
         let remainder = three % 3;

@@ -143,7 +143,7 @@ impl Cells {
     #[must_use]
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;
-        // The first frame assigns the cells around the real home cell.
+        // The first frame will assign the cells around the viewer's own cell.
         let dealing = CellAssignment {
             home: Cell { x: 0, z: 0 },
             side_m: timing.cell_m,

@@ -181,7 +181,7 @@ impl Cutter {
 
     /// Returns the vertex at which a line crosses a border. All polygons with this line get the same vertex.
     fn vertex(&mut self, line: [u32; 2], axis: Axis, number: i64) -> u32 {
-        // The order of the ends must not matter, so sort them.
+        // The order of the edge's ends must not matter, so the ends are sorted.
         let between = [line[0].min(line[1]), line[0].max(line[1])];
         if let Some(made) = self.made.get(&(between, axis, number)) {
             return *made;

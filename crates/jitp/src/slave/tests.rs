@@ -53,7 +53,6 @@ fn drawn_after(rig: &mut Rig, us: u64) -> usize {
     rig.sent_to(RENDERER).len() - before
 }
 
-/// Tests that a strip is drawn as soon as TRANSFORM of its field has ended.
 #[test]
 fn a_strip_waits_for_the_transforms_of_its_field() {
     let (mut rig, _) = slave_of(Viewpoint::Field);

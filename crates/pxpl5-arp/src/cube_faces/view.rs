@@ -6,6 +6,7 @@ use crate::cube_faces::rows::{OnFace, Shade, draw};
 use address_recalculation::{CubeFace, FaceGeometry, FaceSet};
 use glam::DVec3;
 
+/// A vertex of a triangle, with its shaded colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// Position in the world in metres.
@@ -14,6 +15,7 @@ pub struct Corner {
     pub colour: u32,
 }
 
+/// Counts of the triangles and texels that were drawn on cube faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DrawCounts {
     /// Number of triangles to draw, visible or not.
@@ -33,6 +35,7 @@ impl DrawCounts {
     }
 }
 
+/// The geometry and the range of depths of the six faces around the viewer's head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeView {
     pub geometry: FaceGeometry,

@@ -103,6 +103,7 @@ const COLUMNS: [TableColumn<FigureRow>; 9] = [
     ("", |row| verdict(row).to_owned()),
 ];
 
+/// Returns the figures as a Markdown table.
 #[must_use]
 pub fn table(rows: &[FigureRow]) -> String {
     figures::table(&COLUMNS, rows)
@@ -320,7 +321,7 @@ fn conservation(text: &mut String, all: &Experiments) {
         ours[0].iter().sum::<f64>(),
         ours[1].iter().sum::<f64>()
     );
-    // The second constraint compares sums over the fastest memories.
+    // The sums over the fastest memories give the second constraint.
     let up_to = |segments: &[f64], memory: usize| segments[..=memory].iter().sum::<f64>();
     for memory in 0..4 {
         let [a, b, c, d] = [&cut[..], &uncut[..], &ours[0], &ours[1]].map(|segments| up_to(segments, memory));

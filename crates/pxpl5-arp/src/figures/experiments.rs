@@ -38,6 +38,7 @@ pub struct CellFit {
     pub rates_hz: Vec<f64>,
 }
 
+/// The update rates of all display memories with a renderer of limited speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlowRendererResult {
     pub triangles_per_s: f64,
@@ -47,6 +48,7 @@ pub struct SlowRendererResult {
     pub missed: Vec<u64>,
 }
 
+/// The results of all experiments that reproduce the papers' figures.
 #[derive(Clone, Debug)]
 pub struct Experiments {
     /// Two fits of the cell side in the gallery: with this project's rules, and with one ring of cells in each memory

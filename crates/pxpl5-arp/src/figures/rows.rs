@@ -54,7 +54,7 @@ fn sizes(all: &Experiments) -> Vec<FigureRow> {
 }
 
 fn reductions(all: &Experiments) -> Vec<FigureRow> {
-    // A5 requires that slower memories have fewer updates.
+    // Statement A5 requires that slower memories have fewer updates.
     let ratios = &all.walks[0].tally.memories;
     let falls = ratios.windows(2).all(|pair| pair[0].updates >= pair[1].updates);
     let fastest = all.walks[0].report.memories[0].updates_hz;
@@ -83,7 +83,7 @@ fn rate(all: &Experiments, memory: usize) -> FigureRow {
 
 fn table_2(all: &Experiments) -> Vec<FigureRow> {
     let mut rows = Vec::new();
-    // Walk 0 is cut, and walk 2 is uncut.
+    // In walk 0 the objects are cut into segments, and in walk 2 they are uncut.
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();
         memories.map(|memory| memory.segments).collect::<Vec<f64>>()
@@ -112,7 +112,7 @@ fn table_2(all: &Experiments) -> Vec<FigureRow> {
 }
 
 fn tears(all: &Experiments) -> Vec<FigureRow> {
-    // Walk 0 is torn, walk 1 warped and walk 2 uncut.
+    // Walk 0 has tears, walk 1 has warped segments, and walk 2 has uncut objects.
     let widest = |walk: usize| all.walks[walk].report.tears_px.after.map_or(0.0, |tears| tears.max);
     let [warped, uncut] = [1, 2].map(widest);
     let pixels = widest(0) * all.walks[0].settings.texel_deg() / PIXEL_DEG;

@@ -162,7 +162,6 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
             );
         }
         (0..memories).for_each(|memory| mark(&mut svg, outcome, memory, x));
-        // Label every 15th frame.
         if frame % 15 == 0 {
             let _ = writeln!(svg, "<text x=\"{x:.0}\" y=\"{:.0}\">{frame}</text>", height - 30.0);
         }

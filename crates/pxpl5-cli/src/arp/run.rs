@@ -108,10 +108,8 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
         "missed",
         "eye age, mm"
     );
-    // One line for each memory.
     report.memories.iter().enumerate().for_each(|(k, memory)| line(&mut text, k, memory));
     let priority = &report.priority;
-    // Totals over all memories.
     let rows = [
         ("segments drawn per second", format!("{:.0} ({:.1} % saved)", priority.draws_per_s, priority.saved_percent)),
         ("triangles drawn per second", format!("{:.0}", outcome.triangles_per_s())),

@@ -131,7 +131,7 @@ impl WalkArgs {
                 }
             }
         }
-        // Each option is short for one path.
+        // Each option stands for one path.
         let options = [
             ("policy", "--policy", &self.policy),
             ("segment", "--segment", &self.segment),

@@ -43,9 +43,9 @@ pub(super) fn text(comparison: &Comparison) -> String {
          faces reads at scan-out; figure 19: sum of two means as in the papers, from the pose to its report and from an eye's TRANSFORM to\n\
          the swap, without the wait for the pipeline, SEND, EDIT and the scan; predicts: time from the newest measurement to the instant\n\
          for which a picture is drawn; updates: new pictures per second (frameless rendering: passes over all blocks of the screen,\n\
-         docs/results.md); interval: range of the mean; n: evaluated pixels; best with (--predictors): the predictor with the least error for\n\
-         the first seed; - : no sample was evaluated; ! : some due pictures were not shown, so the error covers only the others; + : evaluated from\n\
-         a later field on than the other rows. Rows with a mark are never the best.\n",
+         docs/guide/counted-pictures.md); interval: range of the mean; n: evaluated pixels; best with (--predictors): the predictor with\n\
+         the least error for the first seed; - : no sample was evaluated; ! : some due pictures were not shown, so the error covers only the\n\
+         others; + : evaluated from a later field on than the other rows. Rows with a mark are never the best.\n",
     );
     text
 }

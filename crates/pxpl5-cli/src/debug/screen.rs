@@ -57,7 +57,7 @@ fn key_waits() -> bool {
 }
 
 fn pressed(session: &mut Session, talk: &mut ScreenState, key: KeyEvent) {
-    // Letters edit the input line; function keys are short for steps.
+    // Letters edit the input line. Function keys stand for steps.
     match key.code {
         KeyCode::Char('c' | 'd') if key.modifiers.contains(KeyModifiers::CONTROL) => say(session, talk, "quit"),
         KeyCode::Char(letter) => talk.line.push(letter),

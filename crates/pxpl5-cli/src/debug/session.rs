@@ -196,7 +196,6 @@ impl Session {
         let state = hit.map(|hit| (*hit.state).clone()).or(of_call).ok_or("no processor")?;
         let origin_of_registers = if hit.is_some() { "at the breakpoint" } else { "after the last call" };
         let mut text = format!("{board}, {origin_of_registers}: pc {:#010x}, psr {:#010x}\n", state.pc, state.psr);
-        // Eight registers in a line.
         for (name, registers) in [("r", &state.r), ("f", &state.f)] {
             for (row, four) in registers.chunks(8).enumerate() {
                 let words: Vec<String> = four.iter().map(|word| format!("{word:08x}")).collect();
@@ -232,7 +231,6 @@ impl Session {
         let begin = views::place_in_code(&self.stepper, Some(board), place)?;
         let words = views::words(processor, begin, count)?;
         let mut text = String::new();
-        // Four words in a line.
         for (row, four) in words.chunks(4).enumerate() {
             let row_words: Vec<String> = four.iter().map(|word| format!("{word:08x}")).collect();
             let _ = writeln!(text, "{:#010x}  {}", begin + 16 * row as u32, row_words.join(" "));

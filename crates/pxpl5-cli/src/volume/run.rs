@@ -86,7 +86,7 @@ fn bounds(planes: &PixelPlanesReport) -> String {
     if planes.simulated.is_empty() {
         return text;
     }
-    // The bounds ignore waiting; the simulation event by event shows how close the machine comes.
+    // The bounds ignore waiting. The simulation of all events shows how close the machine comes to the bounds.
     let _ = writeln!(
         text,
         "\nOne volume event by event\n{:>10} {:>11} {:>13} {:>12} {:>11} {:>16} {:>17} {:>16}",

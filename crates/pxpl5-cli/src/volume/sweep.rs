@@ -47,7 +47,7 @@ pub(super) fn run(args: SweepArgs) -> Result<(), CliError> {
     let threads = args.threads.and_then(|threads| NonZero::new(threads as usize)).map_or_else(Threads::all, Threads);
     let sweep = VolumeSweep::load(&args.folder.file, &args.folder.sets, threads, args.budget)?;
     let header = sweep.header()?;
-    // A volume uses all threads, so volumes follow each other.
+    // A volume uses all threads, so volumes are drawn one after the other.
     let command = SweepCommand { name: "volume sweep", verb: "drawn", parallel: 1, threads: args.threads };
     args.folder.run(&sweep, header, &command)
 }

@@ -95,7 +95,7 @@ fn outputs_use_whole_cache_lines_at_both_ends_of_the_free_memory() {
     assert_eq!(processor.place_output(0, 1_001, 100), Ok(1_024));
     // The output begins at the last cache line that starts at least 100 bytes before the end.
     assert_eq!(processor.place_output(1, 1_001, 100), Ok(65_408));
-    // 1,124 to 1,152 is the rest of a line.
+    // The bytes from 1,124 to 1,152 are the rest of a cache line.
     let room = end - 1_152;
     let no_room = |context, needed_bytes, available_bytes| {
         Err(ProcessorFault::NoRoom { gp: NodeId(3), context, needed_bytes, available_bytes })

@@ -7,7 +7,7 @@ use pxpl5_wire::{CommandList, CommandRun};
 use std::collections::VecDeque;
 
 const NODE_ID: NodeId = NodeId(37);
-// Variables of ring.s that only the tests read.
+// Addresses of variables of ring.s that only the tests read.
 const WRONG_OF_RECEIVER: u32 = DATA + 24;
 const COMPLETE: u32 = DATA + 44;
 const START: u32 = WINDOW + 8;
@@ -305,6 +305,6 @@ fn interrupts_are_masked_only_inside_the_ring_code() {
 #[test]
 fn code_and_data_are_adjacent_in_memory() {
     assert!(PROGRAM.base == CODE && CODE + PROGRAM.bytes.len() as u32 <= DATA, "{} bytes", PROGRAM.bytes.len());
-    // An interrupt saves at most all registers of both files at FRAME.
+    // An interrupt saves at most all registers of both register files, at FRAME.
     const { assert!(DATA + 384 + 2 * 32 * 4 <= ENTRIES) };
 }

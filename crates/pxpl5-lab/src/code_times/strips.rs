@@ -90,7 +90,7 @@ struct Measured {
 fn measured(version: CodeVersion, boards: usize) -> Result<Measured, ExperimentError> {
     let mut rig = Rig::of_triangles(version, SCENE, boards)?;
     let triangles = f64::from(rig.share.counts().triangles);
-    // Strips without entries give the cost of a search, the others the cost of entries.
+    // Strips without entries give the cost of a search. All other strips give the cost of entries.
     let rows = searches(&mut rig).map_err(fault)?;
     let search_ns = mean(rows.iter().filter(|[entries, _]| *entries == 0.0).map(|[_, ns]| *ns));
     let [entries, more_ns] = rows.iter().fold([0.0; 2], |sum, [n, ns]| [sum[0] + n, sum[1] + ns - search_ns]);

@@ -164,7 +164,7 @@ fn block_length(series: &[f64]) -> usize {
         |lag: usize| (lag + 1..=lag + run).all(|k| covariances.get(k).is_none_or(|c| c.abs() < bound * covariances[0]));
     let flat_from = (0..=greatest).find(|lag| is_flat(*lag)).unwrap_or(greatest);
     let window = (2 * flat_from).clamp(1, greatest);
-    // The flat-top window is 1 up to the half, then falls to 0.
+    // The flat-top window is 1 up to half of its length, then falls to 0.
     let weight = |lag: usize| (2.0 * (1.0 - lag as f64 / window as f64)).clamp(0.0, 1.0);
     let weighted = |of: fn(f64) -> f64| {
         let both_sides: f64 = (1..=window).map(|lag| weight(lag) * of(lag as f64) * covariances[lag]).sum();
@@ -236,7 +236,7 @@ mod tests {
     fn intervals_of_correlated_series_cover_the_true_mean_at_their_confidence() {
         const SERIES: u64 = 200;
         let true_mean = 20.0;
-        // None for a series that seems to have fewer than ten blocks.
+        // The result is `None` for a series that seems to have fewer than ten blocks.
         let covers = |seed: u64| {
             let series: Vec<f64> = ar1(0.8, 600, mix(seed + 991)).iter().map(|x| x + true_mean).collect();
             let mean = series.iter().sum::<f64>() / series.len() as f64;
@@ -246,7 +246,7 @@ mod tests {
         let covering: Vec<bool> = (0..SERIES).filter_map(covers).collect();
         assert!(covering.len() as u64 > SERIES * 9 / 10, "{} of {SERIES} series have an interval", covering.len());
         let share = covering.iter().filter(|covers| **covers).count() as f64 / covering.len() as f64;
-        // Two standard errors of 200 draws are 0.03; a finite series loses some more.
+        // Two standard errors of 200 draws are 0.03. The bootstrap of a finite series covers a little less.
         assert!((0.87..=0.98).contains(&share), "{share}");
     }
 

@@ -49,7 +49,7 @@ impl UntilPrecise {
         }
         let ratio = error.width().unwrap_or(f64::INFINITY) / self.greatest_width(error.mean);
         let needed = (seeds as f64 * ratio * ratio).ceil();
-        // A number that is too large for an integer, or NaN, is beyond the doubled number.
+        // NaN, or a number that is too large for an integer, counts as more than the doubled number of seeds.
         let needed = if needed <= 2.0 * seeds as f64 { needed as usize } else { 2 * seeds };
         needed.max(seeds + 1).min(self.max_seeds).saturating_sub(seeds)
     }
@@ -65,7 +65,7 @@ impl UntilPrecise {
 impl fmt::Display for Precision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            // Rounded, because 7 % as a share is a little more than 0.07.
+            // The percentage is rounded, because the number for 7 % is a little more than 0.07.
             Self::Share(share) => write!(f, "{}%", (share * 1e8).round() / 1e6),
             Self::Pixels(px) => write!(f, "{px}px"),
         }

@@ -192,7 +192,7 @@ impl CompareQuery {
         let missing = compared_pipelines.iter().filter(|contender| held(contender).is_none()).count();
         let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
         let progress = Progress::new((missing * runs_of_a_row) as u64, stop, &finished);
-        // No further row starts after one could not be stored.
+        // After a row could not be stored, no further row starts.
         let is_failed = AtomicBool::new(false);
         // Rows with the same head and prediction interval share the tuning of the predictor.
         let common = Common { scene, tunings: Arc::default(), progress };
@@ -389,7 +389,7 @@ impl CompareQuery {
             row.triangles_possible = triangles.filter(|triangles| *triangles < CEILING);
         }
         let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
-        // A row that showed no picture explains the reason.
+        // If a row showed no picture, its failure states the reason.
         row.failure = error.or_else(|| (shown == 0 && !row.was_evaluated()).then(|| nothing_shown(&row, plan.fields)));
         Ok(row)
     }

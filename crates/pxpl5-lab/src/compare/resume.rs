@@ -43,7 +43,7 @@ impl CompareQuery {
         put("until_precision", self.until.map_or_else(|| "none".to_owned(), |until| until.width.to_string()));
         put("max_seeds", self.until.map_or_else(|| "none".to_owned(), |until| until.max_seeds.to_string()));
         put("pictures", self.pictures.to_string());
-        // Hash the scene itself, because a model file can refer to other files.
+        // Hash the contents of the scene count, because the file of a model file can refer to other files.
         put("contents of the scene", Fingerprint::of_scene(&*plan.load_scene()?).to_string());
         for (name, contents) in inputs_of(&self.shared) {
             put(&format!("contents of {name}"), contents.to_string());

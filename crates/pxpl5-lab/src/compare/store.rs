@@ -76,7 +76,7 @@ pub struct CompareStore {
 impl CompareStore {
     pub(super) fn open(folder: &Path, header: &Header, resume: bool) -> Result<Self, StudyError> {
         fs::create_dir_all(folder).map_err(FileError::io(folder, "cannot be made"))?;
-        // The lock comes before any change to the folder.
+        // The folder is locked before any change.
         let lock = lock(folder)?;
         let path = folder.join(ROWS_FILE);
         let text = whole_lines(&path)?;
@@ -122,7 +122,7 @@ impl CompareStore {
     pub(super) fn append(&self, row: ComparisonRow) -> Result<ComparisonRow, StudyError> {
         let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
         let number = rows.count + 1;
-        // The pictures come first, because the line names them.
+        // The pictures are stored first, because the line of the row names them.
         let picture = row.picture.as_ref().map(|picture| self.put_picture(number, picture)).transpose()?;
         let text = line_of(&Line { by_field: row.by_field.clone(), picture, row });
         let path = self.folder.join(ROWS_FILE);
@@ -150,7 +150,7 @@ impl Header {
         let value = |header: &Self, key: &str| header.settings.get(key).map_or("not set", String::as_str).to_owned();
         let keys = self.settings.keys().chain(found.settings.keys());
         let settings = keys.map(|key| (key.as_str(), value(self, key), value(found, key)));
-        // The hash comes last, because the name of a key is more helpful in an error.
+        // The hash is compared last, because an error with the name of a key is more helpful.
         let pairs = [
             ("schema", self.schema.clone(), found.schema.clone()),
             ("version", self.version.clone(), found.version.clone()),
@@ -207,7 +207,7 @@ impl Rows {
     /// Appends a line. An incompletely written line is removed, so that all earlier lines stay readable.
     fn put(&mut self, path: &Path, line: &str) -> Result<(), StudyError> {
         if let Err(error) = self.file.write_all(line.as_bytes()) {
-            // The first error is the one to report.
+            // Only the first error is reported.
             let _ = self.file.set_len(self.end);
             return Err(FileError::io(path, "cannot be written")(error).into());
         }

@@ -109,7 +109,7 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
         set(file, config.as_mut(), key, setting)?;
     }
     if let (Err(error), Some(first)) = (config.check(), given.first()) {
-        // The message names the number of the table; the place is the place of the key that sets this number.
+        // The message names the number in the table. The place is the place of the key that sets this number.
         let name = error.name.rsplit('.').next().unwrap_or_default();
         let (key, setting) = given.iter().find(|(key, _)| key.parameter == name).unwrap_or(first);
         return Err(error.at(setting.place_of(key.key.name)));

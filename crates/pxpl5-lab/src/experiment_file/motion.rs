@@ -84,7 +84,7 @@ impl MotionChoice {
 
     pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, SettingError> {
         let own = scene.motion();
-        // A replaced path loses the scene's own sway.
+        // If the path is replaced, the scene's own sway has no effect.
         let usual = match self.path {
             PathChoice::Scene => own.sway().scale,
             PathChoice::Look => 1.0,

@@ -32,7 +32,7 @@ impl SceneChoice {
         let name = if is_file(name) { beside(&folder, name) } else { name.to_owned() };
         let triangles = file.whole("triangles")?.map(|n| n as usize);
         let placement = if file.flag("fit")?.unwrap_or(true) { Placement::Fitted } else { Placement::AsInFile };
-        // Built-in scenes are already in the view.
+        // The key `fit` is an error for built-in scenes, because they are in the view already.
         if let (Some(setting), false) = (file.get("fit"), is_file(&name)) {
             return Err(wrong("fit", setting, "nothing: only model files are fitted into the view"));
         }

@@ -13,7 +13,9 @@ use std::collections::BTreeMap;
 use std::fmt;
 use toml::Value;
 
-/// Effective settings by path. `Display` writes the settings as the text of an experiment file.
+/// The effective settings of an experiment, by path.
+///
+/// `Display` writes the settings as the text of an experiment file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// TOML values by the path of their key.

@@ -13,9 +13,10 @@ const PREFIX: &str = "tracking.";
 /// filters.
 const COMMON: [&str; 3] = ["host", "filter", "gate"];
 
-/// Returns every tracking parameter with its published value. Parameters of heads, the measuring rig, the video and the
-/// papers' pictures are read-only. They are published facts for comparison with a model, not settings of a tracked
-/// head.
+/// Returns every tracking parameter with its published value.
+///
+/// Parameters of heads, the measuring rig, the video and the papers' pictures are read-only. They are published facts
+/// for comparison with a model, not settings of a tracked head.
 #[must_use]
 pub fn tracking_parameters() -> Vec<Parameter> {
     let numbers = Tables::PAPERS.all().into_iter().flat_map(|(name, table)| parameters_of(name, table, false));

@@ -31,7 +31,7 @@ pub(super) fn converted(registry: &Registry, key: &str, text: &str) -> Result<Op
     let Some((number, unit)) = split(text) else { return Ok(None) };
     let Some(wanted) = unit_of(registry, key) else { return Ok(None) };
     let size = |kind: Kind, unit: &str| kind.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size);
-    // A unit that is in no kind, such as clocks, is taken as it is written.
+    // A unit without conversions, such as clocks, is accepted only as it is written.
     if unit == wanted {
         return Ok(Some(value(number)));
     }

@@ -82,7 +82,7 @@ pub(crate) struct Applications {
 pub(super) fn key_of(experiment: &Experiment, scene: &str) -> (String, u64) {
     let mut machine = experiment.config().clone();
     let capacity = machine.renderer.backing_regions();
-    // The capacity is a key of its own.
+    // The capacity has its own place in the key.
     machine.renderer.kept_bits = 0;
     let key = format!(
         "{scene} {} {} {:?} {:?} {:?}",

@@ -132,8 +132,8 @@ pub(super) fn tracker_and_rendering(
     let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).host(stop.clone()).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, .. } =
         Budget::of(&outcome);
-    // The paper adds its own mean latencies, so rendering is measured like figure 4. Eyes of Slats have no TRANSFORM
-    // of their own.
+    // The paper's sum contains its own mean latency of rendering, so rendering is measured as for figure 4. Eyes of
+    // Slats have no TRANSFORM of their own.
     let of_eyes = outcome.summary();
     let samples = reading.latencies_ms(&of_eyes);
     let rendering_ms =

@@ -188,7 +188,7 @@ impl Bench {
     /// Runs an experiment with a built-in scene and without pixels. The result is cached, because several figures and
     /// interpretations share experiments.
     fn run(&self, machine: MachineConfig, pipeline: impl Pipeline, scene: &str, fields: u64) -> Result<Arc<Summary>> {
-        // The key needs an experiment, but the scene is loaded only if the result is not cached.
+        // The key of the cache needs an experiment, but the scene is loaded only if the result is not cached.
         let empty = self.applications.scene("full-screen:1", false)?;
         let experiment = Experiment::new(machine, pipeline, empty).fields(fields).level(self.level);
         let make = || self.summarise(&experiment.clone().with_scene(scene_named(scene)?));
@@ -275,7 +275,7 @@ impl Bench {
     /// nor on the definition of latency samples.
     fn rig_lines(&self) -> Result<Arc<RigLines>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
-        // The line does not change the run, so it is no part of the key.
+        // The line of the photodiode does not change the run, so it is no part of the cache's key.
         let changes = self.changes.iter().filter(|(path, _)| path != PHOTODIODE_LINE).cloned().collect();
         let key = (self.reading.finished, changes);
         self.applications.rig(key, self.reading.kept, || RigLines::measure(&machine, &self.reading, &self.stop))

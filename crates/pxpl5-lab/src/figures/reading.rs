@@ -190,7 +190,8 @@ mod tests {
 
     #[test]
     fn a_neighbour_answers_one_question_differently() {
-        // Three other machines, three other numbers of regions, and five questions with two answers.
+        // The neighbours are three other machines, three other numbers of regions, and the other answer to each of five
+        // questions.
         assert_eq!(Reading::USUAL.neighbours().len(), 3 + 3 + 5);
     }
 }

@@ -155,7 +155,7 @@ fn speed(variant: (Level, bool), pixels: Pixels, stop: &StopFlag) -> Result<f64,
             experiment.run().map(|_| ())
         };
         taken += begin.elapsed().as_secs_f64();
-        // Runs that are too short take time like all others.
+        // The time of runs that are too short counts too.
         match result {
             Ok(()) | Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => {}
             Err(error) => return Err(error),

@@ -183,7 +183,7 @@ impl OverQuery {
         self.stop.check()?;
         let reached = search.trials.iter().filter(|(_, trial)| trial.reached).map(|(number, _)| *number).max();
         let Some(inside) = reached else { return search.none() };
-        // Towards smaller values, then towards greater ones.
+        // Search towards smaller values, then towards greater values.
         let misses = |search: &Search<'_>, down: bool| {
             let of = search.trials.iter().filter(|(_, trial)| !trial.reached).map(|(number, _)| *number);
             if down { of.filter(|number| *number < inside).max() } else { of.filter(|number| *number > inside).min() }

@@ -148,7 +148,7 @@ impl<F> Tried<F> {
         let first_miss = self.first_miss();
         let triangles = first_miss.map_or(ceiling, |miss| miss - 1);
         let island = self.answers.iter().rev().find(|(size, reached)| **reached && **size > triangles);
-        // Walk down while every size was tried.
+        // Go to smaller sizes as long as every size was tried.
         let mut unbroken_from = triangles;
         while unbroken_from > 1 && self.answers.contains_key(&(unbroken_from - 1)) {
             unbroken_from -= 1;
@@ -175,7 +175,7 @@ impl<F> Tried<F> {
 pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<Limit, E> {
     let mut tried = Tried { answers: BTreeMap::new(), reached };
     tried.find_limit(ceiling, hints)?;
-    // Islands above the first miss do not change the limit, but the result reports them.
+    // Islands (sizes above the first miss that reach the goal) do not change the limit, but the result reports them.
     let limit = tried.limit(ceiling).triangles;
     for size in above(limit, ceiling) {
         tried.ask(size)?;
@@ -207,7 +207,7 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
 /// numbers in `doubtful`, which may miss the goal, and five numbers at doubling distances.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
-    // All sizes directly below, from the largest down.
+    // Try all sizes directly below the limit, from the largest to the smallest.
     let near = (limit.saturating_sub(in_a_row)..limit).rev();
     let far = (1..=5).rev().map(move |halvings| limit - (limit >> halvings));
     near.chain(doubtful.iter().copied().filter(move |size| *size < limit)).chain(far).filter(|size| *size > 0)
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn the_answer_lies_below_an_island() {
-        // The sizes 796 to 806 miss because of an almost empty clump. 807 does not miss.
+        // The sizes 796 to 806 miss the goal because of an almost empty clump. The size 807 reaches the goal.
         for near in [None, Some(700), Some(807), Some(900)] {
             let hints = Hints { near, ..Hints::default() };
             let found = with(CEILING, &hints, |size| size <= 795 || size == 807);

@@ -163,7 +163,7 @@ mod tests {
     fn the_printed_fit_is_the_likeliest_and_a_zero_deviation_explains_nothing() {
         assert_eq!(EXACT.log_likelihood(), 0.0);
         let off = FigureFit { simulated: 4.2, error_percent: 5.0, ..EXACT };
-        // 0.2 in units of the three parts: 0.5 / sqrt(87), a fiftieth of 4, and half of a hundredth.
+        // The error of 0.2 is divided by three deviations: 0.5 / sqrt(87), a fiftieth of 4, and half of a hundredth.
         let expected = -0.5 * (0.2f64.powi(2) / (0.25 / 87.0 + 0.0064 + 0.000_025));
         assert!((off.log_likelihood() - expected).abs() < 1e-12);
         assert!(off.is_explained() && !FigureFit { simulated_sd: Some(0.0), ..EXACT }.is_explained());

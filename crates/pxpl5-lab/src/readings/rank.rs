@@ -67,7 +67,7 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
         fits.into_iter().collect::<Result<Vec<_>, _>>().map(|fits| ranked(fits.concat()))
     };
     let analytic = fits(Level::Analytic, &readings)?;
-    // Only the best interpretations are worth simulating with events.
+    // Only the best interpretations are simulated with all events, which takes long.
     let chosen: Vec<Reading> = analytic.iter().take(best).map(|fit| fit.reading).collect();
     let transaction = fits(Level::Transaction, &chosen)?;
     let rounding_percent = rounding_percent(&analytic);

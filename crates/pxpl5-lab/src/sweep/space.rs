@@ -122,7 +122,7 @@ impl SweepSpace {
         axes.extend(fault.together(fault.table(table, "together")?)?);
         axes.extend(fault.seeds(table.get("seeds"))?);
         fault.check(&axes, key_of)?;
-        // Multiply with care: the product of long axes can overflow.
+        // The multiplication checks for overflow, because the product of long axes can be too large.
         let points = axes.iter().try_fold(1u64, |all, axis| all.checked_mul(axis.len()));
         let points = points.filter(|points| *points <= MAX_POINTS);
         let points = points.ok_or_else(|| fault.text("sweep", &format!("at most {MAX_POINTS} points"), "more"))?;

@@ -60,7 +60,7 @@ impl Store {
     pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, FileError> {
         check_command(folder)?;
         fs::create_dir_all(folder).map_err(FileError::io(folder, "cannot be made"))?;
-        // The lock comes before any change to the folder.
+        // The folder is locked before any change.
         let lock = lock(folder)?;
         remove_leftover_files(folder);
         let path = folder.join(ROWS_FILE);
@@ -246,7 +246,7 @@ pub(crate) fn lock(folder: &Path) -> Result<File, FileError> {
             let reason = "another process is writing here; wait for it, or choose another folder";
             Err(FileError::because(FileErrorKind::Locked, reason).in_file(folder.display()))
         }
-        // On a file system without locks, a sweep without protection is better than no sweep.
+        // If the file system has no locks, the sweep continues without protection.
         _ => Ok(file),
     }
 }

@@ -109,8 +109,8 @@ fn parameters_of_firmware_are_stored_once_and_found_by_type() {
     assert_eq!(config.firmware_table::<Others>().map(|table| table.share), Some(0.5));
 }
 
-/// Names of experiments depend on these parameters. Parameters of firmware and of the i860 were added later. They
-/// appear in a name only if they were changed.
+/// Names of experiments depend on the parameters of the machine. Parameters of firmware and of the i860 were added
+/// later. They appear in a name only if they were changed.
 #[test]
 fn machines_are_distinguished_by_parameters_that_differ() {
     let telling = |config: &MachineConfig| -> Vec<String> {

@@ -107,7 +107,7 @@ fn the_first_display_is_the_sync_generator_of_the_first_processor() {
     assert_eq!(machine.processors()[2].look(us(301)).period, PeriodNumber(0));
 }
 
-/// A status line counts the swaps behind a port.
+/// A status line counts the swaps of the part of a surface at one port.
 #[test]
 fn the_master_is_notified_of_each_swap_with_its_number() {
     let mut machine =

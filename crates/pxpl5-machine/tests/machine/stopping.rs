@@ -117,8 +117,8 @@ fn each_waiting_board_is_listed_with_the_cause_of_its_wait() {
     assert_eq!(programs, ["host waits for Godot", "GP 1 waits for nothing"]);
     assert_eq!(blocked[2].waits_for, "frame buffer at node 5 to take region 0");
     assert_eq!(blocked[2].waits_on, Some(Board::Display(0)));
-    // Two messages carry pixels to one port. One message holds the port, and the other message waits for the renderer
-    // of the first.
+    // Two messages carry pixels to one port. One message occupies the port. The other message waits for the renderer
+    // that sends the first message.
     let messages = &blocked[4..];
     assert_eq!(messages.len(), machine.record().ring().waiting().len(), "and the ring's messages");
     let pairs: Vec<_> = messages.iter().map(|wait| (wait.board, wait.waits_on)).collect();

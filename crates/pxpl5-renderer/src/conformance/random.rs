@@ -268,8 +268,8 @@ mod tests {
             wrong += u32::from(ArrayInstruction::decode_all(&words).is_err());
             commands += words.iter().filter(|word| **word >> 24 == 1).count();
         }
-        // At most one list in 16 is invalid, and a flipped bit often hits a number. A list has one to four commands.
-        // The layout of Slats lacks a third of the kinds of commands.
+        // At most one list in 16 is invalid, and a flipped bit often changes only a number. A list has one to four
+        // commands. The layout of Slats lacks a third of the kinds of commands.
         assert!((5..63).contains(&wrong), "{wrong}");
         assert!((1000..3000).contains(&commands), "{commands}");
         let lengths: BTreeSet<usize> = (0..300)

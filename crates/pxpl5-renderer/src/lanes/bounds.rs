@@ -376,7 +376,7 @@ mod tests {
 
     #[test]
     fn a_small_triangle_has_the_box_of_its_corners() {
-        // (10, 20), (14, 20), (10, 26).
+        // The corners of the triangle are (10, 20), (14, 20) and (10, 26).
         let edges =
             [Linear { a: 1, b: 0, c: -10 }, Linear { a: 0, b: 1, c: -20 }, Linear { a: -6, b: -4, c: 6 * 14 + 4 * 20 }];
         let area = bounds(&edges).unwrap().area;

@@ -18,8 +18,10 @@ use std::sync::Arc;
 
 pub use jitp::{Interpolation, Viewpoint};
 
-/// The pipeline of just-in-time pixels (JITP). The pipeline divides a picture into strips of lines and draws each strip
-/// for the instant at which the strip is displayed.
+/// The pipeline of just-in-time pixels (JITP).
+///
+/// The pipeline divides a picture into strips of lines and draws each strip for the instant at which the strip is
+/// displayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Jitp {
     /// Choice of the instants for which the lines of a picture are drawn.
@@ -112,7 +114,7 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let gp = machine.processor(config.master, Priority::Foreground);
     let views = Arc::clone(&setup.wanted);
     let pass = whole_pass(setup);
-    // The master requests views for the instants that its strips are seen.
+    // The master requests views for the instants at which its strips are visible.
     let view_of = move |wanted: Wanted| views(wanted.number, wanted.known, wanted.shown_at);
     for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);

@@ -16,7 +16,9 @@ use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Version of the graphics processor's program. Versions differ only in simulated time.
+/// Version of the graphics processor's program.
+///
+/// Versions differ only in simulated time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
     /// Code of the 1994 prototype (TR94).

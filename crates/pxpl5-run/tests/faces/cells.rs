@@ -136,9 +136,9 @@ fn torn(outcome: &Outcome) -> usize {
     [CubeFace::NegX, CubeFace::NegZ, CubeFace::PosX].into_iter().filter_map(of_face).sum()
 }
 
-/// E7 on the machine: pieces that were drawn from different positions leave gaps, and warped pieces do not. A memory
-/// that begins 6 m away may be wrong by 3 degrees, which is 8.5 texels. The papers' angle, half a texel, would be
-/// visible in few fields.
+/// Experiment E7 on the machine: pieces that were drawn from different positions leave gaps, and warped pieces do not.
+/// A memory that begins 6 m away may be wrong by 3 degrees, which is 8.5 texels. The papers' angle, half a texel, would
+/// be visible in few fields.
 #[test]
 fn segments_tear_without_warping_and_meet_with_it() {
     let plain = along_the_wall(CELLS, 3.0);
@@ -176,7 +176,8 @@ fn far_cells_are_drawn_less_often_than_near_ones() {
     let updates = |outcome: &Outcome| (0..4).map(|k| memory(outcome.record(), k).stats().swaps).collect::<Vec<_>>();
     let [plain, warped] = [&plain, &warped].map(updates);
     println!("updates {plain:?} {warped:?}");
-    // With warping, the memories of a cycle are shown together, so the fastest memory waits for the others.
+    // With warping, memories that are drawn in one cycle are shown together, so the fastest memory waits for the slower
+    // memories.
     assert!(warped[0] <= plain[0]);
     let ideal = updates_by_the_rule(200);
     println!("by the rule {ideal:?}");

@@ -40,7 +40,7 @@ fn the_machine_and_the_ideal_renderer_fill_memories_with_the_same_bits() {
     }
 }
 
-/// Every retrace shows the updates of one instant before, in the memories that the policy found due.
+/// Every retrace shows the updates that were drawn an instant before, in the memories that the policy found due.
 #[test]
 fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
     for policy in [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells, FacePolicy::CellsWarped] {
@@ -70,7 +70,6 @@ fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
     }
 }
 
-/// The renderer of the faces does not affect rotation.
 #[test]
 fn the_latency_of_a_turn_is_that_of_faces_drawn_by_the_machine() {
     for latch in [Latch::Field, Latch::Line, Latch::Pixel] {

@@ -30,7 +30,7 @@ fn objects_fixed_to_the_head_are_drawn_in_its_direction() {
             let scene = builtin("full-screen:2").expect("built in");
             let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
             let head = if deg_per_s == 0.0 { head(Still(tracking::Pose::IDENTITY)) } else { head(Pan::at(deg_per_s)) };
-            // Half a second at 180 deg/s.
+            // The head turns for half a second at 180 deg/s.
             after(&Experiment::new(config, pipeline, scene).head(head), 30).into_record()
         };
         let drawn_on = |deg_per_s: f64| {
@@ -66,7 +66,8 @@ fn a_host_predicts_for_every_line_or_for_as_many_pixels_as_its_link_allows() {
         let tuned = outcome.head().expect("tracked").head();
         let ahead_ms =
             |training: Option<&tracking::predict::Training>| training.expect("tuned").interval_ps / 1_000_000_000;
-        // 33 ms of the tracker and up to one field, compared with TRANSFORM, RENDER, COPY and retraces in addition.
+        // For turns, pictures are predicted by the 33 ms of the tracker and up to one field. For positions, TRANSFORM,
+        // RENDER, COPY and the waits for retraces are additional.
         assert!((33..=60).contains(&ahead_ms(tuned.training_of_turns())), "{:?}", tuned.training_of_turns());
         assert!(ahead_ms(tuned.training()) > ahead_ms(tuned.training_of_turns()));
     }

@@ -18,13 +18,13 @@ const RED: Colour = [224, 36, 30];
 const GLASS: Colour = [90, 170, 226];
 
 pub(super) fn scene() -> Scene {
-    let mut mesh = fuselage(); // 48
+    let mut mesh = fuselage(); // 48 triangles
     for side in [1.0, -1.0] {
-        add_flat(&mut mesh, wing(side), SILVER); // 12
-        add_flat(&mut mesh, tailplane(side), RED); // 6
+        add_flat(&mut mesh, wing(side), SILVER); // 12 triangles
+        add_flat(&mut mesh, tailplane(side), RED); // 6 triangles
     }
-    add_flat(&mut mesh, fin(), RED); // 8
-    add_flat(&mut mesh, canopy(), GLASS); // 8
+    add_flat(&mut mesh, fin(), RED); // 8 triangles
+    add_flat(&mut mesh, canopy(), GLASS); // 8 triangles
     // Scale the aircraft to the radius of `mig` about the origin.
     let (centre, radius) = bounding_sphere(mesh.positions.iter().map(|&place| (place, 0.0)));
     for place in &mut mesh.positions {

@@ -29,22 +29,22 @@ const SIDES: usize = 14;
 
 pub(super) fn scene() -> Scene {
     let mut solid = Solid::default();
-    fuselage(&mut solid); // 280
-    wing(&mut solid, 1.0); // 23
-    wing(&mut solid, -1.0); // 23
-    fin(&mut solid); // 10
-    ventral_fin(&mut solid); // 10
-    canopy(&mut solid); // 24
-    boom(&mut solid); // 3
+    fuselage(&mut solid); // 280 triangles
+    wing(&mut solid, 1.0); // 23 triangles
+    wing(&mut solid, -1.0); // 23 triangles
+    fin(&mut solid); // 10 triangles
+    ventral_fin(&mut solid); // 10 triangles
+    canopy(&mut solid); // 24 triangles
+    boom(&mut solid); // 3 triangles
     // Moving control surfaces are structures of their own.
     solid.end_structure("airframe", None);
     for (name, side) in [("left aileron", 1.0), ("right aileron", -1.0)] {
-        aileron(&mut solid, name, side); // 8
+        aileron(&mut solid, name, side); // 8 triangles
     }
     for (name, side) in [("left tailplane", 1.0), ("right tailplane", -1.0)] {
-        tailplane(&mut solid, name, side); // 10
+        tailplane(&mut solid, name, side); // 10 triangles
     }
-    rudder(&mut solid); // 8
+    rudder(&mut solid); // 8 triangles
     finish(solid)
 }
 

@@ -78,7 +78,7 @@ fn join(mesh: &mut Mesh, above: &Ring, below: &Ring) {
     let [mut a, mut b] = [0, 0];
     while a < upper || b < lower {
         let corner = |ring: &Ring, index: u32| ring.first + index % ring.points;
-        // Advance on the parallel whose next point comes first on the way round.
+        // Advance on the parallel whose next point comes first around the axis.
         let is_upper =
             b == lower || (a < upper && u64::from(a + 1) * u64::from(lower) <= u64::from(b + 1) * u64::from(upper));
         if is_upper {

@@ -151,7 +151,8 @@ impl<'a> Reader<'a> {
             let found = format!("{} meshes", root.meshes.len());
             return Err(source.part(format!("meshes[{number}]"), "a mesh with this index", found));
         };
-        // The joints of a skin place a mesh, and its node does not. Without joints the mesh stays as it is.
+        // The joints of a skin determine the place of a mesh, and the node of the mesh does not. Without joints the
+        // mesh stays as it is.
         let to_world = if node.skin.is_some() { DMat4::IDENTITY } else { to_world };
         self.skinned += usize::from(node.skin.is_some());
         for (of_mesh, primitive) in mesh.primitives.iter().enumerate() {

@@ -165,7 +165,7 @@ impl FigureRow {
     #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };
-        // Allow for the distance between the levels and for the printed precision.
+        // The margin has the difference between the two levels and the precision of the printed figure.
         let of_levels = self.analytic.map_or(0.0, |analytic| (analytic - self.simulated).abs());
         let spread = self.spread.unwrap_or(0.0);
         let slack = of_levels + spread.max(self.published.abs() * ROUNDING);

@@ -156,7 +156,7 @@ pub trait PathSettings: Sized + 'static {
     /// Returns a [`SettingError`] with the most similar path, or with the allowed values.
     fn set(&mut self, path: &str, text: &str, place: &str) -> Result<(), SettingError> {
         let done = match Self::CHOICES.iter().find(|choice| choice.path == path) {
-            // An option that is named like its path names the path already.
+            // If the option has the name of the path, the message already states the path.
             Some(choice) if place.strip_prefix("--") == Some(path) => (choice.set)(self, text),
             Some(choice) => (choice.set)(self, text).map_err(|error| error.at(path)),
             None => match table_at(self.tables_mut(), path) {

@@ -27,6 +27,7 @@ pub struct SettingError {
     pub nearest: Box<str>,
 }
 
+/// The kind of a [`SettingError`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum SettingErrorKind {

@@ -20,6 +20,7 @@ pub struct FileError {
     pub found: Box<str>,
 }
 
+/// The kind of a [`FileError`], from an unreadable file to invalid content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FileErrorKind {
@@ -136,7 +137,7 @@ mod tests {
     #[test]
     fn a_byte_that_is_not_text_is_reported_with_line_and_byte() {
         assert_eq!(text_of("a\né".as_bytes()), Ok("a\né"));
-        // The e with an acute of Latin-1, and a character of UTF-8 that ends early.
+        // An e with an acute accent in Latin-1, and a character of UTF-8 that ends early.
         for (bytes, place, byte) in [
             (&b"\xe9"[..], "line 1, byte 1", "0xe9"),
             (b"a\nb\ncaf\xe9\n", "line 3, byte 4", "0xe9"),

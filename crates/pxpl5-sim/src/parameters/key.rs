@@ -28,6 +28,7 @@ impl fmt::Display for KeyValue {
     }
 }
 
+/// The values that a [`Key`] permits.
 #[derive(Clone, Copy, Debug)]
 pub enum KeyValues {
     Flag,
@@ -62,8 +63,9 @@ impl fmt::Display for KeyValues {
     }
 }
 
-/// A setting: `name = value` in experiment files. The settings of pipelines are also options `--name value` of
-/// commands.
+/// A setting: `name = value` in experiment files.
+///
+/// The settings of pipelines are also options `--name value` of commands.
 ///
 /// ```
 /// use pxpl5_sim::parameters::{Key, KeyValues};

@@ -83,7 +83,7 @@ mod tests {
         assert_eq!(find_named("number", "two", all), Ok(2));
         for wrong in ["", "Two", " two", "two ", "tw"] {
             let error = find_named("number", wrong, all).expect_err(wrong);
-            // The most similar name comes first. All names are as far from an empty text as they are long.
+            // The most similar name comes first. The distance of a name from an empty text is the length of the name.
             let expected = if wrong.is_empty() { "one or two" } else { "two or one" };
             assert_eq!(error.to_string(), format!("expected {expected}, found `{wrong}`"));
         }

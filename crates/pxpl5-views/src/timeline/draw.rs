@@ -254,7 +254,7 @@ impl<'a> Drawing<'a> {
         let mut from = self.low(arrow.from);
         let mut to = self.high(arrow.to);
         if to <= from {
-            // Within a row, or upwards between its lanes, an arrow begins and ends at half height.
+            // An arrow within a row, also upwards between the row's lanes, begins and ends at half the height of a bar.
             from = self.high(arrow.from) + Units::whole(LANE / 2);
             to = self.high(arrow.to) + Units::whole(LANE / 2);
         }

@@ -41,7 +41,8 @@ fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<PictureNumber, Vec<Stop>>
     let names: Vec<&str> = stages.iter().map(|stage| stage_name(*stage)).collect();
     for (stop, track, slice) in stops(trace).filter(|(_, track, _)| names.contains(track)) {
         let Some(picture) = slice.picture else { continue };
-        // Slices of COPY are named by region, so the track replaces the name: the first region of each surface counts.
+        // Slices of COPY have the names of regions. The name of the track is used instead, so only the first region of
+        // each surface counts.
         let name = if track == "COPY" { format!("COPY {}", stop.track) } else { slice.name.clone() };
         let first = all.entry((picture, name)).or_insert(stop);
         *first = stop.min(*first);

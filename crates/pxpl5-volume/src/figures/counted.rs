@@ -90,7 +90,7 @@ fn planes(views: &[SliceView]) -> Vec<FigureRow> {
     };
     // D1: the angle between neighbouring slices.
     let pitch = (0..views.len() - 1).map(angle).fold(0.0, f64::max);
-    // D2: after how many slices the plane of slice 0 comes again, and how many planes are distinct.
+    // D2: the number of slices after which the plane of slice 0 occurs again, and the number of distinct planes.
     let mut distinct: Vec<_> = views.iter().map(plane).collect();
     let again = distinct.iter().skip(1).position(|other| *other == distinct[0]).map_or(0, |k| k as u64 + 1);
     distinct.sort_unstable();

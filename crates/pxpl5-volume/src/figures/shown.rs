@@ -134,7 +134,7 @@ fn recording(vertices: Vec<spatialgl::ColouredVertex>, indices: &[u32]) -> Resul
 /// px. Every slice intersects equal facets, so all slices have the same gaps in an orthographic projection.
 fn noise(workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let likeness = |projection| {
-        // As many facets around the sphere as slices make the gaps of all slices equal.
+        // If the sphere has as many facets around it as there are slices, the gaps of all slices are equal.
         let (vertices, indices) = tessellated_sphere(glam::DVec3::ZERO, 300.0, 198, [255; 3]);
         let settings = VolumeSettings { projection, ..VolumeSettings::paper() };
         let volume = Volume::draw_commands(&settings, "sphere", recording(vertices, &indices)?, workers)?;
@@ -159,7 +159,7 @@ fn limits(volume: &Volume) -> ShownStatement {
     let size = volume.frame.planes.size();
     let time = volume.time();
     let unpacked = model.unpacked(stats, size);
-    // A volume with draws alone gives the time of the vertices, and the rest is fill.
+    // The time of a volume with draws alone is the time of the vertices. The remaining time is fill.
     let vertices_only = VolumeStats { draws: stats.draws, ..VolumeStats::default() };
     let vertices_ms = model.unpacked(&vertices_only, size).gpu_ms;
     let fill_ms = unpacked.gpu_ms - vertices_ms;

@@ -176,7 +176,6 @@ impl PixelPlanesRenderer {
         }
         let (clocks, colours) = self.execute(&words, within);
         work.clocks = clocks + halftone_clocks(&self.layout);
-        // Draw every pixel that is not black.
         for (at, colour) in (0u32..).zip(colours.iter()).filter(|(_, colour)| **colour != 0) {
             let [_, red, green, blue] = colour.to_be_bytes();
             image.draw_pixel(left + at % within[0], top + at / within[0], [red, green, blue], Combine::Last);

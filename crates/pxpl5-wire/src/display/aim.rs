@@ -13,8 +13,10 @@ pub struct LightTimes {
     pub last: Time,
 }
 
-/// The instant for which the view of a picture is predicted. All pipelines use the same choice. The instant follows
-/// from the [`LightTimes`] of the picture, the times at which the display shows the picture.
+/// The instant for which the view of a picture is predicted.
+///
+/// All pipelines use the same choice. The instant follows from the [`LightTimes`] of the picture, the times at which
+/// the display shows the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aim {

@@ -23,7 +23,9 @@ impl PartialRegion {
 
 type Regions = BTreeMap<RegionId, PartialRegion>;
 
-/// Two buffers for one surface. One of the buffers is shown.
+/// Two buffers for one surface.
+///
+/// One of the buffers is shown.
 ///
 /// **Not modelled:** pixels that arrive in the shown buffer during the scan. A display that models such pixels must
 /// keep the arrival times of all messages, like the NTSC frame buffer.
@@ -253,7 +255,8 @@ mod tests {
         let mut buffers = DoubleBuffer::new(100, 60);
         receive(&mut buffers, part(0, 0, 1, 1), 1);
         let wrong = [
-            // A repeated message, a wrong number of messages, and a message, a buffer and a region that do not exist.
+            // Invalid messages: a repeated message, a wrong number of messages, and a message, a buffer and a region
+            // that do not exist.
             part(0, 0, 1, 1),
             RegionPixels { parts: 3, ..part(0, 1, 1, 1) },
             part(0, 2, 1, 1),

@@ -49,7 +49,7 @@ fn plane(size: Size, planes: u32, depth: f64, i: u32) -> SliceView {
         [0.0, 0.0, 0.0, 1.0],
     ]);
     let mut view = SliceView::new(DMat4::IDENTITY, clip, SliceVolume::Slab { low, high }, size);
-    // A little slack keeps rounding from rejecting primitives that touch the slab.
+    // A small tolerance prevents rounding errors from rejecting primitives that touch the slab.
     let slack = depth * 1e-9;
     view.reach = Some([low - slack, high + slack]);
     view

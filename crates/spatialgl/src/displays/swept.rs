@@ -10,6 +10,7 @@ use glam::{DMat4, DVec3};
 use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
+/// The direction in which the screen spins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rotation {
@@ -24,6 +25,7 @@ impl Rotation {
 
 pxpl5_sim::parameters::named!(Rotation, "sense of rotation", Rotation::ALL);
 
+/// The parameters of a display that sweeps a volume with a spinning screen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweptConfig {
@@ -149,7 +151,7 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
     let (sin, cos) = direction(config, 2 * i64::from(k));
     let rows = [[cos, 0.0, sin, 0.0], [0.0, 1.0, 0.0, 0.0], [-sin, 0.0, cos, 0.0], [0.0, 0.0, 0.0, 1.0]];
     let eye = config.projection.eye(k, wedge.radius, reach);
-    // A little slack keeps rounding from rejecting primitives that touch the slice.
+    // A small tolerance prevents rounding errors from rejecting primitives that touch the slice.
     let slack = reach * (1.0 + 1e-9) + 1e-6;
     let volume = config.clip.volume(boundaries(config, k), config.ties, wedge);
     let view: DMat4 = matrix_of_rows(rows);

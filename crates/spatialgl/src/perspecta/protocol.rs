@@ -53,6 +53,7 @@ pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Wo
     Some(batches.into_iter().flat_map(in_order).collect())
 }
 
+/// The messages of one batch of slices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BatchMessages {
     /// Message with the map of the tiles that will arrive. This message is sent before the tiles.
@@ -61,6 +62,7 @@ pub struct BatchMessages {
     pub tiles: Vec<TileMessage>,
 }
 
+/// The message with the pixels of one tile of a slice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TileMessage {
     pub slice: u32,

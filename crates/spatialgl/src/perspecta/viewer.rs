@@ -296,7 +296,7 @@ impl Strobe {
             focal: camera.focal,
             centre: camera.size.map(|side| f64::from(side) / 2.0),
             lambert: options.lambert,
-            // The half with u < 0 points in the opposite direction.
+            // The half of a slice with u < 0 points in the opposite direction.
             cut: [is_cut(options.cut_deg, angle + 180.0), is_cut(options.cut_deg, angle)],
         }
     }

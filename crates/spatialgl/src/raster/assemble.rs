@@ -127,7 +127,7 @@ fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     let from = &from.place;
     let to = &to.place;
     for [a, b] in [[from.z, to.z], [from.w - from.z, to.w - to.z]] {
-        // Distances from a plane are negative beyond it.
+        // Distances from a plane are negative beyond the plane.
         if a < 0.0 && b < 0.0 {
             return None;
         }

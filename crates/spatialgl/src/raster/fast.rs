@@ -92,7 +92,7 @@ fn triangle(
 ) -> Option<Setup> {
     let local = [transform.local(*a), transform.local(*b), transform.local(*c)];
     let places = [transform.place(local[0]), transform.place(local[1]), transform.place(local[2])];
-    // Most triangles are invisible and end here.
+    // Most triangles are invisible and need no further work.
     let bounds = bounds([&places[0], &places[1], &places[2]], size)?;
     let corner = |i: usize, world: &[f64; 3]| {
         let [p, q] = transform.volume.attributes(*world, local[i][0], local[i][2]);

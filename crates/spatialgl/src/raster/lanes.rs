@@ -183,7 +183,7 @@ fn chunk(
 ) {
     let weights = &pixels.weights;
     let [a, b, c] = weights;
-    // Test the edges first, since most vectors end here.
+    // Test the edges first, because this test rejects most vectors.
     let least = setup.least;
     let there = if pixels.count < LANES as u32 { (1 << pixels.count) - 1 } else { u8::MAX };
     let mut inside = there & bits(|i| (a[i] >= least[0]) & (b[i] >= least[1]) & (c[i] >= least[2]));

@@ -75,8 +75,10 @@ pub struct RecordingFormat {
     pub axes: Option<Axes>,
 }
 
-/// A replayed recording of head poses. Positions are interpolated linearly, and orientations by slerp. Before the first
-/// sample the head stands still. [`End`] defines the behaviour after the last sample.
+/// A replayed recording of head poses.
+///
+/// Positions are interpolated linearly, and orientations by slerp. Before the first sample the head stands still.
+/// [`End`] defines the behaviour after the last sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     samples: Vec<Sample>,

@@ -133,7 +133,7 @@ struct TrainingData {
 
 impl TrainingData {
     fn of<M: Motion + ?Sized>(motion: &M, tracker: &TrackerModel, interval_ps: u64, seed: u64) -> Option<Self> {
-        // A head that stands still at its end teaches the filter nothing.
+        // The part of a motion in which the head stands still at the end does not help to tune a filter.
         let until_ps = motion.moves_until_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);
         let settling_ps = (SETTLING_S * PS_PER_S).min(until_ps / 2);
         let in_time = |report: &TrackerReport| report.measured_ps.saturating_add(interval_ps) <= until_ps;

@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn in_the_long_run_the_mean_age_of_a_pixel_is_half_a_pass() {
-        // Ages in steps after each update of the third pass; at any moment they are 0..n-1, mean (n - 1) / 2.
+        // After each update of the third pass, the ages of the pixels are 0 to n - 1 steps. Their mean is (n - 1) / 2.
         let n = 1000u64;
         let order = RandomOrder::new(n as u32, 3).unwrap();
         let mut updated = vec![0; n as usize];
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn the_order_is_spread_over_the_picture() {
-        // The first 3,000 of 300,000 pixels: 300 +- 17 in each tenth of the picture.
+        // Each tenth of the picture contains 300 +- 17 of the first 3,000 of 300,000 pixels.
         let order = RandomOrder::new(300_000, 9).unwrap();
         let mut tenths = [0; 10];
         (0..3000).for_each(|step| tenths[(order.pixel(step) / 30_000) as usize] += 1);
@@ -123,7 +123,7 @@ mod tests {
     fn blocks_drawn_in_succession_are_not_adjacent() {
         let order = RandomOrder::new(300_000, 9).unwrap();
         let near = (0..3000u64).filter(|&s| order.pixel(s).abs_diff(order.pixel(s + 1)) < 3000).count();
-        // By chance 2 x 3,000 / 300,000 = 2 % of 3,000: 60 +- 8.
+        // A random order gives 2 x 3,000 / 300,000 = 2 % of 3,000 pairs: 60, with a standard deviation of 8.
         assert!((25..95).contains(&near), "{near}");
     }
 

@@ -288,7 +288,7 @@ mod tests {
 
     #[test]
     fn errors_at_90_and_50_ms_have_the_ratio_1_8() {
-        // At 40 deg/s, the mean speed of recorded use. The tangent adds 0.1 %.
+        // 40 deg/s is the mean speed of recorded use. The tangent adds 0.1 %.
         let pan = Pan::at(40.0);
         let [at_90, at_50] = [90, 50]
             .map(|ms| Hmd::unc().centre_misregistration(&pan.pose(0), &pan.pose(ms * PS_PER_MS), 5.0).unwrap().pixels);

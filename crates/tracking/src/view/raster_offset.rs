@@ -161,7 +161,7 @@ mod tests {
             (drawn + shift - view.project(actual.view_of(point)).unwrap()).length()
         });
         assert!(error_middle < 1e-9);
-        // f (tan(30 deg) - tan(30 deg - turn)) less f tan(turn): 9.1 px.
+        // f (tan(30 deg) - tan(30 deg - turn)) minus f tan(turn): 9.1 px.
         let f = view.focal_px();
         let turn = 200f64.to_radians() * NTSC_FIELD_PS as f64 / 1e12;
         let expected = f * (edge.tan() - (edge - turn).tan() - turn.tan());

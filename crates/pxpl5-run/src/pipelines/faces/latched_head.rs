@@ -135,7 +135,9 @@ impl OrientationTiming {
     }
 }
 
-/// Parts of the rotation latency. The sum of the parts is the latency.
+/// Parts of the rotation latency.
+///
+/// The sum of the parts is the latency.
 ///
 /// Rotation latency is the time from the measurement of an orientation until a pixel that uses the orientation is lit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

@@ -45,7 +45,7 @@ impl Updates {
         // The two buffers of a memory take turns.
         let buffer = (self.sent[due.memory] + 1) % 2;
         self.sent[due.memory] += 1;
-        // From this record, later code finds the update that each swap has shown.
+        // Later code uses this record to find the update that each swap has shown.
         self.notes.write(RequestedUpdate {
             picture: number,
             view: view.number,

@@ -19,7 +19,9 @@ pub struct RequestedUpdate {
     pub structures: Arc<[bool]>,
 }
 
-/// A record of the updates of a run that were not discarded. The record grows during the run.
+/// A record of the updates of a run that were not discarded.
+///
+/// The record grows during the run.
 #[derive(Debug, Default)]
 pub struct RequestedUpdates(Mutex<Held>);
 

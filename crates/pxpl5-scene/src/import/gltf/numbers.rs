@@ -64,7 +64,7 @@ impl<'a> Numbers<'a> {
         let Some(accessor) = document.root.accessors.get(index) else {
             return fail("", "an accessor with this index".into(), count(document.root.accessors.len(), "accessors"));
         };
-        // Types.
+        // Check the types of the numbers.
         let kind = match accessor.component_type {
             Checked::Valid(kind) if kinds.contains(&kind.0) => kind.0,
             Checked::Valid(kind) => {
@@ -79,7 +79,7 @@ impl<'a> Numbers<'a> {
         if !components.contains(&of_item) {
             return fail(".type", format!("one with {components:?} numbers"), format!("one with {of_item}"));
         }
-        // Positions.
+        // Find the positions of the items in the buffer.
         let length = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
         let item = (kind, of_item * kind.size());
         let base = match accessor.buffer_view {

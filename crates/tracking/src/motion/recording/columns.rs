@@ -116,7 +116,7 @@ impl Columns {
             })?;
             found[field.slot] = Some(Column { index, name: wanted.clone(), places: field.places });
         }
-        // Every slot needs a column: a missing one makes the mapping incomplete.
+        // Every value of a sample needs a column. Without a column for a value, the mapping is incomplete.
         let all: Vec<Column> = found.into_iter().flatten().collect();
         all.try_into().map_err(|_| FileError::new(FileErrorKind::Syntax, EXPECTED, self).at("columns"))
     }

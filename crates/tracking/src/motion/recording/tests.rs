@@ -112,9 +112,9 @@ fn bytes_that_are_not_text_are_an_error() {
     assert_eq!(Recording::read(&b"\xff\xfe"[..]).expect_err("no UTF-8").kind, FileErrorKind::Unreadable);
 }
 
-// One motion in three kinds of file. The head stands at (0, 1.7, 0) and looks along -z. Half a second later it has
-// turned a quarter to the left and moved to (0.25, 1.7, -0.5). Then it looks 30 degrees up. In the other two files up
-// is z, and y replaces -z. The quaternions were computed by hand from matrices whose columns are the directions of the
+// One motion in three kinds of file. The head stands at (0, 1.7, 0) and looks along -z. Half a second later it has made
+// a quarter turn to the left and moved to (0.25, 1.7, -0.5). Then it looks 30 degrees up. In the other two files up is
+// z, and y replaces -z. The quaternions were computed by hand from matrices whose columns are the directions of the
 // sensor's axes. At the start the optical frame has x east, y down, z north: (w, x, y, z) = (s, -s, 0, 0) with s =
 // sqrt(1/2). EuRoC's frame has x up, y east, z north: (1, -1, -1, -1) / 2.
 const OWN: &str = "time_s,x,y,z,qw,qx,qy,qz
@@ -203,7 +203,7 @@ fn an_incomplete_mapping_is_an_error() {
 
 #[test]
 fn axes_can_be_chosen() {
-    // A robot that faces north and turns a quarter to the left about its upward z axis.
+    // A robot that faces north and makes a quarter turn to the left about its upward z axis.
     let text = "1 0 0 1.7 0 0 0.70710678 0.70710678\n2 0 0 1.7 0 0 1 0\n";
     let format = RecordingFormat { axes: Some(Axes::Robot), ..RecordingFormat::default() };
     let recording = Recording::read_as(text.as_bytes(), &format).unwrap();
@@ -275,7 +275,7 @@ fn samples_made_by_a_program_are_checked_like_samples_of_a_file() {
     let at = |s: f64| (s, Pose { position: DVec3::new(s.sin(), 1.7, -0.1), ..Pose::IDENTITY });
     let given = Recording::from_samples([at(0.0), at(0.125), at(1.0 / 3.0)]).expect("samples");
     assert_eq!((given.n_samples(), given.span_ps()), (3, (0, 333_333_333_333)));
-    // The numbers stay the same bits.
+    // The stored numbers keep all of their bits.
     assert_eq!(given.pose(125_000_000_000), at(0.125).1);
     let turned = Pose { orientation: glam::DQuat::from_xyzw(0.0, 0.0, 0.0, 2.0), ..Pose::IDENTITY };
     for (samples, says) in [
