@@ -1,6 +1,6 @@
 //! Consistency of a report's numbers: a quantity has the same value in every place.
 
-use glam::{DQuat, DVec3};
+use glam::DQuat;
 use image::{Rgb, RgbImage};
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{
@@ -13,10 +13,10 @@ use pxpl5_run::{
 use pxpl5_scene::builtin;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
-use tracking::motion::{Motion, Pan};
+use tracking::Pose;
+use tracking::motion::{Pan, from_fn};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
-use tracking::{Pose, SettingSink};
 
 const FIELD_HZ: f64 = 60_000.0 / 1_001.0;
 
@@ -307,28 +307,11 @@ fn a_latency_curve_has_a_point_for_each_field_from_the_first_picture() {
     assert!(LatencyCurve::of(&Pan::at(40.0), 2_000, 2, 3.0).points.is_empty());
 }
 
-/// A head that rotates for one second and then stops.
-#[derive(Clone, Copy, Debug)]
-struct Stopping;
-
-impl Motion for Stopping {
-    fn pose(&self, t_ps: u64) -> Pose {
-        Pose::facing(DQuat::from_rotation_y(0.5 * (t_ps as f64 * 1e-12).min(1.0)))
-    }
-    fn identify(&self, settings: &mut SettingSink) {
-        settings("motion", &"stopping");
-    }
-    fn velocity(&self, _: u64) -> DVec3 {
-        DVec3::ZERO
-    }
-    fn angular_velocity(&self, t_ps: u64) -> DVec3 {
-        if t_ps < 1_000_000_000_000 { DVec3::Y * 0.5 } else { DVec3::ZERO }
-    }
-}
-
 #[test]
 fn the_picture_moves_for_the_latency_after_the_head_has_stopped() {
-    let curve = LatencyCurve::of(&Stopping, 90, 2, 3.0);
+    // The head rotates for one second and then stops.
+    let stopping = from_fn(|seconds| Pose::facing(DQuat::from_rotation_y(0.5 * seconds.min(1.0))));
+    let curve = LatencyCurve::of(&stopping, 90, 2, 3.0);
     for (time, pixels) in &curve.points {
         assert_eq!(*pixels > 1e-6, *time < 1.0 + 0.09, "{time}: {pixels}");
     }

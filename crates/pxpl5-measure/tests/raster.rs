@@ -10,11 +10,11 @@ use pxpl5_run::{Aim, Experiment, Head, Outcome, PipelineSettings, Pixels, Raster
 use pxpl5_scene::builtin;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
-use tracking::motion::{Motion, Pan};
+use tracking::Pose;
+use tracking::motion::{Motion, Pan, from_fn};
 use tracking::predict::PredictorKind;
 use tracking::time::PS_PER_MS;
 use tracking::tracker::TrackerConfig;
-use tracking::{Pose, SettingSink};
 
 const FIELDS: u64 = 30;
 
@@ -34,34 +34,18 @@ fn focal_px() -> f64 {
     320.0 / 30f64.to_radians().tan()
 }
 
-/// A head that rotates about an axis of the world: to the left about y, or upwards about x.
-#[derive(Clone, Copy, Debug)]
-struct Turning {
-    axis: DVec3,
-}
-
 const RAD_PER_S: f64 = 2.0;
 
-impl Motion for Turning {
-    fn pose(&self, t_ps: u64) -> Pose {
-        // The start is chosen so that the head looks straight ahead in a field in the middle of the run.
-        Pose::facing(DQuat::from_axis_angle(self.axis, RAD_PER_S * (t_ps as f64 * 1e-12 - 0.35)))
-    }
-    fn identify(&self, settings: &mut SettingSink) {
-        settings("motion", &"turning");
-    }
-    fn velocity(&self, _: u64) -> DVec3 {
-        DVec3::ZERO
-    }
-    fn angular_velocity(&self, _: u64) -> DVec3 {
-        self.axis * RAD_PER_S
-    }
+/// Returns the motion of a head that rotates about an axis of the world: to the left about y, or upwards about x.
+fn turning(axis: DVec3) -> impl Motion + Send + Sync + 'static {
+    // The start is chosen so that the head looks straight ahead in a field in the middle of the run.
+    from_fn(move |seconds| Pose::facing(DQuat::from_axis_angle(axis, RAD_PER_S * (seconds - 0.35))))
 }
 
 fn run(axis: DVec3, raster: Raster) -> Outcome {
     let registry = Registry::of_papers();
     let pipeline = (registry.pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
-    let head = Head::new(Arc::new(Turning { axis }), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
+    let head = Head::new(Arc::new(turning(axis)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
     let head = head.expect("in range").with_aim(Aim::Middle).with_raster(raster);
     let scene = Arc::new(builtin("full-screen:2").expect("built in"));
     let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);

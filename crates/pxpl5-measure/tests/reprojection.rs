@@ -3,7 +3,7 @@
 //!
 //! The tracker is ideal and the predictor is exact for such motions, so only the instants of the poses cause errors.
 
-use glam::{DQuat, DVec3};
+use glam::DQuat;
 use image::RgbImage;
 use pxpl5_framebuffer::PanelConfig;
 use pxpl5_machine::MachineConfig;
@@ -17,11 +17,11 @@ use pxpl5_sim::Time;
 use pxpl5_wire::SurfaceId;
 use pxpl5_wire::display::DisplayConfig;
 use std::sync::Arc;
-use tracking::motion::{Motion, Slide};
+use tracking::Pose;
+use tracking::motion::{Motion, Slide, from_fn};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 use tracking::view::Hmd;
-use tracking::{Pose, SettingSink};
 
 const FIELDS: u64 = 30;
 
@@ -39,23 +39,9 @@ fn focal_px(width: f64) -> f64 {
     width / 2.0 / 30f64.to_radians().tan()
 }
 
-/// A head that rotates to the left at a constant rate, in radians per second.
-#[derive(Clone, Copy, Debug)]
-struct Turning(f64);
-
-impl Motion for Turning {
-    fn pose(&self, t_ps: u64) -> Pose {
-        Pose::facing(DQuat::from_axis_angle(DVec3::Y, self.0 * (t_ps as f64 * 1e-12 - 0.35)))
-    }
-    fn identify(&self, settings: &mut SettingSink) {
-        settings("motion", &"turning");
-    }
-    fn velocity(&self, _: u64) -> DVec3 {
-        DVec3::ZERO
-    }
-    fn angular_velocity(&self, _: u64) -> DVec3 {
-        DVec3::Y * self.0
-    }
+/// Returns the motion of a head that rotates to the left at a constant rate, in radians per second.
+fn turning(rad_per_s: f64) -> impl Motion + Send + Sync + 'static {
+    from_fn(move |seconds| Pose::facing(DQuat::from_rotation_y(rad_per_s * (seconds - 0.35))))
 }
 
 fn head(motion: impl Motion + Send + Sync + 'static) -> Head {
@@ -125,7 +111,7 @@ fn turned_px(rate: f64, every: Every) -> f64 {
 
 #[test]
 fn reprojection_leaves_only_the_rotation_between_its_pose_and_light() {
-    let outcome = fields(head(Turning(2.0)), "full-screen:2");
+    let outcome = fields(head(turning(2.0)), "full-screen:2");
     for by in [Warp::Rotation, Warp::Depth] {
         for every in [Every::Field, Every::Strip, Every::Line] {
             let errors = PixelErrors::shown(&outcome, device(by, every));
@@ -141,7 +127,7 @@ fn reprojection_leaves_only_the_rotation_between_its_pose_and_light() {
 
 #[test]
 fn a_shift_equals_a_rotation_only_in_the_middle_of_the_picture() {
-    let outcome = fields(head(Turning(2.0)), "full-screen:2");
+    let outcome = fields(head(turning(2.0)), "full-screen:2");
     let shift = PixelErrors::shown(&outcome, device(Warp::Shift, Every::Line));
     let turn = PixelErrors::shown(&outcome, device(Warp::Rotation, Every::Line));
     assert!((shift.centre_px.mean - turn.centre_px.mean).abs() < 1e-3);
@@ -153,7 +139,7 @@ fn a_shift_equals_a_rotation_only_in_the_middle_of_the_picture() {
 #[test]
 fn the_empty_share_is_the_part_rotated_in_from_beyond_the_edge() {
     const RATE: f64 = 8.0;
-    let outcome = fields(head(Turning(RATE)), "full-screen:2");
+    let outcome = fields(head(turning(RATE)), "full-screen:2");
     let found = EyeReport::shown(&outcome, device(Warp::Rotation, Every::Line)).expect("a device");
     let found = found.reprojection.expect("a device");
     let f = focal_px(640.0);
@@ -204,7 +190,7 @@ fn on_panel(config: PanelConfig, rate: f64) -> Outcome {
     let config = PanelConfig { width: 128, height: 96, refresh_hz: 30, ..config };
     let machine = MachineConfig { displays: vec![Box::new(config)], ..MachineConfig::small_hmd() };
     let scene = builtin("full-screen:2").expect("built in");
-    let experiment = Experiment::new(machine, RenderingControl::mono(), scene).head(head(Turning(rate)));
+    let experiment = Experiment::new(machine, RenderingControl::mono(), scene).head(head(turning(rate)));
     experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("it is small")
 }
 
@@ -259,7 +245,7 @@ fn persistence_delays_the_centre_of_light_by_half_and_smears_over_its_whole_time
 
 #[test]
 fn a_display_without_persistence_has_no_smear_and_a_plain_raster_no_report() {
-    let outcome = fields(head(Turning(1.0)), "full-screen:2");
+    let outcome = fields(head(turning(1.0)), "full-screen:2");
     assert_eq!(EyeReport::shown(&outcome, Showing::Plain), None);
     assert_eq!(outcome.report().eye, None);
     assert!(!serde_json::to_string(&outcome.report()).expect("numbers").contains("\"eye\""));
@@ -269,7 +255,7 @@ fn a_display_without_persistence_has_no_smear_and_a_plain_raster_no_report() {
 #[test]
 fn vdrt_is_one_setting_with_unchanged_errors() {
     assert_eq!(Raster::Vdrt.reprojection(), Some(Reprojection::VDRT));
-    let outcome = fields(head(Turning(2.0)).with_raster(Raster::Vdrt), "full-screen:2");
+    let outcome = fields(head(turning(2.0)).with_raster(Raster::Vdrt), "full-screen:2");
     let eye = outcome.report().eye.expect("a device").reprojection.expect("a device");
     assert_eq!((eye.device, eye.looked_at), (Reprojection::VDRT, 16 * 12 * (FIELDS - WARM_UP_PERIODS)));
     assert!(eye.pose_age_ms.mean > 0.0);
@@ -280,7 +266,7 @@ fn vdrt_is_one_setting_with_unchanged_errors() {
 #[test]
 fn delayed_video_has_no_error_before_an_ideal_tracker_and_lags_by_all_of_the_latency() {
     let late = TrackerConfig::ideal().with_latency_ps(50_000_000_000);
-    let head = Head::new(Arc::new(Turning(2.0)), late, PredictorKind::None, 1).expect("in range");
+    let head = Head::new(Arc::new(turning(2.0)), late, PredictorKind::None, 1).expect("in range");
     let outcome = fields(head, "full-screen:2");
     let delayed = PixelErrors::shown(&outcome, Showing::DelayedVideo);
     assert!(delayed.evaluated > 0 && delayed.pixels.max < 1e-6, "{:?}", delayed.pixels);
@@ -302,7 +288,7 @@ fn alike(a: [u8; 3], b: [u8; 3]) -> bool {
 
 #[test]
 fn rotating_an_ideal_picture_gives_the_ideal_picture_of_the_rotated_head() {
-    let outcome = fields(head(Turning(1.0)), "gallery");
+    let outcome = fields(head(turning(1.0)), "gallery");
     let views = outcome.head().expect("a head");
     let [before, now] = [Time(300_000_000_000), Time(350_000_000_000)];
     let [drawn, expected] = [before, now].map(|at| outcome.ideal_picture(SurfaceId(0), at).expect("an eye"));

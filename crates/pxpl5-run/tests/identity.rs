@@ -6,10 +6,9 @@ use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, Fingerprint, Head, Jitp, Raster, Registry, RenderingControl, Viewpoint};
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Hinge, Lighting, Scene, SceneParts, Sphere, Structure, Sway, Vertex};
 use pxpl5_sim::parameters::{ParameterTable, Value};
-use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
-use tracking::motion::{Motion, Pan, Pendulum, Recording, Still, Synthetic};
+use tracking::motion::{Motion, Pan, Pendulum, Recording, Still, Synthetic, from_fn};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
@@ -156,33 +155,17 @@ fn a_head_is_identified_by_its_settings_one_per_line() {
     assert_eq!(found, fnv_1a(lines.concat().as_bytes()));
 }
 
-/// A motion in a user's crate whose `Debug` output is empty.
-struct Nod {
-    hz: f64,
-}
-
-impl fmt::Debug for Nod {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Nod")
-    }
-}
-
-impl Motion for Nod {
-    fn pose(&self, t_ps: u64) -> Pose {
-        let pitch = 0.1 * (self.hz * t_ps as f64 * 1e-12).sin();
-        Pose::facing(tracking::rotation::about_x(pitch))
-    }
-}
-
 #[test]
 fn different_motions_have_different_names_even_with_equal_debug_output() {
     let recording = |x: f64| {
         let text = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
         Recording::read(text.as_bytes()).expect("valid")
     };
+    let nodding =
+        |hz: f64| head(from_fn(move |seconds| Pose::facing(tracking::rotation::about_x(0.1 * (hz * seconds).sin()))));
     let names = [
-        head(Nod { hz: 1.0 }),
-        head(Nod { hz: 1.001 }),
+        nodding(1.0),
+        nodding(1.001),
         head(Still(Pose::IDENTITY)),
         head(Pan::at(0.0)),
         head(Pan::at(1.0)),
@@ -198,7 +181,7 @@ fn different_motions_have_different_names_even_with_equal_debug_output() {
     for (number, name) in names.iter().enumerate() {
         assert!(!names[..number].contains(name), "motion {number}");
     }
-    assert_eq!(head(Nod { hz: 1.0 }).fingerprint(), names[0]);
+    assert_eq!(nodding(1.0).fingerprint(), names[0]);
 }
 
 #[test]
