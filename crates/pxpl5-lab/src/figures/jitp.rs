@@ -1,5 +1,5 @@
-//! Figures of the paper on just-in-time pixels (JITP, by Mine and Bishop): errors while the head turns, the duration of
-//! a line, the number of transforms, and the pictures of an edge.
+//! Figures of the paper on just-in-time pixels (JITP, by Mine and Bishop). The figures are errors while the head turns,
+//! the duration of a line, the number of transforms, and the pictures of an edge.
 
 use super::Bench;
 use super::group::{Measurement, free};

@@ -157,8 +157,8 @@ pub fn measured(stats: &VolumeStats) -> Vec<FigureRow> {
     vec![occupancy.with_accepted([5.0, 20.0]), binned]
 }
 
-/// Returns figures from the packed words of white pixels: ten pixels per word in the dense packing (P10), and the
-/// percentage of unused bits in the usual and in the dense packing (D6).
+/// Returns figures from the packed words of white pixels. P10 is the ten pixels per word of the dense packing. D6 is the
+/// percentage of unused bits in the usual and in the dense packing.
 #[must_use]
 pub fn packing() -> Vec<FigureRow> {
     let white = |pixels: usize| pack_dense(&vec![0b111; pixels]);
