@@ -90,7 +90,8 @@ const COPY: f64 = 350.0;
 const STATISTICS: f64 = 10.0;
 /// Bytes for each block of pixels in a field, in a run that keeps only statistics.
 const BLOCK: f64 = 100.0;
-/// Number of latest fields whose blocks of pixels stay in memory, in a run that keeps only statistics.
+/// A run that keeps only statistics still stores the blocks of pixels of the most recent fields. This constant is the
+/// number of these fields.
 const WINDOW: f64 = 240.0;
 /// Bytes for the pixel errors of one display field.
 const ERRORS: f64 = 1e3;

@@ -65,8 +65,9 @@ impl LoadSchedule {
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }
 
-    /// Returns the instant at which an orientation is in the display's register. At most one pixel's time later, the
-    /// display latches this orientation for the first pixel that uses the orientation.
+    /// Returns the instant at which the display's register receives an orientation. The display latches (copies) the
+    /// orientation from the register when the first pixel that uses the orientation begins. The display latches at most
+    /// one pixel's time after the returned instant.
     pub(crate) fn loaded(&self, load: Load) -> Time {
         let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
         Time(first.0.saturating_sub(self.depth.0))
