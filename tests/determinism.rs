@@ -90,7 +90,7 @@ fn no_number_of_a_report_depends_on_the_order_of_simultaneous_events() {
 
 /// The report hash covers the statistics, so a different order of summation changes the hash.
 #[test]
-fn a_report_hash_covers_more_than_the_trace() {
+fn the_report_hash_differs_from_the_trace_hash() {
     let [experiment, ..] = pipelines();
     let outcome = experiment.pixels(Pixels::Off).run().expect("it runs");
     assert_ne!(outcome.report().trace_hash, outcome.record().trace_hash().to_string());

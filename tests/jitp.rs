@@ -69,7 +69,7 @@ fn beam_s(outcome: &Outcome, from: (u32, u32), to: (u32, u32)) -> f64 {
 }
 
 #[test]
-fn j1_one_transform_a_field_is_33_pixels_off_at_its_end() {
+fn j1_with_one_transform_a_field_the_last_pixel_has_an_error_of_33_pixels() {
     let outcome = conventional();
     let registration = Registration::of(&outcome).expect("there is a head");
     let last = registration.at(320, 478, FIELD).expect("shown");
@@ -85,7 +85,7 @@ fn j1_one_transform_a_field_is_33_pixels_off_at_its_end() {
 }
 
 #[test]
-fn j2_one_transform_a_line_is_a_seventh_of_a_pixel_off() {
+fn j2_with_one_transform_a_line_the_error_over_a_line_is_0_13_pixels() {
     let outcome = under_a_pan(Viewpoint::Strip, true);
     let registration = Registration::of(&outcome).expect("there is a head");
     let ends = [0, 639].map(|x| registration.at(x, 240, FIELD).expect("shown").degrees);
@@ -142,7 +142,7 @@ fn slant(edge: &[f64]) -> f64 {
 }
 
 #[test]
-fn j4_the_plates_slant_as_the_old_well_does() {
+fn j4_the_pictures_of_an_edge_slant_as_the_published_pictures_do() {
     let plates = edge_pictures(&MachineConfig::small_hmd(), PAN).expect("the scene is small");
     let [conventional, conventional_seen, just_in_time, just_in_time_seen] =
         [&plates.conventional, &plates.conventional_seen, &plates.just_in_time, &plates.just_in_time_seen]
@@ -193,7 +193,7 @@ fn beside_strips(interpolation: Interpolation) -> [f64; 3] {
 }
 
 #[test]
-fn interpolation_on_the_screen_is_wrong_at_the_edge_and_in_the_view_is_not() {
+fn interpolation_on_the_screen_is_wrong_at_the_edge_and_interpolation_in_eye_space_is_exact() {
     let screen = beside_strips(Interpolation::Screen);
     let view = beside_strips(Interpolation::View);
     println!("dual display list, left edge, middle, right edge: screen {screen:?} view {view:?}");
@@ -205,7 +205,7 @@ fn interpolation_on_the_screen_is_wrong_at_the_edge_and_in_the_view_is_not() {
 }
 
 #[test]
-fn racing_saves_a_field_and_all_combinations_with_viewpoints_are_in_time() {
+fn racing_the_beam_saves_one_field_and_every_viewpoint_is_drawn_in_time() {
     for pair in Jitp::all().chunks(2) {
         let [plain, racing] = [pair[0], pair[1]].map(|jitp| run(jitp, perfect(Pan::at(PAN)), 60));
         for outcome in [&plain, &racing] {
@@ -219,7 +219,7 @@ fn racing_saves_a_field_and_all_combinations_with_viewpoints_are_in_time() {
 }
 
 #[test]
-fn late_lines_are_counted_without_an_error() {
+fn fields_with_late_lines_are_counted_as_missed() {
     // For each line, 417 triangles take a slave 9 ms, but only 12 x 63.6 us are available.
     let mig = builtin("mig").expect("built in");
     let outcome = Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Strip, true), mig).fields(40).run();
@@ -265,7 +265,7 @@ fn latency_and_error(pipeline: impl Pipeline + 'static) -> (f64, f64) {
 }
 
 #[test]
-fn errors_of_pipelines_are_ordered_as_their_head_to_light_latencies() {
+fn the_pixel_errors_of_pipelines_are_proportional_to_their_head_to_light_latencies() {
     let control = latency_and_error(RenderingControl::stereo());
     let slats = latency_and_error(Slats::split());
     // A frame of Rendering Control is visible for two fields, on average half a field later than its first light.
@@ -300,7 +300,7 @@ fn metal_misplaces_objects_even_for_a_still_head() {
 }
 
 #[test]
-fn the_raster_offset_removes_a_pan_in_the_middle_and_leaves_the_edges() {
+fn the_raster_offset_removes_the_error_of_a_pan_in_the_middle_but_not_at_the_edges() {
     let outcome = run(Slats::split(), head(Pan::at(PAN), TrackerConfig::ideal(), PredictorKind::ConstantVelocity), 90);
     let plain = PixelErrors::of(&outcome);
     let offset = PixelErrors::shown(&outcome, Showing::RasterOffset);

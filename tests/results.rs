@@ -98,7 +98,7 @@ fn without_a_swap_the_stages_belong_to_the_strip_that_meets_the_beam() {
 }
 
 #[test]
-fn the_means_of_the_report_add_up_to_its_latency() {
+fn the_mean_parts_in_the_report_add_up_to_the_mean_latency() {
     for outcome in &all() {
         let report = outcome.report();
         let published = report.latency_parts_ms.iter().filter(|part| part.in_published_latency);
@@ -280,7 +280,7 @@ fn parsed(outcome: &Outcome) -> (BTreeMap<u64, proto::TrackDescriptor>, Vec<(u64
 }
 
 #[test]
-fn a_perfetto_trace_read_back_has_begin_after_end_on_every_track() {
+fn in_a_perfetto_trace_begin_and_end_alternate_on_every_track() {
     for outcome in &all() {
         let (descriptors, events) = parsed(outcome);
         assert!(events.windows(2).all(|pair| pair[0].0 <= pair[1].0));
@@ -326,7 +326,7 @@ fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
 }
 
 #[test]
-fn counters_stay_within_the_machine() {
+fn the_counters_of_a_trace_stay_within_the_limits_of_the_machine() {
     for outcome in &all() {
         let (descriptors, events) = parsed(outcome);
         let machine = outcome.record();
@@ -465,7 +465,7 @@ fn pixels(picture: &image::RgbImage, y: u32, x: std::ops::Range<u32>) -> Vec<ima
 }
 
 #[test]
-fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
+fn below_the_beam_a_viewer_still_sees_the_last_field_with_the_same_lines() {
     let (_, outcome) = remembered();
     let board = &boards(&outcome)[0];
     let fields: Vec<_> = (7..10).map(|n| board.seen(PeriodNumber(n)).expect("remembered")).collect();

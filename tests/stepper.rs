@@ -97,7 +97,7 @@ fn assert_same(whole: &Outcome, pieces: &Outcome, name: &str) {
 }
 
 #[test]
-fn stepping_equals_one_run_for_every_pipeline_on_every_display() {
+fn a_stepped_run_equals_an_uninterrupted_run_for_every_pipeline_on_every_display() {
     let registry = registry();
     let mut ran = BTreeSet::new();
     for (pipeline, display) in registry
@@ -123,7 +123,7 @@ fn stepping_equals_one_run_for_every_pipeline_on_every_display() {
 }
 
 #[test]
-fn stepping_equals_one_run_for_a_tracked_head_with_prediction() {
+fn a_stepped_run_equals_an_uninterrupted_run_for_a_tracked_head_with_prediction() {
     let settings = ["pipeline=slats", "scene=full-screen:2", "fields=7", "head.motion=synthetic:3"];
     let experiment = experiment(&settings).expect("it can be built");
     assert_same(&outcome(experiment.run()), &in_pieces(&experiment, 9), "head");
@@ -152,7 +152,7 @@ fn a_line_step_ends_when_the_next_line_begins_to_light() {
 }
 
 #[test]
-fn an_event_is_taken_at_its_time_and_named_with_its_board() {
+fn a_stepped_event_has_its_own_time_and_the_name_of_its_board() {
     let mut stepper = slats().stepper().expect("it can be built");
     assert_eq!(stepper.step_board(Board::Renderer(3)), Pause::Reached);
     let last = stepper.last().expect("an event");
@@ -203,7 +203,7 @@ fn the_contents_of_a_fifo_agree_with_the_record_of_traffic() {
 }
 
 #[test]
-fn an_array_shows_all_sent_commands_after_the_last_one_started() {
+fn the_array_shows_all_sent_commands_when_the_last_command_has_started() {
     let mut stepper = slats().stepper().expect("it can be built");
     stepper.run_to(stepper.record().tick(PeriodNumber(4)));
     let started = |stepper: &Stepper, at: Time| stepper.record().renderers()[0].look(at).fifo_words == Some(0);

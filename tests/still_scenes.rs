@@ -236,7 +236,7 @@ fn draws_pictures(entry: &PipelineEntry) -> bool {
 }
 
 #[test]
-fn every_pipeline_draws_the_still_scenes() {
+fn every_pipeline_of_flat_pictures_is_covered_by_the_tests_of_still_scenes() {
     let families = ["rendering-control", "slats", "frameless", "jitp"];
     let registry = registry();
     let mut pictures = registry.pipelines().iter().filter(|entry| draws_pictures(entry));

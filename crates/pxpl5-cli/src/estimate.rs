@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn time_of_volumes_and_walks_is_estimated_to_a_factor_of_five() {
+    fn the_time_of_volumes_and_walks_is_estimated_within_a_factor_of_five() {
         let volumes = VOLUMES.iter().map(|(work, _, seconds)| (format!("{work:?}"), work.estimate().seconds, *seconds));
         let walks = WALKS.iter().map(|(work, _, seconds)| (format!("{work:?}"), work.estimate().seconds, *seconds));
         for (work, estimated, seconds) in volumes.chain(walks) {

@@ -122,7 +122,7 @@ fn many_senders_are_limited_by_their_shared_channels() {
 /// until bottom regions waited for an acknowledgement of the top regions. src/limit/search.rs has the property tests of
 /// such islands.)
 #[test]
-fn the_answer_is_the_size_below_the_first_miss() {
+fn the_limit_is_the_size_just_below_the_smallest_size_that_misses_the_goal() {
     let query = query(&boards(13, 20), TestScene::Typical);
     let reached = |triangles: u32| query.reached(triangles).expect("it runs");
     assert_eq!([795, 796, 806, 807, 808].map(reached), [true, false, false, false, false]);

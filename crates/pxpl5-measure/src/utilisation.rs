@@ -243,7 +243,7 @@ mod tests {
     /// Tests a busy time that exceeds the time of the run. A message counts at its end, so it may end a few
     /// microseconds after the run.
     #[test]
-    fn no_share_is_above_one() {
+    fn the_busy_share_of_a_board_is_at_most_one() {
         assert_eq!(share(Span(101), Time(100)), 1.0);
     }
 }

@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn an_input_waits_in_the_queue_of_the_bench() {
+    fn an_input_of_a_test_bench_waits_in_its_queue() {
         let mut bench = TestBench::<u32, u32>::new();
         bench.feed(Time(100), Phase::Arrive, 3);
         assert_eq!(bench.queue().next_time(), Some(Time(100)));

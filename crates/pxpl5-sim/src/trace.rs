@@ -72,7 +72,7 @@ mod tests {
     /// Tests a record whose only number equals its time. The hash mixes both, and their exclusive or is 0. The result
     /// is the first output of SplitMix64 for the seed 0 (Vigna's reference program).
     #[test]
-    fn a_fact_equal_to_its_time_keeps_the_hash_of_zero() {
+    fn a_record_whose_number_equals_its_time_has_the_published_hash_of_zero() {
         for both in [0, 1, 1_234_567, u64::MAX] {
             assert_eq!(hash(&[(both, &[both])]), TraceHash(0xE220_A839_7B1D_CDAF));
         }

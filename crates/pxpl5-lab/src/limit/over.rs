@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn real_numbers_go_in_equal_steps_to_the_end() {
+    fn real_numbers_advance_in_equal_steps_to_the_end_of_the_range() {
         let values = Values::real(0.0, 16.0).expect("a range");
         assert_eq!((values.value(1), values.last(), values.text(0.25)), (0.25, 16.0, "0.25".to_owned()));
         assert_eq!(Values::real(1.0, 1.0), None);

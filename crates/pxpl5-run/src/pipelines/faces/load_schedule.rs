@@ -168,7 +168,7 @@ mod tests {
     /// Tests the number of register loads. A message of nine words takes 7.2 us, so the 63.56 us of a line have room
     /// for 8 loads.
     #[test]
-    fn a_line_has_one_orientation_or_as_many_as_the_host_line_carries() {
+    fn a_line_has_one_orientation_or_the_number_of_orientations_that_the_host_line_can_carry() {
         for (latch, link_ns, expected) in [
             (Latch::Line, 7_200, 2 * 240),
             (Latch::Pixel, 7_200, 2 * 240 * 8),
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_orientation_before_a_latch_is_the_one_for_its_pixel() {
+    fn for_each_pixel_the_display_latches_the_newest_orientation_in_its_register() {
         for latch in [Latch::Line, Latch::Pixel] {
             let schedule = schedule(latch, 7_200);
             for (x, y, field) in
