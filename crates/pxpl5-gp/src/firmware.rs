@@ -231,18 +231,21 @@ impl Gp {
 
     /// Returns the ring port of this board.
     #[must_use]
+    #[inline]
     pub fn node(&self) -> NodeId {
         self.shared.borrow().node
     }
 
     /// Returns the current simulated time.
     #[must_use]
+    #[inline]
     pub fn now(&self) -> Time {
         self.shared.borrow().now
     }
 
     /// Returns the board's timing table.
     #[must_use]
+    #[inline]
     pub fn timing(&self) -> GpTiming {
         self.shared.borrow().timing
     }
@@ -265,10 +268,12 @@ impl Gp {
     ///
     /// The board calls `ready` again after a message, a retrace or a change of a status signal, and after progress of
     /// the board's other program. To wait for the acceptance of messages, use [`Gp::accepted`].
+    #[inline]
     pub async fn until<T>(&self, what: &'static str, ready: impl FnMut() -> Option<T>) -> T {
         self.wait(Wait { what, ended_by: Cause::Arrival }, ready).await
     }
 
+    #[inline]
     async fn wait<T>(&self, wait: Wait, mut ready: impl FnMut() -> Option<T>) -> T {
         poll_fn(|_| match ready() {
             Some(value) => {
@@ -284,6 +289,7 @@ impl Gp {
     }
 
     /// Spends CPU time at the priority of this program.
+    #[inline]
     pub async fn spend(&self, span: Span) {
         if span == Span::ZERO {
             return;
@@ -309,6 +315,7 @@ impl Gp {
 
     /// Waits until the clump buffer, the memory for outgoing messages, is free. The buffer is free when the receivers
     /// have accepted all earlier messages.
+    #[inline]
     pub async fn clump_buffer_free(&self) {
         let issued = self.shared.borrow().issued;
         self.accepted(Ticket(issued)).await;

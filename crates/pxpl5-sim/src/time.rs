@@ -24,6 +24,7 @@ impl Time {
 
     /// Returns the duration from `earlier` to this instant, or zero if `earlier` is later.
     #[must_use]
+    #[inline]
     pub const fn since(self, earlier: Self) -> Span {
         Span(self.0.saturating_sub(earlier.0))
     }
@@ -34,12 +35,14 @@ impl Span {
 
     /// Makes a duration of `ns` nanoseconds.
     #[must_use]
+    #[inline]
     pub const fn from_ns(ns: u64) -> Self {
         Self(ns.saturating_mul(1_000))
     }
 
     /// Makes a duration of `us` microseconds.
     #[must_use]
+    #[inline]
     pub const fn from_us(us: u64) -> Self {
         Self(us.saturating_mul(1_000_000))
     }
@@ -53,12 +56,14 @@ impl Span {
 
 impl Add<Span> for Time {
     type Output = Self;
+    #[inline]
     fn add(self, span: Span) -> Self {
         Self(self.0.saturating_add(span.0))
     }
 }
 
 impl AddAssign<Span> for Time {
+    #[inline]
     fn add_assign(&mut self, span: Span) {
         *self = *self + span;
     }
@@ -66,6 +71,7 @@ impl AddAssign<Span> for Time {
 
 impl Sub for Time {
     type Output = Span;
+    #[inline]
     fn sub(self, earlier: Self) -> Span {
         debug_assert!(self >= earlier, "{earlier} is not before {self}");
         self.since(earlier)
@@ -74,12 +80,14 @@ impl Sub for Time {
 
 impl Add for Span {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         Self(self.0.saturating_add(other.0))
     }
 }
 
 impl AddAssign for Span {
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
@@ -87,6 +95,7 @@ impl AddAssign for Span {
 
 impl Sub for Span {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         debug_assert!(self >= other, "{other} is more than {self}");
         Self(self.0.saturating_sub(other.0))
@@ -95,6 +104,7 @@ impl Sub for Span {
 
 impl Mul<u64> for Span {
     type Output = Self;
+    #[inline]
     fn mul(self, n: u64) -> Self {
         Self(self.0.saturating_mul(n))
     }
@@ -102,6 +112,7 @@ impl Mul<u64> for Span {
 
 impl Div<u64> for Span {
     type Output = Self;
+    #[inline]
     fn div(self, n: u64) -> Self {
         Self(self.0 / n)
     }

@@ -19,6 +19,7 @@ impl Eye {
 
     /// Returns the index of the eye: 0 for left, 1 for right.
     #[must_use]
+    #[inline]
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -42,6 +43,7 @@ pub struct SurfaceId(pub u16);
 
 impl SurfaceId {
     #[must_use]
+    #[inline]
     pub const fn index(self) -> usize {
         self.0 as usize
     }
@@ -80,18 +82,21 @@ impl RegionGrid {
 
     /// Returns the number of regions in each row of the grid.
     #[must_use]
+    #[inline]
     pub const fn columns(&self) -> u32 {
         self.width.div_ceil(self.region_width)
     }
 
     /// Returns the number of rows of regions. The regions of the last row can be cut off at the bottom.
     #[must_use]
+    #[inline]
     pub const fn rows(&self) -> u32 {
         self.height.div_ceil(self.region_height)
     }
 
     /// Returns the number of regions in the whole grid.
     #[must_use]
+    #[inline]
     pub const fn regions(&self) -> u32 {
         self.columns() * self.rows()
     }
