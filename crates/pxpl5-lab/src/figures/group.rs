@@ -96,8 +96,11 @@ impl Measurement {
 
     /// Returns the minimum and maximum of the figure when one parameter at a time takes either end of its range. The
     /// result includes `nominal`, the figure for the presets. `nominal` also replaces the result of an experiment that
-    /// fails. Returns `None` if no parameter is varied.
+    /// fails. Returns `None` if no parameter is varied, or if `bench` leaves out intervals.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
+        if !bench.intervals {
+            return None;
+        }
         let all = variations().into_iter().chain(photodiode_line());
         let moved = all.filter(|variation| self.moved_by.contains(&variation.path.as_str()));
         // Each parameter is set to the low and to the high end of its range.

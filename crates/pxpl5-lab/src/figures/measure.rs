@@ -39,6 +39,8 @@ pub struct Bench {
     pub frames: u64,
     /// Interpretation of the papers: the answers to the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
+    /// True if the figures' intervals are computed too. The intervals take half of the time of all measurements.
+    pub intervals: bool,
     /// Flag by which another thread stops the measurements.
     pub stop: StopFlag,
     pub(crate) applications: Arc<Applications>,
@@ -71,6 +73,7 @@ impl Bench {
             seeds: 10,
             frames: 150,
             reading: Reading::USUAL,
+            intervals: true,
             stop: StopFlag::default(),
             applications: Arc::default(),
         }
@@ -80,6 +83,12 @@ impl Bench {
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
         Self { seeds, frames, ..self }
+    }
+
+    /// Returns the same settings without intervals of the figures.
+    #[must_use]
+    pub fn without_intervals(self) -> Self {
+        Self { intervals: false, ..self }
     }
 
     /// Returns the same settings with a flag by which another thread stops the measurements.
