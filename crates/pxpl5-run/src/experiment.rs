@@ -10,6 +10,7 @@ use crate::level::Level;
 use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
 use crate::raster::Raster;
+use crate::window::LEAST_RECORDS;
 use pxpl5_machine::{MachineConfig, Optimization, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::parameters::Parameter;
@@ -74,6 +75,7 @@ pub struct Experiment {
     pub(crate) shuffle: Option<u64>,
     pub(crate) traffic: bool,
     pub(crate) keep: Keep,
+    pub(crate) least_records: usize,
     pub(crate) disabled: BTreeSet<Optimization>,
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
@@ -119,6 +121,7 @@ impl Experiment {
             shuffle: None,
             traffic: false,
             keep: Keep::Everything,
+            least_records: LEAST_RECORDS,
             disabled: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
@@ -179,6 +182,15 @@ impl Experiment {
     #[must_use]
     pub const fn keep(mut self, keep: Keep) -> Self {
         self.keep = keep;
+        self
+    }
+
+    /// Sets the number of records below which a run discards nothing. Tests set a small number, so that short runs
+    /// discard records several times.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn least_records(mut self, records: usize) -> Self {
+        self.least_records = records;
         self
     }
 
