@@ -123,7 +123,7 @@ fn a_time_per_triangle_that_is_set_holds_where_no_code_runs() {
 fn no_time_comes_from_the_table_where_code_runs() {
     let hash_on = |machine: &MachineConfig, pipeline: Arc<dyn Pipeline>, name: &str| {
         let scene = Arc::new(scene::builtin(name).expect("built in"));
-        hash(&Experiment::with(machine.clone(), pipeline, scene).fields(24).pixels(Pixels::Off).level(Level::Cycle))
+        hash(&Experiment::with(machine.clone(), pipeline, scene).fields(12).pixels(Pixels::Off).level(Level::Cycle))
     };
     let slats: Arc<dyn Pipeline> = Arc::new(Slats::split());
     let control: Arc<dyn Pipeline> = Arc::new(RenderingControl::stereo());
