@@ -16,7 +16,7 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PictureNumber, SurfaceId};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::rc::Rc;
+use std::sync::LazyLock;
 use support::{boards, video};
 
 fn experiment(pipeline: impl Pipeline + 'static, scene: &str, fields: u64) -> Experiment {
@@ -29,28 +29,26 @@ fn run(pipeline: impl Pipeline + 'static, scene: &str, fields: u64) -> Outcome {
     experiment(pipeline, scene, fields).pixels(Pixels::Off).record_traffic(true).run().expect("runs")
 }
 
-thread_local! {
-    static STEREO: Rc<Outcome> = Rc::new(run(RenderingControl::stereo(), "mig", 60));
-    static MONO: Rc<Outcome> = Rc::new(run(RenderingControl::mono(), "molecules", 60));
-    static SPLIT: Rc<Outcome> = Rc::new(run(Slats::split(), "full-screen:100", 30));
-    /// A run with so many triangles that every field misses its retrace.
-    static LATE: Rc<Outcome> = Rc::new(run(Slats::whole(), "full-screen:160", 30));
+static STEREO: LazyLock<Outcome> = LazyLock::new(|| run(RenderingControl::stereo(), "mig", 60));
+static MONO: LazyLock<Outcome> = LazyLock::new(|| run(RenderingControl::mono(), "molecules", 60));
+static SPLIT: LazyLock<Outcome> = LazyLock::new(|| run(Slats::split(), "full-screen:100", 30));
+/// A run with so many triangles that every field misses its retrace.
+static LATE: LazyLock<Outcome> = LazyLock::new(|| run(Slats::whole(), "full-screen:160", 30));
+
+fn stereo() -> &'static Outcome {
+    &STEREO
 }
 
-fn stereo() -> Rc<Outcome> {
-    STEREO.with(Rc::clone)
+fn mono() -> &'static Outcome {
+    &MONO
 }
 
-fn mono() -> Rc<Outcome> {
-    MONO.with(Rc::clone)
+fn split() -> &'static Outcome {
+    &SPLIT
 }
 
-fn split() -> Rc<Outcome> {
-    SPLIT.with(Rc::clone)
-}
-
-fn all() -> [Rc<Outcome>; 4] {
-    [stereo(), mono(), split(), LATE.with(Rc::clone)]
+fn all() -> [&'static Outcome; 4] {
+    [stereo(), mono(), split(), &LATE]
 }
 
 #[test]
@@ -159,7 +157,7 @@ fn the_latencies_of_the_eyes_lie_between_their_events() {
     let [at_swap, at_light] =
         ["swap", "light"].map(|until| mean_ms(&report, "left", until) - mean_ms(&report, "right", until));
     assert!(at_swap > 0.0 && (at_light - at_swap).abs() < 1e-9);
-    assert!(SPLIT.with(Rc::clone).report().latency_by_eye_ms.is_empty());
+    assert!(split().report().latency_by_eye_ms.is_empty());
 }
 
 #[test]
