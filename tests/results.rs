@@ -53,7 +53,7 @@ fn all() -> [&'static Outcome; 4] {
 
 #[test]
 fn the_parts_of_every_latency_add_up_to_the_picosecond() {
-    for outcome in &all() {
+    for outcome in all() {
         let parts = outcome.latency_parts();
         assert_eq!(parts.len(), outcome.complete_pictures().count());
         for (parts, times) in parts.iter().zip(outcome.complete_pictures()) {
@@ -97,7 +97,7 @@ fn where_there_is_no_swap_the_parts_are_those_of_the_part_that_meets_the_beam() 
 
 #[test]
 fn the_means_of_the_report_add_up_to_its_latency() {
-    for outcome in &all() {
+    for outcome in all() {
         let report = outcome.report();
         let published = report.latency_parts_ms.iter().filter(|part| part.in_published_latency);
         let sum: f64 = published.map(|part| part.statistics.statistics.mean).sum();
@@ -127,12 +127,12 @@ fn a_part_is_the_time_between_the_marks_that_define_it() {
     for (parts, times) in stereo().latency_parts().iter().zip(stereo().steady_pictures()) {
         let copied_at = times.copied_at.expect("copied");
         assert_eq!(parts.spans[part("wait_for_retrace")], times.shown_at - copied_at);
-        let rendered_at = end_of(&outcome, Stage::Render, Some(Eye::Right.into()), times.picture);
+        let rendered_at = end_of(outcome, Stage::Render, Some(Eye::Right.into()), times.picture);
         let rest: Span = parts.spans[part("wait_for_copy")] + parts.spans[part("copy")];
         assert_eq!(rest, copied_at - rendered_at);
-        let transformed_at = end_of(&outcome, Stage::Transform, Some(Eye::Left.into()), times.picture);
+        let transformed_at = end_of(outcome, Stage::Transform, Some(Eye::Left.into()), times.picture);
         assert_eq!(parts.spans[part("transform")], transformed_at - times.transform_at);
-        let sent_at = end_of(&outcome, Stage::Send, None, times.picture);
+        let sent_at = end_of(outcome, Stage::Send, None, times.picture);
         assert_eq!(parts.spans[part("send")], sent_at - times.sampled_at.expect("sampled"));
     }
 }
@@ -162,7 +162,7 @@ fn the_latencies_of_the_eyes_lie_between_their_events() {
 
 #[test]
 fn csv_opens_with_its_names_and_holds_the_latency_of_the_report() {
-    for outcome in &all() {
+    for outcome in all() {
         let text = csv(outcome);
         let report = outcome.report();
         let rows = rows(&text);
@@ -200,7 +200,7 @@ fn parquet_holds_what_csv_holds() {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
     let mut bytes = Vec::new();
-    pxpl5::views::results::parquet(&stereo(), &mut bytes).expect("written");
+    pxpl5::views::results::parquet(stereo(), &mut bytes).expect("written");
     let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).expect("Parquet");
     let metadata = reader.metadata().file_metadata().key_value_metadata().expect("there").clone();
     let hash = metadata.iter().find(|entry| entry.key == "pxpl5.config_hash").and_then(|entry| entry.value.clone());
@@ -213,7 +213,7 @@ fn parquet_holds_what_csv_holds() {
             row.expect("a row").get_column_iter().map(|(name, field)| (name.clone(), value(field))).collect()
         })
         .collect();
-    assert_eq!(found, rows(&csv(&stereo())));
+    assert_eq!(found, rows(&csv(stereo())));
 }
 
 /// Messages of the Perfetto format for reading traces, from its published description.
@@ -279,7 +279,7 @@ fn parsed(outcome: &Outcome) -> (BTreeMap<u64, proto::TrackDescriptor>, Vec<(u64
 
 #[test]
 fn a_perfetto_trace_read_back_has_begin_after_end_on_every_track() {
-    for outcome in &all() {
+    for outcome in all() {
         let (descriptors, events) = parsed(outcome);
         assert!(events.windows(2).all(|pair| pair[0].0 <= pair[1].0));
         let mut open: BTreeMap<u64, i32> = BTreeMap::new();
@@ -296,7 +296,7 @@ fn a_perfetto_trace_read_back_has_begin_after_end_on_every_track() {
 
 #[test]
 fn a_trace_has_an_instant_at_every_retrace() {
-    let (_, events) = parsed(&split());
+    let (_, events) = parsed(split());
     let retraces: Vec<_> = events.iter().filter(|(_, event)| event.name.starts_with("retrace ")).collect();
     assert_eq!(retraces.len() as u64, split().fields() + 1);
     for (n, (ns, event)) in retraces.iter().enumerate() {
@@ -308,7 +308,7 @@ fn a_trace_has_an_instant_at_every_retrace() {
 
 #[test]
 fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
-    for outcome in &all() {
+    for outcome in all() {
         let (_, events) = parsed(outcome);
         for times in outcome.steady_pictures() {
             let id = times.picture.next().0;
@@ -325,7 +325,7 @@ fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
 
 #[test]
 fn counters_stay_within_the_machine() {
-    for outcome in &all() {
+    for outcome in all() {
         let (descriptors, events) = parsed(outcome);
         let machine = outcome.record();
         let mut highest: BTreeMap<String, i64> = BTreeMap::new();
@@ -347,7 +347,7 @@ fn counters_stay_within_the_machine() {
 
 #[test]
 fn recorded_messages_are_those_that_the_boards_counted() {
-    for outcome in &all() {
+    for outcome in all() {
         let machine = outcome.record();
         let traffic = outcome.observation().traffic.as_deref().expect("recorded");
         for (renderer, node) in machine.renderers().iter().zip(&machine.ports().renderers) {
@@ -370,7 +370,7 @@ fn recorded_messages_are_those_that_the_boards_counted() {
 fn recording_changes_nothing() {
     let quiet = experiment(Slats::split(), "full-screen:100", 30).pixels(Pixels::Off).run().expect("runs");
     assert_eq!(quiet.record().trace_hash(), split().record().trace_hash());
-    assert!(has_messages(&split()));
+    assert!(has_messages(split()));
     assert!(!has_messages(&quiet));
 }
 
@@ -380,11 +380,13 @@ fn has_messages(outcome: &Outcome) -> bool {
 
 #[test]
 fn chrome_json_has_the_same_slices_to_the_picosecond() {
-    let trace = Trace::of(&mono());
+    // Each picture has slices of all kinds.
+    let outcome = run(RenderingControl::mono(), "molecules", 20);
+    let trace = Trace::of(&outcome);
     let mut bytes = Vec::new();
     chrome(&trace, &mut bytes).expect("memory can be written");
     let json: Value = serde_json::from_slice(&bytes).expect("JSON");
-    assert_eq!(json["otherData"]["config_hash"], mono().report().config_hash);
+    assert_eq!(json["otherData"]["config_hash"], outcome.report().config_hash);
     // The text is decimal and not rounded.
     let text = String::from_utf8(bytes).expect("UTF-8");
     let written = text.lines().filter(|line| line.contains("\"ph\":\"X\""));

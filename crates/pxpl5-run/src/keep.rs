@@ -1,5 +1,8 @@
 //! Choice of the observations that a run keeps in memory.
 
+/// Number of records below which a run discards nothing. A record, such as an arrival or a swap, takes about 80 bytes.
+pub(crate) const LEAST_RECORDS: usize = 32_768;
+
 /// The choice of the observations that a run keeps in memory. The choice changes no time and no trace.
 ///
 /// Two runs that differ only in this choice have the same statistics. Only the last digits of means over more than

@@ -15,9 +15,6 @@ use pxpl5_wire::PeriodNumber;
 use std::any::Any;
 use std::sync::Arc;
 
-/// Number of records below which a run discards nothing. A record, such as an arrival or a swap, takes about 80 bytes.
-pub(crate) const LEAST_RECORDS: usize = 32_768;
-
 /// Number of pictures after which the results of a picture are final. Until then, records of a picture may arrive after
 /// records of later pictures.
 const PICTURES_HELD: usize = 32;
