@@ -21,7 +21,7 @@ fn hash(experiment: &Experiment) -> String {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_trace_twice_and_another_seed_another() {
+fn equal_seeds_give_equal_traces_and_different_seeds_different_traces() {
     for experiment in pipelines() {
         assert_eq!(hash(&experiment), hash(&experiment));
     }
@@ -46,7 +46,7 @@ fn a_hundred_shuffles_of_simultaneous_events_change_nothing() {
 }
 
 #[test]
-fn pixels_and_threads_change_no_time_and_threads_no_pixel() {
+fn pixels_change_no_time_and_threads_change_no_time_or_pixel() {
     for experiment in pipelines() {
         let off = hash(&experiment.clone().pixels(Pixels::Off));
         let lazy = experiment.clone().pixels(Pixels::Lazy).run().expect("it runs");
@@ -86,7 +86,7 @@ fn machines_of_many_ties() -> [Experiment; 2] {
 }
 
 #[test]
-fn no_number_of_a_report_depends_on_ties_however_many_there_are() {
+fn no_number_of_a_report_depends_on_the_order_of_simultaneous_events() {
     for experiment in machines_of_many_ties().into_iter().chain(pipelines().map(|e| e.pixels(Pixels::Off))) {
         let unshuffled = report(&experiment);
         (0..6).into_par_iter().for_each(|seed| {
@@ -97,7 +97,7 @@ fn no_number_of_a_report_depends_on_ties_however_many_there_are() {
 
 /// The report hash covers the statistics, so a different order of summation changes the hash.
 #[test]
-fn a_report_hash_is_more_than_the_trace() {
+fn the_report_hash_differs_from_the_trace_hash() {
     let [experiment, ..] = pipelines();
     let outcome = experiment.pixels(Pixels::Off).run().expect("it runs");
     assert_ne!(outcome.report().trace_hash, outcome.record().trace_hash().to_string());

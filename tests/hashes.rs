@@ -60,7 +60,7 @@ fn all_hashed() -> String {
 }
 
 #[test]
-fn trace_and_pictures_of_forty_two_experiments_are_what_they_were_on_every_vector_unit() {
+fn traces_and_pictures_of_forty_two_experiments_are_unchanged_on_every_vector_unit() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/hashes.txt");
     if std::env::var_os(UPDATE).is_some() {
         std::fs::write(&path, all_hashed()).expect("tests/golden can be written");

@@ -390,7 +390,7 @@ fn assert_the_table_of_quantities_agrees(results: &Results, report: &Value, told
 /// JSON, the table of pictures and the table of quantities must agree, and contain nothing about pictures that were not
 /// shown.
 #[test]
-fn reports_of_random_runs_are_true_in_themselves() {
+fn reports_of_random_runs_are_consistent() {
     let (mut shown, mut heavy, mut heads, mut without_window) = (0, 0, 0, 0);
     each_case(40, REPORTED, |experiment, told| {
         let (outcome, _) = outcome(&experiment.clone().record_traffic(false), told);

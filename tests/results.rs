@@ -78,7 +78,7 @@ fn racing() -> [Outcome; 3] {
 }
 
 #[test]
-fn where_there_is_no_swap_the_parts_are_those_of_the_part_that_meets_the_beam() {
+fn without_a_swap_the_stages_belong_to_the_strip_that_meets_the_beam() {
     for outcome in racing() {
         let stages = outcome.stages();
         for (parts, times) in outcome.latency_parts().iter().zip(outcome.complete_pictures()) {
@@ -96,7 +96,7 @@ fn where_there_is_no_swap_the_parts_are_those_of_the_part_that_meets_the_beam() 
 }
 
 #[test]
-fn the_means_of_the_report_add_up_to_its_latency() {
+fn the_mean_parts_in_the_report_add_up_to_the_mean_latency() {
     for outcome in all() {
         let report = outcome.report();
         let published = report.latency_parts_ms.iter().filter(|part| part.in_published_latency);
@@ -122,7 +122,7 @@ fn part(name: &str) -> usize {
 }
 
 #[test]
-fn a_part_is_the_time_between_the_marks_that_define_it() {
+fn a_stage_is_the_time_between_its_two_marks() {
     let outcome = stereo();
     for (parts, times) in stereo().latency_parts().iter().zip(stereo().steady_pictures()) {
         let copied_at = times.copied_at.expect("copied");
@@ -143,7 +143,7 @@ fn mean_ms(report: &Report, of: &str, until: &str) -> f64 {
 }
 
 #[test]
-fn the_latencies_of_the_eyes_lie_between_their_events() {
+fn the_latencies_of_the_eyes_equal_the_times_between_their_events() {
     let outcome = stereo();
     let report = outcome.report();
     // The latency of a frame is the latency of the pair: from its first TRANSFORM to the swap.
@@ -161,7 +161,7 @@ fn the_latencies_of_the_eyes_lie_between_their_events() {
 }
 
 #[test]
-fn csv_opens_with_its_names_and_holds_the_latency_of_the_report() {
+fn csv_starts_with_column_names_and_has_the_latency_of_the_report() {
     for outcome in all() {
         let text = csv(outcome);
         let report = outcome.report();
@@ -196,7 +196,7 @@ fn row(names: &[&str], line: &str) -> BTreeMap<String, Option<u64>> {
 
 #[cfg(feature = "parquet")]
 #[test]
-fn parquet_holds_what_csv_holds() {
+fn parquet_equals_csv() {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
     let mut bytes = Vec::new();
@@ -278,7 +278,7 @@ fn parsed(outcome: &Outcome) -> (BTreeMap<u64, proto::TrackDescriptor>, Vec<(u64
 }
 
 #[test]
-fn a_perfetto_trace_read_back_has_begin_after_end_on_every_track() {
+fn in_a_perfetto_trace_begin_and_end_alternate_on_every_track() {
     for outcome in all() {
         let (descriptors, events) = parsed(outcome);
         assert!(events.windows(2).all(|pair| pair[0].0 <= pair[1].0));
@@ -324,7 +324,7 @@ fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
 }
 
 #[test]
-fn counters_stay_within_the_machine() {
+fn the_counters_of_a_trace_stay_within_the_limits_of_the_machine() {
     for outcome in all() {
         let (descriptors, events) = parsed(outcome);
         let machine = outcome.record();
@@ -339,14 +339,14 @@ fn counters_stay_within_the_machine() {
         let channels = machine.ring().stats().channel_busy.len() as i64;
         assert!((1..=channels).contains(&highest["busy channels"]));
         for renderer in 0..machine.renderers().len() {
-            // 448 words of FIFO (derived from TR94's 56.5 ms).
+            // The FIFO holds 448 words (derived from the 56.5 ms of TR94).
             assert!((1..=448).contains(&highest[&format!("FIFO words of renderer {renderer}")]));
         }
     }
 }
 
 #[test]
-fn recorded_messages_are_those_that_the_boards_counted() {
+fn recorded_messages_equal_the_counters_of_the_boards() {
     for outcome in all() {
         let machine = outcome.record();
         let traffic = outcome.observation().traffic.as_deref().expect("recorded");
@@ -367,7 +367,7 @@ fn recorded_messages_are_those_that_the_boards_counted() {
 }
 
 #[test]
-fn recording_changes_nothing() {
+fn recording_traffic_changes_no_result() {
     let quiet = experiment(Slats::split(), "full-screen:100", 30).pixels(Pixels::Off).run().expect("runs");
     assert_eq!(quiet.record().trace_hash(), split().record().trace_hash());
     assert!(has_messages(split()));
@@ -465,7 +465,7 @@ fn pixels(picture: &image::RgbImage, y: u32, x: std::ops::Range<u32>) -> Vec<ima
 }
 
 #[test]
-fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
+fn below_the_beam_a_viewer_still_sees_the_last_field_with_the_same_lines() {
     let (_, outcome) = remembered();
     let board = &boards(&outcome)[0];
     let fields: Vec<_> = (7..10).map(|n| board.seen(PeriodNumber(n)).expect("remembered")).collect();
@@ -487,10 +487,10 @@ fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
 
 #[test]
 fn the_documents_define_every_column() {
-    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/results.md")).expect("there");
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/guide/latency.md")).expect("there");
     for column in columns() {
         let row = text.lines().find(|line| line.starts_with(&format!("| `{}` |", column.name)));
-        assert!(row.is_some(), "{} is not in docs/results.md", column.name);
+        assert!(row.is_some(), "{} is not in docs/guide/latency.md", column.name);
     }
     for part in LATENCY_PARTS {
         let row = text.lines().find(|line| line.starts_with(&format!("| `{}_ps` |", part.name))).expect("a row");

@@ -41,7 +41,7 @@ impl Dice {
     }
 }
 
-/// Advances by a random kind of piece.
+/// Advances the run by a random kind of step.
 fn step(stepper: &mut Stepper, dice: &mut Dice) {
     match dice.below(6) {
         0 => stepper.run_to(stepper.now() + Span::from_us(dice.below(5_000))),
@@ -98,7 +98,7 @@ fn assert_same(whole: &Outcome, pieces: &Outcome, name: &str) {
 }
 
 #[test]
-fn every_pipeline_on_every_display_runs_in_pieces_as_in_one_go() {
+fn a_stepped_run_equals_an_uninterrupted_run_for_every_pipeline_on_every_display() {
     let registry = registry();
     let pairs: Vec<_> = registry
         .pipelines()
@@ -125,7 +125,7 @@ fn every_pipeline_on_every_display_runs_in_pieces_as_in_one_go() {
 }
 
 #[test]
-fn a_tracked_head_with_prediction_is_followed_in_pieces_as_in_one_go() {
+fn a_stepped_run_equals_an_uninterrupted_run_for_a_tracked_head_with_prediction() {
     let settings = ["pipeline=slats", "scene=full-screen:2", "fields=7", "head.motion=synthetic:3"];
     let experiment = experiment(&settings).expect("it can be built");
     assert_same(&outcome(experiment.run()), &in_pieces(&experiment, 9), "head");
@@ -154,7 +154,7 @@ fn a_line_step_ends_when_the_next_line_begins_to_light() {
 }
 
 #[test]
-fn an_event_is_taken_at_its_time_and_named_with_its_board() {
+fn a_stepped_event_has_its_own_time_and_the_name_of_its_board() {
     let mut stepper = slats().stepper().expect("it can be built");
     assert_eq!(stepper.step_board(Board::Renderer(3)), Pause::Reached);
     let last = stepper.last().expect("an event");
@@ -167,7 +167,7 @@ fn an_event_is_taken_at_its_time_and_named_with_its_board() {
 
 /// The picture at an instant has all pixels that the beam has drawn by then, and none that it draws later.
 #[test]
-fn what_has_been_drawn_so_far_is_what_the_whole_run_says_of_that_instant() {
+fn partial_pictures_equal_those_of_the_whole_run() {
     let whole = outcome(slats().run());
     let mut stepper = slats().stepper().expect("it can be built");
     let mut lit = 0;
@@ -186,7 +186,7 @@ fn what_has_been_drawn_so_far_is_what_the_whole_run_says_of_that_instant() {
 
 /// The levels of a FIFO are compared with the record of traffic, whose sums cover the whole run.
 #[test]
-fn a_fifo_holds_what_the_record_of_traffic_says() {
+fn the_contents_of_a_fifo_agree_with_the_record_of_traffic() {
     let whole = outcome(slats().run());
     let traffic = whole.record().observation().traffic.as_deref().expect("it was recorded");
     let courses: Vec<_> = (0..4).map(|renderer| traffic.fifo_words(renderer)).collect();
@@ -205,7 +205,7 @@ fn a_fifo_holds_what_the_record_of_traffic_says() {
 }
 
 #[test]
-fn an_array_whose_commands_have_all_started_is_what_was_sent() {
+fn the_array_shows_all_sent_commands_when_the_last_command_has_started() {
     let mut stepper = slats().stepper().expect("it can be built");
     stepper.run_to(stepper.record().tick(PeriodNumber(4)));
     let started = |stepper: &Stepper, at: Time| stepper.record().renderers()[0].look(at).fifo_words == Some(0);
@@ -221,7 +221,7 @@ fn an_array_whose_commands_have_all_started_is_what_was_sent() {
 }
 
 #[test]
-fn pixels_come_into_an_array_one_command_after_the_other() {
+fn pixels_appear_in_an_array_command_by_command() {
     let mut stepper = slats().stepper().expect("it can be built");
     stepper.run_to(stepper.record().tick(PeriodNumber(4)));
     let mut enabled = BTreeSet::new();
@@ -258,7 +258,7 @@ fn breakpoints_show_registers_and_change_no_trace() {
 }
 
 #[test]
-fn a_stepper_stands_at_the_end_and_says_so() {
+fn a_stepper_stops_at_the_end_and_reports_it() {
     let mut stepper = slats().stepper().expect("it can be built");
     assert_eq!(stepper.run_to(stepper.end() + Span(1)), Pause::End);
     assert_eq!(stepper.now(), stepper.end());

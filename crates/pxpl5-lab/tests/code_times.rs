@@ -16,7 +16,7 @@ fn table(times: CodeTimes) -> Vec<u64> {
 /// Tests the constants of the timing table, which change with the code and the i860 model. The failure message states
 /// the new values.
 #[test]
-fn the_table_of_the_code_is_what_the_code_takes() {
+fn the_table_of_code_times_equals_the_simulated_code() {
     let papers = GpTiming::PAPERS;
     let uses = [
         (CodeVersion::Scheduled, CodeUse::Pphigs, papers.of_scheduled_phong()),

@@ -103,7 +103,7 @@ fn run_counting_passes(experiment: &Experiment) -> (Outcome, u64) {
 /// Returns all values of a report except the time on this computer. Numbers have enough digits to be distinguished.
 fn said(outcome: &Outcome) -> String {
     let report = Report { host_seconds: None, ..outcome.report() };
-    // A streaming observer also has the latency of translation of a run that has discarded records.
+    // A streaming observer reports the latency of translation even if the run has discarded records.
     for memory in report.arp.iter().flat_map(|faces| &faces.memories) {
         assert_eq!(memory.translation_latency_ms.is_some(), memory.updates > 0);
     }

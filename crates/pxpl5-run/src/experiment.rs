@@ -1,5 +1,3 @@
-//! An experiment: a machine, a pipeline, a scene and a head motion.
-
 use crate::dry_run::DryRun;
 use crate::fingerprint::Fingerprint;
 use crate::head::Head;
@@ -18,7 +16,9 @@ use pxpl5_wire::display::Aim;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The pixels that a run computes. The choice changes no simulated time.
+/// The pixels that a run computes.
+///
+/// The choice changes no simulated time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pixels {
@@ -40,7 +40,7 @@ pxpl5_sim::parameters::named!(Pixels, "choice of pixels", Pixels::ALL);
 /// Smallest and largest number of fields that an experiment may simulate.
 pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
-/// Returns the parameters whose values no source supports: values outside the range of the sources, set by the user.
+/// Returns the parameters that the user set to values outside the range that the sources support.
 #[must_use]
 pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
     let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());
@@ -294,15 +294,15 @@ impl Experiment {
     /// Begins the evaluation of the run at the period `period` of the first display, or later if the warm-up takes
     /// longer.
     ///
-    /// With this setting, results of different pipelines cover the same periods, to within one interval between due
-    /// pictures.
+    /// With this setting, results of different pipelines cover the same periods, except for at most one interval
+    /// between due pictures.
     #[must_use]
     pub const fn results_from(mut self, period: PeriodNumber) -> Self {
         self.results_from = Some(period);
         self
     }
 
-    /// Returns the same experiment on another machine.
+    /// Returns the same experiment on the machine `config`.
     #[must_use]
     pub fn with_machine(self, config: MachineConfig) -> Self {
         Self { config, ..self }
@@ -430,7 +430,7 @@ impl Experiment {
         self.level
     }
 
-    /// Returns which pixels the run computes.
+    /// Returns the choice of the pixels that the run computes.
     #[must_use]
     pub const fn pixels_wanted(&self) -> Pixels {
         self.pixels

@@ -24,7 +24,7 @@ const PERIODS_HELD: u64 = 32;
 ///
 /// A picture is final after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`] display periods. Records older than
 /// the first picture that is not final are kept for [`PERIODS_HELD`] periods. Requested head poses are kept twice as
-/// long, because views are predicted from older reports.
+/// long, because views are predicted from reports that arrived earlier than these records.
 #[derive(Debug)]
 pub(crate) struct Window {
     tally: Tally,
@@ -32,7 +32,6 @@ pub(crate) struct Window {
     forgets: bool,
     samples: usize,
     taken_to: Option<Time>,
-    /// Number of arrivals in memory that are already part of the statistics.
     arrivals_taken: usize,
     /// Number of records in memory at which old records are discarded the next time.
     next_look: usize,
@@ -120,7 +119,6 @@ impl Window {
         Some(begin)
     }
 
-    /// Returns the pictures that are not yet part of the statistics, in the order in which they are shown.
     fn fresh(&self, pipeline: &dyn Pipeline, record: &Record, now: Time) -> Vec<PictureTimes> {
         let pictures = pipeline.pictures(record, now).into_iter();
         pictures.filter(|times| Some(times.shown_at) > self.taken_to).collect()
@@ -132,7 +130,6 @@ impl Window {
         self.sum.iter_mut().for_each(|sum| sum.take(results));
     }
 
-    /// Adds all remaining results of a run that ended in the period `reached`.
     pub(crate) fn close(
         mut self,
         experiment: &Experiment,
@@ -160,7 +157,6 @@ impl Window {
     }
 }
 
-/// Returns the start of the period that is [`PERIODS_HELD`] periods before `instant`.
 fn before(record: &Record, instant: Time) -> Option<Time> {
     let period = record.display().period_at(instant).before(PERIODS_HELD)?;
     Some(record.tick(period))

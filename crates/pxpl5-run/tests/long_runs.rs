@@ -127,7 +127,7 @@ fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
 
 /// A live page reads recorded messages, so its run keeps the records of the last periods.
 #[test]
-fn recent_records_of_a_watched_run_do_not_grow_with_it() {
+fn recent_records_of_an_observed_run_do_not_grow_with_its_length() {
     let most = |fields| {
         let experiment = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1).fields(fields);
         let mut stepper = experiment.keep(Keep::Recent).record_traffic(true).stepper().expect("it can be built");
@@ -142,15 +142,16 @@ fn recent_records_of_a_watched_run_do_not_grow_with_it() {
         (most, stepper.record().trace_hash())
     };
     let [(short, _), (long, hash)] = [600, 1_800].map(most);
-    // The next pass begins at twice the number of records that the last pass has left. This number varies with the
-    // visible part of the scene. Without passes, the number of records would be three times as large.
+    // Old records are discarded in passes. The next pass begins at twice the number of records that the last pass has
+    // left. This number varies with the visible part of the scene. Without passes, the number of records would be three
+    // times as large.
     assert!(long <= short + short / 4, "{long} records, {short} in a third of the time");
     let everything = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1).fields(1_800);
     assert_eq!(hash, everything.run().expect("it runs").record().trace_hash());
 }
 
 #[test]
-fn twenty_times_the_fields_hold_no_more_and_take_twenty_times_the_work() {
+fn twenty_times_the_fields_need_no_more_memory_and_twenty_times_the_events() {
     let small = MachineConfig::small_hmd;
     let slats = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1);
     for (name, experiment, fields) in [

@@ -11,7 +11,6 @@ use std::thread::ScopedJoinHandle;
 const HEAD: &str = include_str!("numerics_head.md");
 const FORMATS: &str = include_str!("numerics_formats.md");
 
-/// Formats a number for a table.
 fn short(v: f64) -> String {
     match v {
         0.0 => "0".into(),
@@ -102,7 +101,6 @@ fn heading(out: &mut String, title: &str, columns: &[&str]) {
     let _ = write!(out, "\n## {title}\n\n| {} |\n| {rule} |\n", columns.join(" | "));
 }
 
-/// Measurements of all cases.
 pub struct Measured {
     pub triangles: Vec<(Case, Row)>,
     pub spheres: Vec<(SphereCase, SphereRow)>,
