@@ -123,7 +123,7 @@ fn a_time_per_triangle_applies_where_no_code_runs() {
 fn with_i860_code_the_times_of_the_table_have_no_effect() {
     let hash_on = |machine: &MachineConfig, pipeline: Arc<dyn Pipeline>, name: &str| {
         let scene = Arc::new(scene::builtin(name).expect("built in"));
-        hash(&Experiment::with(machine.clone(), pipeline, scene).fields(24).pixels(Pixels::Off).level(Level::Cycle))
+        hash(&Experiment::with(machine.clone(), pipeline, scene).fields(12).pixels(Pixels::Off).level(Level::Cycle))
     };
     let slats: Arc<dyn Pipeline> = Arc::new(Slats::split());
     let control: Arc<dyn Pipeline> = Arc::new(RenderingControl::stereo());

@@ -3,11 +3,12 @@
 
 use pxpl5::Board;
 use pxpl5::{
-    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber, Slats, Span,
-    SurfaceId, Time, registry, scene,
+    DisplayEntry, Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber,
+    PipelineEntry, Slats, Span, SurfaceId, Time, registry, scene,
 };
 use pxpl5::{Pause, Stepper};
 use pxpl5_renderer::PixelArray;
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 /// Returns an experiment from settings, or `None` if the pipeline does not run on the display.
@@ -99,16 +100,16 @@ fn assert_same(whole: &Outcome, pieces: &Outcome, name: &str) {
 #[test]
 fn a_stepped_run_equals_an_uninterrupted_run_for_every_pipeline_on_every_display() {
     let registry = registry();
-    let mut ran = BTreeSet::new();
-    for (pipeline, display) in registry
+    let pairs: Vec<_> = registry
         .pipelines()
         .iter()
         .flat_map(|pipeline| registry.displays().iter().map(move |display| (pipeline, display)))
-    {
+        .collect();
+    let check = |(pipeline, display): &(&PipelineEntry, &DisplayEntry)| {
         let pipeline = format!("pipeline={}", pipeline.name);
         let display = format!("display={}", display.name);
         let settings = [pipeline.as_str(), display.as_str(), "scene=full-screen:2", "fields=7"];
-        let Some(experiment) = experiment(&settings) else { continue };
+        let experiment = experiment(&settings)?;
         let whole = outcome(experiment.run());
         for plain in [experiment.clone().record_traffic(false), experiment.clone()].map(|plain| outcome(plain.run())) {
             assert_eq!(plain.record().trace_hash(), whole.record().trace_hash(), "{settings:?}");
@@ -116,8 +117,9 @@ fn a_stepped_run_equals_an_uninterrupted_run_for_every_pipeline_on_every_display
             assert!(plain.record().events() <= whole.record().events(), "{settings:?}");
         }
         (1..4).for_each(|seed| assert_same(&whole, &in_pieces(&experiment, seed), &format!("{settings:?}, {seed}")));
-        ran.extend([pipeline, display]);
-    }
+        Some([pipeline, display])
+    };
+    let ran: BTreeSet<String> = pairs.par_iter().filter_map(check).flatten_iter().collect();
     let all = registry.pipelines().len() + registry.displays().len();
     assert_eq!(ran.len(), all, "each was run at least once: {ran:?}");
 }
