@@ -34,13 +34,13 @@ fn a_complete_field_goes_to_the_other_buffer_and_is_shown() {
 /// With a backup, the requests for a field take two messages more than a split copy. The limit of a split copy is 146
 /// triangles.
 #[test]
-fn a_backup_costs_a_few_triangles_of_the_limit_of_a_split_copy() {
+fn with_a_backup_140_triangles_have_no_late_region() {
     let outcome = run(Slats::backup(), "full-screen:140");
     assert_eq!(outcome.report().late_regions, 0);
 }
 
 #[test]
-fn typical_triangles_sent_only_where_they_touch_raise_the_limit() {
+fn sending_triangles_only_to_the_regions_that_they_touch_raises_the_limit() {
     let touched = Slats { binning: RegionBinning::Touched, ..Slats::split() };
     let all = limit(1, 5, Slats::split(), TestScene::Typical);
     let touched = limit(1, 5, touched, TestScene::Typical);

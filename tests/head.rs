@@ -139,7 +139,7 @@ fn a_film_with_a_shifted_raster_shows_the_pictures_of_its_run() {
 }
 
 #[test]
-fn slats_takes_a_report_no_older_than_the_trackers_interval_and_the_way_to_the_processors() {
+fn slats_uses_a_report_no_older_than_the_report_interval_and_the_transfer_to_the_processors() {
     // A report that is sent at once waits for the retrace between zero and one interval. If reports were sent once a
     // field just after the retrace, each would wait for another field of 16.68 ms. A thousand reports a second come at
     // all phases of a field, so they wait for half an interval on average. The Fastrak's 120 reports a second come at
@@ -167,7 +167,7 @@ fn slats_takes_a_report_no_older_than_the_trackers_interval_and_the_way_to_the_p
 /// the world, the head stays there. If they are in the coordinates of the scene, the head moves to the start of the
 /// scene's own motion.
 #[test]
-fn poses_in_the_world_stay_and_poses_of_the_scene_begin_at_its_start() {
+fn poses_in_the_world_stay_in_place_and_poses_in_the_scene_move_to_the_start_of_the_scene() {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let pose = Pose { position: DVec3::new(3.0, 1.0, -2.0), orientation: DQuat::from_xyzw(0.0, half, 0.0, half) };
     let truth = |place: HeadPlace| {
@@ -188,7 +188,7 @@ fn poses_in_the_world_stay_and_poses_of_the_scene_begin_at_its_start() {
 }
 
 #[test]
-fn a_place_is_written_to_settings_only_if_it_is_not_the_default() {
+fn the_place_of_a_head_changes_the_hash_only_if_the_place_is_not_the_default() {
     let usual = [("pipeline", "slats"), ("scene", "room"), ("head.motion", "pan:40")];
     let hash = |more: &[(&str, &str)]| plan(&[&usual[..], more].concat()).fingerprint();
     assert_eq!(hash(&[("head.place", "scene")]), hash(&[]));

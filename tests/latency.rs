@@ -166,7 +166,7 @@ fn figure_15_the_first_copy_begins_about_12_8_ms_after_the_retrace() {
 }
 
 #[test]
-fn a_field_with_too_many_triangles_names_its_late_regions_and_shows_the_old_ones() {
+fn a_field_with_too_many_triangles_has_late_regions_and_a_picture_is_still_shown() {
     let scene = scene::builtin("full-screen:200").expect("built in");
     let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(16).run().expect("it runs");
     let report = outcome.report();

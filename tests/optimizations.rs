@@ -61,14 +61,14 @@ fn assert_same(experiment: &Experiment, saving: Optimization, fields: u64) {
 }
 
 #[test]
-fn sleeping_boards_have_no_work() {
+fn not_polling_idle_boards_does_not_change_the_trace() {
     for experiment in experiments() {
         assert_same(&experiment.pixels(Pixels::Lazy), Optimization::IdleBoards, 3);
     }
 }
 
 #[test]
-fn transfers_in_closed_form_end_with_their_last_word() {
+fn computing_the_end_of_transfers_in_closed_form_does_not_change_the_trace() {
     for experiment in experiments() {
         assert_same(&experiment.pixels(Pixels::Lazy), Optimization::Transfers, 10);
     }
@@ -98,7 +98,7 @@ fn computing_pixels_changes_no_time() {
 
 /// All optimizations are disabled at once, also with code on the graphics processors.
 #[test]
-fn optimizations_are_independent() {
+fn disabling_all_optimizations_at_once_does_not_change_the_trace() {
     let [_, slats, _] = experiments();
     let slats = slats.level(Level::Cycle).pixels(Pixels::All);
     let without = Optimization::ALL.into_iter().fold(slats.clone(), Experiment::without);

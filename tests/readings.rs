@@ -31,7 +31,7 @@ fn with_stored_regions_and_a_master_that_does_not_wait_the_latency_is_three_fiel
 }
 
 #[test]
-fn the_closed_form_follows_every_rule() {
+fn the_closed_form_agrees_with_the_simulation_under_every_rule_of_the_master() {
     for (kept, finished) in rules() {
         for id in ["4", "4b", "6"] {
             let [closed, run] = [Level::Analytic, Level::Transaction]
@@ -53,7 +53,7 @@ fn cover(triangles: usize, bin_bytes: u64) -> Result<Outcome, ExperimentError> {
 }
 
 #[test]
-fn one_triangle_too_many_for_the_bins_is_a_fault_with_region_need_and_room() {
+fn one_triangle_too_many_for_the_bins_is_a_fault_that_names_region_needed_and_available_bytes() {
     // 10 triangles a slave in 20 bins take 800 bytes.
     let outcome = cover(120, 800).expect("it fits exactly");
     assert!(outcome.shown() > 3);

@@ -3,11 +3,12 @@
 
 use pxpl5::Board;
 use pxpl5::{
-    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber, Slats, Span,
-    SurfaceId, Time, registry, scene,
+    DisplayEntry, Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber,
+    PipelineEntry, Slats, Span, SurfaceId, Time, registry, scene,
 };
 use pxpl5::{Pause, Stepper};
 use pxpl5_renderer::PixelArray;
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 /// Returns an experiment from settings, or `None` if the pipeline does not run on the display.
@@ -97,18 +98,18 @@ fn assert_same(whole: &Outcome, pieces: &Outcome, name: &str) {
 }
 
 #[test]
-fn stepping_equals_one_run_for_every_pipeline_on_every_display() {
+fn a_stepped_run_equals_an_uninterrupted_run_for_every_pipeline_on_every_display() {
     let registry = registry();
-    let mut ran = BTreeSet::new();
-    for (pipeline, display) in registry
+    let pairs: Vec<_> = registry
         .pipelines()
         .iter()
         .flat_map(|pipeline| registry.displays().iter().map(move |display| (pipeline, display)))
-    {
+        .collect();
+    let check = |(pipeline, display): &(&PipelineEntry, &DisplayEntry)| {
         let pipeline = format!("pipeline={}", pipeline.name);
         let display = format!("display={}", display.name);
         let settings = [pipeline.as_str(), display.as_str(), "scene=full-screen:2", "fields=7"];
-        let Some(experiment) = experiment(&settings) else { continue };
+        let experiment = experiment(&settings)?;
         let whole = outcome(experiment.run());
         for plain in [experiment.clone().record_traffic(false), experiment.clone()].map(|plain| outcome(plain.run())) {
             assert_eq!(plain.record().trace_hash(), whole.record().trace_hash(), "{settings:?}");
@@ -116,14 +117,15 @@ fn stepping_equals_one_run_for_every_pipeline_on_every_display() {
             assert!(plain.record().events() <= whole.record().events(), "{settings:?}");
         }
         (1..4).for_each(|seed| assert_same(&whole, &in_pieces(&experiment, seed), &format!("{settings:?}, {seed}")));
-        ran.extend([pipeline, display]);
-    }
+        Some([pipeline, display])
+    };
+    let ran: BTreeSet<String> = pairs.par_iter().filter_map(check).flatten_iter().collect();
     let all = registry.pipelines().len() + registry.displays().len();
     assert_eq!(ran.len(), all, "each was run at least once: {ran:?}");
 }
 
 #[test]
-fn stepping_equals_one_run_for_a_tracked_head_with_prediction() {
+fn a_stepped_run_equals_an_uninterrupted_run_for_a_tracked_head_with_prediction() {
     let settings = ["pipeline=slats", "scene=full-screen:2", "fields=7", "head.motion=synthetic:3"];
     let experiment = experiment(&settings).expect("it can be built");
     assert_same(&outcome(experiment.run()), &in_pieces(&experiment, 9), "head");
@@ -152,7 +154,7 @@ fn a_line_step_ends_when_the_next_line_begins_to_light() {
 }
 
 #[test]
-fn an_event_is_taken_at_its_time_and_named_with_its_board() {
+fn a_stepped_event_has_its_own_time_and_the_name_of_its_board() {
     let mut stepper = slats().stepper().expect("it can be built");
     assert_eq!(stepper.step_board(Board::Renderer(3)), Pause::Reached);
     let last = stepper.last().expect("an event");
@@ -203,7 +205,7 @@ fn the_contents_of_a_fifo_agree_with_the_record_of_traffic() {
 }
 
 #[test]
-fn an_array_shows_all_sent_commands_after_the_last_one_started() {
+fn the_array_shows_all_sent_commands_when_the_last_command_has_started() {
     let mut stepper = slats().stepper().expect("it can be built");
     stepper.run_to(stepper.record().tick(PeriodNumber(4)));
     let started = |stepper: &Stepper, at: Time| stepper.record().renderers()[0].look(at).fifo_words == Some(0);

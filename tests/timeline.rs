@@ -129,7 +129,7 @@ fn every_drawing_is_well_formed_and_the_same_twice() {
 }
 
 #[test]
-fn retraces_stand_where_the_formula_puts_them() {
+fn the_retrace_lines_of_a_timeline_are_at_the_computed_positions() {
     let timeline = timeline(&trivial());
     let drawing = svg(&trivial(), &TimelineOptions::default());
     let document = roxmltree::Document::parse(&drawing).expect("XML");
@@ -223,7 +223,7 @@ fn run_of_figure(name: &str) -> Outcome {
 
 /// Each of TR94's figures 3, 5 and 6 must show the effect for which it was drawn.
 #[test]
-fn the_published_figures_show_their_subjects() {
+fn each_published_figure_shows_the_effect_for_which_it_was_drawn() {
     // A frame takes two fields, so the frame buffers are the bottleneck.
     assert!((run_of_figure("trivial").report().updates_hz.expect("two pictures") - 30.0).abs() < 0.1);
     assert!((run_of_figure("balanced").report().updates_hz.expect("two pictures") - 30.0).abs() < 0.1);

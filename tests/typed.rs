@@ -97,7 +97,7 @@ fn events_have_their_boards_and_are_in_order_of_time() {
 }
 
 #[test]
-fn a_quantity_is_read_by_its_name_and_a_wrong_name_has_a_nearest() {
+fn a_quantity_is_read_by_its_name_and_the_error_for_a_wrong_name_suggests_the_nearest_name() {
     let scene = scene::builtin("full-screen:12").expect("built in");
     let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
     let outcome = experiment.run().expect("it fits");

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Greatest counts of hints of unclear text in all files. Lower a limit when its count falls.
-const LIMITS: Counts = Counts { openers: 0, long_comments: 0, long_sentences: 0, idioms: 4, wide_lines: 24 };
+const LIMITS: Counts = Counts { openers: 0, long_comments: 0, long_sentences: 0, idioms: 4, wide_lines: 23 };
 
 /// Greatest number of words in a sentence.
 const WORDS: usize = 30;

@@ -77,7 +77,7 @@ fn a_table_of_vectors_lists_the_pixels_row_by_row() {
 /// Checks a lens whose slope is zero in the corner of a picture of 2 x 1 pixels. The squared distance of this corner
 /// from the middle is 1/4, so the slope is `1 + 3 x 1/4 x -4/3 = 0`.
 #[test]
-fn a_lens_without_slope_and_a_picture_without_angle_are_refused() {
+fn a_lens_with_zero_slope_and_a_picture_with_a_zero_angle_are_refused() {
     let error = Lens::Radial { k1: -4.0 / 3.0, k2: 0.0 }.check(&TINY).expect_err("flat there").to_string();
     assert!(error.contains("found 0 for k1"), "{error}");
     for lens in [Lens::Flat, Lens::Equidistant] {
@@ -117,7 +117,7 @@ proptest! {
     /// coefficient 5 k2. Between two steps, it falls at most 5 |k2| (step / 2)^2 below both values. Lenses whose
     /// smallest slope is positive and within this bound are left out.
     #[test]
-    fn a_lens_that_folds_before_the_corner_is_refused(
+    fn a_lens_whose_slope_is_not_positive_inside_the_picture_is_refused(
         k1 in -1.5..1.5_f64,
         k2 in -1.0..1.0_f64,
         width in 1_u32..700,
@@ -133,7 +133,7 @@ proptest! {
     }
 
     #[test]
-    fn no_text_of_a_lens_causes_a_panic(k1 in any::<f64>(), k2 in any::<f64>(), horizontal_deg in any::<f64>()) {
+    fn no_coefficients_of_a_lens_cause_a_panic(k1 in any::<f64>(), k2 in any::<f64>(), horizontal_deg in any::<f64>()) {
         let picture = LensPicture { horizontal_deg, ..TINY };
         let lens = Lens::Radial { k1, k2 };
         if lens.check(&picture).is_ok() {

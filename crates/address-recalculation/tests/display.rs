@@ -165,7 +165,7 @@ fn a_region_map_has_one_bit_for_each_region_of_six_faces() {
 /// Checks two memories, of which the second waits to swap together with the first. The first memory shows an update of
 /// its own first. If this update counted as the common update, the common update would wait forever.
 #[test]
-fn an_update_of_another_group_does_not_complete_this_group() {
+fn an_update_of_one_memory_does_not_complete_the_common_update_of_two_memories() {
     let mut bench = Bench::new(&CONFIG);
     let buffers = |bench: &Bench| [0, 1].map(|k| bench.arp().memories(Eye::Left)[k].shown_buffer());
     bench.begin(0, 1, &[]);
@@ -294,7 +294,7 @@ fn a_head_rotation_is_shown_without_an_update() {
 }
 
 #[test]
-fn an_orientation_is_latched_at_its_picosecond() {
+fn the_display_latches_an_orientation_at_the_predicted_picosecond() {
     for (latch, x, y) in [(Latch::Field, 0, 0), (Latch::Line, 0, 100), (Latch::Pixel, 7, 200)] {
         let config = ArpConfig { latch, ..CONFIG };
         let latched = config.scan().expect("valid").latches(latch, x, y, PeriodNumber(2)).expect("an even line");

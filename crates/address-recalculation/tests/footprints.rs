@@ -69,7 +69,7 @@ fn texels_beyond_an_edge_belong_to_the_neighbouring_face() {
 
 /// Checks corners, where three faces meet. One of the four texels around a corner lies on no face.
 #[test]
-fn a_corner_has_no_texel_beyond_it_and_the_two_beside_it_are_neighbours() {
+fn at_a_corner_the_two_adjacent_texels_are_neighbours_and_the_diagonal_texel_does_not_exist() {
     let (first, last) = (-1.0, f64::from(SIZE));
     for face in CubeFace::ALL {
         for (right, down, none) in
@@ -93,7 +93,7 @@ fn a_corner_has_no_texel_beyond_it_and_the_two_beside_it_are_neighbours() {
 /// Checks second accesses. A bank holds the texels with one parity of column and row. Two different texels of a
 /// footprint in one bank need two accesses.
 #[test]
-fn two_texels_of_the_same_parity_need_a_second_access() {
+fn two_texels_of_a_footprint_in_the_same_bank_need_a_second_access() {
     let mut random = SplitMix64::new(7);
     let mut met = [0; 2];
     for face in CubeFace::ALL {
@@ -123,7 +123,7 @@ fn two_texels_of_the_same_parity_need_a_second_access() {
 }
 
 #[test]
-fn drawing_into_faces_keeps_the_nearer_pixel_and_the_first_at_equal_depth() {
+fn drawing_into_faces_keeps_the_nearer_pixel_and_at_equal_depth_the_first_pixel() {
     let config = ArpConfig { timing: BARE, ..ArpConfig::MACHINE };
     let mut faces = FaceSet::new(SIZE, config.format());
     let mut expected: BTreeMap<TexelAddress, (u32, u32)> = BTreeMap::new();
@@ -155,7 +155,7 @@ fn drawing_into_faces_keeps_the_nearer_pixel_and_the_first_at_equal_depth() {
 /// Checks a pixel with three texels around a corner. Their mean colour is rounded to the nearest, and the mean nearness
 /// is rounded down.
 #[test]
-fn a_corner_shows_the_mean_of_its_three_texels_in_either_order() {
+fn a_corner_shows_the_mean_colour_of_its_three_texels_in_either_order_of_composition() {
     let corner = footprint(CubeFace::NegZ, ONE - 1, 1 - ONE);
     let [a, b, c] = [0, 2, 3].map(|k| corner.texels[k].expect("on a face"));
     for (order, depths, expected) in [

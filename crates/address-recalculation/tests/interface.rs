@@ -156,7 +156,7 @@ fn only_regions_that_a_pixel_reads_are_computed() {
 /// Checks views of a small area near a border between regions or across the border. Texels 127 and 128 lie in different
 /// regions.
 #[test]
-fn of_neighbouring_segments_only_those_with_a_texel_are_computed() {
+fn a_region_is_computed_only_if_a_pixel_reads_one_of_its_texels() {
     let timing = ArpTiming { display_memories: 1, ..ArpTiming::PAPERS };
     let scan = ScanTiming { visible_pixels: 8, visible_lines: 2, ..ScanTiming::PAPERS };
     // Positions of texels on the front face, which has 254 texels between its edges and one guard texel on each side.
@@ -183,7 +183,7 @@ fn of_neighbouring_segments_only_those_with_a_texel_are_computed() {
 /// Checks a line with two orientations. The display reads the orientation for each pixel, and a matrix arrives in the
 /// middle of the line. Pixels before its arrival use the previous matrix.
 #[test]
-fn a_line_with_two_orientations_belongs_to_both_pictures() {
+fn pixels_before_the_arrival_of_an_orientation_in_a_line_use_the_previous_orientation() {
     let timing = ArpTiming { display_memories: 1, ..ArpTiming::PAPERS };
     let scan = ScanTiming { visible_pixels: 30, visible_lines: 10, ..ScanTiming::PAPERS };
     let config = ArpConfig { timing, scan, latch: Latch::Pixel, ..CONFIG };

@@ -52,7 +52,7 @@ fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
 /// It misses the rates of the paper by 10 to 14 percent (root mean square). Walks that cross cells diagonally do the
 /// same.
 #[test]
-fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
+fn cells_of_5_m_fit_the_second_published_rate_and_miss_the_table_by_9_to_14_percent() {
     for heading in [0.2, 0.4, 0.785] {
         let rates = rates(5.0, heading, 0.7);
         for (rate, expected) in rates.iter().zip([60.0..=60.0, 37.0..=41.0, 24.0..=30.0, 17.0..=20.0]) {
@@ -69,7 +69,7 @@ fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
 /// In the middle half of the row, all lateral positions give equal rates. Near the row's edge, the second memory is
 /// drawn in every frame. There, 2 x 5.3 m x sin(theta / 2) is less than the distance walked in a frame.
 #[test]
-fn a_walk_along_cells_depends_on_its_lane_only_near_their_edges() {
+fn on_a_walk_along_a_row_of_cells_only_positions_near_the_edge_of_the_row_change_the_rates() {
     let middle = rates(5.0, 0.0, 2.5);
     assert_eq!(rates(5.0, 0.0, 1.5), middle);
     assert!(middle.is_sorted_by(|a, b| a > b), "{middle:?}");
@@ -239,7 +239,7 @@ fn a_memory_is_not_drawn_while_its_images_stay_correct_until_its_next_frame() {
 /// An approaching object moves from memory 1 to memory 0 in the next even frame. Only these two memories are shown
 /// together.
 #[test]
-fn an_object_moves_when_both_memories_are_drawn() {
+fn an_approaching_object_changes_memories_in_a_frame_that_draws_both_memories() {
     let mut policy = Objects::new(&PriorityTiming { memories: 2, ..EQUAL_RINGS }, 2);
     assert_eq!(policy.memory(0), None, "it was not drawn yet");
     policy.frame(0, &[1.0, 1.0]);

@@ -201,7 +201,7 @@ fn a_rotated_picture_equals_a_redraw_for_that_orientation() {
 }
 
 #[test]
-fn the_nearest_memory_shows_and_the_lowest_number_at_equal_depth() {
+fn a_pixel_shows_the_nearest_memory_and_at_equal_depth_the_memory_with_the_lowest_number() {
     for n in 1..=8 {
         let timing = ArpTiming { face_texels: 128, display_memories: n, ..ArpTiming::PAPERS };
         let config = ArpConfig { timing, background: 0x30_20_10, ..ArpConfig::MACHINE };
@@ -287,7 +287,7 @@ fn several_memories_show_the_same_as_one_memory() {
 ///
 /// The position of a texel on the flat picture does not depend on the lens.
 #[test]
-fn a_straight_edge_through_the_lens_and_back_is_straight() {
+fn a_straight_edge_in_the_world_is_straight_when_seen_through_the_lens() {
     let picture = ArpConfig::IDEAL.picture();
     let lens = Lens::Radial { k1: 0.32, k2: 0.05 };
     let focal = 320.0 / 30_f64.to_radians().tan();

@@ -85,7 +85,7 @@ proptest! {
 
 /// A wall of 12 m along x starts at x = 1. Cells of 5 m cut it into 4, 5 and 3 m.
 #[test]
-fn a_wall_is_cut_in_three() {
+fn cells_of_5_m_cut_a_wall_of_12_m_into_three_segments() {
     let corners = [(1.0, 0.0), (13.0, 0.0), (13.0, 3.0), (1.0, 3.0)].map(|(x, y)| DVec3::new(x, y, 2.0));
     let cut = Segmentation::new(&corners, &[[0, 1, 2], [0, 2, 3]], 5.0).expect("cut");
     let areas: Vec<(i64, f64)> =

@@ -23,7 +23,8 @@ pub(crate) struct Execution {
     pub(crate) trapped: bool,
 }
 
-/// Greatest number of instructions or pairs in a block, without the delay slot.
+/// Maximum number of issues in a block, without the delay slot. An issue is one instruction, or one pair of
+/// instructions in dual-instruction mode.
 const LONGEST: usize = 32;
 
 /// Code that the processor issues in one clock: an instruction, or a pair of instructions.

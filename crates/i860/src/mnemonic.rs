@@ -188,7 +188,7 @@ mod tests {
     use super::templates;
 
     #[test]
-    fn the_mnemonics_of_the_xr_part_are_all_there() {
+    fn the_table_of_mnemonics_has_every_instruction_of_the_i860_xr() {
         let names: Vec<&str> = templates().keys().map(String::as_str).collect();
         // The 4 families of dual operations have 16 + 16 + 15 + 15 data paths, each in the three precisions .ss, .sd
         // and .dd.

@@ -226,7 +226,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_number_lies_in_its_range() {
+    fn every_number_of_the_timing_tables_lies_in_its_range() {
         for (name, table) in Config::cycle().tables() {
             assert_eq!(table.out_of_range(), [], "{name}");
             assert_eq!(table.check(), Ok(()), "{name}");

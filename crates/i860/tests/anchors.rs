@@ -45,7 +45,7 @@ fn single_precision_peak_is_two_operations_per_clock() {
 
 /// 60 MFLOPS at 40 MHz: an addition in every clock and a multiplication in every second clock.
 #[test]
-fn double_precision_peak_is_one_and_a_half() {
+fn double_precision_peak_is_one_and_a_half_operations_per_clock() {
     let body = "m12apm.dd f8, f10, f0\npfadd.dd f12, f14, f0\n".repeat(32);
     let m = measure(&format!("begin: {body}end: nop"), &[]);
     assert_eq!((32 * 3, m.clocks), (96, 64));

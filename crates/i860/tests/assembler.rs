@@ -70,7 +70,7 @@ fn a_program_can_use_labels_macros_and_constants() {
 }
 
 #[test]
-fn a_constant_may_begin_like_a_register() {
+fn the_name_of_a_constant_may_begin_with_the_name_of_a_register() {
     let program =
         assemble("t.s", 0, "size = 5\nmov size, r4\nmov sp, r5\nmov ha%0x7fffffffffffffff, r6").expect("correct");
     let text: Vec<String> = program.words().iter().map(|word| disassemble(*word, 0)).collect();
@@ -94,7 +94,7 @@ fn pairing_errors_name_their_line() {
 }
 
 #[test]
-fn code_that_leaves_dual_mode_by_the_rule_is_accepted() {
+fn a_correct_exit_from_dual_instruction_mode_is_accepted() {
     let pairs = "d.fnop\nnop\nd.fnop\nnop\nfnop\nnop\nfnop\nnop\nadds 1,r4,r4\nadds 1,r4,r4";
     assert!(assemble("t.s", 0, pairs).is_ok());
     let short = "d.fnop\nnop\nfnop\nnop\nadds 1,r4,r4";
@@ -148,7 +148,7 @@ fn semicolons_separate_statements() {
 }
 
 #[test]
-fn a_listing_shows_source_lines_and_data_as_data() {
+fn a_listing_shows_the_source_line_of_each_instruction_and_marks_data_as_data() {
     let source = "start: mov 0x12345678, r5 // both halves\n.macro two\nnop\nnop\n.endm\ntwo; nop\nend: nop\n.align 8\n\
                   table: .long 7, end\n.byte 1, 2, 3, 4, 255\n.byte 0\n.short 0xffff\n.align 8\n.double -1.5\n.float 0.5\nlast:";
     let program = assemble("t.s", 0x1000, source).expect("correct");
@@ -282,7 +282,7 @@ fn exceeding_the_expansion_budget_is_refused_at_its_line() {
 }
 
 #[test]
-fn the_error_of_the_budget_names_the_most_expensive_line() {
+fn exceeding_the_expansion_budget_names_the_line_with_the_most_expanded_words() {
     let source = ".rept 900000\nnop\n.endr\nnop\n.rept 200000\nnop\n.endr";
     assert_fault(source, 1, "written out to more than");
 }
@@ -335,7 +335,7 @@ fn conditions_select_lines_by_constants_defined_above() {
 }
 
 #[test]
-fn wrong_conditions_are_named_with_their_line() {
+fn the_error_of_an_invalid_condition_names_its_line() {
     assert_fault("nop\n.if 1\nnop", 2, ".if without .endif");
     assert_fault("nop\n.endif", 2, ".endif without .if");
     assert_fault(".if 1\n.else\n.else\n.endif", 3, ".else without .if");

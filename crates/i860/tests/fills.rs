@@ -41,7 +41,7 @@ fn clocks(rows: &[Freeze], source: &str) -> u64 {
 
 /// Intel's list, row 1: "+ remaining READY#s of the block if a jump or another freeze occurs meanwhile".
 #[test]
-fn row_1_another_freeze_during_a_line_fill_waits_for_the_rest_of_the_line() {
+fn row_1_a_second_freeze_during_a_line_fill_lasts_until_the_end_of_the_fill() {
     let source = "adds 1, r5, r5\nbc end\nnop\nnop\nnop\nnop\nnop\nnop";
     // The first word arrives at clock 11, and adds ends at 12. bc would wait until 13, so it waits for the line until
     // 17 and ends at 18. Six more instructions end at 24.
@@ -91,14 +91,14 @@ fn row_3_a_miss_of_16_bytes_waits_for_both_transfers() {
 
 /// Intel's list, row 16, address pipe full: "until next address can issue", for any instruction that issues an address.
 #[test]
-fn row_16_holds_a_store_behind_three_requests() {
+fn row_16_a_store_waits_while_the_address_pipe_has_three_requests() {
     let source = "pfld.d 8(r4)++, f8\npfld.d 8(r4)++, f8\npfld.d 8(r4)++, f8\nst.l r5, 0(r4)";
     // The requests are at clocks 1, 2 and 3, and the data of the first arrive at 12. The store is issued at 4.
     assert_eq!(clocks(&[Freeze::AddressPipeFull], source), 12);
 }
 
 #[test]
-fn row_16_holds_an_instruction_fill_behind_three_requests() {
+fn row_16_an_instruction_fill_waits_while_the_address_pipe_has_three_requests() {
     let loads = "pfld.d 8(r7)++, f8\n".repeat(3);
     let source = format!("mov 0x1800, r7\nnop\nnop\nnop\nnop\n{loads}nop");
     // mov and the nops end at clock 16. The loads of the open row are requested at 17, 18 and 19, and their data arrive

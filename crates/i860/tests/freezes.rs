@@ -158,7 +158,7 @@ fn row_1_a_cached_line_costs_nothing() {
 
 /// Row 1 of Intel's list: "+2 if D-cache busy".
 #[test]
-fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
+fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more_clocks() {
     let t = dram();
     let others = FreezeRules::none().with(Freeze::InstructionMiss);
     // The data lie in another DRAM row and come after the instructions. The next line is needed after the first word of
@@ -174,7 +174,7 @@ fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
 /// Row 2 of Intel's list, use of the destination of an integer load that missed: "1 + read clocks - instructions
 /// executed since the load".
 #[test]
-fn row_2_using_the_destination_of_a_missed_load_waits() {
+fn row_2_an_instruction_that_uses_a_missed_load_waits_for_the_loaded_word() {
     let t = dram();
     let read = t.first_miss;
     assert_eq!(cost(Freeze::LoadMissUse, "ld.l 0(r4), r5\nadds r5, r0, r6"), 1 + read);
@@ -187,7 +187,7 @@ fn row_2_using_the_destination_of_a_missed_load_waits() {
 
 /// Row 3 of Intel's list, fld miss: "1 + clocks ADS# to READY# (blocking)".
 #[test]
-fn row_3_a_floating_load_that_misses_blocks_and_one_that_hits_does_not() {
+fn row_3_only_a_floating_load_that_misses_the_cache_stops_the_processor() {
     let read = dram().first_miss;
     assert_eq!(cost(Freeze::FloatingLoadMiss, "fld.d 0(r4), f8"), 1 + read);
     assert_eq!(cost(Freeze::FloatingLoadMiss, "fld.d 0(r4), f8\nfld.d 24(r4), f8"), 1 + read);
@@ -222,7 +222,7 @@ fn row_4_transfers_wait_for_the_first_word_of_a_fill() {
 /// Row 5 of Intel's list, ld, st, fld, fst, pfld while a data miss is in progress: "1 + clocks to last READY# of the
 /// line".
 #[test]
-fn row_5_accesses_wait_for_the_whole_line() {
+fn row_5_loads_and_stores_wait_until_a_line_fill_ends() {
     let t = dram();
     let line = t.first_miss + 3 * t.next;
     for access in ["ld.l 4(r4), r6", "st.l r6, 4(r4)", "fld.d 8(r4), f8", "fst.d f8, 8(r4)"] {
@@ -235,7 +235,7 @@ fn row_5_accesses_wait_for_the_whole_line() {
 
 /// Row 6 of Intel's list, destination of ld, ld.c, call, calli, fxfr used by the next instruction: "1".
 #[test]
-fn row_6_the_next_instruction_waits_for_a_load_and_the_one_after_does_not() {
+fn row_6_only_the_instruction_right_after_a_load_waits_for_the_loaded_value() {
     for (load, user) in [
         ("ld.l 0(r4), r5", "adds r5, r0, r6"),
         ("ld.c psr, r5", "adds r5, r0, r6"),
@@ -277,7 +277,7 @@ fn row_8_a_branch_waits_for_a_condition_just_set() {
 
 /// Row 9 of Intel's list, multiplier operation whose fsrc1 is the result of the operation before: "1".
 #[test]
-fn row_9_the_first_source_of_a_multiply_waits_for_the_result_before_it() {
+fn row_9_a_multiply_waits_if_its_first_source_is_the_result_of_the_previous_operation() {
     let row = Freeze::MultiplierFirstSource;
     assert_eq!(cost(row, "pfadd.ss f8, f9, f10\npfmul.ss f10, f9, f11"), 1);
     assert_eq!(cost(row, "pfadd.ss f8, f9, f10\npfmul.ss f9, f10, f11"), 0, "the second source does not");
@@ -288,7 +288,7 @@ fn row_9_the_first_source_of_a_multiply_waits_for_the_result_before_it() {
 
 /// Row 10 of Intel's list, operation while a scalar one is in flight: "2 - instructions since".
 #[test]
-fn row_10_a_scalar_operation_occupies_the_unit_for_two_more_clocks() {
+fn row_10_a_scalar_operation_occupies_the_floating_point_unit_for_two_more_clocks() {
     for scalar in ["fadd.ss f8, f9, f10", "fmul.ss f8, f9, f10", "famov.ss f8, f10"] {
         for next in ["fadd.ss f2, f3, f4", "fst.l f3, 0(r4)", "fiadd.ss f2, f3, f4", "pfadd.ss f2, f3, f0"] {
             for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
@@ -302,7 +302,7 @@ fn row_10_a_scalar_operation_occupies_the_unit_for_two_more_clocks() {
 
 /// Row 10 of Intel's list: "fmul.dd 3 - instructions since".
 #[test]
-fn row_10b_a_double_multiply_occupies_the_unit_for_three_more_clocks() {
+fn row_10b_a_scalar_double_multiply_occupies_the_floating_point_unit_for_three_more_clocks() {
     let row = Freeze::ScalarDoubleMultiplyBusy;
     assert_eq!(cost(row, "fmul.dd f8, f10, f12\nfadd.dd f2, f4, f6"), 3);
     assert_eq!(cost(row, "fmul.dd f8, f10, f12\nnop\nnop\nfadd.dd f2, f4, f6"), 1);
@@ -327,7 +327,7 @@ fn rows_10c_and_10d_only_lengthen_existing_waits() {
 /// Row 11 of Intel's list, multiplier operation after a double-precision multiply: "1". The 60 MFLOPS in double
 /// precision at 40 MHz in the data sheet mean one multiplication every second clock and one addition every clock.
 #[test]
-fn row_11_the_multiplier_takes_a_double_every_second_clock() {
+fn row_11_the_multiplier_starts_a_double_multiply_at_most_every_second_clock() {
     let row = Freeze::DoubleMultiply;
     assert_eq!(cost(row, "pfmul.dd f8, f10, f12\npfmul.dd f8, f10, f12"), 1);
     assert_eq!(cost(row, "pfmul.dd f8, f10, f12\npfadd.dd f8, f10, f12\npfmul.dd f8, f10, f12"), 0);
@@ -337,7 +337,7 @@ fn row_11_the_multiplier_takes_a_double_every_second_clock() {
 
 /// Row 12 of Intel's list, TLB miss: "5 + two reads".
 #[test]
-fn row_12_the_first_access_to_a_page_costs_five_clocks_and_two_reads() {
+fn row_12_a_tlb_miss_costs_five_clocks_and_the_time_of_two_reads() {
     let t = dram();
     let translation_on = "adds 1, r0, r5\nst.c r5, dirbase\n";
     let reads = t.first_miss + t.first_miss;
@@ -350,7 +350,7 @@ fn row_12_the_first_access_to_a_page_costs_five_clocks_and_two_reads() {
 
 /// Row 13 of Intel's list, pfld with three outstanding: "1 + clocks until first returns".
 #[test]
-fn row_13_the_fourth_pipelined_load_waits_for_the_first() {
+fn row_13_the_fourth_pipelined_load_waits_for_the_data_of_the_first_load() {
     let t = dram();
     assert_eq!(cost(Freeze::LoadPipeFull, &pipelined_loads(3)), 0);
     // The first load was requested after one clock. The fourth load is issued at clock 4 and then waits.
@@ -361,7 +361,7 @@ fn row_13_the_fourth_pipelined_load_waits_for_the_first() {
 
 /// Row 14 of Intel's list, pfld that hits the data cache: "2 + clocks to finish all outstanding bus cycles".
 #[test]
-fn row_14_a_pipelined_load_that_hits_waits_for_the_bus_and_two_more() {
+fn row_14_a_pipelined_load_that_hits_the_cache_waits_until_two_clocks_after_the_last_bus_cycle() {
     let t = dram();
     let line = t.first_miss + 3 * t.next;
     let row = Freeze::PipelinedLoadHit;
@@ -373,7 +373,7 @@ fn row_14_a_pipelined_load_that_hits_waits_for_the_bus_and_two_more() {
 /// Row 15 of Intel's list, store pipe full (2 internal and the bus) and a store misses: "1 + clocks to READY# of next
 /// write".
 #[test]
-fn row_15_the_fourth_store_waits_for_the_first_to_be_written() {
+fn row_15_the_fourth_store_waits_until_the_first_store_is_written() {
     let t = dram();
     assert_eq!(cost(Freeze::StorePipeFull, &stores(3)), 0);
     // The first store is requested at clock 1 and ends at 1 + write_miss. The fourth store is issued at clock 4.
@@ -382,7 +382,7 @@ fn row_15_the_fourth_store_waits_for_the_first_to_be_written() {
 
 /// Row 16 of Intel's list, address pipe full: "until next address can issue".
 #[test]
-fn row_16_a_fourth_request_waits_for_the_first_to_end() {
+fn row_16_a_fourth_bus_request_waits_until_the_first_request_ends() {
     let t = dram();
     // Without row 13, pipelined loads use only the address pipe. The requests are at clocks 1, 2, 3 and then 4.
     assert_eq!(cost(Freeze::AddressPipeFull, &pipelined_loads(3)), 0);
@@ -391,7 +391,7 @@ fn row_16_a_fourth_request_waits_for_the_first_to_end() {
 
 /// Row 17 of Intel's list, ld or fld right after a store that hit: "1".
 #[test]
-fn row_17_a_load_right_behind_a_store_that_hit_waits() {
+fn row_17_a_load_waits_right_after_a_store_that_hits_the_cache() {
     let store = apart("ld.l 0(r4), r5", 30, "st.l r5, 4(r4)");
     assert_eq!(cost_apart(Freeze::LoadAfterStoreHit, &store, 0, "ld.l 8(r4), r6"), 1);
     assert_eq!(cost_apart(Freeze::LoadAfterStoreHit, &store, 1, "ld.l 8(r4), r6"), 0);
@@ -401,7 +401,7 @@ fn row_17_a_load_right_behind_a_store_that_hit_waits() {
 /// Row 18 of Intel's list, delayed conditional branch not taken: "1". A taken branch takes only the clock of its delay
 /// slot. For example, the loop of a tree code of the period takes 106 clocks with such a branch (anchors.rs).
 #[test]
-fn row_18_a_delayed_branch_not_taken_costs_one_and_taken_none() {
+fn row_18_a_delayed_branch_costs_one_clock_only_if_the_branch_is_not_taken() {
     let row = Freeze::DelayedBranchNotTaken;
     assert_eq!(cost(row, "bc.t end\nnop"), 1);
     assert_eq!(cost(row, "bnc.t end\nnop"), 0);
@@ -411,7 +411,7 @@ fn row_18_a_delayed_branch_not_taken_costs_one_and_taken_none() {
 
 /// Row 19 of Intel's list, branch without slot taken: "1 bc, bnc; 2 bte, btne".
 #[test]
-fn row_19_a_branch_without_slot_costs_when_taken() {
+fn row_19_a_branch_without_delay_slot_costs_extra_clocks_only_if_the_branch_is_taken() {
     assert_eq!(cost(Freeze::BranchTaken, "bnc end\nnop"), 1);
     assert_eq!(cost(Freeze::BranchTaken, "bc end\nnop"), 0);
     assert_eq!(cost(Freeze::CompareBranchTaken, "bte r0, r0, end\nnop"), 2);
@@ -420,7 +420,7 @@ fn row_19_a_branch_without_slot_costs_when_taken() {
 
 /// Row 20 of Intel's list, bri, calli: "1".
 #[test]
-fn row_20_a_branch_through_a_register_costs_one() {
+fn row_20_a_branch_to_an_address_in_a_register_costs_one_extra_clock() {
     assert_eq!(cost(Freeze::IndirectBranch, "mov end, r5\nbri r5\nnop"), 1);
     assert_eq!(cost(Freeze::IndirectBranch, "mov end, r5\ncalli r5\nnop"), 1);
     assert_eq!(cost(Freeze::IndirectBranch, "br end\nnop"), 0);
@@ -428,7 +428,7 @@ fn row_20_a_branch_through_a_register_costs_one() {
 
 /// Row 21 of Intel's list, st.c: "2".
 #[test]
-fn row_21_a_write_to_a_control_register_costs_two() {
+fn row_21_a_write_to_a_control_register_costs_two_extra_clocks() {
     assert_eq!(cost(Freeze::ControlStore, "st.c r0, fsr\nld.c fsr, r5"), 2);
     assert_eq!(cost(Freeze::ControlStore, "ld.c fsr, r5"), 0);
 }
@@ -436,7 +436,7 @@ fn row_21_a_write_to_a_control_register_costs_two() {
 /// Row 22 of Intel's list, graphics result used by the next adder or multiplier operation: "1"; by the next graphics
 /// operation: "1".
 #[test]
-fn row_22_a_graphics_result_is_late_by_one() {
+fn row_22_the_result_of_a_graphics_instruction_is_one_clock_late_for_the_next_instruction() {
     let first = "fiadd.ss f8, f9, f10";
     assert_eq!(cost(Freeze::GraphicsToFloating, &format!("{first}\npfadd.ss f10, f2, f3")), 1);
     assert_eq!(cost(Freeze::GraphicsToFloating, &format!("{first}\nnop\npfadd.ss f10, f2, f3")), 0);
@@ -447,7 +447,7 @@ fn row_22_a_graphics_result_is_late_by_one() {
 
 /// Row 23 of Intel's list, flush after flush: "2 - instructions between".
 #[test]
-fn row_23_a_flush_waits_for_the_flush_before() {
+fn row_23_a_flush_waits_for_the_previous_flush() {
     for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
         let found = cost_apart(Freeze::FlushAfterFlush, "flush 0(r4)", gap, "flush 32(r4)");
         assert_eq!(found, expected, "{gap} between");
@@ -456,7 +456,7 @@ fn row_23_a_flush_waits_for_the_flush_before() {
 
 /// Row 24 of Intel's list, fst, pst, then a pipelined operation that overwrites the stored register: "1".
 #[test]
-fn row_24_a_pipelined_result_waits_for_the_store_of_its_register() {
+fn row_24_a_pipelined_result_waits_until_its_register_is_stored() {
     let row = Freeze::StoreThenOverwrite;
     assert_eq!(cost(row, "fst.l f8, 0(r4)\npfadd.ss f2, f3, f8"), 1);
     assert_eq!(cost(row, "fst.l f8, 0(r4)\nnop\npfadd.ss f2, f3, f8"), 0);
@@ -467,7 +467,7 @@ fn row_24_a_pipelined_result_waits_for_the_store_of_its_register() {
 /// Intel's list has no such row, because its row 10 does not include frcp and frsqr. A published code for three
 /// reciprocal roots in 39 clocks is possible if the result can be used two instructions later.
 #[test]
-fn row_25_a_seed_is_late_by_one() {
+fn row_25_the_seed_of_a_reciprocal_is_one_clock_late_for_the_next_instruction() {
     assert_eq!(cost(Freeze::SeedUse, "frcp.ss f8, f9\nfmul.ss f9, f9, f10"), 1);
     assert_eq!(cost(Freeze::SeedUse, "frcp.ss f8, f9\nnop\nfmul.ss f9, f9, f10"), 0);
 }

@@ -94,7 +94,7 @@ fn every_schedule_computes_the_same_results() {
 }
 
 #[test]
-fn scheduled_code_waits_only_at_its_ends() {
+fn inside_a_scheduled_stretch_of_code_no_instruction_waits() {
     let (_, profile) = run("", BODY, &data());
     // The branch back and the code after the branch are outside the stretch, and enter the cache only in the second
     // run.

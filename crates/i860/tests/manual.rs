@@ -293,7 +293,7 @@ fn no_instruction_is_missing_from_the_manual() {
 
 /// According to the manual, `pfmul3` advances all three stages, also in double precision.
 #[test]
-fn a_multiply_through_three_stages_takes_the_result_of_the_third_one_before_it() {
+fn a_three_stage_multiply_returns_the_product_of_the_third_previous_multiply() {
     let source = "start: mov data, r4; fld.d 0(r4), f2; fld.d 8(r4), f4; nop; nop
         pfmul3.dd f2, f4, f0; pfmul3.dd f4, f4, f0; pfmul3.dd f2, f2, f0
         pfmul3.dd f0, f0, f6; pfmul3.dd f0, f0, f8; pfmul3.dd f0, f0, f10

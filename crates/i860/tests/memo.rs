@@ -91,7 +91,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 3_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn memoised_random_programs_take_the_same_clocks_by_cause(
+    fn memoised_random_programs_take_the_counted_clocks_for_each_cause(
         words in prop::collection::vec(likely_word(), 1..60),
         registers in registers(),
         freezes in rules(),
@@ -239,7 +239,7 @@ fn a_cached_loop_is_simulated_only_until_it_is_memoised() {
 }
 
 #[test]
-fn a_profile_by_address_accounts_for_the_same_clocks() {
+fn the_clocks_of_a_profile_by_address_add_up_to_the_clocks_of_the_run() {
     let (plain, _) = run_loop(|_| {});
     let (watched, _) = run_loop(|cpu| cpu.watch(Some(AddressProfile::new(CODE, 16))));
     assert_eq!(watched.profile(), plain.profile());
@@ -258,7 +258,7 @@ proptest! {
 
     /// Programs can store into their own code, so each program is loaded again before its turn.
     #[test]
-    fn processors_that_share_a_memo_take_the_same_clocks_as_alone(
+    fn processors_with_a_shared_memo_take_the_same_clocks_as_processors_without_a_memo(
         words in prop::collection::vec(prop::collection::vec(likely_word(), 1..60), 2),
         registers in prop::collection::vec(far_registers(), 3),
         freezes in rules(),

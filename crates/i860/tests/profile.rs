@@ -27,7 +27,7 @@ fn clocks_by_label_are_those_of_the_code_up_to_the_next_label() {
 }
 
 #[test]
-fn every_clock_is_an_issue_or_one_cause() {
+fn every_clock_is_counted_as_an_issue_or_for_one_cause_of_waiting() {
     let (cpu, _) = run(LOOP, FreezeRules::all());
     let profile = cpu.profile();
     assert_eq!(profile.clocks(), cpu.clocks());

@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn commands_are_cut_out_of_a_list_at_their_own_words() {
+    fn commands_cut_out_of_a_list_have_exactly_their_own_words() {
         let of = CommandKind::Sphere.words();
         let all: Vec<Word> = (0..5 * of).collect();
         let expected: Vec<Word> = (2 * of..4 * of).collect();

@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn clumps_have_each_primitive_of_a_share_once_triangles_first() {
+    fn clumps_have_each_primitive_of_a_share_once_and_begin_with_the_triangles() {
         let sphere = WorldSphere { centre: Vec3::ZERO, radius: 1.0, colour: [0; 3] };
         let list = DisplayList { triangles: vec![[0; 3]; 70], spheres: vec![sphere; 25], ..DisplayList::default() };
         let clumps: Vec<_> = Share::new(Arc::new(list), 0, 1).clumps(30).collect();

@@ -152,7 +152,7 @@ fn a_bin_with_too_many_entries_is_a_fault() {
 }
 
 #[test]
-fn with_the_published_table_the_handoff_is_part_of_sending_a_message() {
+fn the_published_time_of_sending_a_message_includes_the_bin_handoff() {
     let share = share(30, 0);
     let layout = Layout::rendering_control_phong();
     let pass = pass(&share, 0.0, Shading::Phong, layout, RegionBinning::Touched);
@@ -167,7 +167,7 @@ fn with_the_published_table_the_handoff_is_part_of_sending_a_message() {
 }
 
 #[test]
-fn without_bins_in_code_memory_there_is_no_handoff() {
+fn without_bins_in_the_memory_of_the_processor_a_handoff_takes_no_time() {
     let share = share(30, 0);
     let pass = pass(&share, 0.0, Shading::Gouraud, Layout::slats(), RegionBinning::All);
     let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());

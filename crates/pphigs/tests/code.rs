@@ -188,7 +188,7 @@ fn code_clips_triangles_as_the_native_firmware_does() {
 /// If the board runs code, the time of a pass must not depend on any number of the timing table, including the numbers
 /// for spheres.
 #[test]
-fn a_pass_by_code_does_not_depend_on_the_table_of_times() {
+fn the_time_of_a_pass_by_code_does_not_depend_on_the_timing_table() {
     let mut list = Arc::unwrap_or_clone(list(30));
     list.spheres = vec![WorldSphere { centre: Vec3::new(0.0, 0.0, -5.0), radius: 0.1, colour: [9; 3] }];
     list.structures[0].spheres = 0..1;
@@ -326,7 +326,7 @@ fn one_pass_for_both_eyes_writes_the_native_words_of_each_eye() {
 }
 
 #[test]
-fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
+fn a_structure_that_the_left_eye_cannot_draw_is_drawn_for_the_right_eye() {
     let mut view = view();
     view.eyes[0].head_to_eye.w_axis.x = f32::NAN;
     let share = Share::new(list(30), 0, 1);
@@ -345,7 +345,7 @@ fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
 /// A triangle has only ambient light if its normal points away from the light, and full light if it points to the
 /// light. Other normals give light in between.
 #[test]
-fn precomputed_colours_are_ambient_and_diffuse_light_on_the_side_of_the_normal() {
+fn a_precomputed_colour_has_ambient_light_and_on_the_lit_side_also_diffuse_light() {
     let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.25, diffuse: 0.5, ..DisplayList::default() };
     list.normals = vec![Vec3::Z * 3.0, -Vec3::Z, Vec3::new(0.0, 3f32.sqrt(), 1.0)];
     list.positions = vec![Vec3::ZERO; 3];

@@ -326,7 +326,7 @@ fn unsupported_pictures_have_no_kernel() {
 
 /// A triangle must draw nothing if a corner is NaN, or larger than clip coordinates can be.
 #[test]
-fn triangles_that_cannot_be_represented_are_left_out() {
+fn triangles_with_corners_that_cannot_be_represented_draw_nothing() {
     let mut input = triangles(30, 0.12, 1);
     for (n, value) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 2e30, -3e38].into_iter().enumerate() {
         input[3 * n].positions[n % 3].x = value;

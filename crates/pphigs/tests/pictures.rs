@@ -92,7 +92,7 @@ fn a_field_is_every_second_line_of_its_frame() {
 }
 
 #[test]
-fn the_nearer_pixel_wins_in_any_order_and_only_equal_depths_tie() {
+fn the_nearer_square_wins_in_any_drawing_order_without_ties() {
     for order in [[(10.0, RED), (20.0, GREEN)], [(20.0, GREEN), (10.0, RED)]] {
         let mut list = list();
         order.iter().for_each(|(distance, colour)| square(&mut list, [0.0, 8.0], [0.0, 8.0], *distance, *colour));
@@ -123,7 +123,7 @@ fn a_pixel_at_equal_depth_shows_one_of_the_two_colours() {
 }
 
 #[test]
-fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
+fn a_sphere_hides_a_square_that_cuts_the_sphere_behind_its_front() {
     let mut list = list();
     let centre = [200.3_f32, 100.2];
     list.spheres.push(WorldSphere {

@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn copies_of_a_queue_are_in_order_and_alternate_between_the_ports() {
+    fn a_queue_of_copies_keeps_the_order_of_each_port_and_alternates_between_the_ports() {
         let mut queue = Queue::default();
         [false, false, true].into_iter().for_each(|right| queue.push(right));
         assert_eq!((queue, queue.len()), (Queue(0b11_01_01), 3));

@@ -198,7 +198,7 @@ struct Sender<'a> {
     begun: usize,
     /// Messages of the current clump that still wait for a channel of the ring.
     messages: VecDeque<Message>,
-    /// Time since which the next message waits for a channel.
+    /// Instant, in nanoseconds, at which the next message began to wait for a channel.
     since_ns: f64,
     channels_ns: Vec<f64>,
     cpu_ns: f64,

@@ -243,7 +243,7 @@ mod tests {
         /// Tests that the model computes the same times, bit for bit, for many machines together and for each machine
         /// alone.
         #[test]
-        fn machines_computed_together_give_the_same_results_as_alone(
+        fn machines_computed_together_give_the_same_results_as_machines_computed_one_by_one(
             gps in 1usize..5,
             renderers in 5usize..23,
             all in proptest::collection::vec(numbers(), 1..50),

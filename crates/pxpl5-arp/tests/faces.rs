@@ -146,7 +146,7 @@ fn at_equal_depth_the_first_triangle_stays() {
 }
 
 #[test]
-fn guard_texels_equal_the_neighbouring_face_in_their_direction() {
+fn a_guard_texel_shows_the_surface_of_the_neighbouring_face() {
     // Each side of the hall has one colour. The guard column to the right of NegZ shows the side of PosX.
     let wall = |x: f64, colour: u32| vec![triangle([[x, -90.0, -90.0], [x, 90.0, -90.0], [x, 0.0, 90.0]], colour)];
     let (faces, _) = drawn(&view(64, 1), DVec3::ZERO, &wall(5.0, 0x77));

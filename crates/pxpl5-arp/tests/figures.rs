@@ -21,7 +21,7 @@ fn the_side_of_a_cell_is_fitted_to_memory_1_and_the_threshold_to_the_width_of_te
 }
 
 #[test]
-fn table_1_checked_rates_fall_from_memory_to_memory_and_memory_0_is_drawn_in_every_frame() {
+fn table_1_rates_never_rise_with_the_number_of_the_memory_and_memory_0_has_60_hz() {
     let tried = FIGURES.0.interpretations.ranked.iter().flat_map(|ranked| &ranked.tried);
     let all =
         tried.map(|tried| tried.best.rates_hz.to_vec()).chain(FIGURES.0.fits.iter().map(|fit| fit.rates_hz.clone()));
@@ -58,7 +58,7 @@ fn doubling_rings_explain_table_1_better_than_equal_rings() {
 
 /// Checks that memory 1 is drawn as often as memory 0 if memory 0 holds only the user's cell.
 #[test]
-fn table_1_without_inner_rings_is_off_by_at_least_a_quarter() {
+fn table_1_without_inner_rings_has_an_error_above_25_percent() {
     let ranked = &FIGURES.0.interpretations.ranked;
     let outside = ranked.iter().filter(|ranked| ranked.rules.inner_rings == 0);
     assert!(outside.clone().count() == 4 && outside.clone().all(|ranked| ranked.mean_error_percent > 25.0));
@@ -67,7 +67,7 @@ fn table_1_without_inner_rings_is_off_by_at_least_a_quarter() {
 /// Checks predictions of three update rates. Each rate is left out once, and the rules are then chosen by the other two
 /// rates.
 #[test]
-fn omitted_rates_are_predicted_by_the_others() {
+fn each_omitted_rate_is_predicted_by_the_rules_that_fit_the_other_two_rates_best() {
     let left_out = &FIGURES.0.interpretations.left_out;
     assert_eq!(left_out.iter().map(|one| one.memory).collect::<Vec<_>>(), [1, 2, 3]);
     for one in left_out {
@@ -100,7 +100,7 @@ fn a_threshold_in_pixels_gives_the_side_of_a_cell() {
 /// The default rule measures the eye's movement by its chord. This rule makes the diameters smaller by a fraction of
 /// theta.
 #[test]
-fn a8_lies_between_the_limits_of_two_definitions() {
+fn a8_the_published_limit_lies_between_the_limits_of_two_definitions() {
     let expected = [0.5_f64, 1.0, 2.0].map(|tangent| {
         let sine = tangent.atan().sin();
         [2.0 * sine, 2.0 * sine / (1.0 - sine)]
@@ -141,7 +141,7 @@ fn definitions_are_derived_numbers_and_not_rows_of_results() {
 }
 
 #[test]
-fn point_objects_are_drawn_6_and_13_times_less_often_as_computed_by_hand() {
+fn point_objects_are_drawn_6_and_13_times_less_often() {
     // The factor is 1 / (p0 + p1 / 2 + p2 / 4 + p3 / 8). p follows from the squares of 10.8650, 21.7300 and 43.4599 m
     // over 100 m.
     let borders = [10.8650_f64, 21.7300, 43.4599].map(|metres| (metres / 100.0).powi(2));
@@ -152,7 +152,7 @@ fn point_objects_are_drawn_6_and_13_times_less_often_as_computed_by_hand() {
 }
 
 #[test]
-fn size_decides_beyond_1_41_distances_for_a_sphere_and_never_for_a_disc() {
+fn the_size_of_a_sphere_limits_the_period_beyond_1_41_distances_and_the_size_of_a_disc_never_does() {
     for row in &FIGURES.0.sizes {
         assert!(row.size_s[0] > row.translation_s, "{row:?}");
         assert_eq!(row.size_s[1] < row.translation_s, row.size_over_distance > 1.411, "{row:?}");
@@ -166,14 +166,14 @@ fn a_straight_edge_bends_on_the_screen_and_is_straight_through_the_lens() {
 }
 
 #[test]
-fn slow_memories_miss_first() {
+fn slower_memories_miss_at_least_as_many_retraces_as_faster_memories() {
     for slowed in &FIGURES.0.slowed {
         assert!(slowed.missed.windows(2).all(|pair| pair[0] <= pair[1]), "{slowed:?}");
     }
 }
 
 #[test]
-fn there_is_a_row_of_every_experiment_and_every_picture_of_the_papers_figures() {
+fn every_experiment_has_a_row_and_every_listed_picture_is_drawn() {
     let experiments: BTreeSet<&str> = FIGURES.1.iter().map(|row| row.experiment).collect();
     assert_eq!(experiments.into_iter().collect::<Vec<_>>(), ["E1", "E2", "E3", "E4", "E5", "E6", "E7", "E8", "E9"]);
     let pictures = all_pictures(&FIGURES.0).expect("drawn");
@@ -189,7 +189,7 @@ fn there_is_a_row_of_every_experiment_and_every_picture_of_the_papers_figures() 
 }
 
 #[test]
-fn pictures_that_must_be_equal_are_equal_bit_for_bit() {
+fn pictures_of_equal_content_are_equal_bit_for_bit() {
     assert_eq!((FIGURES.0.composite_differs, FIGURES.0.turned_differ), (0, 0));
 }
 

@@ -93,7 +93,7 @@ fn no_memory_is_due_while_the_eye_stays_in_place_and_the_head_turns() {
 }
 
 #[test]
-fn only_objects_around_a_still_eye_are_due() {
+fn with_a_still_eye_only_memory_0_is_due() {
     // If the eye is inside a bounding sphere, an image is wrong immediately, even if nothing moves. Floor, ceiling and
     // walls of the gallery are such objects.
     let mut simulation = simulated(&OBJECTS);
@@ -125,7 +125,7 @@ fn the_picture_after_a_rotation_equals_a_redraw_with_any_renderer() {
 }
 
 #[test]
-fn no_vertex_is_ever_off_by_more_than_theta() {
+fn no_vertex_ever_has_an_angular_error_above_theta() {
     // With the chord rule, a point at distance d is off by at most asin(2 sin(theta / 2)). This exceeds theta by a
     // factor of 1 + 1.2e-6.
     let theta = CELLS.numbers.theta_deg.to_radians();
@@ -246,7 +246,7 @@ fn a_tiny_threshold_always_draws_everything_and_a_huge_one_draws_only_once() {
 }
 
 #[test]
-fn one_memory_draws_all_and_eight_draw_less_than_four() {
+fn one_memory_draws_all_segments_and_more_memories_need_fewer_draws() {
     let draws = |memories: u64| {
         // With doubling rings, the gallery is too small for eight memories.
         let mut settings = CELLS.with_memories(memories);
@@ -258,7 +258,7 @@ fn one_memory_draws_all_and_eight_draw_less_than_four() {
 }
 
 #[test]
-fn a_slow_renderer_misses_slow_memories_first_and_shows_no_incomplete_memory() {
+fn with_a_slow_renderer_slow_memories_miss_retraces_first_and_incomplete_memories_stay_hidden() {
     let missed = |triangles_per_s: f64| {
         let settings = WalkSettings { source: SourceKind::Timed { triangles_per_s }, ..CELLS };
         let tally = walk(&WORLD, &settings, 900, at_frames(&PATH, 1.0, 60.0)).expect("walked");
@@ -276,7 +276,7 @@ fn a_slow_renderer_misses_slow_memories_first_and_shows_no_incomplete_memory() {
 }
 
 #[test]
-fn views_that_faces_cannot_show_are_refused_by_name() {
+fn scenes_and_settings_that_cube_faces_cannot_show_are_refused_by_name() {
     let refused = |name: &str| World::new(&builtin(name).expect("built in"), 5.0).expect_err("refused").to_string();
     assert!(refused("molecules").contains("triangles alone"));
     assert!(refused("mig").contains("structures that do not move"));

@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_measurement_that_is_too_short_refuses_no_run() {
+    fn a_run_is_not_refused_because_of_a_measurement_that_is_too_short() {
         let refusal = |seconds: f64, bytes: f64| BUDGET.refusal(Taken::default(), Taken { seconds, bytes }, 1e-6);
         assert_eq!(refusal(0.4, 49e6), None);
         assert!(refusal(0.6, 0.0).is_some());

@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn the_text_names_each_paper_and_its_systems() {
+    fn the_text_of_citations_names_the_systems_and_the_doi_of_a_paper() {
         let text = text();
         assert!(text.contains("Version 0.1.0") && text.contains("https://github.com/pxpl5/pxpl5"), "{text}");
         for system in ["Rendering Control", "Slats", "Just-in-time pixels", "Priority rendering", "SpatialGL"] {

@@ -161,7 +161,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_number_is_printed_with_its_change_and_a_missing_one_as_a_dash() {
+    fn a_difference_shows_the_relative_change_and_a_dash_for_a_missing_number() {
         let changed =
             Changed { key: "latency_ms.mean".to_owned(), a: Some(Value::from(20.0)), b: Some(Value::from(25.0)) };
         assert!(line(&changed).ends_with("20.0000          25.0000  +25.0 %\n"), "{}", line(&changed));

@@ -2,20 +2,26 @@
 //! estimate volumes and walks. A volume is a scene drawn as slices for the spinning volumetric display. A walk is a
 //! sequence of frames along a path of the viewer.
 //!
-//! A volume needs `BASE + slices width height / 2 + SAMPLE drawn + targets width height TARGET samples + PRIMITIVE
-//! primitives` bytes:
+//! The formulas use these quantities. Each constant in capital letters is defined and explained below.
 //!
-//! - `drawn = ROWS slices width + AREAS width height` is the number of pixels that triangles and spheres touch.
+//! - `area = width * height` is the number of pixels of a slice.
+//! - `drawn = ROWS * slices * width + AREAS * area` is the number of pixels that triangles and spheres touch.
 //! - `targets` is the number of slices that all threads together draw at a time.
-//! - All bits of all slices count, although the operating system may allocate only pages with data.
+//! - `samples` is the number of samples for each pixel, as set by the user.
+//! - `texels = 6 * face_texels * face_texels` is the number of texels of six cube faces.
 //!
-//! A volume needs `samples (SLICE_S slices primitives + DRAWN_S drawn) + WORD_S slices width height / 8` seconds.
+//! | estimate | formula |
+//! |---|---|
+//! | bytes of a volume, part 1 | `BASE + slices * area / 2 + SAMPLE * drawn` |
+//! | bytes of a volume, part 2 | `targets * area * TARGET * samples + PRIMITIVE * primitives` |
+//! | seconds to draw a volume | `samples * (SLICE_S * slices * primitives + DRAWN_S * drawn)` |
+//! | seconds to pack a volume | `WORD_S * slices * area / 8` |
+//! | bytes of a walk | `BASE + TEXEL * texels + FRAME * frames + WALKED * primitives` |
+//! | seconds of a walk | `FACE_S * texels + FRAME_S * frames * primitives` |
 //!
-//! If simulated renderers of Pixel-Planes 5 draw the volume, the time is `PLANES` times as long. The memory then grows
-//! by `PLANES_BYTES`.
-//!
-//! A walk needs `BASE + TEXEL 6 face_texels^2 + FRAME frames + WALKED primitives` bytes and `FACE_S 6 face_texels^2 +
-//! FRAME_S frames primitives` seconds.
+//! The memory of a volume includes all bits of all slices, although the operating system may allocate only pages with
+//! data. If simulated renderers of Pixel-Planes 5 draw the volume, drawing takes `PLANES` times as long, and the memory
+//! grows by `PLANES_BYTES`. The estimate multiplies all times by `BUSY`.
 //!
 //! The constants come from measured runs, which the tests below repeat: peak memory and processor time, rounded up.
 
@@ -185,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn time_of_volumes_and_walks_is_estimated_to_a_factor_of_five() {
+    fn the_time_of_volumes_and_walks_is_estimated_within_a_factor_of_five() {
         let volumes = VOLUMES.iter().map(|(work, _, seconds)| (format!("{work:?}"), work.estimate().seconds, *seconds));
         let walks = WALKS.iter().map(|(work, _, seconds)| (format!("{work:?}"), work.estimate().seconds, *seconds));
         for (work, estimated, seconds) in volumes.chain(walks) {

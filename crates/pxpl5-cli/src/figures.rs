@@ -23,6 +23,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 figures
+  pxpl5 figures --intervals              takes twice as long
   pxpl5 figures --only 4,7               these figures, without their intervals
   pxpl5 figures --json
   pxpl5 figures --write ACCURACY.md
@@ -38,12 +39,15 @@ pub(crate) struct FiguresArgs {
     /// Fail if this file differs from the document that --write would write.
     #[arg(long, value_name = "FILE")]
     check: Option<PathBuf>,
+    /// Print also the interval of each figure while unpublished parameters vary.
+    #[arg(long)]
+    intervals: bool,
     /// Write a chart of the errors and their intervals (SVG) to this file.
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
     /// Measure only these figures of the main table, separated by commas. Each row is printed as soon as it is
     /// measured.
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with_all = ["write", "check", "json", "chart"])]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with_all = ["write", "check", "json", "chart", "intervals"])]
     only: Vec<String>,
     #[command(flatten)]
     budget: BudgetArgs,
@@ -57,14 +61,18 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     args.budget.admit_study(Study::Figures, "measure some of them with --only")?;
     let file = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let chart_file = args.chart.as_deref().map(|path| OutputFile::open(path, "--chart")).transpose()?;
+    let is_document = args.json || args.write.is_some() || args.check.is_some();
     let bench = Bench::new(Level::Transaction);
+    // The plain table leaves out the intervals, because a reader waits for it.
+    let has_intervals = is_document || args.chart.is_some() || args.intervals;
+    let bench = if has_intervals { bench } else { bench.without_intervals() };
     let bar = progress(0, "figures", false);
     let figures = run_all_with(&bench, |done, of| advance(&bar, done, of)).map_err(CliError::failure);
     bar.finish_and_clear();
     let figures = figures?;
     chart_file.map(|file| file.write(chart(&figures.rows).svg().as_bytes())).transpose()?;
     // Only the document and the JSON output have the figures under other assumptions.
-    if args.json || args.write.is_some() || args.check.is_some() {
+    if is_document {
         let bar = progress(0, "figures under other assumptions", false);
         let alternatives = alternatives_with(&bench, |done, of| advance(&bar, done, of)).map_err(CliError::failure);
         bar.finish_and_clear();
@@ -77,8 +85,12 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
             return print(&json_text(&figures, &alternatives));
         }
     }
-    print(&text(&figures))
+    print(&text(&figures))?;
+    if has_intervals { Ok(()) } else { print(WITHOUT_INTERVALS) }
 }
+
+const WITHOUT_INTERVALS: &str =
+    "\nThe intervals of the figures are in ACCURACY.md. Option --intervals computes them.\n";
 
 /// Measures and prints the figures with these numbers in the main table of ACCURACY.md.
 fn chosen(numbers: &[String]) -> Result<(), CliError> {

@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn vectors_that_fail_are_counted_and_shown_with_both_values() {
+    fn failed_vectors_are_counted_and_shown_with_the_expected_and_found_values() {
         let path = file("two.jsonl", &format!("{}\n\n{}\n", vector("00000005"), vector("00000006")));
         let (report, failed) = check_vectors(&path, false, 10).expect("well-formed");
         assert_eq!(failed, 1);

@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_record_can_be_read_and_printed() {
+    fn the_record_of_levels_is_read_and_its_text_has_the_advice_for_each_level() {
         let record = LevelRecord::read(RECORD).expect("the recorded levels");
         assert!(record.experiments >= 200 && record.levels.len() == 5);
         let text = text(&record);
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn days_are_counted_from_1970() {
+    fn the_date_of_a_day_number_counts_from_1970() {
         let days = [0, 59, 11_016, 11_017, 19_782, 20_783];
         let expected = ["1970-01-01", "1970-03-01", "2000-02-29", "2000-03-01", "2024-02-29", "2026-11-26"];
         assert_eq!(days.map(date_of), expected);

@@ -41,7 +41,7 @@ pub(crate) struct RunArgs {
     threads: Option<u64>,
     /// Disable an optimization of the simulator to measure its effect: idle-boards, transfers, empty-regions or
     /// repeated-code; may be repeated.
-    #[arg(long, value_name = "SAVING")]
+    #[arg(long, value_name = "OPTIMIZATION")]
     without: Vec<Optimization>,
     /// Write report.json, results.csv, pictures.csv, experiment.toml, timeline.svg and the last pictures into this
     /// folder.

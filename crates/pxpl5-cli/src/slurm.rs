@@ -281,7 +281,7 @@ mod tests {
     /// Tests the resources of a job array. 20,000 points of 0.9 s take 18,000 s, which is 20 tasks of 900 s on one
     /// thread. The number of tasks must have no common factor with 20,000 = 2^5 5^4, so the next number is 21.
     #[test]
-    fn resources_follow_the_formulas() {
+    fn the_resources_of_a_job_array_follow_the_formulas() {
         let one = Resources::of(SAMPLED, None, 1);
         // Time 60 + 5 (18,000 / 21 + 3) = 4,361 s; memory 2 x 40 MB. To merge: time 60 + 40e-6 x 20,000 = 60.8 s;
         // memory 50 + 0.32 + 0.67 MB.

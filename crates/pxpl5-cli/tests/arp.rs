@@ -80,7 +80,7 @@ fn run_prints_one_json_object_and_writes_the_same_with_all_pictures() {
 }
 
 #[test]
-fn run_prints_a_table_and_nothing_when_quiet() {
+fn run_prints_a_table_and_with_quiet_prints_nothing() {
     let folder = Folder::new("arp-text");
     let text = out(&folder.run(&arp("run", &["--policy", "objects"])));
     for part in ["policy objects", "updates/s", "objects that changed memory", "new assignments of cells      -"] {
@@ -100,7 +100,7 @@ fn a_warped_walk_has_no_tear_and_a_slow_renderer_misses_retraces() {
 }
 
 #[test]
-fn settings_come_from_a_file_then_from_options_then_from_set() {
+fn options_override_the_file_and_set_overrides_options() {
     let folder = Folder::new("arp-file");
     folder.file(
         "walk.toml",
@@ -180,7 +180,7 @@ fn a_lens_too_wide_for_a_plane_still_has_pictures() {
 
 /// Tests the default lens, which is flat. The views through the lens and without a lens must be equal.
 #[test]
-fn without_the_option_there_is_no_lens() {
+fn the_default_lens_shows_the_same_picture_as_no_lens() {
     let folder = Folder::new("arp-flat");
     json(&folder.run(&arp("run", &["--json", "--out", "o"])));
     assert!(picture(&folder, "o/eye.png") == picture(&folder, "o/eye-flat.png"));

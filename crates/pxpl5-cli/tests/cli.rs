@@ -118,7 +118,7 @@ fn json_of(output: &std::process::Output) -> serde_json::Value {
 }
 
 #[test]
-fn one_shown_picture_has_no_deviation() {
+fn the_latency_of_a_single_shown_picture_has_no_deviation() {
     let folder = Folder::new("one-picture");
     let report = json(&folder.run(&with(&FULL, &["--fields", "400", "--json"])));
     assert_eq!((&report["pictures"], &report["latency_ms"]["sd"]), (&1.into(), &serde_json::Value::Null));
@@ -133,7 +133,7 @@ fn read(folder: &Path, name: &str) -> Vec<u8> {
 }
 
 #[test]
-fn result_files_open_with_preset_configuration_version_level_and_seed_and_tables_with_names() {
+fn result_files_state_their_origin_and_tables_begin_with_column_names() {
     let folder = Folder::new("files");
     let report = json(&folder.run(&with(&SLATS, &["--json", "--out", "a/b", "--set", "gp.triangle_ns=31000"])));
     // With the feature `parquet` there is also a Parquet file.
@@ -185,7 +185,7 @@ fn trace_hash_with(folder: &Folder, more: &[&str]) -> serde_json::Value {
 }
 
 #[test]
-fn pixels_threads_and_repetition_do_not_change_the_trace() {
+fn pixels_and_threads_do_not_change_the_trace_of_a_repeated_run() {
     let folder = Folder::new("trace");
     let expected = trace_hash_with(&folder, &[]);
     for more in
@@ -196,7 +196,7 @@ fn pixels_threads_and_repetition_do_not_change_the_trace() {
 }
 
 #[test]
-fn a_table_goes_to_standard_output_and_quiet_prints_nothing() {
+fn run_prints_a_table_to_standard_output_and_with_quiet_prints_nothing() {
     let folder = Folder::new("table");
     let output = folder.run(&SLATS);
     assert!(output.status.success() && err(&output).is_empty());
@@ -239,7 +239,7 @@ fn a_flag_of_another_pipeline_is_refused() {
 }
 
 #[test]
-fn unknown_names_are_refused_with_the_nearest() {
+fn unknown_names_are_refused_and_the_error_suggests_the_nearest_name() {
     refused(&with(&SLATS, &["--machine", "slat"]), 2, &["--machine", "`slat`", "`slats`"]);
     refused(&with(&SLATS, &["--set", "gp.triangel_ns=1"]), 2, &["--set", "`gp.triangle_ns`"]);
     refused(&with(&SLATS, &["--copy", "splitt"]), 2, &["--copy", "whole, split", "did you mean `split`?"]);
@@ -271,7 +271,7 @@ fn impossible_numbers_are_refused() {
 }
 
 #[test]
-fn a_million_triangles_do_not_fit_and_the_message_says_what_to_do() {
+fn a_million_triangles_do_not_fit_and_the_error_names_options_that_help() {
     let args = ["run", "--pipeline", "slats", "--scene", "full-screen:1000000", "--pixels", "off"];
     refused(&args, 1, &["GP 0", "bytes", "--gps", "--triangles"]);
 }
@@ -372,7 +372,7 @@ fn check_prints_an_equivalent_file() {
 
 #[cfg(unix)]
 #[test]
-fn a_closed_pipe_is_no_error_and_a_full_disk_is_one() {
+fn a_closed_pipe_is_no_error_and_a_full_disk_is_an_error() {
     for args in [&["machines"][..], &["scenes"], &["--help"], &["completions", "bash"]] {
         let mut child =
             command(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
@@ -402,7 +402,7 @@ fn help_shows_examples_and_completions_have_the_options() {
 }
 
 #[test]
-fn without_arguments_both_pipelines_run_and_leave_pictures() {
+fn without_arguments_the_command_runs_both_pipelines_and_writes_pictures() {
     let folder = Folder::new("demo");
     let output = folder.run(&[]);
     assert!(output.status.success(), "{}", err(&output));
@@ -513,7 +513,7 @@ fn experiments() -> Vec<(String, String)> {
 }
 
 #[test]
-fn every_experiment_file_is_valid_and_every_figure_that_a_run_can_show_has_one() {
+fn every_experiment_file_is_valid_and_every_reproducible_figure_has_an_experiment_file() {
     let mut figures = std::collections::BTreeSet::new();
     for (name, text) in experiments() {
         let file = pxpl5::ExperimentFile::parse(&text, &name).expect("valid");
@@ -637,7 +637,7 @@ fn the_terminal_and_json_show_the_same_values() {
 
 /// Tests a scene that needs only one update: a still ball in front of a still head, on a display that turns cube faces.
 #[test]
-fn a_scene_that_is_drawn_once_is_shown_and_has_no_rate_and_no_limit_by_rate() {
+fn a_scene_that_is_drawn_once_counts_as_shown_and_has_no_update_rate() {
     let folder = Folder::new("drawn-once");
     let still = ["--scene", "sphere:1000", "--set", "head.path=still", "--set", "head.sway=0"];
     for pipeline in ["arp-priority", "arp-cells"] {

@@ -61,7 +61,7 @@ fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up
 
 /// Causes and predictors take time, so a comparison computes them only on request. They change no other number.
 #[test]
-fn causes_and_predictors_are_added_on_demand_and_change_nothing_else() {
+fn computing_causes_and_predictors_changes_no_other_number_of_a_comparison() {
     let shared =
         ["--scene", "full-screen:2", "--fields", "30", "--seeds", "2", "--only", "slats,vdrt,jitp-field,ideal"];
     let given = |more: &[&str]| {
@@ -96,7 +96,7 @@ fn causes_and_predictors_are_added_on_demand_and_change_nothing_else() {
 }
 
 #[test]
-fn boards_triangles_seeds_and_any_setting_are_those_of_the_command_line() {
+fn a_comparison_uses_the_boards_triangles_seeds_and_settings_of_the_command_line() {
     let json = json(&compare(&[
         "--gps",
         "17",
@@ -147,7 +147,7 @@ fn a_scene_too_heavy_for_a_pipeline_is_reported_with_the_limit_of_the_pipeline()
 }
 
 #[test]
-fn a_folder_gets_the_tables_the_drawings_of_the_run_and_the_four_pictures() {
+fn a_comparison_writes_its_tables_drawings_and_four_pictures_into_the_folder() {
     let out = folder("files");
     let path = out.to_str().expect("a plain path");
     let shown = ["rendering-control", "slats", "vdrt", "frameless", "jitp-field", "jitp-scanline-racing"];

@@ -77,7 +77,7 @@ fn an_interrupted_comparison_resumes_and_writes_the_same_files() {
 }
 
 #[test]
-fn rows_with_other_settings_are_refused_with_the_key() {
+fn resuming_a_comparison_with_other_settings_is_refused_with_the_changed_key() {
     let folder = Folder::new("compare-foreign");
     assert!(folder.run(&with(&["--out", "o"])).status.success());
     interrupt(&folder, "o");
@@ -119,7 +119,7 @@ fn recording(folder: &Folder, name: &str, hundredths: u32) {
 ///
 /// Two seconds are too short for an interval, and thirty seconds are more than ten blocks of the swinging head.
 #[test]
-fn a_recording_sets_the_length_and_has_an_interval_over_time() {
+fn a_recording_determines_the_number_of_fields_and_a_long_recording_gives_an_interval() {
     let folder = Folder::new("compare-recording");
     recording(&folder, "head.csv", 200);
     recording(&folder, "long.csv", 3_000);

@@ -114,14 +114,14 @@ fn a_wrong_command_is_reported_with_expected_and_found() {
 }
 
 #[test]
-fn without_a_terminal_the_debugger_explains_the_alternative() {
+fn without_a_terminal_the_debugger_asks_for_commands_as_an_option() {
     let output = command(&SLATS).output().expect("it starts");
     assert_eq!(output.status.code(), Some(2));
     assert!(err(&output).contains("expected --do COMMANDS or --do-file FILE"), "{}", err(&output));
 }
 
 #[test]
-fn pictures_are_written_and_a_script_may_be_a_file() {
+fn the_debugger_executes_a_script_file_and_writes_pictures() {
     let folder = Folder::new("debug");
     folder.file("session.txt", "run to field 6   # the first pictures\nseen left left.png\nideal left ideal.png\n");
     let output = folder.run(&[&SLATS[..], &["--do-file", "session.txt"]].concat());

@@ -70,7 +70,7 @@ fn a_gltf_file_is_read_or_the_feature_that_reads_it_is_named() {
 }
 
 #[test]
-fn an_stl_file_is_a_scene() {
+fn an_stl_file_can_be_run_as_a_scene() {
     let folder = Folder::new("foreign-stl");
     let corners = ["0 0 0", "1 0 0", "0 1 0"].map(|corner| format!("vertex {corner}\n")).concat();
     folder.file("model.stl", format!("solid\nfacet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\nendsolid\n"));

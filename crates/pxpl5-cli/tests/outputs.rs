@@ -46,7 +46,7 @@ fn null_device(path: &Path) -> bool {
 }
 
 #[test]
-fn a_device_stays_a_device() {
+fn writing_to_a_device_does_not_replace_the_device_by_a_file() {
     let folder = folder("device");
     let device = folder.0.join("nul");
     let made = null_device(&device);
@@ -78,7 +78,7 @@ fn a_pipe_gets_the_same_bytes_as_a_file() {
 }
 
 #[test]
-fn a_link_is_followed_even_if_its_file_is_missing() {
+fn writing_through_a_link_keeps_the_link_even_if_its_target_is_missing() {
     let folder = folder("links");
     fs::create_dir(folder.0.join("else")).expect("ours");
     symlink("else/where", folder.0.join("one")).expect("ours");
@@ -100,7 +100,7 @@ fn a_link_is_followed_even_if_its_file_is_missing() {
 }
 
 #[test]
-fn standard_output_by_another_name_gets_only_the_file() {
+fn writing_to_dev_stdout_puts_only_the_bytes_of_the_file_there() {
     let folder = folder("stdout");
     for args in COMMANDS {
         succeeds(&folder, args, "file");
@@ -114,7 +114,7 @@ fn standard_output_by_another_name_gets_only_the_file() {
 }
 
 #[test]
-fn a_full_device_is_reported() {
+fn writing_to_a_full_device_is_reported_as_an_error() {
     let folder = folder("full");
     for args in COMMANDS {
         let output = folder.run(&[args, &["/dev/full"]].concat());

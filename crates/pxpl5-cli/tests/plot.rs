@@ -29,7 +29,7 @@ fn sweep(folder: &Folder, measured: impl Fn(&str, u64, u64) -> Value) {
 /// degrees of freedom the 97.5th percentile of Student's t is 4.302653 (any table). Half of the interval is therefore
 /// 4.302653 / sqrt(3) = 2.484138.
 #[test]
-fn means_deviations_and_intervals_are_over_the_seeds() {
+fn a_plot_computes_means_deviations_and_intervals_over_the_seeds() {
     let folder = Folder::new("plot-means");
     sweep(&folder, |copy, n, seed| json!(10 * n + seed + if copy == "split" { 100 } else { 0 }));
     let run = folder.run(&["plot", ".", "--x", "n", "--y", "latency", "--by", "copy", "--out", "fig.svg"]);
@@ -92,7 +92,7 @@ fn a_result_that_was_not_evaluated_is_not_zero() {
 /// Tests the size of figures. 84 mm are 992 dots of 1/300 inch, and 238.11 points of 1/72 inch.
 #[cfg(feature = "print")]
 #[test]
-fn figures_have_their_width_in_every_format() {
+fn a_figure_has_the_stated_width_in_every_format() {
     let folder = Folder::new("plot-formats");
     sweep(&folder, |_, n, seed| json!(n * seed));
     for name in ["fig.png", "fig.pdf"] {
@@ -152,7 +152,7 @@ fn an_invalid_request_is_reported_and_nothing_is_written() {
 
 /// Tests a plot of a comparison. Each of its rows is a mean over seeds with an interval.
 #[test]
-fn a_comparison_is_a_point_for_each_pipeline() {
+fn a_plot_of_a_comparison_has_one_point_for_each_pipeline() {
     let folder = Folder::new("plot-comparison");
     let row = |name: &str, ms: f64, px: f64| json!({"pipeline": name, "head_to_light_ms": {"mean": ms}, "error": {"mean_px": {"mean": px, "low": px - 1.0, "high": px + 1.0, "n": 5}}});
     let comparison = json!({"schema": "pxpl5-comparison/2", "scene": "mig", "pipelines": [row("slats", 50.0, 8.0), row("jitp-field", 40.0, 7.0)]});
@@ -174,7 +174,7 @@ fn circles(svg: &str, is_hollow: bool) -> usize {
 }
 
 #[test]
-fn a_point_of_a_sweep_with_pictures_not_shown_is_hollow_and_its_counts_are_in_the_table() {
+fn a_plotted_point_with_pictures_not_shown_is_hollow_and_the_table_has_its_counts() {
     let folder = Folder::new("plot-counts");
     let axes = json!([{"paths": ["n"], "steps": [[1], [2]]}, {"paths": ["seed"], "steps": [[1], [2]]}]);
     let mut text = json!({"schema": "pxpl5-sweep/1", "points": 4, "title": "t", "axes": axes}).to_string() + "\n";

@@ -104,7 +104,7 @@ fn if_a_file_cannot_be_written_nothing_is_written() {
 }
 
 #[test]
-fn a_report_of_a_sweep_is_its_rows() {
+fn a_report_of_a_sweep_shows_its_complete_rows() {
     let folder = Folder::new("report-sweep");
     folder.file(
         "s.toml",

@@ -184,7 +184,7 @@ fn a_point_that_fails_is_recorded_and_reported_and_the_sweep_continues() {
 }
 
 #[test]
-fn wrong_use_is_refused() {
+fn wrong_uses_of_the_command_sweep_are_refused() {
     let folder = folder("wrong");
     folder.file("run.toml", "pipeline = \"slats\"\nscene = \"mig\"\n");
     for (args, says) in [
@@ -354,7 +354,7 @@ fn a_header_with_too_many_points_is_reported_as_damage() {
 
 /// Two fields of Slats need 5 renderers; the analytic level and a run without a head evaluate no pixel.
 #[test]
-fn every_row_has_the_pictures_due_and_not_shown_and_the_evaluated_pixels() {
+fn every_row_of_a_sweep_counts_due_pictures_missed_pictures_and_evaluated_pixels() {
     let folder = folder("counts");
     folder.file(
         "s.toml",

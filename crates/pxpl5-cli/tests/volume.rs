@@ -162,7 +162,7 @@ fn an_invalid_option_is_reported_before_drawing_with_exit_code_2() {
 /// Tests a sweep of three clips (ways to cut a scene) and two tile sizes. After an interruption at two points, the
 /// final file must be the same as without an interruption.
 #[test]
-fn a_sweep_is_the_same_file_after_an_interruption() {
+fn an_interrupted_sweep_of_volumes_ends_with_the_same_file_as_an_uninterrupted_sweep() {
     let folder = Folder::new("volume-sweep");
     folder.file(
         "s.toml",
@@ -211,7 +211,7 @@ fn an_invalid_sweep_is_refused_before_drawing() {
 }
 
 #[test]
-fn a_head_before_the_volume_has_a_report_a_figure_and_a_film() {
+fn a_run_of_a_head_in_front_of_a_volume_writes_a_report_a_figure_and_a_film() {
     let folder = Folder::new("volume-head");
     let arguments =
         ["--head", "slide:0.2", "--latency", "50", "--seconds", "0.5", "--frames", "3", "--size", "32", "--out", "h"];

@@ -66,7 +66,7 @@ fn a_swap_requested_at_the_instant_of_a_retrace_waits_for_the_next_retrace() {
 }
 
 #[test]
-fn the_last_of_several_requests_counts() {
+fn of_several_swap_requests_the_last_request_takes_effect() {
     let mut board = Board::new();
     board.retraces(0..=2);
     board.swap(Time(10), 1);
@@ -78,7 +78,7 @@ fn the_last_of_several_requests_counts() {
 }
 
 #[test]
-fn a_region_has_arrived_with_its_last_message() {
+fn a_region_has_arrived_when_its_last_message_arrives() {
     let mut board = Board::new();
     let top_left = field_target(1, FieldParity::Even, 0, 9);
     let last_part_at = Time(5_000_000_000);
@@ -221,7 +221,7 @@ fn retraces_do_not_drift_over_a_million_fields() {
 }
 
 #[test]
-fn pixels_are_computed_only_when_a_picture_is_read_and_hidden_pixels_never() {
+fn pixels_are_computed_when_a_picture_is_read_and_hidden_pixels_are_never_computed() {
     let mut board = Board::new();
     let hidden = source(RED, 0, 128 * 120);
     let shown = source(GREEN, 0, 128 * 120);
@@ -331,7 +331,7 @@ fn an_invalid_message_is_counted_as_a_fault_with_its_reason() {
 }
 
 #[test]
-fn a_source_with_too_few_pixels_leaves_black() {
+fn a_region_whose_source_has_too_few_pixels_stays_black() {
     let mut board = Board::new();
     board.region(Time(2_000_000_000), target(0, Lines::Frame, RegionGrid::FRAME, 0, 0), &source(RED, 0, 100));
     board.run();

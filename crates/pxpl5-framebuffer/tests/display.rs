@@ -131,7 +131,7 @@ fn assert_same(found: Option<RgbImage>, expected: &RgbImage, what: &str) {
 }
 
 #[test]
-fn the_display_has_two_eyes_and_the_clock_of_the_retraces() {
+fn the_display_has_a_surface_for_each_eye_and_the_periods_of_the_retraces() {
     let display = Rig::new().display;
     assert_eq!((display.name(), FrameBufferConfig::NTSC.name()), ("ntsc", "ntsc"));
     assert_eq!(display.nodes(), NODES);
@@ -245,7 +245,7 @@ fn a_viewer_sees_the_current_field_up_to_the_beam() {
 }
 
 #[test]
-fn the_display_has_a_port_for_each_eye_and_at_most_two() {
+fn the_display_has_one_port_for_each_eye() {
     assert_eq!([0, 1, 2, 3].map(|pictures| FrameBufferConfig::NTSC.ports(pictures)), [1, 1, 2, 2]);
     let mut config = FrameBufferConfig::NTSC;
     let names: Vec<_> = DisplayConfig::tables(&config).iter().map(|(name, _)| *name).collect();

@@ -103,7 +103,7 @@ fn the_panel_has_a_clock_of_72_hz_and_a_scan_that_fills_each_period() {
 }
 
 #[test]
-fn the_panel_has_a_description() {
+fn the_description_of_the_panel_has_its_size_name_and_surfaces() {
     let config = HiResConfig::PAPERS;
     let display = Rig::new().display;
     assert_eq!((display.name(), DisplayConfig::name(&config)), ("hires", "hires"));
@@ -310,7 +310,7 @@ fn invalid_panel_numbers_are_refused_with_the_expected_range() {
 
 /// The centre of a light of 2 ms with a time constant of 0.1 ms is 1.1 ms after its start.
 #[test]
-fn presets_are_lit_as_their_sources_state() {
+fn the_panels_of_the_presets_have_the_published_scan_and_light_times() {
     let light = OledConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();
     assert_eq!((light.scan, light.centre()), (ScanOrder::Down, Span::from_us(1_100)));
     let light = LcdConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();

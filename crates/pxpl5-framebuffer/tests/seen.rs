@@ -158,7 +158,7 @@ proptest! {
 
 /// A message at the instant of a retrace gives the same result in any order of the events.
 #[test]
-fn simultaneous_events_commute() {
+fn the_order_of_simultaneous_events_does_not_change_the_picture() {
     let image = source(1, 1, 128 * 128);
     let target = target(0, Lines::Frame, RegionGrid::FRAME, 0, 0);
     let results: Vec<_> = (0..32)

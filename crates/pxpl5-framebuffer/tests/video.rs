@@ -105,7 +105,7 @@ fn every_preset_lies_in_its_range() {
 }
 
 #[test]
-fn numbers_that_cannot_be_scanned_are_refused_by_name() {
+fn video_timings_that_cannot_be_scanned_are_refused_by_name() {
     for (name, value) in [
         ("pixel_ps", 0),
         ("pixel_divisor", 0),

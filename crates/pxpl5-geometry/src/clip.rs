@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_behind_the_eye_never_pass_the_guard_band() {
+    fn vertices_behind_the_eye_are_never_inside_the_guard_band() {
         for clip in [[0.0, 0.0, -1.0, -1.0], [0.0, 0.0, 0.5, -1.0], [f32::NAN, 0.0, 0.0, 1.0]] {
             assert!(!GUARD.contains(clip), "{clip:?}");
         }

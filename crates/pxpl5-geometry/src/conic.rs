@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn exponents_bound_their_values() {
+    fn a_value_lies_below_the_power_of_two_of_its_exponent() {
         for v in [0.75, 1.0, 3.0, 4096.0, 1e20] {
             let n = exponent_above(v);
             assert!(v < power_of_two(n) && v >= power_of_two(n - 1), "{v}");

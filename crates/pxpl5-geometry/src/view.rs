@@ -237,7 +237,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn impossible_pictures_are_refused_with_the_value_found() {
+    fn pictures_of_impossible_size_are_refused_with_the_found_size() {
         assert!(refusal(0, 480, 128).contains("found 0 x 480"));
         assert!(refusal(640, u32::MAX, 128).contains("4294967295"));
         assert!(refusal(640, 480, 0).contains("found 0 x 128"));

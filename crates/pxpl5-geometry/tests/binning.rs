@@ -151,7 +151,7 @@ proptest! {
 }
 
 #[test]
-fn a_triangle_inside_one_region_touches_it_alone() {
+fn a_triangle_inside_one_region_touches_only_this_region() {
     let (outline, _) = screen(Viewport::FRAME, [[2080, 2080], [2240, 2080], [2080, 2240]]);
     assert_eq!(outline.expect("it is on the screen").regions, RegionMask::only(RegionId(6)));
 }

@@ -120,7 +120,7 @@ fn colours_follow_their_corners_when_a_triangle_is_turned_clockwise() {
 }
 
 #[test]
-fn a_vertex_that_faces_the_light_has_its_full_colour_and_one_edge_on_the_ambient_part() {
+fn a_vertex_that_faces_the_light_has_full_light_and_a_vertex_at_90_degrees_has_ambient_light() {
     let mut lit = triangle(clockwise());
     lit.normals = [Vec3::Z, Vec3::NEG_Z * 7.0, Vec3::X];
     lit.colours = [[200; 3]; 3];
@@ -205,7 +205,7 @@ fn in_lane(lane: usize, corners: &[SurfaceVertex]) -> TriangleLanes<'_> {
 }
 
 #[test]
-fn spheres_behind_around_or_cut_by_the_eye_are_counted_separately() {
+fn spheres_outside_the_view_and_spheres_cut_by_a_clip_plane_have_separate_counts() {
     assert_eq!(one(50.0, 10.0).spheres_outside, 1);
     assert_eq!(one(0.0, 10.0).spheres_across_near, 1);
     assert_eq!(one(-5.0, 4.5).spheres_across_near, 1);
@@ -309,7 +309,7 @@ fn a_sphere_of_a_field_is_every_second_line_of_the_frame() {
 }
 
 #[test]
-fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() {
+fn a_sphere_in_a_parallel_projection_is_a_circle_whose_depth_is_a_square_root() {
     // The view has 64 px per unit along both axes. Depth is 0 at distance 1, and 1 at distance 9.
     let view = ViewTransform {
         model_view: Mat4::IDENTITY,

@@ -44,21 +44,21 @@ fn tilings_cover_each_pixel_exactly_once() {
 }
 
 #[test]
-fn corners_on_pixel_centres_and_region_borders_give_every_pixel_right() {
+fn triangles_with_corners_on_pixel_centres_or_region_borders_have_no_wrong_pixel() {
     for name in ["corners on pixel centres", "corners on region borders"] {
         assert_eq!(row(name).wrong, 0, "{name}");
     }
 }
 
 #[test]
-fn models_far_from_the_origin_are_as_accurate_as_near_models() {
+fn a_model_at_10_to_the_6_units_from_the_origin_has_only_the_errors_of_the_snapping_grid() {
     // The limit includes the error of the grid itself, and a few pixels for 32-bit vertices.
     let far = row("10^6 from the origin");
     assert!(far.wrong <= far.grids[2] + 10, "{} {}", far.wrong, far.grids[2]);
 }
 
 #[test]
-fn planes_add_an_error_below_1_5_depth_units_and_a_quarter_of_a_colour_unit() {
+fn depth_planes_have_errors_below_1_61_units_and_colour_planes_below_0_57_units() {
     for (case, row) in rows().iter().filter(|(_, row)| row.stats.flattened_planes == 0) {
         // Half a unit is the rounding of the pixel. The set-up contributes 282/256 and 282/4096.
         assert!(row.depth_plane <= 0.5 + 282.0 / 256.0, "{} {}", case.name, row.depth_plane);
@@ -82,7 +82,7 @@ fn every_sphere_that_is_drawn_is_exact_to_the_pixel() {
 }
 
 #[test]
-fn surfaces_three_depth_units_apart_never_swap() {
+fn parallel_surfaces_more_than_three_depth_units_apart_never_exchange_their_order() {
     for fight in measured().fights.iter().filter(|f| f.name.starts_with("parallel") && f.apart > 3.0) {
         assert_eq!(fight.wrong, 0, "{}", fight.name);
     }

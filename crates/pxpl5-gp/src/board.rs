@@ -415,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn an_echo_leaves_after_both_software_costs_the_work_and_one_cycle() {
+    fn an_echo_leaves_the_board_after_reception_work_sending_and_one_cycle() {
         let mut board = board();
         let mut bench = TestBench::new();
         bench.feed(Time(500_000), Phase::Arrive, GpEvent::Delivered(words(2, 7)));
@@ -438,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn a_batch_waits_only_for_the_clump_buffer() {
+    fn a_second_batch_waits_only_until_the_clump_buffer_is_free() {
         async fn two_clumps(gp: Gp) -> Result<(), Fault> {
             for clump in 0..2 {
                 gp.clump_buffer_free().await;
@@ -458,7 +458,7 @@ mod tests {
     }
 
     #[test]
-    fn a_group_keeps_its_receiver_until_its_last_message() {
+    fn a_group_of_messages_reserves_its_receiver_until_the_last_message_of_the_group() {
         async fn groups(gp: Gp) -> Result<(), Fault> {
             let word = |value: u32| (1, Body::Words([value].into()));
             gp.send_groups(vec![(NodeId(1), vec![word(0), word(1), word(2)]), (NodeId(2), vec![word(3)])]).await;

@@ -219,16 +219,19 @@ impl Gp {
     }
 
     #[must_use]
+    #[inline]
     pub fn node(&self) -> NodeId {
         self.shared.borrow().node
     }
 
     #[must_use]
+    #[inline]
     pub fn now(&self) -> Time {
         self.shared.borrow().now
     }
 
     #[must_use]
+    #[inline]
     pub fn timing(&self) -> GpTiming {
         self.shared.borrow().timing
     }
@@ -251,10 +254,12 @@ impl Gp {
     ///
     /// The board calls `ready` again after a message, a retrace or a change of a status signal, and after progress of
     /// its other program. The acceptance of messages does not cause a call: use [`Gp::accepted`] for this.
+    #[inline]
     pub async fn until<T>(&self, what: &'static str, ready: impl FnMut() -> Option<T>) -> T {
         self.wait(Wait { what, ended_by: Cause::Arrival }, ready).await
     }
 
+    #[inline]
     async fn wait<T>(&self, wait: Wait, mut ready: impl FnMut() -> Option<T>) -> T {
         poll_fn(|_| match ready() {
             Some(value) => {
@@ -269,6 +274,7 @@ impl Gp {
         .await
     }
 
+    #[inline]
     pub async fn spend(&self, span: Span) {
         if span == Span::ZERO {
             return;
@@ -294,6 +300,7 @@ impl Gp {
 
     /// Waits until the clump buffer (the memory for outgoing messages) is free. It is free when the receivers have
     /// accepted all earlier messages.
+    #[inline]
     pub async fn clump_buffer_free(&self) {
         let issued = self.shared.borrow().issued;
         self.accepted(Ticket(issued)).await;

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bins_of_both_contexts_share_their_own_part() {
+    fn the_bins_of_both_contexts_share_one_part_of_the_memory() {
         let mut memory = Memory::new(NodeId(0), 1_000, 300);
         memory.set(Account::Bins(0), 200, Some(RegionId(0))).expect("fits");
         let error = memory.set(Account::Bins(1), 101, Some(RegionId(4))).expect_err("100 are left of 300");

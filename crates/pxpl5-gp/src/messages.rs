@@ -17,6 +17,7 @@ pub struct Chain(Vec<ChainLink>);
 
 impl Gp {
     /// Waits for the next message in order of arrival, and spends the CPU time of its reception.
+    #[inline]
     pub async fn receive(&self) -> Received {
         let received = self.next_message().await;
         self.pay_for(&received).await;
@@ -25,6 +26,7 @@ impl Gp {
 
     /// Waits for the next message in order of arrival. The program must spend the CPU time of its reception later, with
     /// [`Gp::pay_for`].
+    #[inline]
     pub async fn next_message(&self) -> Received {
         self.until("a message", || self.shared.borrow_mut().inbox.pop_front()).await
     }
@@ -32,11 +34,13 @@ impl Gp {
     /// Takes the next message if one has arrived. The program must spend the CPU time of its reception later, with
     /// [`Gp::pay_for`].
     #[must_use]
+    #[inline]
     pub fn take_message(&self) -> Option<Received> {
         self.shared.borrow_mut().inbox.pop_front()
     }
 
     /// Spends the CPU time of the reception of a message.
+    #[inline]
     pub async fn pay_for(&self, received: &Received) {
         self.software(|processor| processor.receive_message(received.source, &received.body)).await;
     }
@@ -71,12 +75,14 @@ impl Gp {
 
     /// Sends one message in the background, after all earlier messages. The program spends the CPU time of the message
     /// software.
+    #[inline]
     pub async fn send(&self, destination: NodeId, words: u32, body: Body) -> Ticket {
         self.send_batch(vec![(destination, words, body)]).await
     }
 
     /// Sends several messages as one chain in the background, after the acceptance of the previous chain. The CPU time
     /// is the same as for one message. The DMA sends messages to different receivers at the same time.
+    #[inline]
     pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         let chain = self.prepare(batch).await;
         self.start(chain)
@@ -85,6 +91,7 @@ impl Gp {
     /// Sends groups of messages as one chain, like [`Gp::send_batch`]. Each group has one receiver, whose port stays
     /// reserved from the first to the last message of the group. No message of another board can therefore arrive in
     /// between.
+    #[inline]
     pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
         let links = groups.into_iter().flat_map(|(destination, group)| {
             // The last message of a group releases the port of the receiver.
@@ -97,11 +104,13 @@ impl Gp {
     }
 
     /// Makes a chain of messages, and spends the CPU time of the message software. [`Gp::start`] sends the chain.
+    #[inline]
     pub async fn prepare(&self, batch: Vec<(NodeId, u32, Body)>) -> Chain {
         self.pay_for_chain(self.unheld(batch)).await
     }
 
     /// Passes a chain of messages to the DMA, which sends the chain after all earlier chains.
+    #[inline]
     pub fn start(&self, Chain(links): Chain) -> Ticket {
         let shared = &mut *self.shared.borrow_mut();
         if links.is_empty() {
@@ -113,12 +122,14 @@ impl Gp {
         ticket
     }
 
+    #[inline]
     fn unheld(&self, batch: impl IntoIterator<Item = (NodeId, u32, Body)>) -> Chain {
         self.chain(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)))
     }
 
     /// Makes a chain of messages. Each item has the receiver, the number of words, and the content of a message. The
     /// boolean is true if the receiver's port stays reserved for the next message of the chain.
+    #[inline]
     fn chain(&self, batch: impl Iterator<Item = (NodeId, u32, Body, bool)>) -> Chain {
         let source = self.node();
         let links = batch.map(|(destination, words, body, hold)| ChainLink {
@@ -128,6 +139,7 @@ impl Gp {
         Chain(links.collect())
     }
 
+    #[inline]
     async fn pay_for_chain(&self, chain: Chain) -> Chain {
         self.software(|processor| processor.send_chain(chain.0.iter().map(|link| (&link.message, link.hold)))).await;
         chain
@@ -135,6 +147,7 @@ impl Gp {
 
     /// Spends the CPU time of the message software: `message_ns` of the timing table, or the time of `code` on boards
     /// that run i860 code.
+    #[inline]
     async fn software(&self, code: impl FnOnce(&mut Processor) -> Result<Span, Fault>) {
         let span = {
             let shared = &mut *self.shared.borrow_mut();

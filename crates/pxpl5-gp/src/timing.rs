@@ -239,7 +239,7 @@ mod tests {
     use pxpl5_sim::parameters::ParameterTable;
 
     #[test]
-    fn every_number_lies_in_its_range() {
+    fn every_published_time_of_the_processors_and_the_host_lies_in_its_range() {
         assert_eq!(GpTiming::PAPERS.out_of_range(), []);
         assert_eq!(HostTiming::PAPERS.out_of_range(), []);
     }
@@ -247,7 +247,7 @@ mod tests {
     /// Tests the presets of Slats. Their times were fitted to published limits of triangles, so they can lie outside
     /// the plausible range for PPHIGS. They must lie within the limits of the model.
     #[test]
-    fn every_preset_is_within_the_limits() {
+    fn every_timing_preset_of_slats_is_within_the_limits() {
         for preset in [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED] {
             assert_eq!(preset.check(), Ok(()));
         }

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn an_image_needs_a_processor_and_enough_memory() {
+    fn installing_an_image_needs_a_processor_and_enough_memory() {
         for (code, address, fault) in [
             (SCHEDULED, 0x2000, None),
             (SCHEDULED, 8 << 20, Some("graphics processor at node 5: no memory for 1 words at 0x00800000")),

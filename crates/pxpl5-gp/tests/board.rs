@@ -85,7 +85,7 @@ impl Rig {
 }
 
 #[test]
-fn messages_of_one_instant_are_processed_together_once() {
+fn messages_that_arrive_at_one_instant_are_processed_in_one_poll() {
     let notes = Notes::default();
     let told = Rc::clone(&notes);
     let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
@@ -253,7 +253,7 @@ fn a_program_sees_retraces_and_status_lines() {
 }
 
 #[test]
-fn memory_that_does_not_fit_stops_the_program() {
+fn a_request_for_more_memory_than_available_stops_the_program() {
     let asked = |account, bytes| {
         Rig::new().with(Priority::Foreground, move |gp| async move {
             gp.reserve(Account::Program, 600, None)?;
@@ -467,7 +467,7 @@ fn answers(orders: &[Order], foreground: &[u64], delays: &[u64]) -> (Vec<(Time, 
 /// Reception and work take 0.3 us together, and the messages follow. The second message begins at the acceptance of the
 /// first message. This is a cycle and 0.1 us after the end of the first message's software.
 #[test]
-fn an_answer_takes_the_time_of_one_received_and_of_each_sent_message() {
+fn an_answer_takes_the_software_time_of_one_received_message_and_of_each_sent_message() {
     for (count, expected_ns) in [(0, vec![3_300]), (1, vec![3_300, 4_300]), (2, vec![3_300, 4_425, 5_425])] {
         let (sent, busy) = answers(&[(10, Some(3), count)], &[], &[1]);
         let times: Vec<Time> = sent.iter().map(|(time, ..)| *time).collect();

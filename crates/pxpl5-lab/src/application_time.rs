@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_host_without_application_time_gives_the_figures_unchanged() {
+    fn an_application_time_of_zero_leaves_the_figures_unchanged() {
         let bench = Bench::new(Level::Analytic).with_mig(2, 60);
         let as_it_is = bench.measure("7").expect("the mig").value;
         let at_once = measure(&bench, 0, 0).expect("the scenes are there");
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ranges_of_the_parameters_are_covered() {
+    fn the_studied_application_times_include_the_end_of_each_parameter_range() {
         let parameters = pxpl5_machine::MachineConfig::small_hmd().parameters();
         let last_ms = |path: &str| {
             let parameter = parameters.iter().find(|parameter| parameter.path == path).expect("a parameter");

@@ -458,7 +458,7 @@ mod tests {
     }
 
     #[test]
-    fn two_unknowns_are_found_from_exact_rows() {
+    fn the_solver_finds_two_unknowns_from_exact_equations() {
         let rows = [[1.0, 2.0], [3.0, 1.0], [2.0, 5.0]];
         let found = solve(rows.into_iter().map(|[a, b]| ([a, b], 7.0 * a + 11.0 * b)));
         assert!((found - 7.0).abs() < 1e-9, "{found}");

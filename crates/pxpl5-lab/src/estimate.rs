@@ -90,7 +90,8 @@ const COPY: f64 = 350.0;
 const STATISTICS: f64 = 10.0;
 /// Bytes for each block of pixels in a field, in a run that keeps only statistics.
 const BLOCK: f64 = 100.0;
-/// Number of latest fields whose blocks of pixels stay in memory, in a run that keeps only statistics.
+/// A run that keeps only statistics still stores the blocks of pixels of the most recent fields. This constant is the
+/// number of these fields.
 const WINDOW: f64 = 240.0;
 /// Bytes for the pixel errors of one display field.
 const ERRORS: f64 = 1e3;
@@ -359,7 +360,7 @@ mod tests {
     /// Tests the estimated time of four runs whose time was measured on a busy computer. The estimate must be 0.1 to 2
     /// times the measured time.
     #[test]
-    fn time_is_estimated_between_a_tenth_and_the_double_of_a_busy_computer() {
+    fn the_estimated_time_of_a_run_is_0_1_to_2_times_the_measured_time() {
         for (work, seconds) in [
             (RunWork { fields: 12_000, ..SMALL }, 47.5),
             (RunWork { fields: 120, block: 16, ..SMALL }, 7.5),
@@ -401,7 +402,7 @@ mod tests {
     ];
 
     #[test]
-    fn the_time_of_studies_is_estimated_to_a_third() {
+    fn the_estimated_time_of_a_study_is_within_a_third_of_the_measured_time() {
         for (study, seconds, megabytes) in STUDIES {
             let time = study.core_seconds() / seconds;
             let memory = study.bytes() / 1e6 / megabytes;

@@ -53,7 +53,7 @@ pub struct Figures {
     /// Rows of the main table, in the order of [`FIGURES`].
     pub rows: Vec<FigureRow>,
     /// Interval of each figure while the unpublished parameters vary. Figures that depend only on scenes have no
-    /// interval.
+    /// interval. The list is empty if the settings leave out intervals ([`Bench::without_intervals`]).
     pub intervals: Vec<Interval>,
     /// Figures of papers about other systems than Pixel-Planes 5.
     pub families: Vec<FigureFamily>,
@@ -79,7 +79,7 @@ const SEEDS: u64 = 6;
 /// Number of frames for each seed in the ranking of interpretations of the papers.
 const FRAMES: u64 = 150;
 
-/// Measures all figures in parallel, with their intervals.
+/// Measures all figures in parallel, with their intervals if the settings include intervals.
 ///
 /// # Errors
 ///
@@ -88,7 +88,7 @@ pub fn run_all(bench: &Bench) -> Result<Figures, StudyError> {
     run_all_with(bench, |_, _| {})
 }
 
-/// Measures all figures in parallel, with their intervals. Calls `finished` with the number of finished steps and the
+/// Measures all figures in parallel, like [`run_all`]. Calls `finished` with the number of finished steps and the
 /// number of all steps. A step is the measurement of one row of the main table, or of another member of [`Figures`].
 ///
 /// # Errors
@@ -102,7 +102,7 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
     // The parts are closures, so that they can run in parallel.
     let rows = || parallel::map(&FIGURES, with_step).into_iter().collect::<Result<Vec<_>, _>>();
     let groups = || stepped(&step, || figure_groups(bench));
-    let intervals = || stepped(&step, || intervals(bench));
+    let intervals = || stepped(&step, || if bench.intervals { intervals(bench) } else { Vec::new() });
     let families = || stepped(&step, || FigureFamily::address_recalculation(bench));
     let ((rows, groups), (intervals, families)) =
         parallel::both(|| parallel::both(rows, groups), || parallel::both(intervals, families));

@@ -295,7 +295,7 @@ fn chart(text: &mut String, points: &[Point]) {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn the_exponent_of_a_power_is_found() {
+    fn the_exponent_of_a_power_law_is_found_from_its_points() {
         let points: Vec<_> = (1..20).map(|i| (f64::from(i), 3.0 * f64::from(i).powf(1.5))).collect();
         assert!((super::exponent(&points) - 1.5).abs() < 1e-9);
     }

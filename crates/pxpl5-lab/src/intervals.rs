@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn the_figure_of_the_scenes_has_no_interval() {
+    fn the_figure_without_a_closed_form_has_no_interval() {
         let figure = FIGURES.iter().find(|figure| figure.id == "8").expect("listed");
         let mut rows = [figure.row(FigureValue::from(9.0))];
         fill(&mut rows, &[]);
@@ -362,7 +362,7 @@ mod tests {
     /// Tests the effect of the line at which the photodiode is mounted. The last of the 240 lines lights 239 times
     /// 63.56 us after the first line.
     #[test]
-    fn the_figure_of_the_rig_moves_with_the_photodiode_as_the_beam_does() {
+    fn the_figure_of_the_pendulum_rig_moves_with_the_line_of_the_photodiode() {
         let interval = of_rig(&Bench::new(Level::Analytic)).expect("it is measured");
         let line = interval.effects.iter().find(|effect| effect.path == PHOTODIODE_LINE).expect("it moves");
         let [low, high] = line.ends;
@@ -387,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn draws_are_the_same_every_time_and_stay_in_range() {
+    fn random_parameters_are_the_same_for_each_sample_number_and_stay_in_range() {
         let all = variations();
         assert_eq!(draw(&all, 17), draw(&all, 17));
         assert_ne!(draw(&all, 17), draw(&all, 18));

@@ -315,7 +315,7 @@ mod tests {
 
     /// Tests that one run with three photodiodes gives the same results as three runs with one photodiode each.
     #[test]
-    fn photodiodes_in_one_run_measure_the_same_as_alone() {
+    fn one_run_with_three_photodiodes_measures_the_same_as_three_runs_with_one_photodiode() {
         let rig = Rig { passes: 4, ..Rig::assumed(TrackerConfig::optical_ceiling()) };
         let (machine, pipeline) = (MachineConfig::small_hmd(), Arc::new(RenderingControl::stereo()));
         let lines = [0, 100, 239];

@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn another_experiment_and_a_run_within_a_period_are_refused() {
+    fn a_snapshot_of_another_experiment_or_within_a_period_is_refused() {
         let experiment = built_in_code(0.5);
         let mut stepper = experiment.stepper().expect("it begins");
         stepper.step_period();
@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_changes_nothing() {
+    fn stops_during_a_run_do_not_change_the_trace() {
         let (plan, _, stopped) = saved();
         let whole = plan.experiment(plan.load_scene().expect("built in")).run().expect("it runs");
         assert_eq!(whole.report().trace_hash, stopped);

@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_increase_is_a_tenth_and_at_least_one_step() {
+    fn a_what_if_increase_is_a_tenth_and_at_least_one_step() {
         let config = MachineConfig::preset("large").expect("a preset");
         let tried: Vec<(u64, u64)> =
             KNOBS.iter().filter_map(|knob| knob.more(&config)).map(|(from, to, _)| (from, to)).collect();

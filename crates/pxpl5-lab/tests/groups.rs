@@ -46,7 +46,7 @@ fn just_in_time_pixels_have_the_errors_of_the_paper() {
 /// Tests the number of transforms. 240 visible lines need 240 transforms of every triangle's corners, compared with one
 /// transform per field.
 #[test]
-fn line_by_line_takes_240_times_the_transforms() {
+fn one_transform_per_line_needs_240_times_the_transforms_of_one_transform_per_field() {
     within("J5", [239.99, 240.01]);
 }
 
@@ -64,7 +64,7 @@ fn a_renderer_draws_as_many_triangles_as_its_programs_clocks_allow() {
 /// Tests the i860's rate. The peak is two operations per clock at 40 MHz. The loop's own instructions keep the measured
 /// rate below the peak.
 #[test]
-fn the_i860_comes_near_its_peak_and_not_beyond() {
+fn the_i860_reaches_between_78_and_80_million_operations_per_second() {
     within("R7", [78.0, 79.99]);
 }
 
@@ -80,7 +80,7 @@ fn the_fifo_and_the_senders_channels_move_the_rate_of_the_machine() {
 /// Tests the interval of the rig's total latency. The beam takes 239 lines of 63.56 us from the first line of a field
 /// to the last. In this test nothing else changes the latency.
 #[test]
-fn the_total_of_the_rig_follows_the_photodiode() {
+fn the_interval_of_the_total_latency_of_the_rig_is_the_scan_time_between_the_photodiode_lines() {
     let [low, high] = row("R6").interval.expect("varied");
     assert!((high - low - 239.0 * 0.063_556).abs() < 0.01, "{low} to {high}");
 }

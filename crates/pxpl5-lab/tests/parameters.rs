@@ -69,7 +69,7 @@ fn every_read_only_parameter_is_refused_as_read_only() {
 }
 
 #[test]
-fn every_table_of_the_i860_is_listed_and_paths_end_with_the_parameters_name() {
+fn the_tables_of_the_i860_are_set_by_paths_that_end_with_the_name_of_the_parameter() {
     let mut machine = MachineConfig::slats();
     machine.set("i860.dram.page_bytes", 2_048).expect("the memory's");
     assert_eq!((machine.i860.dram.page_bytes, machine.i860.freezes), (2_048, MachineConfig::slats().i860.freezes));
@@ -107,7 +107,7 @@ fn a_slower_memory_makes_a_run_of_code_slower() {
 /// Tests that the configured clocks apply to all blocks of code: those whose clocks are cached, and those that are
 /// counted each time.
 #[test]
-fn memoised_clocks_belong_to_the_same_memory_timing() {
+fn memoised_and_counted_code_give_the_same_trace_for_any_memory_timing() {
     let plan = plan(&["level=cycle", "i860.dram.first_hit=80", "i860.freezes.load_use=3"]);
     let experiment = plan.experiment(plan.load_scene().expect("built in")).pixels(Pixels::Off);
     let counted = experiment.clone().without(pxpl5_machine::Optimization::RepeatedCode).run().expect("it is small");

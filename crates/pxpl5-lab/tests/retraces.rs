@@ -82,7 +82,7 @@ fn without_a_closed_form_the_message_asks_for_a_longer_run() {
 }
 
 #[test]
-fn a_frame_that_takes_two_hundred_fields_is_one_of_a_hundred_pictures_due() {
+fn if_a_frame_takes_two_hundred_fields_each_frame_counts_as_one_of_a_hundred_due_pictures() {
     let form = registry().pipeline("rendering-control").expect("known").closed_form.map(|form| form.estimates);
     let short = experiment(slow(), "full-screen:12", 60).with_estimates(form);
     let needed = partial(short.run().expect_err("too short")).0.expect("it has a closed form");
@@ -100,7 +100,7 @@ fn a_frame_that_takes_two_hundred_fields_is_one_of_a_hundred_pictures_due() {
 }
 
 #[test]
-fn slats_that_is_always_late_has_shown_nothing_and_names_a_size_that_fits() {
+fn if_slats_is_always_late_no_picture_is_shown_and_the_report_names_a_size_that_fits() {
     let plan = ExperimentFile::parse(
         "pipeline = \"slats\"\nscene = \"full-screen:1000\"\nfields = 60\npixels = \"off\"",
         "test",

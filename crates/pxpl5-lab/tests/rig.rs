@@ -34,7 +34,7 @@ fn ms(seconds: f64) -> f64 {
 }
 
 #[test]
-fn external_and_internal_latencies_agree_within_a_report_and_the_photodiodes_place() {
+fn external_and_internal_latencies_differ_at_most_by_a_report_interval_and_the_photodiode_delay() {
     let trackers = [TrackerConfig::ideal(), TrackerConfig::fastrak(), TrackerConfig::optical_ceiling()];
     for pipeline in ["rendering-control", "slats", "jitp-field-racing"] {
         for tracker in &trackers {
@@ -74,7 +74,7 @@ fn pipelines_without_frames_are_refused_with_the_reason() {
 }
 
 #[test]
-fn the_external_latency_of_slats_is_a_field_and_the_photodiodes_place() {
+fn the_external_latency_of_slats_is_a_field_plus_the_delay_of_the_photodiode_line() {
     // One processor begins TRANSFORM at the retrace. Several processors would need a message first.
     let measured = rig(TrackerConfig::fastrak(), 6).measure(&MachineConfig::slats(), named("slats"));
     let measured = measured.expect("two triangles");

@@ -25,7 +25,7 @@ fn number(plan: &Plan, path: &str) -> u64 {
 }
 
 #[test]
-fn a_display_by_numbers_is_a_panel_of_these_numbers() {
+fn a_display_described_by_numbers_is_a_panel_with_these_numbers() {
     let plan = plan(
         "display = { width = 800, height = 600, hz = 75, interlace = false, scan = \"global\", direction = \"up\", active = 0.9, \
          persistence_ms = 1.5, response_ms = 0.2, ports = 2, bits = 18 }\n",
@@ -198,7 +198,7 @@ fn a_device_has_a_kind_of_reprojection_a_rate_and_a_latency() {
 }
 
 #[test]
-fn numbers_of_a_device_without_one_and_depth_of_faces_are_refused() {
+fn reprojection_settings_without_a_device_and_depth_reprojection_of_faces_are_refused() {
     let head = format!("{RC}head.motion = \"pan:10\"\n");
     let found = refusal(&format!("{head}head.reprojection.every = \"line\"\n"));
     assert!(

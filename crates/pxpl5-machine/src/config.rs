@@ -300,7 +300,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ring_whose_channels_full_fifos_can_hold_is_refused_with_the_nearest_possible_value() {
+    fn a_ring_is_refused_if_full_fifos_can_block_all_of_its_channels() {
         let machine = |channels: u64, fifo_channels: u64, renderers: u64| {
             let mut machine = MachineConfig::small_hmd();
             machine.set("ring.channels", channels).expect("in range");

@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_of_a_line_is_described_by_its_port_and_words() {
+    fn a_message_on_the_host_line_is_described_by_its_port_and_its_words() {
         assert_eq!(host_line_facts(6, &Body::Words([5, 4].into())), [8, 6, 5, 4]);
         let list = CommandList { runs: Vec::new(), context: 0, copies: Vec::new(), content: None };
         assert_eq!(host_line_facts(6, &Body::Commands(list)), [10, 6]);
@@ -62,7 +62,7 @@ mod tests {
     /// Tests the number of a surface in the trace hash. Published hashes depend on these numbers: 0 and 1 for the first
     /// two surfaces, 2 for no surface, then 3 and up.
     #[test]
-    fn marks_keep_their_surfaces() {
+    fn the_surfaces_of_marks_keep_their_numbers_in_the_trace_hash() {
         let surfaces = [Some(0), Some(1), None, Some(2), Some(3)];
         for (number, surface) in (0..).zip(surfaces) {
             let mark = Mark {

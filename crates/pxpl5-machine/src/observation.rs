@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stage_lasts_from_the_first_board_that_begins_to_the_last_that_ends() {
+    fn a_stage_lasts_from_the_begin_on_the_first_board_to_the_end_on_the_last_board() {
         let marks = [(30, 1), (20, 1), (25, 2), (35, 1)].map(|(time, picture)| mark(time, picture, StageEdge::Begin));
         let ends = [(40, 1), (60, 1), (50, 1)].map(|(time, picture)| mark(time, picture, StageEdge::End));
         let arrivals = vec![arrival(1, 1, 70, 90), arrival(0, 1, 65, 80), arrival(1, 1, 68, 85)];
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn discarding_keeps_the_records_at_the_instant() {
+    fn discarding_keeps_records_at_and_after_the_instant() {
         let mut observation = stereo();
         observation.marks = (0..1_000).map(|n| mark(n, n, StageEdge::Begin)).collect();
         observation.arrivals = (0..1_000).map(|n| arrival(0, n / 2, n, n)).collect();

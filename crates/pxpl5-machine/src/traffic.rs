@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn discarding_keeps_the_records_at_the_instant_and_the_state_before() {
+    fn discarding_keeps_records_from_the_instant_on_and_the_last_state_before_the_instant() {
         let busy_channels = vec![(Time(10), 1), (Time(15), 2), (Time(20), 1)];
         let mut traffic = Traffic { busy_channels, fifo_changes: vec![(0, Time(20), 5)], ..Traffic::default() };
         traffic.discard_before(Time(20));

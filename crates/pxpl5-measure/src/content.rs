@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_triangle_is_met_inside_its_sides_at_the_depth_of_its_plane() {
+    fn a_ray_hits_a_triangle_only_inside_its_edges_at_the_depth_of_its_plane() {
         let triangle = [DVec3::new(0.0, 0.0, -3.0), DVec3::new(2.0, 0.0, -3.0), DVec3::new(0.0, 1.0, -3.0)];
         let origin = DVec3::new(0.5, 0.25, 1.0);
         for i in -20..=20 {
@@ -255,7 +255,7 @@ mod tests {
     /// Tests the distance of a line from a sphere's centre against the smallest distance among 20,001 points of the
     /// line.
     #[test]
-    fn a_line_has_a_least_distance_to_a_centre_and_enters_a_sphere_on_its_surface() {
+    fn a_ray_passes_a_sphere_at_the_smallest_distance_and_enters_a_sphere_at_its_surface() {
         let centre = DVec3::new(0.5, -1.0, -6.0);
         for i in -10..=10 {
             for j in -10..=10 {
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_patch_lies_in_a_sphere_around_the_middle_of_its_box() {
+    fn the_bounding_sphere_of_a_patch_is_centred_on_its_bounding_box_and_contains_all_corners() {
         let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
         let triangles =
             [[corner(1.0, 2.0, 3.0), corner(4.0, 2.5, 3.1), corner(2.0, 7.0, 3.2)], [corner(3.0, 3.0, -5.0); 3]];
@@ -290,14 +290,14 @@ mod tests {
     }
 
     #[test]
-    fn a_sphere_is_met_where_it_begins() {
+    fn a_ray_hits_a_sphere_at_its_nearest_point() {
         let ray = Ray { origin: DVec3::ZERO, direction: DVec3::NEG_Z };
         assert_eq!(ray.meets_sphere(DVec3::NEG_Z * 5.0, 2.0), Some(3.0));
         assert_eq!(ray.meets_sphere(DVec3::new(2.1, 0.0, -5.0), 2.0), None);
     }
 
     #[test]
-    fn objects_fixed_to_the_head_are_not_content() {
+    fn a_ray_does_not_hit_objects_fixed_to_the_head() {
         let (contents, _) = contents("full-screen:4");
         assert_eq!(contents.met(DVec3::ZERO, DVec3::NEG_Z, Time::ZERO), None);
     }

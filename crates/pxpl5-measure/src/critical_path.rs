@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_add_up_and_the_largest_limits() {
+    fn the_shares_of_a_critical_path_add_up_and_the_largest_share_is_the_limit() {
         let renderer = Some(Board::Renderer(3));
         let chain = vec![
             step(Resource::Retrace, None, 90, 100),
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn links_of_one_kind_are_joined() {
+    fn adjacent_links_of_one_kind_are_joined_in_the_text_of_a_critical_path() {
         let port = Some(Board::Display(0));
         let chain = vec![
             step(Resource::Ports, port, 20, 30),

@@ -458,7 +458,7 @@ mod tests {
     /// is the focal length in pixels. To the right of a near plane, f t (1 / near - 1 / far) columns stay empty. The
     /// near plane hid this part of the far plane.
     #[test]
-    fn a_translation_moves_planes_by_f_t_by_z_and_opens_gaps_between_them() {
+    fn a_translation_moves_a_plane_by_f_t_over_z_pixels_and_leaves_a_gap_beside_a_near_plane() {
         let focal = Hmd::unc().focal_px();
         let (near, far) = (1.0_f32, 4.0_f32);
         for step in [0.004_f64, 0.01, 0.03] {
@@ -480,7 +480,7 @@ mod tests {
     /// Tests a picture that grows as the head moves ahead, and a floor that slants away from the eye. No pixel inside
     /// the picture may stay empty.
     #[test]
-    fn surfaces_that_grow_or_lean_have_no_cracks() {
+    fn surfaces_that_come_nearer_or_slant_have_no_empty_pixels_inside() {
         let floor = |_: u32, y: u32| 1.6 * Hmd::unc().focal_px() as f32 / (y as f32 + 60.0);
         for now in [Pose::at(DVec3::NEG_Z * 0.1), Pose::at(DVec3::new(0.0, 0.03, -0.05))] {
             let (found, _) = moved(floor, &now);
@@ -493,7 +493,7 @@ mod tests {
 
     /// Tests that strips with equal poses together give the same picture as one move of the whole picture.
     #[test]
-    fn strips_of_one_pose_make_the_whole_picture_in_frames_and_fields() {
+    fn strips_with_equal_poses_give_the_same_picture_as_one_move_of_the_whole_picture() {
         let now = Pose {
             position: DVec3::new(0.02, -0.03, -0.04),
             orientation: rotation::from_yaw_pitch_roll(0.03, 0.04, -0.05),

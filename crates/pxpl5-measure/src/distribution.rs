@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn up_to_the_limit_percentiles_are_exact() {
+    fn percentiles_are_exact_up_to_the_limit_of_stored_numbers() {
         let mut all = Distribution::keeping(1_000);
         numbers(1_000).for_each(|value| all.push(value));
         assert_eq!(all.percentiles(), Percentiles::of(numbers(1_000)));
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_limit_percentiles_are_off_by_at_most_a_2048th() {
+    fn beyond_the_limit_percentiles_have_relative_errors_of_at_most_a_2048th() {
         for limit in [0, 1, 999] {
             let mut counted = Distribution::keeping(limit);
             numbers(1_000).for_each(|value| counted.push(value));
@@ -117,7 +117,7 @@ mod tests {
     /// Tests that the percentiles of a histogram are middles of bins. The bins are 1/1024 wide between 1 and 2, and
     /// 4/1024 wide between 4 and 8.
     #[test]
-    fn a_bin_represents_its_middle() {
+    fn the_percentile_of_a_histogram_is_the_middle_of_a_bin() {
         for (value, middle) in [(1.0, 1.0 + 1.0 / 2_048.0), (1.000_9, 1.0 + 1.0 / 2_048.0), (6.0, 6.0 + 4.0 / 2_048.0)]
         {
             let mut counted = Distribution::keeping(0);

@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn between_two_times_objects_and_head_are_interpolated_equally() {
+    fn between_two_poses_head_and_objects_are_interpolated_at_the_same_instant() {
         let moment = |at: u64| Moment { pose: Pose::at(DVec3::X * at as f64), objects_at: Time(at), measured_at: None };
         for (part, expected) in [(0.0, 1_000), (0.25, 1_500), (1.0, 3_000)] {
             let Moment { pose, objects_at, .. } = between(&moment(1_000), &moment(3_000), part);

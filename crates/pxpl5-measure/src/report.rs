@@ -330,7 +330,7 @@ mod tests {
 
     /// Tests a program that asks a display with the buffers 0 and 1 for buffer 2, `asks` times.
     #[test]
-    fn displays_report_only_their_faults() {
+    fn a_report_has_a_fault_of_the_display_only_if_a_program_causes_a_fault() {
         for asks in [0, 1, 3] {
             let mut machine = Machine::new(&MachineConfig::small_hmd(), 1, Layout::slats()).expect("a preset");
             let (processor, display) = (machine.ports().gps[0], machine.ports().display()[0]);

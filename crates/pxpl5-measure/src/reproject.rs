@@ -150,7 +150,7 @@ mod tests {
     /// Tests a head that turns to the left by the angle a. Column x then shows the old column f tan(atan(x / f) - a).
     /// Columns are counted from the middle, and f is the focal length in pixels.
     #[test]
-    fn a_rotation_moves_columns_by_their_tangents() {
+    fn a_rotation_of_the_head_moves_each_column_according_to_its_tangent() {
         let view = Hmd::unc();
         let (f, angle) = (view.focal_px(), 0.05_f64);
         let now = Pose::facing(rotation::about_y(angle));

@@ -56,7 +56,7 @@ mod tests {
     const ODD: Rows = Rows { first: 1, distance: 2 };
 
     #[test]
-    fn positions_have_their_nearest_row_in_the_same_field() {
+    fn a_position_belongs_to_the_nearest_row_of_the_same_field() {
         for (y, rows, expected) in [(10.5, EVEN, 10), (11.4, EVEN, 10), (11.6, EVEN, 12), (10.5, ODD, 11)] {
             assert_eq!(rows.nearest(y, 480), expected, "{y} {rows:?}");
         }

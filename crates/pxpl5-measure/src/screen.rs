@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn only_covered_regions_are_discarded() {
+    fn only_regions_covered_before_the_instant_are_discarded() {
         let targets = [7, 8, 9, 10].map(|picture| target(Lines::Frame, picture));
         let mut screen = screen([10, 20, 30, 40].into_iter().zip(targets));
         for (instant, left) in [(9, 0), (19, 0), (20, 1), (35, 2), (99, 3)] {

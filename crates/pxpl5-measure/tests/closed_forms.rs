@@ -9,6 +9,7 @@ use pxpl5_measure::{Measured, PixelErrors, Showing};
 use pxpl5_run::{Aim, Cause, Experiment, Head, Outcome, PipelineSettings, Pixels, Registry, SampledPose};
 use pxpl5_scene::builtin;
 use pxpl5_wire::ViewNumber;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -250,13 +251,13 @@ fn with_ideal_prediction_a_pan_leaves_only_the_scan_out_error_in_every_pipeline(
     // At this low speed, the error of interpolation on the screen is negligible relative to the scan-out of a line. The
     // interpolation error grows with the square of the speed and is 0.34 px at 200 deg/s.
     const DEG_PER_S: f64 = 0.02;
-    for pipeline in pipelines() {
+    pipelines().par_iter().for_each(|pipeline| {
         for (_, aim) in Aim::ALL {
             let run = Run::new(pipeline, aim, Pan::at(DEG_PER_S));
             let turned = |content: &Content, at: f64| DEG_PER_S.to_radians() * (at - content.drawn_for);
             run.check(run.expected(turned), 1e-3);
         }
-    }
+    });
 }
 
 #[test]

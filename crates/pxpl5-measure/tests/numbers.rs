@@ -38,7 +38,7 @@ fn value(results: &Results, name: &str) -> Option<f64> {
 
 /// A running machine has the same utilisation and critical path at its end as the report of the finished run.
 #[test]
-fn a_partial_run_has_the_same_shares_as_its_report() {
+fn at_the_end_of_a_run_the_partial_shares_equal_the_shares_in_the_report() {
     for pipeline in ["rendering-control", "slats"] {
         let registry = Registry::of_papers();
         let pipeline = (registry.pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());

@@ -38,7 +38,7 @@ fn statistics_of_stages_equal_those_of_the_single_pictures() {
 
 /// The latency of a pair lasts from the start of the first eye's TRANSFORM to the event of the later eye.
 #[test]
-fn a_stereo_pair_takes_at_least_as_long_as_each_eye() {
+fn the_latency_of_a_stereo_pair_is_at_least_the_latency_of_each_eye() {
     let outcome = run("rendering-control", 60, Pixels::Off);
     let latencies = outcome.latency_by_surface();
     assert_eq!(latencies, outcome.report().latency_by_eye_ms);
@@ -71,7 +71,7 @@ fn stages_equal_those_of_the_machine_and_are_null_before_the_first_picture() {
 }
 
 #[test]
-fn the_viewer_sees_the_display_and_nothing_without_pixels() {
+fn the_outcome_has_the_picture_of_the_display_and_without_pixels_no_picture() {
     let outcome = run("rendering-control", 14, Pixels::All);
     for eye in Eye::BOTH {
         let picture = outcome.picture(eye).expect("pixels are on");
@@ -92,7 +92,7 @@ fn a_missing_surface_is_black() {
 }
 
 #[test]
-fn lines_never_shown_equal_the_counter_of_that_name() {
+fn the_reported_number_of_lines_never_shown_is_the_counter_with_this_name() {
     let mut report = run("slats", 4, Pixels::Off).report();
     let counter = |name, count| Counter { name, count };
     report.display_counters = vec![counter("swaps", 3), counter(Counter::LINES_NEVER_SHOWN, 7), counter("more", 5)];

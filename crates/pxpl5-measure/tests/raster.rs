@@ -89,21 +89,21 @@ fn check(axis: DVec3, field: u64, from: impl Fn(u64, u64, f64) -> [f64; 2]) {
 }
 
 #[test]
-fn a_pan_takes_every_pixel_from_its_rotated_position() {
+fn during_a_pan_a_shifted_raster_takes_every_pixel_from_its_rotated_column() {
     for field in [20, 21] {
         check(DVec3::Y, field, |row, x, shift| [x as f64 - shift, row as f64]);
     }
 }
 
 #[test]
-fn a_nod_moves_rows_of_a_field_by_half_as_many_rows() {
+fn during_a_nod_the_rows_of_a_field_move_by_half_as_many_rows_as_the_frame() {
     for field in [20, 21] {
         check(DVec3::X, field, |row, x, shift| [x as f64, row as f64 - shift / 2.0]);
     }
 }
 
 #[test]
-fn rows_stay_before_the_first_picture_and_have_no_offset_after_the_run() {
+fn before_the_first_picture_rows_are_not_shifted_and_after_the_run_no_offset_exists() {
     let outcome = run(DVec3::Y, Raster::Vdrt);
     let offsets = RasterOffsets::of(&outcome).expect("it is shifted");
     let screen = places();
@@ -158,7 +158,7 @@ fn an_ideal_view_of_a_steady_rotation_has_no_error() {
 }
 
 #[test]
-fn errors_by_field_cover_all_pixels_at_the_time_of_the_retrace() {
+fn every_evaluated_field_has_errors_of_all_its_pixels_and_the_time_of_its_retrace() {
     let errors = run(DVec3::Y, Raster::Plain).pixel_errors().expect("a head");
     let fields: Vec<u64> = errors.by_field.iter().map(|error| error.field.0).collect();
     assert_eq!(fields, (WARM_UP_PERIODS..FIELDS).collect::<Vec<_>>());

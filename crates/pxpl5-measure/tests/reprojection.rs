@@ -110,7 +110,7 @@ fn turned_px(rate: f64, every: Every) -> f64 {
 }
 
 #[test]
-fn reprojection_leaves_only_the_rotation_between_its_pose_and_light() {
+fn after_reprojection_the_error_is_the_rotation_from_the_pose_of_the_device_to_the_light() {
     let outcome = fields(head(turning(2.0)), "full-screen:2");
     for by in [Warp::Rotation, Warp::Depth] {
         for every in [Every::Field, Every::Strip, Every::Line] {
@@ -167,7 +167,7 @@ fn the_empty_share_is_the_part_rotated_in_from_beyond_the_edge() {
 /// The content lies on a plane at a distance z before the head, which slides along the plane. In a time t, the content
 /// moves by f v t / z.
 #[test]
-fn a_translation_leaves_f_v_t_by_z_without_depth_and_a_line_time_with_depth() {
+fn without_depth_reprojection_leaves_the_error_of_a_translation_and_with_depth_only_a_line_time() {
     const M_PER_S: f64 = 0.5;
     const DISTANCE_M: f64 = 2.0;
     let slide = head(Slide::right_at(M_PER_S)).evaluated_at(DISTANCE_M).expect("in range");
@@ -244,7 +244,7 @@ fn persistence_delays_the_centre_of_light_by_half_and_smears_over_its_whole_time
 }
 
 #[test]
-fn a_display_without_persistence_has_no_smear_and_a_plain_raster_no_report() {
+fn a_plain_raster_without_persistence_has_no_report_of_the_eye() {
     let outcome = fields(head(turning(1.0)), "full-screen:2");
     assert_eq!(EyeReport::shown(&outcome, Showing::Plain), None);
     assert_eq!(outcome.report().eye, None);
@@ -253,7 +253,7 @@ fn a_display_without_persistence_has_no_smear_and_a_plain_raster_no_report() {
 
 /// VDRT is reported as a device. No pixel is empty, because its picture counts as drawn beyond the edge of the screen.
 #[test]
-fn vdrt_is_one_setting_with_unchanged_errors() {
+fn vdrt_is_reported_as_a_reprojection_device_without_empty_pixels() {
     assert_eq!(Raster::Vdrt.reprojection(), Some(Reprojection::VDRT));
     let outcome = fields(head(turning(2.0)).with_raster(Raster::Vdrt), "full-screen:2");
     let eye = outcome.report().eye.expect("a device").reprojection.expect("a device");
@@ -264,7 +264,7 @@ fn vdrt_is_one_setting_with_unchanged_errors() {
 
 /// With delayed video, only the tracker's error remains. An ideal tracker has no error, for any latency.
 #[test]
-fn delayed_video_has_no_error_before_an_ideal_tracker_and_lags_by_all_of_the_latency() {
+fn delayed_video_has_no_error_with_an_ideal_tracker_of_any_latency() {
     let late = TrackerConfig::ideal().with_latency_ps(50_000_000_000);
     let head = Head::new(Arc::new(turning(2.0)), late, PredictorKind::None, 1).expect("in range");
     let outcome = fields(head, "full-screen:2");
@@ -314,7 +314,7 @@ fn rotating_an_ideal_picture_gives_the_ideal_picture_of_the_rotated_head() {
 /// A device with depth, one pose per line and no latency must be as accurate as the reference, which draws every pixel
 /// for its own instant.
 #[test]
-fn reprojecting_an_ideal_machine_at_every_line_is_ideal_except_for_hidden_parts() {
+fn reprojection_with_depth_at_every_line_has_errors_only_at_hidden_parts() {
     let sliding = head(Slide::right_at(1.0));
     let outcome = fields(sliding, "gallery");
     let setting = Reprojection { by: Warp::Depth, every: Every::Line, latency_us: 0 };

@@ -289,7 +289,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn corner_instructions_are_legal_for_every_opcode_but_those_tested_by_commands() {
+    fn corner_instructions_cover_every_opcode_that_the_command_tests_do_not_cover() {
         let mut legal = BTreeSet::new();
         for instruction in corner_instructions() {
             let mut words = Vec::new();

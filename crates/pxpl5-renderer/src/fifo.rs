@@ -537,7 +537,7 @@ mod tests {
         }
 
         #[test]
-        fn runs_are_the_same_as_single_commands(count in 1u32..60, words in 1u32..40, ns in 0u64..9_000) {
+        fn a_run_takes_the_time_of_its_single_commands(count in 1u32..60, words in 1u32..40, ns in 0u64..9_000) {
             let mut runs = InputFifo::new(448, WORD);
             let mut singles = InputFifo::new(448, WORD);
             let run = CommandBatch { words_each: words, count, span_each: Some(Span::from_ns(ns)) };
@@ -580,7 +580,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_run_of_commands_is_none() {
+    fn a_run_of_zero_commands_changes_no_time() {
         let run = |count, ns| CommandBatch { words_each: 29, count, span_each: Some(Span::from_ns(ns)) };
         let accepted = |runs: &[CommandBatch]| {
             let mut fifo = InputFifo::new(100, WORD);
@@ -591,7 +591,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clump_of_thirty_triangles_stalls_its_sender_for_the_words_beyond_the_fifo() {
+    fn a_clump_of_thirty_triangles_stalls_its_sender_until_its_last_word_fits_into_the_fifo() {
         // 30 commands have 29 words and take 6.675 us each. The first command starts when its 29 words have entered
         // (1.45 us). Word k >= 448 waits for the start of the command with word k - 448. The last word (869) therefore
         // waits for the start of command floor((869 - 448) / 29) = 14 at 1.45 + 14 x 6.675 us. This start makes room

@@ -382,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_names_its_word_is_counted_and_ends_the_list() {
+    fn a_faulty_word_is_named_and_counted_and_ends_the_list() {
         let mut lanes = Lanes::new(&Layout::slats());
         let mut words = Vec::new();
         Command::blank(CommandKind::Clear).encode(&Layout::slats(), &mut words).unwrap();

@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn each_context_needs_its_own_bits_and_there_is_at_least_one() {
+    fn a_layout_needs_at_least_one_context_and_separate_bits_for_each_context() {
         let whole = |contexts, context_bits| {
             let plan = ContextPlan { contexts, context_bits, ..SLATS };
             conflicts(&plan, &[range(0, 4)])[0].clone()
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn the_three_layouts_fit() {
+    fn the_three_layouts_fit_into_pixel_memory() {
         for plan in [RENDERING_CONTROL_PHONG, SLATS, SLATS_QUARTERS] {
             Layout::new(plan).unwrap();
         }
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_that_does_not_fit_is_drawn_with_its_bit_ranges() {
+    fn the_error_of_a_layout_with_overlapping_fields_draws_the_bit_ranges() {
         let plan = ContextPlan { scratch: Some(Operand::absolute(172, 32)), ..SLATS };
         let text = Layout::new(plan).unwrap_err().to_string();
         assert!(text.contains("172-203"), "{text}");
@@ -343,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_width_is_named() {
+    fn the_error_of_a_bit_field_with_a_wrong_width_names_the_field() {
         let plan = ContextPlan { z: Operand::context(24, 28), ..SLATS };
         let error = Layout::new(plan).expect_err("28 bits");
         assert_eq!(error.to_string(), "z has 28 bits, expected 8 to 24");

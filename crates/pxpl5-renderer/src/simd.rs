@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn every_unit_shifts_by_every_count_and_leaves_zeros_from_32_on() {
+    fn every_vector_unit_shifts_by_every_count_and_counts_from_32_on_give_zero() {
         let values: [u32; 16] = std::array::from_fn(|k| 0x9E37_79B9_u32.wrapping_mul(k as u32 * 2 + 1) | 0x8000_0001);
         // The counts are all values of a byte, and larger counts whose lowest bits are small.
         for by in (0..=255).chain([256, 1 << 16, 1 << 31, (1 << 31) + 1, u32::MAX]) {

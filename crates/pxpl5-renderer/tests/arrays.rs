@@ -100,7 +100,7 @@ fn draws_what_it_executes(mut drawing: impl PixelArray, mut executing: impl Pixe
 }
 
 #[test]
-fn drawing_and_executing_a_list_gives_and_sends_the_same_pixels() {
+fn drawing_a_command_list_gives_the_same_pixels_as_executing_the_list() {
     for layout in layouts() {
         draws_what_it_executes(BitSerial::new(&layout), BitSerial::new(&layout), &layout);
         draws_what_it_executes(Lanes::new(&layout), Lanes::new(&layout), &layout);

@@ -180,7 +180,7 @@ fn a_copy_command_without_an_order_ends_at_once() {
 /// Sends two triangles in one message, or in two messages. The second message is announced before the first has
 /// arrived.
 #[test]
-fn a_watched_fifo_counts_words_from_their_last_word_to_the_start_of_their_command() {
+fn an_observed_fifo_counts_a_word_until_the_command_of_the_word_starts() {
     for messages in [1, 2] {
         let mut bench = Bench::new();
         bench.device.watch_fifo();
@@ -214,7 +214,7 @@ fn an_unwatched_fifo_has_no_counts() {
 }
 
 #[test]
-fn a_delivery_of_nothing_is_no_copy() {
+fn a_delivery_without_a_message_starts_no_copy() {
     let mut bench = Bench::new();
     bench.delivered(BEGIN);
     bench.run();

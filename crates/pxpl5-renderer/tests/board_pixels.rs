@@ -74,7 +74,7 @@ fn copied_depths_follow_the_colours_and_are_far_if_nothing_was_drawn() {
 /// The 20 bits of depth in the layout of Slats are the upper bits of a depth of 24 bits. The 24 bits are the upper bits
 /// of the depth expression's 32 bits.
 #[test]
-fn copied_depths_are_the_upper_bits_of_24() {
+fn the_copied_depths_are_the_upper_bits_of_24_bit_depths() {
     let inside = Linear::constant(1);
     let depth = Linear::constant(0x1234_5678);
     let triangle = Command::Triangle(TriangleCommand { edges: [inside; 3], depth, colour: [Linear::constant(0); 3] });

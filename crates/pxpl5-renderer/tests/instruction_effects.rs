@@ -385,21 +385,21 @@ fn follow(array: impl PixelArray, seed: u64) {
 }
 
 #[test]
-fn the_reference_model_follows_the_table() {
+fn the_bit_serial_array_has_the_effects_of_the_table_of_instructions() {
     for (seed, vectors) in (1..).zip(Vectors::available()) {
         follow(BitSerial::with_vectors(&Layout::slats(), vectors), seed);
     }
 }
 
 #[test]
-fn the_model_that_skips_work_follows_the_table() {
+fn the_bit_serial_array_that_skips_work_has_the_effects_of_the_table_of_instructions() {
     for (seed, vectors) in (10..).zip(Vectors::available()) {
         follow(BitSerial::with_vectors(&Layout::slats(), vectors).skipping(), seed);
     }
 }
 
 #[test]
-fn operations_on_values_follow_the_table() {
+fn the_array_of_lanes_has_the_effects_of_the_table_of_instructions() {
     for (seed, layout) in (20..).zip([Layout::slats(), Layout::slats_quarters(), Layout::rendering_control_phong()]) {
         follow(Lanes::new(&layout), seed);
     }

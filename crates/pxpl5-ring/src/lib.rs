@@ -56,9 +56,9 @@
 //!   the second message can therefore begin to arrive before the first message has ended.
 //! - multicast and broken hardware
 //!
-//! Sources: TR94 (channels, rate, region transfers), F89 (rate). No paper describes the arbiter. Its order, first come
-//! first served, is derived: with any other order, the transfer of 20 regions of a field over two ports would take the
-//! time of 12 regions instead of 11.
+//! Sources: TR94 (channels, rate, region transfers), F89 (rate). No paper describes the arbiter. Its order (first come,
+//! first served) is derived from the published transfer of 20 regions of a field over two ports, which takes the time
+//! of 11 regions. With any other order, the transfer would take the time of 12 regions.
 
 mod channels;
 mod port;

@@ -129,7 +129,10 @@ impl Ring {
         self.arbitrations.retain(|at| *at > now);
         self.settle(now);
         self.grant_all(now, context);
-        debug_assert!(self.check_counters(), "a count differs from what it counts: {self:?}");
+        // A wrong count stays wrong, so a check of some arbitrations finds it. Outside the tests of this crate, checks of
+        // all arbitrations would take a tenth of the time of a run.
+        let is_checked = cfg!(test) || self.stats.messages.is_multiple_of(64);
+        debug_assert!(!is_checked || self.check_counters(), "a count differs from what it counts: {self:?}");
         self.arbitrate_at_next_end(context);
     }
 

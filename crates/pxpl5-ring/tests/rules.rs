@@ -113,7 +113,7 @@ fn sending_does_not_disturb_receiving() {
 }
 
 #[test]
-fn a_source_can_send_to_several_destinations_and_a_destination_receives_from_one() {
+fn a_source_can_send_to_several_destinations_and_a_destination_receives_from_one_source_at_a_time() {
     let from_one = accepted(&[traffic(us(0), 0, 1, 1_024), traffic(us(0), 0, 2, 1_024)]);
     assert_eq!(from_one, [us(52) + HOP, us(52) + HOP * 2]);
     let to_one = accepted(&[traffic(us(0), 0, 2, 1_024), traffic(us(0), 1, 2, 1_024)]);
@@ -145,7 +145,7 @@ fn a_message_queues_for_its_destination_once_it_is_first_at_its_source() {
 }
 
 #[test]
-fn a_message_that_must_wait_does_not_hold_up_a_later_one() {
+fn a_waiting_message_does_not_delay_a_later_message_to_another_destination() {
     let times = accepted(&[traffic(us(0), 0, 3, 1_024), traffic(us(1), 1, 3, 1_024), traffic(us(2), 2, 4, 1_024)]);
     assert_eq!(times[2], us(54) + HOP * 2);
 }
@@ -171,7 +171,7 @@ fn messages_of_one_source_at_one_instant_keep_their_order() {
 }
 
 #[test]
-fn a_held_destination_waits_for_its_source_and_a_released_one_serves_the_first_request() {
+fn a_reserved_destination_serves_its_source_and_after_release_the_first_waiting_request() {
     let hold = PlannedMessage { hold: true, ..traffic(us(0), 0, 2, 1_024) };
     let end_of_transfer = traffic(us(100), 0, 2, 1_024);
     let other = traffic(us(1), 1, 2, 1_024);
@@ -262,7 +262,7 @@ fn events_of_a_message(prepare: fn(&mut Ring)) -> usize {
 }
 
 #[test]
-fn a_message_is_a_few_events_and_word_by_word_one_event_for_each_slot() {
+fn a_message_needs_a_few_events_and_word_by_word_transfer_adds_one_event_for_each_slot() {
     let slots = 16 + 100;
     let [few, all] = [events_of_a_message(|_| {}), events_of_a_message(Ring::move_every_word)];
     assert!(few < 4, "{few} events of a message as a whole");
@@ -391,7 +391,7 @@ fn a_message_to_a_fifo_waits_for_a_channel_until_another_to_a_fifo_has_ended() {
 }
 
 #[test]
-fn a_source_waits_for_a_channel_and_not_for_its_own_reservation() {
+fn a_source_that_reserves_its_destination_waits_only_for_a_channel() {
     let mut bench = bench();
     let mut ring = ring_with_two_fifos();
     let held = Request { hold: true, ..request(1, 0, 9, 10) };

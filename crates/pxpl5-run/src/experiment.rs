@@ -3,7 +3,7 @@ use crate::fingerprint::Fingerprint;
 use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::host::{BareHost, Host};
-use crate::keep::Keep;
+use crate::keep::{Keep, LEAST_RECORDS};
 use crate::level::Level;
 use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
@@ -74,6 +74,7 @@ pub struct Experiment {
     pub(crate) shuffle: Option<u64>,
     pub(crate) traffic: bool,
     pub(crate) keep: Keep,
+    pub(crate) least_records: usize,
     pub(crate) disabled: BTreeSet<Optimization>,
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
@@ -119,6 +120,7 @@ impl Experiment {
             shuffle: None,
             traffic: false,
             keep: Keep::Everything,
+            least_records: LEAST_RECORDS,
             disabled: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
@@ -179,6 +181,15 @@ impl Experiment {
     #[must_use]
     pub const fn keep(mut self, keep: Keep) -> Self {
         self.keep = keep;
+        self
+    }
+
+    /// Sets the number of records below which a run discards nothing. Tests set a small number, so that short runs
+    /// discard records several times.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn least_records(mut self, records: usize) -> Self {
+        self.least_records = records;
         self
     }
 

@@ -138,7 +138,7 @@ mod tests {
 
     /// Tests the memory for instants that are two or three fields apart, in turn: at most three bytes for each instant.
     #[test]
-    fn equal_steps_take_at_most_three_bytes() {
+    fn instants_with_nearly_equal_steps_take_at_most_three_bytes_each() {
         let field_ps = |n: u64| n * 1_001_000_000_000 / 60;
         let mut instants = Instants::default();
         (0..10_000).for_each(|n| instants.push(n, Time(field_ps(2 * n + n / 2))));

@@ -1,3 +1,6 @@
+/// Number of records below which a run discards nothing. A record, such as an arrival or a swap, takes about 80 bytes.
+pub(crate) const LEAST_RECORDS: usize = 32_768;
+
 /// The choice of the observations that a run keeps in memory.
 ///
 /// The choice changes no time and no trace.

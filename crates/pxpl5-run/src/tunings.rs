@@ -73,7 +73,7 @@ mod tests {
 
     /// Tests that a tuning from the cache equals a new tuning, for different motions, trackers, intervals and seeds.
     #[test]
-    fn a_shared_tuning_is_the_tuning_of_a_head_alone() {
+    fn a_tuning_from_the_cache_equals_a_new_tuning() {
         let tunings = Tunings::default();
         let still: [Box<dyn Motion + Send + Sync>; 3] =
             [Box::new(Pan::at(200.0)), Box::new(Pan::at(-30.0)), Box::new(Synthetic::recorded_use(3))];

@@ -15,9 +15,6 @@ use pxpl5_wire::PeriodNumber;
 use std::any::Any;
 use std::sync::Arc;
 
-/// Number of records below which a run discards nothing. A record, such as an arrival or a swap, takes about 80 bytes.
-const LEAST_RECORDS: usize = 32_768;
-
 /// Number of pictures after which the results of a picture are final. Until then, records of a picture may arrive after
 /// records of later pictures.
 const PICTURES_HELD: usize = 32;
@@ -38,6 +35,7 @@ pub(crate) struct Window {
     arrivals_taken: usize,
     /// Number of records in memory at which old records are discarded the next time.
     next_look: usize,
+    least_records: usize,
 }
 
 #[derive(Debug)]
@@ -60,7 +58,17 @@ impl Window {
         let tally = Tally::new(experiment.end(), field_ms(record), samples);
         let sums = experiment.sums.filter(|_| forgets && experiment.keep == Keep::Statistics);
         let sum = sums.map(|begin| begin());
-        Self { tally, sum, forgets, samples, taken_to: None, arrivals_taken: 0, next_look: LEAST_RECORDS }
+        let least_records = experiment.least_records;
+        Self {
+            tally,
+            sum,
+            forgets,
+            samples,
+            taken_to: None,
+            arrivals_taken: 0,
+            next_look: least_records,
+            least_records,
+        }
     }
 
     /// Adds final results to the statistics and discards their records. Does nothing if the run has few records or must
@@ -79,7 +87,7 @@ impl Window {
             self.arrivals_taken = run.machine.record().observation().arrivals.len();
         }
         // The next pass begins when the number of records has doubled, so the cost per record is bounded.
-        self.next_look = LEAST_RECORDS.max(2 * run.records());
+        self.next_look = self.least_records.max(2 * run.records());
     }
 
     /// Adds final pictures to the statistics. Returns the instant from which records are still needed.

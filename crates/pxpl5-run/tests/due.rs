@@ -26,14 +26,14 @@ fn regular(first: u64, apart: u64, periods: u64, end: PictureResult) -> Vec<(u64
 }
 
 #[test]
-fn pictures_of_every_field_are_all_shown() {
+fn if_every_field_shows_a_new_picture_all_due_pictures_are_shown() {
     let due = count(&regular(2, 1, 100, Shown), 1, 100);
     assert_eq!((due.first_period.0, due.last_period.0), (WARM_UP_PERIODS, 99));
     assert_eq!((due.due, due.shown, due.not_shown()), (92, 92, 0));
 }
 
 #[test]
-fn each_result_of_a_picture_is_counted_once() {
+fn late_incomplete_and_missed_pictures_are_each_counted_once() {
     let mut pictures = regular(2, 1, 108, Shown);
     pictures[10].1 = Late;
     pictures[11].1 = Incomplete;
@@ -53,14 +53,14 @@ fn pictures_three_periods_apart_but_due_every_second_period_miss_a_third() {
 }
 
 #[test]
-fn one_retrace_of_delay_is_one_picture_missed() {
+fn a_delay_of_one_retrace_counts_as_one_missed_picture() {
     let mut pictures = regular(9, 2, 50, Shown);
     pictures.iter_mut().filter(|picture| picture.0 >= 31).for_each(|picture| picture.0 += 1);
     assert_eq!(count(&pictures, 2, 51).missed, 1);
 }
 
 #[test]
-fn two_pictures_in_one_due_interval_count_as_one_shown() {
+fn two_pictures_in_one_due_interval_count_as_one_due_picture_shown() {
     let due = count(&regular(4, 1, 40, Shown), 2, 40);
     assert_eq!((due.due, due.shown, due.pictures), (16, 16, 32));
     // The rate counts the pictures shown: one in each field.
@@ -75,7 +75,7 @@ fn a_run_that_showed_nothing_missed_all_pictures() {
 }
 
 #[test]
-fn a_run_within_the_warm_up_has_no_counts() {
+fn a_run_shorter_than_the_warm_up_has_no_counts() {
     for periods in 0..=WARM_UP_PERIODS {
         assert_eq!(counted(&regular(2, 1, periods, Shown), 1, periods), None);
     }
@@ -96,7 +96,7 @@ fn the_window_begins_at_the_later_of_ninth_period_and_fifth_picture() {
 /// If a pipeline begins a picture every seventh period, and no picture is in time, then the pictures count as late from
 /// the ninth period on.
 #[test]
-fn start_up_hides_no_failure_after_the_first_periods() {
+fn failures_after_the_eighth_period_are_counted() {
     let due = count(&regular(2, 7, 60, Late), 1, 60);
     assert_eq!((due.first_period.0, due.due, due.shown), (WARM_UP_PERIODS, 52, 0));
 }
@@ -111,7 +111,7 @@ fn a_failure_in_the_second_half_is_counted_over_the_whole_window() {
 }
 
 #[test]
-fn one_picture_has_no_rate() {
+fn a_run_with_one_shown_picture_has_no_rate() {
     let mut pictures = regular(2, 1, 60, Incomplete);
     pictures[20].1 = Shown;
     let due = count(&pictures, 1, 60);

@@ -251,7 +251,7 @@ fn with_stored_regions_render_ends_before_the_buffer_is_free() {
 /// TR94: 7,700 triangles cover the screen. Each of the 12 slaves has 642 of them in 20 bins, at 4 bytes a pointer. The
 /// bins of the next frame take the same space until the first are drawn.
 #[test]
-fn bins_of_rendering_control_hold_642_triangles_that_cover_the_screen_and_no_more() {
+fn the_bins_of_a_slave_hold_642_triangles_that_cover_the_screen_and_a_643rd_triangle_is_a_fault() {
     let run = |triangles: u32| {
         let scene = builtin(&format!("full-screen:{triangles}")).expect("built in");
         let experiment = Experiment::new(machine("small-hmd", 2, 20), RenderingControl::mono(), scene);

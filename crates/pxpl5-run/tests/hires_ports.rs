@@ -33,7 +33,7 @@ fn one_port_carries_14_4_pictures_a_second_and_two_carry_more() {
 }
 
 #[test]
-fn regions_sent_through_two_ports_make_the_same_picture() {
+fn regions_sent_through_two_ports_make_the_same_picture_as_through_one_port() {
     let [one, two] = [1, 2].map(|ports| {
         let outcome = run(ports);
         let display = outcome.record().display();

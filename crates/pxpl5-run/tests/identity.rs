@@ -185,7 +185,7 @@ fn different_motions_have_different_names_even_with_equal_debug_output() {
 }
 
 #[test]
-fn every_tracker_predictor_seed_and_raster_has_its_own_name() {
+fn heads_with_different_trackers_predictors_seeds_or_rasters_have_different_names() {
     let of = |tracker: TrackerConfig, predictor: PredictorKind, seed: u64| {
         Head::new(Arc::new(Pan::at(1.0)), tracker, predictor, seed).expect("in range").fingerprint()
     };

@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hinge_leaves_its_axis_in_place() {
+    fn the_swing_of_a_hinge_does_not_move_points_on_its_axis() {
         let point = Vec3::new(1.0, 0.0, 5.0);
         assert!((quarter_swing().model(777).transform_point3(point) - point).length() < 1e-6);
     }

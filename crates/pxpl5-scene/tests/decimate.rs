@@ -71,7 +71,7 @@ fn the_decimated_head_is_closed_and_has_the_same_size() {
 /// Every octant of the bounding box must keep triangles. Keeping only the first N triangles of the head would leave
 /// only its crown.
 #[test]
-fn no_part_of_the_head_is_left_out() {
+fn a_decimated_head_keeps_triangles_in_every_octant() {
     let few = scene("head").decimated(200).expect("it has more");
     let (centre, radius) = few.bounding_sphere();
     for octant in 0..8 {
@@ -96,7 +96,7 @@ fn a_decimated_aircraft_keeps_wings_tail_and_nose() {
 }
 
 #[test]
-fn a_flat_sheet_of_many_triangles_becomes_two() {
+fn decimation_reduces_a_flat_sheet_of_many_triangles_to_two_triangles() {
     // Corners keep their positions, and everything within a plane can be removed.
     let mut parts = scene("full-screen:1").into_parts();
     const SIDE: u32 = 9;
@@ -113,7 +113,7 @@ fn a_flat_sheet_of_many_triangles_becomes_two() {
 }
 
 #[test]
-fn of_separate_pieces_the_requested_number_remains_from_all_parts() {
+fn decimating_separate_pieces_keeps_the_requested_number_of_triangles_from_all_parts() {
     let few = scene("typical:1000").decimated(100).expect("it has more");
     assert_eq!(few.triangles().len(), 100);
     let ratio = size(&few) / size(&scene("typical:1000"));

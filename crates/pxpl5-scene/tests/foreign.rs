@@ -123,14 +123,14 @@ fn binary_faces_first(encoding: &str, word: fn(u32) -> [u8; 4]) -> Vec<u8> {
 }
 
 #[test]
-fn faces_may_also_come_first_in_binary_files() {
+fn in_binary_ply_files_faces_may_precede_the_vertices() {
     let plain = ply(ascii_ply(&ELEMENTS));
     assert_eq!(ply(binary_faces_first("binary_little_endian", u32::to_le_bytes)), plain);
     assert_eq!(ply(binary_faces_first("binary_big_endian", u32::to_be_bytes)), plain);
 }
 
 #[test]
-fn an_error_in_faces_that_come_first_names_its_place() {
+fn an_error_in_faces_that_precede_the_vertices_names_the_line() {
     let [vertices, faces] = ELEMENTS;
     let text = ascii_ply(&[faces, vertices]).replace("3 1 2 3\n", "3 1 2 4\n");
     let error = read(Format::Ply, text).expect_err("no such vertex").to_string();
@@ -301,7 +301,7 @@ proptest! {
     /// Generates polygons around the origin with a radius at each of several rising angles. The angles are less than
     /// half a turn apart, so a polygon never crosses itself.
     #[test]
-    fn any_polygon_about_a_point_is_covered_once(
+    fn the_triangles_of_a_star_shaped_polygon_cover_each_of_its_points_once(
         radii in prop::collection::vec(0.1..4.0_f64, 4..200),
         begin in any::<prop::sample::Index>(),
         clockwise in any::<bool>(),
@@ -378,7 +378,7 @@ fn normals_of_the_file_win_over_smoothing_off() {
 }
 
 #[test]
-fn a_flat_face_that_is_not_plane_has_one_normal() {
+fn a_flat_shaded_face_that_is_not_planar_has_one_normal() {
     let scene = obj("v 0 0 0\nv 1 0 0\nv 1 1 0.2\nv 0 1 0\nf 1 2 3 4\n");
     assert_eq!(scene.vertices().len(), 4);
     assert!(scene.vertices().iter().all(|v| v.normal == scene.vertices()[0].normal));
@@ -387,7 +387,7 @@ fn a_flat_face_that_is_not_plane_has_one_normal() {
 // Colours of vertices and faces.
 
 #[test]
-fn colours_of_obj_vertices_are_drawn_as_fractions_or_bytes() {
+fn colours_of_obj_vertices_may_be_fractions_or_bytes() {
     let with = |colours: [&str; 4]| {
         let points = ["0 0 0", "1 0 0", "0 1 0", "0 0 1"];
         let vertices: String = points.iter().zip(colours).map(|(p, c)| format!("v {p} {c}\n")).collect();

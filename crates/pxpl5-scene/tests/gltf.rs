@@ -253,7 +253,7 @@ fn a_mirroring_transform_leaves_triangles_anticlockwise() {
 }
 
 #[test]
-fn a_mesh_in_two_nodes_is_drawn_twice_and_a_node_outside_the_scene_is_not() {
+fn a_mesh_in_two_nodes_is_drawn_twice_and_a_node_outside_the_scene_is_not_drawn() {
     let (writer, mut document) = square();
     document["nodes"] = json!([{"mesh": 0}, {"mesh": 0, "translation": [5, 0, 0]}, {"mesh": 0}]);
     document["scenes"] = json!([{"nodes": [2]}, {"nodes": [0, 1]}]);
@@ -318,7 +318,7 @@ fn quantized_interleaved_and_sparse_numbers_are_read() {
 }
 
 #[test]
-fn a_buffer_in_a_file_beside_the_model_is_read_and_no_other_file() {
+fn a_buffer_is_read_from_a_file_beside_the_model_and_from_no_other_folder() {
     let folder = std::env::temp_dir().join(format!("pxpl5-gltf-{}", std::process::id()));
     std::fs::create_dir_all(folder.join("inner")).expect("a temporary folder");
     let (writer, mut document) = square();
@@ -433,7 +433,7 @@ fn errors_name_the_part_of_the_file() {
 }
 
 #[test]
-fn errors_of_the_container_name_the_position() {
+fn errors_of_the_gltf_container_name_the_byte_or_line() {
     let (writer, document) = square();
     let good = writer.binary(&document);
     for (change, expected) in [

@@ -53,7 +53,7 @@ fn texture_coordinates_are_ignored_in_every_notation() {
 }
 
 #[test]
-fn given_normals_win_over_computed_ones_and_split_a_vertex() {
+fn normals_in_the_file_replace_computed_normals_and_a_vertex_with_two_normals_is_split() {
     let scene = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 1 0 0\nvn 0 3 0\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n");
     assert_eq!(scene.vertices().len(), 6);
     assert_eq!(scene.vertices()[0].normal, Vec3::X);
@@ -72,7 +72,7 @@ fn missing_normals_are_the_mean_of_the_triangles_weighted_by_area() {
 }
 
 #[test]
-fn models_of_any_size_fit() {
+fn models_of_any_size_are_scaled_to_the_import_radius() {
     for size in ["1e-300", "1e-40", "1e15"] {
         let scene = obj(&format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nf 1 2 3\n"));
         let (_, radius) = scene.bounding_sphere();

@@ -278,7 +278,7 @@ fn the_aircraft_is_closed_and_its_triangles_face_outwards() {
 }
 
 #[test]
-fn the_aircraft_is_as_wide_as_long_and_symmetric() {
+fn the_aircraft_is_nearly_as_wide_as_long_and_symmetric() {
     let aircraft = scene("aircraft");
     let mirrored =
         |p: Vec3| aircraft.vertices().iter().any(|v| (v.position * Vec3::new(-1.0, 1.0, 1.0) - p).length() < 1e-3);

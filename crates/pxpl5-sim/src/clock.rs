@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn rounding_up_to_an_edge_keeps_edges() {
+    fn the_first_edge_at_or_after_an_edge_is_this_edge() {
         for clock in [Clock::from_hz(40_000_000), Clock::new(1_001_000_000_000_000, 60_000), Clock::new(7, 3)] {
             let clock = clock.expect("valid");
             for n in [0, 1, 2, 3, 1_000, 123_457] {

@@ -23,6 +23,7 @@ impl<E, O> Default for Context<E, O> {
 impl<E, O> Context<E, O> {
     /// Sets the current time for the next event and returns the context. The lists of events and outputs keep their
     /// allocated memory for reuse.
+    #[inline]
     pub fn at(&mut self, now: Time) -> &mut Self {
         debug_assert!(self.own.is_empty() && self.outputs.is_empty(), "the wiring left something undone");
         self.now = now;
@@ -31,25 +32,30 @@ impl<E, O> Context<E, O> {
 
     /// Returns the time of the event that is being handled.
     #[must_use]
+    #[inline]
     pub const fn now(&self) -> Time {
         self.now
     }
 
+    #[inline]
     pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
         self.own.push((time, phase, event));
     }
 
     /// Schedules an event for the same device at `span` after the current time, in the phase [`Phase::Work`].
+    #[inline]
     pub fn after(&mut self, span: Span, event: E) {
         self.schedule(self.now + span, Phase::Work, event);
     }
 
     /// Adds an output of the device. `time` is the time at which the output leaves the device.
+    #[inline]
     pub fn output(&mut self, time: Time, output: O) {
         self.outputs.push((time, output));
     }
 
     /// Removes and returns the events that were scheduled since the last call.
+    #[inline]
     pub fn drain_events(&mut self) -> std::vec::Drain<'_, (Time, Phase, E)> {
         self.own.drain(..)
     }
@@ -69,11 +75,13 @@ impl<E, O> Context<E, O> {
 
     /// Returns true if the device has made no output since the last [`Context::drain_outputs`].
     #[must_use]
+    #[inline]
     pub const fn has_no_outputs(&self) -> bool {
         self.outputs.is_empty()
     }
 
     /// Removes and returns all outputs of the device.
+    #[inline]
     pub fn drain_outputs(&mut self) -> std::vec::Drain<'_, (Time, O)> {
         self.outputs.drain(..)
     }
@@ -172,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn an_input_waits_in_the_queue_of_the_bench() {
+    fn an_input_of_a_test_bench_waits_in_its_queue() {
         let mut bench = TestBench::<u32, u32>::new();
         bench.feed(Time(100), Phase::Arrive, 3);
         assert_eq!(bench.queue().next_time(), Some(Time(100)));

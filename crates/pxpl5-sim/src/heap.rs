@@ -21,6 +21,7 @@ impl<T> Default for QuadHeap<T> {
 }
 
 impl<T: Keyed> QuadHeap<T> {
+    #[inline]
     pub(crate) fn peek(&self) -> Option<&T> {
         self.items.first()
     }
@@ -29,6 +30,7 @@ impl<T: Keyed> QuadHeap<T> {
         self.items.len()
     }
 
+    #[inline]
     pub(crate) fn push(&mut self, item: T) {
         let mut place = self.items.len();
         self.items.push(item);
@@ -44,6 +46,7 @@ impl<T: Keyed> QuadHeap<T> {
         self.items[place] = item;
     }
 
+    #[inline]
     pub(crate) fn pop(&mut self) -> Option<T> {
         let last = self.items.pop()?;
         let Some(first) = self.items.first().copied() else { return Some(last) };
@@ -58,6 +61,7 @@ impl<T: Keyed> QuadHeap<T> {
     }
 
     /// Among the children of node `place`, returns the index and the item of the child with the least key.
+    #[inline]
     fn least_child(&self, place: usize) -> Option<(usize, T)> {
         let begin = place * CHILDREN + 1;
         let end = self.items.len().min(begin + CHILDREN);

@@ -26,6 +26,7 @@ struct Due {
 }
 
 impl Keyed for Due {
+    #[inline]
     fn key(&self) -> u128 {
         u128::from(self.time.0) << 64 | u128::from(self.order)
     }
@@ -39,6 +40,7 @@ const NEAR: usize = 16;
 
 /// Returns the sort key that separates the phases `Work` and `Observe` at `now`. The key is greater than the keys of
 /// all events in `Work`, and at most equal to the keys of events in `Observe`.
+#[inline]
 const fn work_key(now: Time) -> u128 {
     (now.0 as u128) << 64 | ((Phase::Observe as u64) << PHASE_SHIFT) as u128
 }

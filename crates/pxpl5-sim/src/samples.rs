@@ -171,7 +171,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn up_to_the_limit_statistics_are_exact() {
+    fn statistics_are_exact_up_to_the_limit_of_stored_numbers() {
         let values: Vec<f64> = (0..100).map(|i| f64::from(i * 7919 % 101) * 0.1).collect();
         let mut samples = Samples::keeping(100);
         samples.extend(values.iter().copied());

@@ -13,6 +13,7 @@ pub(crate) const INCREMENT: u64 = 0x9E37_79B9_7F4A_7C15;
 /// Mixes 64 bits: each input bit affects about half of the output bits. The function is the last step of the generator
 /// SplitMix64. Different inputs give different outputs.
 #[must_use]
+#[inline]
 pub const fn mix(value: u64) -> u64 {
     let a = value.wrapping_add(INCREMENT);
     let b = (a ^ (a >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -30,6 +31,7 @@ pub struct TraceHash(pub u64);
 
 impl TraceHash {
     /// Adds one record: the time of an event, and the numbers that describe the event.
+    #[inline]
     pub fn record(&mut self, time: Time, facts: &[u64]) {
         let hash = facts.iter().fold(mix(time.0), |hash, fact| mix(hash ^ mix(*fact)));
         self.0 = self.0.wrapping_add(hash);
@@ -72,7 +74,7 @@ mod tests {
     /// Tests a record whose only number equals its time. The hash mixes both, and their exclusive or is 0. The result
     /// is the first output of SplitMix64 for the seed 0 (Vigna's reference program).
     #[test]
-    fn a_fact_equal_to_its_time_keeps_the_hash_of_zero() {
+    fn a_record_whose_number_equals_its_time_has_the_published_hash_of_zero() {
         for both in [0, 1, 1_234_567, u64::MAX] {
             assert_eq!(hash(&[(both, &[both])]), TraceHash(0xE220_A839_7B1D_CDAF));
         }

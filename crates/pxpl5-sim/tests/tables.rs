@@ -15,7 +15,7 @@ parameter_table! {
 }
 
 #[test]
-fn a_parameter_is_found_by_name_and_an_unknown_name_gives_the_nearest() {
+fn a_parameter_is_found_by_name_and_an_unknown_name_gives_the_nearest_name() {
     let mut table = Table::PAPERS;
     table.set("send_ns", Value::Whole(10_000)).expect("known");
     table.set("noise", Value::Real(0.5)).expect("known");
@@ -44,7 +44,7 @@ fn a_value_within_its_limits_is_accepted_and_listed_if_out_of_its_range() {
 }
 
 #[test]
-fn the_limits_are_accepted_and_one_more_is_refused() {
+fn a_parameter_at_its_limits_is_accepted_and_a_parameter_one_beyond_is_refused() {
     for (word_ns, is_possible) in [(0, false), (1, true), (1_000_000, true), (1_000_001, false)] {
         assert_eq!(Table { word_ns, ..Table::PAPERS }.check().is_ok(), is_possible, "{word_ns}");
     }
@@ -81,7 +81,7 @@ fn tables_of_different_types_are_listed_together() {
 }
 
 #[test]
-fn tables_are_equal_when_all_their_numbers_are() {
+fn two_tables_are_equal_if_all_their_numbers_are_equal() {
     assert_eq!(Table::PAPERS, Table::PAPERS);
     assert_ne!(Table { noise: 2.6, ..Table::PAPERS }, Table::PAPERS);
 }

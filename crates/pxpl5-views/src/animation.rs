@@ -58,7 +58,7 @@ mod tests {
     use std::io::Cursor;
 
     #[test]
-    fn every_picture_is_read_back_in_order() {
+    fn every_picture_of_an_animation_is_read_back_in_order() {
         let mut bytes = Vec::new();
         let mut animation = Animation::begin(&mut bytes, (2, 1), 3, (1, 25), &[]).expect("valid");
         for level in [10, 20, 30] {

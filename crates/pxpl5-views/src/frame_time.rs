@@ -85,13 +85,13 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_takes_an_ntsc_field() {
+    fn a_film_frame_of_the_ntsc_display_takes_one_field() {
         assert_eq!(seconds(&FrameBufferConfig::NTSC), (1_001, 60_000));
     }
 
     /// Tests the time of a field with half of 625 lines. A line takes 4004/63 us, so the field takes 143/7200 s.
     #[test]
-    fn a_frame_of_625_lines_takes_longer_in_the_same_proportion() {
+    fn a_film_frame_of_a_display_with_625_lines_takes_the_time_of_its_field() {
         let video = VideoTiming { frame_lines: 625, ..FrameBufferConfig::NTSC.video };
         assert_eq!(seconds(&FrameBufferConfig { video, ..FrameBufferConfig::NTSC }), (143, 7_200));
     }

@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn line_feeds_keep_their_place() {
+    fn line_feeds_between_elements_keep_their_place() {
         let mut element = Element::new("svg");
         element.end_line();
         element.add_line(&Element::new("rect"));

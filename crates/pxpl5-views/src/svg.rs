@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_document_has_at_least_one_line_of_text() {
+    fn an_empty_drawing_is_a_document_of_one_line() {
         assert_eq!(finished(&document()), "<svg xmlns=\"http://www.w3.org/2000/svg\"/>\n");
     }
 }

@@ -60,7 +60,7 @@ fn the_command_that_repeats_a_file_names_the_display() {
 }
 
 #[test]
-fn only_pictures_that_a_surface_receives_in_two_parts_have_halves() {
+fn only_a_picture_that_a_surface_receives_in_two_parts_has_a_bottom_half_in_the_timeline() {
     let split = Timeline::of(&slats(Slats::split()), &TimelineOptions::default());
     for row in ["left frame buffer", "right frame buffer"] {
         let bars = copies(&split, row);
@@ -74,7 +74,7 @@ fn only_pictures_that_a_surface_receives_in_two_parts_have_halves() {
 }
 
 #[test]
-fn each_eye_of_rendering_control_is_copied_whole() {
+fn rendering_control_copies_the_picture_of_each_eye_in_one_part() {
     let scene = builtin("full-screen:12").expect("built in");
     let outcome = run(Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(40));
     let timeline = Timeline::of(&outcome, &TimelineOptions::default());

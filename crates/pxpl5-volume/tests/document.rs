@@ -27,7 +27,7 @@ fn every_figure_of_the_specification_has_a_row() {
 /// Checks that all figures without a scene agree with the paper. Figures measured on a scene must be listed as missed
 /// if they do not agree.
 #[test]
-fn every_row_without_a_scene_is_met() {
+fn every_figure_that_needs_no_scene_is_met() {
     for row in FIGURES.figures.iter().filter(|row| row.scene.is_none()) {
         assert!(row.is_met, "{row:?}");
     }

@@ -68,7 +68,7 @@ fn the_error_of_a_rotating_head_is_its_rate_times_the_latency() {
 /// edges. Across the plane it is at most half the distance to the next slice. At the rim this is 64 px x sin(5 degrees)
 /// = 5.58 px, because 36 slices are 10 degrees apart. One pixel is 254/128 mm.
 #[test]
-fn the_error_of_voxels_is_at_most_their_size() {
+fn the_distance_of_a_point_from_its_voxel_is_at_most_the_size_of_a_voxel() {
     let study = study(&Still(Pose::IDENTITY), &QUESTION);
     let pixel_mm = 254.0 / 128.0;
     assert!((study.voxel_mm - pixel_mm).abs() < 1e-12);
@@ -84,7 +84,7 @@ fn the_error_of_voxels_is_at_most_their_size() {
 }
 
 #[test]
-fn both_eyes_see_both_displays() {
+fn the_picture_of_each_eye_shows_both_displays() {
     let slide = Slide::right_at(0.4);
     let before = HeadComparison::new(&VOLUME, &slide, Some(50.0)).expect("valid");
     let at = before.film_instants(&QUESTION, 3).expect("valid")[2];
@@ -101,7 +101,7 @@ fn both_eyes_see_both_displays() {
 }
 
 #[test]
-fn the_latency_of_a_volume_is_that_of_its_model_and_rotation() {
+fn the_latency_of_a_volume_is_the_drawing_time_plus_three_quarters_of_a_rotation() {
     let late = VOLUME.latency_ms().expect("a GPU drew it");
     assert!((late - 1e3 / VOLUME.time().serial_hz() - 50.0).abs() < 1e-9, "three quarters of a turn of 66.7 ms");
     let study = study(&Still(Pose::IDENTITY), &HeadStudyConfig { latency_ms: None, ..QUESTION });

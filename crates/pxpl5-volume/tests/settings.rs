@@ -43,7 +43,7 @@ fn setting_each_number_to_the_value_of_the_paper_changes_nothing() {
 }
 
 #[test]
-fn a_clip_includes_its_offset_or_bias() {
+fn each_clip_setting_includes_its_offset_or_bias() {
     for (text, expected) in [
         ("prism", SliceClip::Prism),
         ("user-planes", SliceClip::UserPlanes),

@@ -127,7 +127,7 @@ fn the_hash_depends_on_the_seed_and_not_on_threads() {
 
 /// Checks that the pixels of pictures equal the bit planes and the colours. Mirrored slices are shown reversed.
 #[test]
-fn pictures_show_the_slices() {
+fn the_pixels_of_a_slice_picture_equal_the_bit_planes_and_the_colours() {
     for strobes in [Strobes::Each, Strobes::Mirror] {
         let settings = VolumeSettings { strobes, projection: ProjectionKind::Orthographic, ..small() };
         let volume = drawn(&settings);
@@ -155,7 +155,7 @@ fn pictures_show_the_slices() {
 /// Checks that a sheet has rows of 22 thumbnails of 64 px. The number of white pixels of a tile map must equal the
 /// number of occupied tiles.
 #[test]
-fn sheets_and_maps_show_all_slices() {
+fn a_sheet_has_a_thumbnail_for_each_slice_and_a_map_marks_each_occupied_tile() {
     let volume = drawn(&small());
     assert_eq!(sheet(&volume).dimensions(), (22 * 64, 2 * 64));
     let map = tile_map(&volume).expect("there are tiles");

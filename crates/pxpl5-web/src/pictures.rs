@@ -183,7 +183,7 @@ mod tests {
     /// Tests the outlines, which are drawn where the depth changes suddenly. The depth of a plane is linear on the
     /// screen, so a plane has none.
     #[test]
-    fn a_plane_that_covers_the_screen_has_no_outlines_and_an_aircraft_has() {
+    fn a_plane_that_covers_the_screen_has_no_outlines_and_an_aircraft_has_outlines() {
         let opaque =
             |session: &crate::session::Session| session.outlines(0).chunks(4).filter(|rgba| rgba[3] > 0).count();
         let plane = session("pipeline=slats\nscene=full-screen:1\nfields=9", 1);

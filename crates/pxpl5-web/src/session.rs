@@ -204,7 +204,7 @@ mod tests {
 
     /// Tests that a run with live head motion can be repeated: the recording of this motion gives the same run.
     #[test]
-    fn moving_the_head_during_a_run_equals_a_recording_of_the_movement() {
+    fn a_run_with_live_head_motion_equals_a_run_with_a_recording_of_this_motion() {
         for pipeline in
             ["slats", "rendering-control", "jitp-scanline", "frameless", "arp-full-line", "arp-priority-pixel"]
         {
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn only_boards_of_the_state_have_snapshots() {
+    fn every_listed_board_has_a_snapshot_and_an_unknown_board_is_refused() {
         let mut session = new(SETTINGS).expect("known settings");
         session.run_for(40_000_000_000);
         let boards = look::boards(session.stepper());

@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_saturate_instead_of_wrapping() {
+    fn period_numbers_saturate_instead_of_wrapping() {
         assert_eq!(PeriodNumber::FIRST.before(1), None);
         assert_eq!(PeriodNumber(5).before(2), Some(PeriodNumber(3)));
         assert_eq!(PeriodNumber(u64::MAX).next(), PeriodNumber(u64::MAX));

@@ -17,6 +17,7 @@ impl Eye {
 
     /// Returns the index of the eye: 0 for left, 1 for right.
     #[must_use]
+    #[inline]
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -39,6 +40,7 @@ pub struct SurfaceId(pub u16);
 
 impl SurfaceId {
     #[must_use]
+    #[inline]
     pub const fn index(self) -> usize {
         self.0 as usize
     }
@@ -76,17 +78,20 @@ impl RegionGrid {
     pub const FIELD: Self = Self { width: 640, height: 240, region_width: 128, region_height: 120 };
 
     #[must_use]
+    #[inline]
     pub const fn columns(&self) -> u32 {
         self.width.div_ceil(self.region_width)
     }
 
     /// Returns the number of rows of regions. The regions of the last row can be cut off at the bottom.
     #[must_use]
+    #[inline]
     pub const fn rows(&self) -> u32 {
         self.height.div_ceil(self.region_height)
     }
 
     #[must_use]
+    #[inline]
     pub const fn regions(&self) -> u32 {
         self.columns() * self.rows()
     }

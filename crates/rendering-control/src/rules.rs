@@ -164,7 +164,7 @@ mod tests {
         assert!(!state.frame_buffer_available(Drawing(8)));
     }
     #[test]
-    fn copy_of_the_right_eye_waits_for_copy_of_the_left() {
+    fn copy_of_the_right_eye_waits_for_copy_of_the_left_eye() {
         // Frame 3 consists of drawings 6 and 7. Frame 2 has become visible, so both frame buffers are free.
         let state = Completed { swapped: 3, copied: 6, ..Completed::none(2) };
         assert!(state.may_copy(Drawing(6)));

@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn five_renderers_keep_four_regions_each_top_and_bottom_of_both_eyes() {
+    fn each_of_five_renderers_keeps_the_top_and_bottom_regions_of_both_eyes() {
         let binding = Binding::new(5, 4, CopySchedule::Whole).expect("five are enough");
         for renderer in 0..5 {
             let copies = binding.copies(renderer, true);

@@ -86,21 +86,21 @@ mod tests {
     }
 
     #[test]
-    fn the_first_rows_of_the_matrix_equal_bayers_matrix() {
+    fn the_first_rows_of_the_halftone_matrix_equal_bayers_matrix() {
         let row = |j| (0..8).map(|i| bayer(8, i, j)).collect::<Vec<_>>();
         assert_eq!(row(0), [0, 32, 8, 40, 2, 34, 10, 42]);
         assert_eq!(row(1), [48, 16, 56, 24, 50, 18, 58, 26]);
     }
 
     #[test]
-    fn the_stated_number_of_64_pixels_is_lit() {
+    fn a_colour_value_lights_the_stated_number_of_64_pixels() {
         let counts = [0u8, 1, 2, 64, 127, 128, 200, 253, 254, 255]
             .map(|c| thresholds(8).iter().filter(|threshold| c > **threshold).count());
         assert_eq!(counts, [0, 0, 1, 16, 32, 32, 50, 63, 64, 64]);
     }
 
     #[test]
-    fn every_matrix_size_lights_the_rounded_share() {
+    fn a_halftone_matrix_of_any_size_lights_the_rounded_fraction_of_its_pixels() {
         for size in [2u32, 4, 8, 16] {
             for c in 0..=255u8 {
                 let lit = thresholds(size).iter().filter(|threshold| c > **threshold).count();

@@ -67,7 +67,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn the_reversed_order_mirrors_each_byte_in_its_place() {
+    fn the_reversed_bit_order_mirrors_the_bits_of_each_byte() {
         assert_eq!(in_bit_order(packed_word(0x80, 0x40, 0x03), BitOrder::LeftIsLow), packed_word(0x01, 0x02, 0xC0));
     }
 

@@ -27,7 +27,7 @@ fn connected_percent(clip: SliceClip, projection: Projection, coverage: Coverage
 /// Samples in the middle of equal steps of each facet's part give 18.3, 18.8 and 25.4 %. With other random eyes, jitter
 /// gives the same percentages.
 #[test]
-fn case_28_connected_surfaces_of_a_sphere() {
+fn case_28_a_sphere_has_the_expected_percentages_of_connected_samples() {
     let jittered = Projection::Jittered(Jitter::new(1));
     let sampled = |clip, projection| connected_percent(clip, projection, Coverage::Sampled);
     let cases = [
@@ -85,7 +85,7 @@ fn a_stack_of_planes_divides_a_triangle_among_its_slabs() {
 
 /// Checks that a flat screen shows the nearer of two squares in either order of drawing.
 #[test]
-fn a_flat_screen_hides_what_is_behind() {
+fn a_flat_screen_shows_the_nearer_of_two_squares() {
     let square = |z: f64, size: f64, colour: [u8; 3]| {
         [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| ColouredVertex::new(DVec3::new(x * size, y * size, z), colour))
@@ -129,7 +129,7 @@ fn a_scene_does_not_depend_on_the_display() {
 
 /// Checks the formulas of the time model for 396 slices of 768 x 768 pixels, from counts alone.
 #[test]
-fn the_model_of_time_has_the_rates_of_its_table() {
+fn the_time_model_gives_the_expected_rates_for_given_counts() {
     let size = [768, 768];
     let pixels = 768 * 768 * 396;
     let stats = VolumeStats {
@@ -165,7 +165,7 @@ fn the_model_of_time_has_the_rates_of_its_table() {
 }
 
 #[test]
-fn a_table_beyond_its_limits_is_refused() {
+fn a_timing_table_with_a_number_outside_its_limits_is_refused() {
     let timing = GpuTiming { fill_mpixels: 0, ..GpuTiming::PAPERS };
     let error = TimeModel::new(timing).expect_err("zero").to_string();
     assert!(error.contains("fill_mpixels"), "{error}");
@@ -192,7 +192,7 @@ fn planes_of_few_bits_leave_a_dead_zone() {
 
 /// Checks the brightness near the axis: the prism is bright and exact planes are dark. The hyperbola lies between both.
 #[test]
-fn brightness_over_radius_by_variant() {
+fn near_the_axis_the_prism_is_brighter_than_the_hyperbola_and_the_exact_planes_are_darkest() {
     let wall = [[-300.0, -200.2, 1.3], [300.1, -200.2, 1.3], [0.6, 280.7, 1.3]];
     let rings = |clip| {
         let display = swept(clip, Projection::Orthographic);

@@ -48,7 +48,7 @@ fn triangles_without_area_draw_nothing() {
 }
 
 #[test]
-fn vertices_in_special_places_are_drawn_as_in_the_reference_model() {
+fn vertices_on_the_axis_the_rim_or_pixel_centres_are_drawn_as_in_the_reference_model() {
     let rim = 48.0;
     let (sin, cos) = sin_cos_of_turn(1, 72);
     everywhere(&[[[0.0, -20.0, 0.0], [0.0, 20.0, 0.0], [30.0, 5.0, 2.0]]]);
@@ -82,7 +82,7 @@ fn a_plane_perpendicular_to_the_screen_draws_nothing() {
 }
 
 #[test]
-fn few_slices_and_odd_sizes_are_drawn_as_in_the_reference_model() {
+fn small_displays_of_unusual_size_are_drawn_as_in_the_reference_model() {
     for (slices, width, height, batch) in [(4, 40, 17, 4), (6, 72, 33, 5), (398, 104, 50, 4), (44, 64, 64, 1000)] {
         for projection in [ORTHOGRAPHIC, Projection::Jittered(Jitter::new(3))] {
             let clip = SliceClip::Hyperbolic(0.25);

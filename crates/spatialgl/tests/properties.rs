@@ -98,7 +98,7 @@ proptest! {
     }
 
     #[test]
-    fn max_and_add_do_not_depend_on_the_order(triangles in mesh(), clip in clips(), projection in projections()) {
+    fn max_and_add_do_not_depend_on_drawing_order(triangles in mesh(), clip in clips(), projection in projections()) {
         let display = small(clip, projection);
         for combine in [Combine::Max, Combine::Add] {
             let forward = mixed(&triangles, combine);
@@ -110,7 +110,7 @@ proptest! {
     }
 
     #[test]
-    fn the_exact_clip_is_within_the_hyperbola_and_that_within_the_parallel_planes(triangles in mesh(), q in 0.05f64..1.5) {
+    fn the_hyperbola_contains_the_exact_clip_and_lies_in_the_parallel_planes(triangles in mesh(), q in 0.05f64..1.5) {
         let commands = recording(&triangles);
         let set = |clip| drawn(&volume(&small(clip, ORTHOGRAPHIC), &commands, &kept(VolumeConfig::plain())));
         let exact = set(EXACT);
@@ -120,7 +120,7 @@ proptest! {
     }
 
     #[test]
-    fn without_a_bias_all_variants_are_exact(triangles in mesh()) {
+    fn without_offset_and_bias_all_clips_equal_the_exact_clip(triangles in mesh()) {
         let commands = recording(&triangles);
         let draw = |clip| volume(&small(clip, ORTHOGRAPHIC), &commands, &VolumeConfig::plain()).planes;
         let exact = draw(EXACT);
@@ -137,7 +137,7 @@ proptest! {
     }
 
     #[test]
-    fn the_second_half_turn_mirrors_the_first(triangles in mesh(), clip in clips()) {
+    fn the_second_half_turn_shows_mirrored_slices_of_the_first_half_turn(triangles in mesh(), clip in clips()) {
         let frame = volume(&small(clip, ORTHOGRAPHIC), &recording(&triangles), &kept(VolumeConfig::plain()));
         let mirrored: std::collections::BTreeSet<(usize, u32)> = drawn(&frame)
             .into_iter()
@@ -198,7 +198,7 @@ proptest! {
 
 /// Checks that the sum over 198 slices of fragments / |n . e_s| approaches the triangle's area, for the exact clip.
 #[test]
-fn the_number_of_fragments_divided_by_the_facing_is_the_area() {
+fn the_sum_of_fragments_divided_by_the_cosine_of_the_angle_to_each_slice_is_the_area() {
     let [a, b, c] = T4.map(DVec3::from_array);
     let cross = (b - a).cross(c - a);
     let area = cross.length() / 2.0;

@@ -94,7 +94,7 @@ fn more_samples_take_fill_time_and_no_bytes() {
 }
 
 #[test]
-fn other_numbers_of_samples_are_refused() {
+fn only_4_or_16_samples_are_accepted() {
     for samples in [0, 1, 2, 9, 64] {
         let error = Supersampled::new(HostRenderer, samples).expect_err("neither 4 nor 16");
         assert_eq!(error.to_string(), format!("draw.samples: expected 4 or 16, found {samples}"));

@@ -338,7 +338,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_value_is_in_range() {
+    fn every_published_tracking_value_is_in_its_range() {
         for (name, table) in Tables::PAPERS.all().into_iter().chain(FACTS) {
             assert_eq!(table.out_of_range(), [], "{name}");
         }

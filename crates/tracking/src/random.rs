@@ -63,7 +63,7 @@ mod tests {
 
     // Tolerances are five standard errors of 200,000 draws: 5 / sqrt(n) = 0.011, and sqrt 2 times that for variances.
     #[test]
-    fn normal_and_bell_have_mean_0_and_variance_1() {
+    fn the_normal_and_bell_distributions_have_mean_0_and_variance_1() {
         for (mean, variance) in
             [moments(|i| normal_pair(7, i).0), moments(|i| normal_pair(7, i).1), moments(|i| bell(bits(7, i)))]
         {

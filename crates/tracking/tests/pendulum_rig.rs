@@ -44,7 +44,7 @@ fn measure(rig: PendulumRig, config: TrackerConfig) -> Measurement {
 }
 
 #[test]
-fn the_low_point_is_seen_within_one_report_of_the_optical_tracker_and_33_ms_of_it() {
+fn the_optical_tracker_detects_the_low_point_33_ms_to_33_ms_plus_one_report_interval_later() {
     let measured = measure(PendulumRig::assumed(), noiseless(TrackerConfig::optical_ceiling()));
     let period_s = 1.0 / 60.0;
     assert!(measured.outside.tracking.min >= 0.033 && measured.outside.tracking.max <= 0.033 + period_s + 1e-9);
@@ -58,7 +58,7 @@ fn the_low_point_is_seen_within_one_report_of_the_optical_tracker_and_33_ms_of_i
 }
 
 #[test]
-fn rendering_latency_is_the_internal_latency_plus_the_photodiodes_place() {
+fn external_rendering_latency_is_internal_latency_plus_the_delay_of_the_photodiode_line() {
     for photodiode_line in [0, 120, 239] {
         let rig = PendulumRig { photodiode_line, ..PendulumRig::assumed() };
         let measured = measure(rig, noiseless(TrackerConfig::optical_ceiling()));
@@ -106,7 +106,7 @@ fn with_noise_the_mean_latencies_still_agree() {
 }
 
 #[test]
-fn the_sign_of_the_velocity_fails_with_a_millimetre_of_noise() {
+fn with_a_millimetre_of_noise_the_sign_of_the_velocity_does_not_detect_the_low_point() {
     // The arc is flat at the low point, so noise changes the sign of the velocity. The default method therefore detects
     // the crossing.
     let rig = PendulumRig { detection: Detection::VelocitySign, ..PendulumRig::assumed() };
@@ -118,7 +118,7 @@ fn the_sign_of_the_velocity_fails_with_a_millimetre_of_noise() {
 }
 
 #[test]
-fn every_low_point_is_detected_once_and_frames_alternate() {
+fn every_low_point_is_detected_once_and_successive_frames_alternate_between_light_and_dark() {
     let rig = PendulumRig::assumed();
     let tracker = TrackerModel::new(TrackerConfig::fastrak()).unwrap();
     let inside = inside(&rig, &tracker, 200);

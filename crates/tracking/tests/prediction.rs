@@ -33,7 +33,7 @@ fn mean_degrees(kind: PredictorKind, tracker: fn() -> TrackerConfig) -> [f64; 4]
 }
 
 #[test]
-fn without_prediction_errors_grow_1_93_and_3_64_times() {
+fn the_errors_at_100_and_200_ms_without_prediction_are_1_93_and_3_64_times_the_error_at_50_ms() {
     // Published ratios of the errors at 100 and 200 ms to the error at 50 ms. The fitted motion reproduces the ratios
     // within 3 %.
     let [_, at_50, at_100, at_200] = mean_degrees(PredictorKind::None, TrackerConfig::ideal);
@@ -42,7 +42,7 @@ fn without_prediction_errors_grow_1_93_and_3_64_times() {
 }
 
 #[test]
-fn with_the_kalman_filter_errors_grow_about_as_fast_as_azumas() {
+fn the_errors_of_the_kalman_filter_grow_with_the_interval_as_published() {
     // Azuma's ratios behind this tracker are 2.3 and 9. A constant-velocity Kalman filter on recorded traces has 2.7
     // and 7.1. The motion here is another one, so a quarter more or less than the published values is allowed.
     let [_, at_50, at_100, at_200] = mean_degrees(PredictorKind::Kalman, TrackerConfig::optical_ceiling);
@@ -61,7 +61,7 @@ fn below_80_ms_the_kalman_filter_cuts_the_mean_error_2_to_3_times() {
 }
 
 #[test]
-fn far_ahead_prediction_by_acceleration_is_worse_than_none() {
+fn at_200_ms_prediction_with_acceleration_is_worse_than_no_prediction() {
     let none = mean_degrees(PredictorKind::None, TrackerConfig::optical_ceiling);
     let second = mean_degrees(PredictorKind::ConstantAcceleration, TrackerConfig::optical_ceiling);
     assert!(second[3] > none[3]);
@@ -162,7 +162,7 @@ fn after_a_gap_old_velocities_are_discarded() {
 }
 
 #[test]
-fn faults_of_all_kinds_only_reduce_accuracy() {
+fn tracker_faults_raise_the_error_of_prediction_by_less_than_half() {
     let faults = vec![
         TrackerFault::RandomDropout { probability: 0.05 },
         TrackerFault::NotANumber { probability: 0.05 },
@@ -181,7 +181,7 @@ fn faults_of_all_kinds_only_reduce_accuracy() {
 }
 
 #[test]
-fn tiny_time_steps_are_handled() {
+fn reports_50_microseconds_apart_are_accepted_and_give_finite_predictions() {
     // A still head with noise has reports 50 us apart, the smallest distance that the gate of the predictors accepts.
     let tracker = TrackerConfig { rate_hz: 10_000, ..TrackerConfig::optical_ceiling() };
     let model = TrackerModel::new(TrackerConfig { serial: None, ..tracker }).unwrap();

@@ -27,7 +27,7 @@ fn speeds(seed: u64) -> [f64; 4] {
 }
 
 #[test]
-fn speeds_over_17_minutes_equal_those_of_recorded_use() {
+fn the_head_speeds_of_the_synthetic_motion_equal_those_of_recorded_use() {
     let HeadSpeeds { mean_turn, turn_95, turn_999, mean_translation, .. } = HeadSpeeds::PAPERS;
     let published = [mean_turn, turn_95, turn_999, mean_translation];
     let traces: Vec<_> = (0..SEEDS).map(speeds).collect();

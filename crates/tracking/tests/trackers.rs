@@ -133,7 +133,7 @@ fn the_flocks_position_is_5_5_ms_older_than_its_orientation() {
 }
 
 #[test]
-fn the_optical_ceiling_is_33_ms_late() {
+fn the_reports_of_the_optical_tracker_are_33_ms_late() {
     for report in reports(TrackerConfig::optical_ceiling(), &HEAD, 0, 50) {
         assert_eq!(report.arrives_ps - report.measured_ps, 33 * PS_PER_MS);
     }
@@ -158,7 +158,7 @@ fn a_polled_line_adds_0_to_30_ms_uniformly_over_seeds() {
 }
 
 #[test]
-fn polling_never_changes_the_order() {
+fn polling_never_changes_the_order_of_reports() {
     let config = TrackerConfig { host: SerialRead::unix(), ..TrackerConfig::fastrak() };
     let all = reports(config, &HEAD, 7, 2000);
     assert!(all.windows(2).all(|w| w[0].arrives_ps <= w[1].arrives_ps));
@@ -289,7 +289,7 @@ fn the_patched_host_crashes_only_with_the_flock() {
 }
 
 #[test]
-fn after_an_hour_the_reports_are_still_on_the_grid() {
+fn after_an_hour_the_report_times_are_still_exact_multiples_of_the_report_interval() {
     let tracker = model(TrackerConfig::fastrak());
     let report = tracker.reports(&HEAD, 0).nth(432_000).unwrap();
     assert_eq!(report.measured_ps, 3600 * PS_PER_S + 1_750_000_000);

@@ -34,7 +34,7 @@ fn error(
 }
 
 #[test]
-fn on_a_still_head_a_tuned_filter_is_no_worse_than_none() {
+fn on_a_still_head_a_tuned_filter_has_no_greater_error_than_no_prediction() {
     let still = Still(Pose::IDENTITY);
     for tracker in [model(TrackerConfig::optical_ceiling()), model(TrackerConfig::fastrak())] {
         for interval_ps in [50, 100, 145, 250].map(|ms| ms * PS_PER_MS) {
@@ -173,7 +173,7 @@ fn of_differences(order: u32, w: f64, h: f64, p: f64) -> Complex {
 }
 
 #[test]
-fn errors_on_sine_waves_are_the_closed_forms() {
+fn prediction_errors_on_sine_waves_follow_the_closed_forms() {
     let tracker = model(TrackerConfig::ideal());
     let h = 1e-3;
     // With 1,000 samples a second, the greatest error is found with a relative accuracy of (pi f / 1000)^2 / 2.
@@ -210,7 +210,7 @@ fn errors_on_sine_waves_are_the_closed_forms() {
 }
 
 #[test]
-fn growth_of_the_error_with_the_interval_is_reported_beside_azumas() {
+fn the_growth_of_prediction_errors_with_the_interval_is_near_azumas_growth() {
     // Azuma's errors at 100 and 200 ms are 2.3 and 9 times the error at 50 ms. Recorded traces behind a
     // constant-velocity filter have 2.7 and 7.1. The motion here is another one, so a quarter more or less than both is
     // allowed. The filter that is tuned once has the same limits.

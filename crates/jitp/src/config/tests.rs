@@ -37,7 +37,7 @@ fn blocks(block: u32) -> JitpConfig {
 }
 
 #[test]
-fn strip_sizes_fit_the_renderer() {
+fn strips_and_blocks_outside_the_limits_are_refused() {
     let refusal = |config: JitpConfig| config.check().expect_err("refused").to_string();
     for rows in [1, 128] {
         assert_eq!(strips(rows).check(), Ok(()));
@@ -134,7 +134,7 @@ fn strips_and_fields_have_the_times_of_their_first_pixels() {
 }
 
 #[test]
-fn strips_are_ordered_one_strip_time_ahead_for_each_slave_and_never_over_scanned_rows() {
+fn the_lead_of_strip_orders_grows_with_the_slaves_and_never_reaches_lines_still_to_be_scanned() {
     let margin = 1_000;
     let lead = |slaves: u16, strip_rows: u32, racing: bool| {
         config(DrawingSchedule::Beam { viewpoint: Viewpoint::Strip, racing, strip_rows }, slaves).lead(racing)

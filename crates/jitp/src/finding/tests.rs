@@ -300,7 +300,7 @@ fn code_selects_the_same_primitives_in_blocks_as_the_native_firmware() {
 
 /// Tests more windows than a table holds, and a region with more commands than a message holds.
 #[test]
-fn many_windows_need_several_passes_and_many_entries_several_messages() {
+fn many_windows_need_several_passes_and_a_region_with_many_entries_needs_several_messages() {
     let mut scene = Scene::new(&blocks(128), CodeVersion::Compiled, 5, [3_000, 100]);
     let all = scene.all_regions();
     assert!(scene.search(&all).messages.iter().all(|messages| *messages > 1));
@@ -363,7 +363,7 @@ fn the_counts_of_a_strip_between_two_views_equal_the_drawn_primitives() {
 
 /// Tests that the time of a strip between two views is the time of the interpolation plus the time of the search.
 #[test]
-fn code_of_a_strip_between_two_views_takes_the_sum_of_both_parts() {
+fn a_strip_between_two_views_takes_the_time_of_interpolation_plus_the_time_of_the_search() {
     let spans = [false, true].map(|is_one_work| {
         let config = strips(8);
         let mut scene = Scene::new(&config, CodeVersion::Compiled, 80, [150, 10]);

@@ -329,7 +329,8 @@ fn conservation(text: &mut String, all: &Experiments) {
     }
     let _ = write!(
         text,
-        "\nThe printed numbers violate the constraint of equal sums, so the two columns do not describe the same set of sections.\n\
+        "\nThe printed numbers violate the first constraint, because the sums of the two columns differ. So the two columns do not\n\
+         describe the same set of sections.\n\
          The printed saving of draws is 31.3 %. One part of the saving of draws comes from {:.0} missing sections. The other part of\n\
          the saving of draws is the saving for each section. With segmentation, a section needs {with:.1} draws per second. Without\n\
          segmentation, a section needs {without:.1}, so the saving is {:.1} %. Three of the four numbers of a column are independent,\n\

@@ -55,7 +55,7 @@ mod tests {
 
     /// Tests that paper/paper.bib begins with the output of `pxpl5 cite --format bibtex`.
     #[test]
-    fn the_bibliography_of_the_paper_begins_with_these_entries() {
+    fn the_bibliography_of_the_paper_begins_with_the_output_of_cite() {
         let paper = include_str!("../../../../paper/paper.bib");
         assert!(
             paper.starts_with(&entries()),

@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn every_form_of_the_help_is_understood() {
+    fn every_debugger_command_in_the_help_is_parsed() {
         let examples = [
             ("run", Command::RunToEnd),
             ("run to +1us", Command::RunTo(Time(1_000_007))),

@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn boards_are_read_in_one_word_or_two() {
+    fn the_name_of_a_board_may_be_one_word_or_two_words() {
         assert_eq!(board(&["gp", "3", "0x10"]), Ok((Board::Gp(3), &["0x10"][..])));
         assert_eq!(board(&["gp3", "0x10"]), Ok((Board::Gp(3), &["0x10"][..])));
         assert_eq!(board(&["ring"]), Ok((Board::Ring, &[][..])));

@@ -52,7 +52,7 @@ fn is_temporary(name: &OsStr) -> bool {
     })
 }
 
-/// Removes temporary files that no process has locked. Their processes have ended.
+/// Removes the temporary files of processes that have ended. No process holds a lock on such a file.
 ///
 /// The folder must be locked during the call. Otherwise, another process may have created a file and not yet locked the
 /// file, or may be replacing files.

@@ -56,8 +56,8 @@ pub(super) struct SettingOptions {
     /// Slices that are drawn: each slice, or mirror (half of the slices, beyond the paper); default each.
     #[arg(long, value_name = "STROBES")]
     strobes: Option<String>,
-    /// Renderer of the volume: host or pixel-planes; default host. pixel-planes is beyond the paper, and supports only
-    /// the hyperbolic clip and the orthographic projection.
+    /// Renderer of the volume: host or pixel-planes; default host. The SpatialGL paper does not describe the renderer
+    /// pixel-planes, which supports only the hyperbolic clip and the orthographic projection.
     #[arg(long, value_name = "RENDERER")]
     on: Option<String>,
     /// Set any number or choice by its path, such as display.slices=200, clip.bias_px2=1, tile.size=16 or

@@ -6,6 +6,7 @@ use super::measure::{Row, SUBPIXEL_BITS, measure};
 use super::spheres::{self, SphereCase, SphereRow};
 use pxpl5_geometry::SetupStats;
 use std::fmt::Write;
+use std::thread::ScopedJoinHandle;
 
 const HEAD: &str = include_str!("numerics_head.md");
 const FORMATS: &str = include_str!("numerics_formats.md");
@@ -107,13 +108,27 @@ pub struct Measured {
 }
 
 impl Measured {
+    /// Measures all cases, with one thread for each case.
     pub fn all() -> Self {
-        Self {
-            triangles: cases::all().into_iter().map(|case| (case.clone(), measure(&case))).collect(),
-            spheres: spheres::all().into_iter().map(|case| (case.clone(), spheres::measure(&case))).collect(),
-            fights: fighting::all(),
-        }
+        std::thread::scope(|scope| {
+            let fights = scope.spawn(fighting::all);
+            let triangles: Vec<_> =
+                cases::all().into_iter().map(|case| scope.spawn(move || (case.clone(), measure(&case)))).collect();
+            let spheres: Vec<_> = spheres::all()
+                .into_iter()
+                .map(|case| scope.spawn(move || (case.clone(), spheres::measure(&case))))
+                .collect();
+            Self {
+                triangles: joined(triangles),
+                spheres: joined(spheres),
+                fights: fights.join().expect("no measurement panics"),
+            }
+        })
     }
+}
+
+fn joined<T>(threads: Vec<ScopedJoinHandle<'_, T>>) -> Vec<T> {
+    threads.into_iter().map(|thread| thread.join().expect("no measurement panics")).collect()
 }
 
 /// Returns the whole text of docs/numerics.md.

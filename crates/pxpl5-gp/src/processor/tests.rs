@@ -41,7 +41,7 @@ fn an_endless_loop_ends_with_its_budget() {
 }
 
 #[test]
-fn loading_a_program_again_undoes_its_changes_to_itself() {
+fn loading_a_program_again_restores_words_that_the_program_has_overwritten() {
     let mut processor = processor();
     // Stores the word at `other` over the word at `here`, and executes `here` afterwards.
     let changing = program(
@@ -82,7 +82,7 @@ fn the_ring_window_is_not_cached() {
 }
 
 #[test]
-fn versions_have_the_names_of_experiment_files() {
+fn code_versions_have_the_names_used_in_experiment_files() {
     let versions = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
     assert_eq!(versions.map(CodeVersion::name), ["unoptimised", "compiled", "scheduled"]);
     assert!(format!("{:?}", processor()).contains("Scheduled"));
@@ -134,7 +134,7 @@ fn writing_over_a_program_changes_the_program() {
 
 /// Tests that breakpoints are recorded, and that they change neither the time of a call nor its limit of instructions.
 #[test]
-fn a_watched_call_takes_the_same_time_and_the_same_budget() {
+fn breakpoints_change_neither_the_time_nor_the_instruction_limit_of_a_call() {
     let turns = program("start: nop\nagain: adds -1, r16, r16\n btne r0, r16, again\n bri r1\n nop");
     for budget in 1..12 {
         let [mut alone, mut watched] = [processor(), processor()];

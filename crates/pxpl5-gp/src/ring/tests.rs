@@ -147,7 +147,7 @@ fn a_message_is_received_whole_and_its_buffer_is_freed() {
 }
 
 #[test]
-fn a_wrong_length_or_kind_is_refused_and_the_next_message_is_received() {
+fn a_message_with_a_wrong_length_or_kind_is_refused_and_the_next_message_is_received() {
     let mut processor = board();
     for (header, wrong) in [
         (0, 1),

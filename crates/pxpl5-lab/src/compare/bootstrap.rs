@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_are_longer_for_a_series_with_longer_memory() {
+    fn the_blocks_of_the_bootstrap_are_longer_for_a_series_with_longer_correlation() {
         let [short, long] =
             [0.0, 0.9].map(|phi| BlockBootstrap::of(&ar1(phi, 1_000, 5)).expect("long").size().block_fields);
         assert!(short <= 5 && long >= 3 * short, "{short}, {long}");

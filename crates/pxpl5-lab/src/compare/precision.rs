@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn the_width_covers_the_whole_interval() {
+    fn the_precision_of_a_result_limits_the_whole_width_of_its_interval() {
         assert!(TENTH.is_reached(&error(0.5)) && !TENTH.is_reached(&error(0.51)));
         let pixels = UntilPrecise { width: Precision::Pixels(0.2), max_seeds: 50 };
         assert!(pixels.is_reached(&error(0.0999)) && !pixels.is_reached(&error(0.11)));
@@ -114,7 +114,7 @@ mod tests {
     /// Tests the number of further seeds. If an interval from 5 seeds is 1.2 times too wide, 1.44 times as many seeds
     /// are needed: 7.2, rounded up to 8.
     #[test]
-    fn seeds_grow_with_the_square_of_the_width_and_at_most_double() {
+    fn the_number_of_seeds_grows_with_the_square_of_the_width_and_at_most_doubles() {
         assert_eq!(TENTH.seeds_to_add(&error(0.6), 5), 3);
         assert_eq!(TENTH.seeds_to_add(&error(60.0), 5), 5);
         assert_eq!(TENTH.seeds_to_add(&error(60.0), 40), 10);

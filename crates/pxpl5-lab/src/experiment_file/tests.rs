@@ -134,7 +134,7 @@ fn the_fingerprint_covers_every_setting_that_changes_the_result() {
 }
 
 #[test]
-fn a_motion_is_centred_on_the_scene() {
+fn an_orbit_keeps_its_distance_from_the_centre_of_the_scene() {
     let scene = plan(&format!("{RC}head.path = \"orbit\"\nhead.distance = 3")).load_scene().expect("built in");
     let (centre, _) = scene.bounding_sphere();
     for time_ps in [0, 1_000_000_000_000, 2_500_000_000_000] {
@@ -145,7 +145,7 @@ fn a_motion_is_centred_on_the_scene() {
 }
 
 #[test]
-fn former_names_of_keys_mean_the_same_and_are_noted() {
+fn a_former_key_has_the_effect_of_the_new_key_and_causes_a_note() {
     let former = plan(&format!("{RC}[motion]\npath = \"orbit\"\nsway = 0.5\n"));
     assert_eq!(former, plan(&format!("{RC}[head]\npath = \"orbit\"\nsway = 0.5\n")));
     let notes = former.warnings();
@@ -209,7 +209,7 @@ fn one_more(value: pxpl5_sim::parameters::Value) -> u64 {
 }
 
 #[test]
-fn another_recording_of_the_same_name_is_another_experiment() {
+fn two_recordings_with_the_same_name_and_different_poses_give_different_experiments() {
     let folder = std::env::temp_dir().join(format!("pxpl5-recording-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("writable");
     let text = format!("{RC}head.motion = \"head.csv\"\n");

@@ -110,8 +110,8 @@ impl Applications {
     }
 
     /// Returns the measurements with the pendulum rig. `kept` is the number of regions that a backing store holds. The
-    /// first request performs the measurements with `make`. The boolean of `make` is true if a backing store was full
-    /// at some time of the run.
+    /// first request performs the measurements with `make`. `make` returns the measurements and a boolean. The boolean
+    /// is true if a backing store was full at some time of the run.
     pub(super) fn rig(
         &self,
         key: RigKey,
@@ -121,8 +121,8 @@ impl Applications {
         self.rigs.get(key, kept, make)
     }
 
-    /// Returns the summary of an experiment. The first request runs the experiment with `make`. The boolean of `make`
-    /// is true if a backing store may have been full.
+    /// Returns the summary of an experiment. The first request runs the experiment with `make`. `make` returns the
+    /// summary and a boolean. The boolean is true if a backing store may have been full.
     pub(super) fn summary(
         &self,
         (key, capacity): (String, u64),

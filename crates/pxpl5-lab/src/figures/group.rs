@@ -94,8 +94,11 @@ impl Measurement {
 
     /// Returns the minimum and maximum of the figure if one parameter at a time is set to each end of its range. The
     /// value `nominal` for the presets is included, and also replaces the result of a failed experiment. Returns `None`
-    /// if no parameter varies.
+    /// if no parameter varies, or if `bench` leaves out intervals.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
+        if !bench.intervals {
+            return None;
+        }
         let all = variations().into_iter().chain(photodiode_line());
         let moved = all.filter(|variation| self.moved_by.contains(&variation.path.as_str()));
         // Each parameter is set to the low and to the high end of its range.

@@ -1,5 +1,5 @@
-//! Figures of the paper on just-in-time pixels (JITP, by Mine and Bishop): errors while the head turns, the duration of
-//! a line, the number of transforms, and the pictures of an edge.
+//! Figures of the paper on just-in-time pixels (JITP, by Mine and Bishop). The figures are errors while the head turns,
+//! the duration of a line, the number of transforms, and the pictures of an edge.
 
 use super::Bench;
 use super::group::{Measurement, free};
@@ -21,9 +21,9 @@ pub(super) const TITLE: &str = "Just-in-time pixels";
 pub(super) const ABOUT: &str = "The head turns by 200 degrees a second, and the view is 60 degrees wide (JITP). The tracker has \
 no error and no delay. So the only cause of errors is the time between the instant for which a pixel is drawn and the instant at \
 which it lights. The error of a pixel is the angle between two directions: the direction that the pixel shows, and the direction \
-that it should show when it lights. The unit of the error is a pixel of the paper JITP, with 600 pixels over 60 degrees. A field \
-or line lasts longer than its lit pixels, because a field and a line also include a retrace. Like the paper, the model scales \
-each angle to the whole time of the field or line.";
+that it should show when it lights. Errors in pixels use the pixel size of the paper JITP: 600 pixels cover 60 degrees, so a \
+pixel is 0.1 degrees. A field or line lasts longer than its lit pixels, because a field and a line also include a retrace. \
+Like the paper, the model scales each angle to the whole time of the field or line.";
 
 /// Degrees per second of a fast turn of the head, published in the paper on just-in-time pixels.
 const PAN: f64 = 200.0;

@@ -39,6 +39,8 @@ pub struct Bench {
     pub frames: u64,
     /// Answers to the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
+    /// True if the figures' intervals are computed too. The intervals take half of the time of all measurements.
+    pub intervals: bool,
     /// Flag with which another thread stops the measurements.
     pub stop: StopFlag,
     pub(crate) applications: Arc<Applications>,
@@ -69,6 +71,7 @@ impl Bench {
             seeds: 10,
             frames: 150,
             reading: Reading::USUAL,
+            intervals: true,
             stop: StopFlag::default(),
             applications: Arc::default(),
         }
@@ -78,6 +81,12 @@ impl Bench {
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
         Self { seeds, frames, ..self }
+    }
+
+    /// Returns the same settings without intervals of the figures.
+    #[must_use]
+    pub fn without_intervals(self) -> Self {
+        Self { intervals: false, ..self }
     }
 
     /// Returns the same settings with the flag `stop`, with which another thread stops the measurements.

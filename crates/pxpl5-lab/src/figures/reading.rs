@@ -181,7 +181,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn every_combination_occurs_once_and_the_usual_one_is_among_them() {
+    fn every_combination_of_answers_is_one_interpretation_and_the_usual_interpretation_is_in_the_list() {
         let all = Reading::all();
         assert_eq!(all.len(), 4 * 2 * 2 * 4 * 2 * 2 * 2);
         assert_eq!(all.iter().collect::<BTreeSet<_>>().len(), all.len());
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_neighbour_answers_one_question_differently() {
+    fn a_neighbouring_interpretation_differs_in_the_answer_to_one_question() {
         // The neighbours are three other machines, three other numbers of regions, and the other answer to each of five
         // questions.
         assert_eq!(Reading::USUAL.neighbours().len(), 3 + 3 + 5);

@@ -285,5 +285,5 @@ pub const FIGURES: [Figure; 26] = [
 ];
 
 /// Figures without a closed form: a property of the scenes, and figures that need a tracker or a motion. These figures
-/// are always simulated with events, and no parameter varies.
+/// are always simulated with events. The intervals at the analytic level omit these figures.
 pub const WITHOUT_CLOSED_FORM: [&str; 5] = ["8", "17", "18", "19", "19b"];

@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_spread_has_the_middle_and_the_ends_of_its_values() {
+    fn a_spread_has_the_median_and_the_5th_and_95th_percentiles_of_its_values() {
         let spread = Spread::of((0..=20).rev().map(f64::from).collect()).expect("there are some");
         assert_eq!(spread, Spread { median: 10.0, low_5: 1.0, high_95: 19.0 });
         assert_eq!(Spread::of(vec![7.0, 8.0]).map(|spread| spread.median), Some(7.5));

@@ -324,8 +324,8 @@ fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
 /// leave up to 5 % of a short run idle.
 const FULL: f64 = 0.95;
 
-/// Returns the limiting resource of a run in words: a board that is always busy, or the resource with the longest wait
-/// in the latency if no board is always busy.
+/// Returns the limiting resource of a run in words. This resource is a board that is always busy. If no board is always
+/// busy, it is the resource with the longest wait in the latency.
 fn because(outcome: &Outcome) -> Option<String> {
     let Utilisation { renderers, gps, ports, ring, .. } = Utilisation::of(outcome.record())?;
     let (renderer, gp) = (("renderer", renderers.executing), ("GP", gps.busy));
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn real_numbers_go_in_equal_steps_to_the_end() {
+    fn real_numbers_advance_in_equal_steps_to_the_end_of_the_range() {
         let values = Values::real(0.0, 16.0).expect("a range");
         assert_eq!((values.value(1), values.last(), values.text(0.25)), (0.25, 16.0, "0.25".to_owned()));
         assert_eq!(Values::real(1.0, 1.0), None);

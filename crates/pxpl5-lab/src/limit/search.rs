@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_monotone_limit_is_found_exactly() {
+    fn the_search_finds_a_limit_without_islands_exactly() {
         for limit in [0, 1, 2, 63, 110, 4_096, 900_000] {
             let found = of(CEILING, |size| size <= limit);
             assert_eq!((found.triangles, found.first_miss, found.island), (limit, Some(limit + 1), None));
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn the_answer_lies_below_an_island() {
+    fn a_search_returns_the_largest_size_below_the_misses_and_not_an_island_above() {
         // The sizes 796 to 806 miss the goal because of an almost empty clump. The size 807 reaches the goal.
         for near in [None, Some(700), Some(807), Some(900)] {
             let hints = Hints { near, ..Hints::default() };
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_far_below_is_found_where_another_model_doubts_it() {
+    fn a_single_missed_size_is_found_if_a_hint_names_it_as_doubtful() {
         let reached = |size: u32| size <= 800 && size != 421;
         assert_eq!(of(CEILING, reached).triangles, 800);
         let hints = Hints { near: Some(800), doubtful: vec![421] };

@@ -160,7 +160,7 @@ mod tests {
     };
 
     #[test]
-    fn the_printed_fit_is_the_likeliest_and_a_zero_deviation_explains_nothing() {
+    fn the_likelihood_of_a_figure_follows_from_its_error_and_three_deviations() {
         assert_eq!(EXACT.log_likelihood(), 0.0);
         let off = FigureFit { simulated: 4.2, error_percent: 5.0, ..EXACT };
         // The error of 0.2 is divided by three deviations: 0.5 / sqrt(87), a fiftieth of 4, and half of a hundredth.
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn an_omitted_figure_does_not_count() {
+    fn an_omitted_figure_does_not_change_the_mean_error() {
         let figures = [EXACT, FigureFit { id: "3", error_percent: -20.0, ..EXACT }];
         assert_eq!((mean_without(&figures, None), mean_without(&figures, Some("3"))), (10.0, 0.0));
     }

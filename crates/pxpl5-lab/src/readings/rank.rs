@@ -9,7 +9,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Prediction of a figure by the interpretation that fits all other figures best (cross-validation).
+/// Test of the interpretations on one published figure (leave-one-out cross-validation).
+///
+/// An interpretation is a set of answers to the questions that the papers leave open. The interpretation that fits all
+/// other published figures best predicts the value of this figure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeaveOneOut {
     /// Number of the figure in ACCURACY.md.

@@ -48,7 +48,7 @@ fn the_points_are_all_combinations_each_once_and_the_last_axis_changes_fastest()
 }
 
 #[test]
-fn settings_taken_together_are_one_axis() {
+fn settings_in_the_table_together_form_one_axis_of_a_sweep() {
     let sweep = sweep("[sweep.together]\nmachine.n_gps = [1, 2]\nmachine.n_renderers = [5, 10]\n");
     let plans: Vec<_> = (0..2).map(|point| sweep.plan(point).expect("valid").machine).collect();
     assert_eq!((plans[0].n_gps, plans[0].n_renderers, plans[1].n_gps, plans[1].n_renderers), (1, 5, 2, 10));
@@ -188,7 +188,7 @@ fn only_one_process_may_write_into_a_folder() {
 }
 
 #[test]
-fn files_named_by_a_sweep_are_beside_it_in_axes_too() {
+fn files_named_in_a_sweep_file_or_in_its_axes_are_found_beside_the_sweep_file() {
     let place = folder("relative");
     std::fs::create_dir_all(&place).expect("a folder");
     let poses = "time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n9,0,0,0,1,0,0,0\n";
@@ -211,7 +211,7 @@ fn files_named_by_a_sweep_are_beside_it_in_axes_too() {
 /// Tests that a sweep stores ranges and not their values. An earlier version stored the values, and needed 9 GB for 13
 /// axes of ten million values.
 #[test]
-fn a_space_of_any_size_takes_no_memory_for_its_values() {
+fn a_sweep_stores_ranges_without_memory_for_each_value() {
     let keys = [
         "gp.triangle_ns",
         "gp.message_ns",
@@ -235,7 +235,7 @@ fn a_space_of_any_size_takes_no_memory_for_its_values() {
 }
 
 #[test]
-fn ranges_may_go_together_with_lists() {
+fn a_range_and_a_list_can_form_one_axis() {
     let sweep = sweep("[sweep.together]\nseed = { from = 3, to = 7, step = 2 }\ntriangles = [4, 2, 1]\n");
     let seeds: Vec<_> = (0..3).map(|point| sweep.space().settings(point)["seed"].as_integer()).collect();
     assert_eq!(seeds, [Some(3), Some(5), Some(7)]);
@@ -289,7 +289,7 @@ fn hash_in(place: &Path, text: &str) -> String {
 }
 
 #[test]
-fn editing_a_model_makes_another_sweep() {
+fn editing_the_model_file_changes_the_hash_of_a_sweep() {
     let place = folder("edited");
     std::fs::create_dir_all(&place).expect("a folder");
     let model = |x: i32| {
@@ -308,7 +308,7 @@ fn editing_a_model_makes_another_sweep() {
 /// Tests that a change of a glTF scene's binary file changes the hash of a sweep, although the glTF file stays the
 /// same. A build without the glTF reader cannot read the scene and keeps the hash.
 #[test]
-fn editing_the_buffer_of_a_model_makes_another_sweep() {
+fn editing_the_buffer_file_of_a_model_changes_the_hash_of_a_sweep() {
     let place = folder("buffer");
     std::fs::create_dir_all(&place).expect("a folder");
     let triangle = r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"m.bin"}],

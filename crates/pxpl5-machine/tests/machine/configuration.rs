@@ -112,7 +112,7 @@ fn parameters_of_firmware_are_stored_once_and_found_by_type() {
 /// Names of experiments depend on the parameters of the machine. Parameters of firmware and of the i860 were added
 /// later. They appear in a name only if they were changed.
 #[test]
-fn machines_are_distinguished_by_parameters_that_differ() {
+fn the_identity_of_a_machine_includes_later_parameters_only_if_they_were_changed() {
     let telling = |config: &MachineConfig| -> Vec<String> {
         config.identifying_parameters().into_iter().map(|parameter| parameter.path).collect()
     };
@@ -135,7 +135,7 @@ fn machines_are_distinguished_by_parameters_that_differ() {
 }
 
 #[test]
-fn machines_are_the_same_where_nothing_differs() {
+fn two_machines_are_equal_only_if_no_board_parameter_or_display_differs() {
     let screen = |name| ScreenConfig { name, ..ScreenConfig::new(1) };
     let base = config(vec![Box::new(screen("one"))]);
     assert_eq!(base, base.clone());
@@ -196,7 +196,7 @@ fn tables_are_listed_with_their_prefix() {
 
 /// NTSC has 525 lines of 63.5556 us in two fields, which gives 59.94 fields per second.
 #[test]
-fn the_period_is_that_of_the_first_display() {
+fn the_period_of_a_machine_is_the_period_of_its_first_display() {
     let field = usual().period().expect("it can be built");
     assert!((field.as_ms() - 1001.0 / 60.0).abs() < 1e-3, "{field:?}");
     let mut other = ScreenConfig::new(1);

@@ -72,7 +72,7 @@ fn each_message_of_a_chain_requests_its_own_channel() {
 
 /// Two messages of one board leave its port one after the other.
 #[test]
-fn a_message_that_leaves_later_requests_its_channel_later() {
+fn the_second_message_of_a_board_requests_a_channel_after_the_first_message_is_accepted() {
     let mut machine = machine();
     load_sender(&mut machine, FIRST_GP, vec![(SECOND_GP, 1, words(&[1])), (SECOND_GP, 1, words(&[2]))]);
     machine.switch_on();

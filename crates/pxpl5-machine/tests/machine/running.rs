@@ -197,7 +197,7 @@ fn shuffled(seed: Option<u64>) -> (TraceHash, Vec<Board>) {
 }
 
 #[test]
-fn another_order_of_simultaneous_events_changes_nothing_else() {
+fn the_order_of_simultaneous_events_does_not_change_the_trace() {
     let (hash, first) = shuffled(None);
     // The first processor is polled twice, because it received the retrace.
     assert_eq!(first[..3], [Board::Host, Board::Gp(0), Board::Gp(1)], "in the order of their ports");
@@ -233,7 +233,7 @@ fn traces_differ_if_a_message_differs_in_content_time_or_receiver() {
 
 /// The pixels of a region are computed once, although sixteen messages carry them.
 #[test]
-fn a_worker_computes_every_region_that_is_copied_once() {
+fn a_worker_computes_the_pixels_of_a_copied_region_only_once() {
     for computes in [false, true] {
         let mut machine = machine();
         if computes {

@@ -36,7 +36,7 @@ fn programs_that_wait_for_ever_are_a_deadlock_after_the_stated_periods() {
 }
 
 #[test]
-fn retrace_waits_and_machines_without_programs_are_no_deadlock() {
+fn a_program_that_waits_for_retraces_and_a_machine_without_programs_are_no_deadlock() {
     for waits in [false, true] {
         let mut machine = machine();
         if waits {

@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn the_trees_deliver_a_linear_expression_bit_by_bit() {
+    fn the_expression_trees_deliver_the_bits_of_a_linear_expression() {
         let e = Linear { a: -123_456, b: 987_654, c: i32::MAX };
         for (x, y) in [(0, 0), (127, 0), (0, 127), (127, 127), (64, 63), (93, 42)] {
             let expected = i64::from(e.at(x, y));
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn the_trees_deliver_a_quadratic_expression_bit_by_bit() {
+    fn the_expression_trees_deliver_the_bits_of_a_quadratic_expression() {
         let q =
             Quadratic { xx: -70_001, xy: 1 << 33, yy: -65_537, x: 123_456_789, y: -987_654_321, one: -(1 << 40) + 17 };
         for (x, y) in [(0, 0), (127, 0), (0, 127), (127, 127), (64, 63), (93, 42)] {

@@ -78,8 +78,8 @@ pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     tile
 }
 
-/// Returns the place of the first pixel of row `y` of tile `number` in a bit plane of the array: the index of a word,
-/// and the index of a bit in this word.
+/// Returns the place of the first pixel of row `y` of tile `number` in a bit plane of the array. The place is the index
+/// of a word, and the index of a bit in this word.
 const fn place(number: usize, y: usize) -> (usize, usize) {
     let [left, top] = origin(number);
     (2 * (top + y) + left / 64, left % 64)

@@ -202,7 +202,7 @@ fn the_timing_table_holds_the_clocks_of_the_programs() {
 }
 
 #[test]
-fn the_clocks_of_a_triangle_are_those_of_its_formats() {
+fn the_clocks_of_a_triangle_are_the_sum_over_its_instructions() {
     let program = Command::Triangle(TriangleCommand::default()).program(&phong()).unwrap();
     let bits: Vec<_> = program.iter().map(ArrayInstruction::bit_clocks).collect();
     assert_eq!(bits, [2, 32, 32, 32, 32, 32, 20, 20, 20]);
@@ -286,7 +286,7 @@ fn shading_takes_95_microseconds() {
 }
 
 #[test]
-fn clearing_takes_two_constants() {
+fn the_clear_command_takes_the_time_of_two_constants() {
     assert_eq!(clocks(CommandKind::Clear), 2 + 24 + 24 + 3 * SET_UP_CLOCKS);
 }
 
@@ -299,7 +299,7 @@ fn a_command_that_does_not_fit_the_layout_is_refused_with_the_missing_field() {
 }
 
 #[test]
-fn a_label_on_another_program_is_not_a_command() {
+fn a_command_label_on_the_words_of_another_program_is_refused() {
     let mut words = Vec::new();
     Command::Triangle(TriangleCommand::default()).encode(&phong(), &mut words).unwrap();
     words[13] ^= 1;
@@ -318,7 +318,7 @@ fn an_unknown_label_is_named() {
 /// Tests the scratch memory that a sphere needs: for the root, and for the wider of the depth and the root's square.
 /// The root has 12 bits, or 10 bits if the scratch memory has fewer than 36 bits.
 #[test]
-fn spheres_need_room_for_a_root_and_the_wider_of_depth_and_square() {
+fn a_sphere_needs_scratch_memory_for_its_root_and_the_wider_of_depth_and_squared_root() {
     for z in 8..=24 {
         for scratch in 20..=40 {
             let z_field = Operand::context(24, z);

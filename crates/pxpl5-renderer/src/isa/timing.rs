@@ -126,7 +126,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_twelve_bit_root_takes_the_sum_of_its_digits() {
+    fn a_root_of_twelve_bits_takes_the_sum_of_the_clocks_of_its_digits() {
         let digits: u32 = (0..12).map(|j| if j == 0 { 2 } else { j + 3 }).sum();
         assert_eq!(square_root_clocks(12), 2 * digits);
         assert_eq!(square_root_clocks(1), 4);

@@ -343,7 +343,7 @@ mod tests {
     /// Tests that the bounds of a triangle contain no pixel outside the triangle. The bounds normally include a small
     /// margin. The corners are integers, so the margin contains no pixel.
     #[test]
-    fn bounds_end_at_the_triangle() {
+    fn the_bounds_of_a_triangle_contain_no_pixel_outside_the_triangle() {
         let mut random = Random::new(6);
         let mut rows_of_their_own = 0;
         for (corners, edges) in (0..3000).filter_map(|_| triangle(&mut random)) {

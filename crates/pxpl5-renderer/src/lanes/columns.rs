@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_cover_every_bit_once_in_every_layout() {
+    fn the_columns_of_pixel_memory_cover_every_bit_once_in_every_layout() {
         let layouts = [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()];
         for layout in layouts {
             let columns = PixelColumns::new(&layout).columns;

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pixel_inside_is_within_the_bounds() {
+    fn every_pixel_inside_an_ellipse_is_within_the_bounds() {
         let mut random = Random::new(9);
         let mut inside = 0;
         for _ in 0..1000 {
@@ -165,7 +165,7 @@ mod tests {
     /// Tests that the columns of an ellipse contain no pixel outside the ellipse. The coefficients are small integers,
     /// so the margin around the ellipse contains no pixel.
     #[test]
-    fn the_bounds_of_columns_end_at_the_ellipse() {
+    fn the_columns_of_an_ellipse_contain_no_pixel_outside_the_ellipse() {
         let mut random = Random::new(10);
         for _ in 0..1000 {
             let [x, y] = [(); 2].map(|()| random.between(-40, 170));

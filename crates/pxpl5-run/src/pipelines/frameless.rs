@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn simultaneous_arrivals_count_in_any_order() {
+    fn the_order_of_simultaneous_arrivals_does_not_change_the_last_block_of_a_pass() {
         let [a, b, c] = [block(20, 7, 90), block(20, 9, 100), block(21, 4, 100)];
         for order in [[a, b, c], [a, c, b], [b, a, c], [b, c, a], [c, a, b], [c, b, a]] {
             let last = last_blocks(&order);

@@ -103,7 +103,7 @@ fn cells_drawn_from_one_position_equal_the_uncut_drawing() {
 }
 
 #[test]
-fn with_cells_too_slow_memories_miss_first_and_turning_does_not_suffer() {
+fn with_cells_and_slow_renderers_slow_memories_miss_first_and_rotation_keeps_its_latency() {
     let outcomes = [40_000_000, 1_000_000].map(|clock_hz| walk(CELLS, clock_hz));
     outcomes.iter().for_each(|outcome| assert_no_faults(outcome.record()));
     assert_eq!(outcomes[0].rotation_latencies(), outcomes[1].rotation_latencies());
@@ -140,7 +140,7 @@ fn torn(outcome: &Outcome) -> usize {
 /// A memory that begins 6 m away may be wrong by 3 degrees, which is 8.5 texels. The papers' angle, half a texel, would
 /// be visible in few fields.
 #[test]
-fn segments_tear_without_warping_and_meet_with_it() {
+fn segments_have_gaps_without_warping_and_no_gaps_with_warping() {
     let plain = along_the_wall(CELLS, 3.0);
     let warped = along_the_wall(WARPED, 3.0);
     [&plain, &warped].into_iter().for_each(|outcome| assert_no_faults(outcome.record()));
@@ -213,7 +213,7 @@ fn a_flat_wall_has_one_colour_on_all_faces() {
 
 /// The default length of the falloff is the side of a cell, so the side can be changed alone.
 #[test]
-fn the_falloff_follows_the_side_of_a_cell() {
+fn the_default_length_of_the_falloff_is_the_side_of_a_cell() {
     for cell_m in [1.0, 2.0, 9.0] {
         let mut config = machine("small-hmd", WARPED, &[("arp.face_texels", 128)]);
         config.set("priority.cell_m", cell_m).expect("a number of the policy");

@@ -71,7 +71,7 @@ fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
 }
 
 #[test]
-fn the_latency_of_a_turn_is_that_of_faces_drawn_by_the_machine() {
+fn the_rotation_latency_is_the_same_with_ideal_faces_and_with_faces_drawn_by_the_machine() {
     for latch in [Latch::Field, Latch::Line, Latch::Pixel] {
         let turns = [FULL, IDEAL].map(|pipeline| {
             let pipeline = FacePipeline { latch, ..pipeline };

@@ -62,7 +62,7 @@ fn assert_no_faults(record: &Record) {
 
 /// Experiment E1: the latency of rotation does not depend on the number of triangles in a ball.
 #[test]
-fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
+fn the_rotation_latency_does_not_depend_on_the_number_of_triangles() {
     let run = |pipeline: FacePipeline, n: usize| {
         let scene = builtin(&format!("sphere:{n}")).expect("even");
         let config = machine("small-hmd", pipeline, &[]);
@@ -98,7 +98,7 @@ fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
 
 /// Second half of experiment E1: under Rendering Control, the latency of rotation grows with the drawing time.
 #[test]
-fn under_rendering_control_the_latency_of_a_turn_grows_with_what_is_drawn() {
+fn under_rendering_control_the_rotation_latency_grows_with_the_number_of_triangles() {
     let latency = |n: usize| {
         let scene = builtin(&format!("sphere:{n}")).expect("even");
         let fields = if n > 10_000 { 240 } else { 60 };
@@ -185,7 +185,7 @@ fn missed(outcome: &Outcome) -> [f64; 4] {
 /// Experiment E8: if renderers are too slow, the memories that are drawn least often are the first to miss their
 /// retraces. Rotation keeps its latency.
 #[test]
-fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suffer() {
+fn with_slow_renderers_slow_memories_miss_first_and_rotation_keeps_its_latency() {
     let outcomes = [40_000_000, 2_000_000, 1_000_000, 500_000].map(|clock_hz| walk(OBJECTS, clock_hz));
     let misses = outcomes.each_ref().map(missed);
     for outcome in &outcomes {
@@ -304,7 +304,7 @@ fn compare_face(scene: &Scene, eye: DVec3, time: Time, faces: &FaceSet, face: Cu
 
 /// Every displayed face must equal a redraw from the position for which the face was drawn.
 #[test]
-fn the_machines_faces_are_those_of_an_ideal_renderer() {
+fn the_faces_drawn_by_the_machine_equal_the_faces_of_an_ideal_renderer() {
     for (name, faces_with_something) in [("mig", 1), ("room", 6)] {
         let scene = builtin(name).expect("built in");
         let config = machine("small-hmd", FULL, &[]);

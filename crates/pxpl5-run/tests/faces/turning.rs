@@ -8,7 +8,7 @@ use tracking::motion::{Pan, Still};
 
 /// With the eye at rest, a ball that is far enough away is drawn once, into the slowest memory. Memory 0 stays empty.
 #[test]
-fn an_empty_memory_0_has_a_new_picture_at_every_retrace() {
+fn with_an_empty_memory_0_every_retrace_counts_as_a_new_picture_of_a_rotating_head() {
     let scene = builtin("sphere:1000").expect("even");
     let experiment = Experiment::new(machine("small-hmd", OBJECTS, &[]), OBJECTS, scene).fields(60);
     let outcome = experiment.pixels(Pixels::Off).head(head(Pan::at(200.0))).run().expect("it has shown something");
@@ -48,7 +48,7 @@ fn objects_fixed_to_the_head_are_drawn_in_its_direction() {
 /// A display that latches by line or by pixel gets an orientation for each line, or as many as the host's connection
 /// can carry per line. The tracker reports once per field.
 #[test]
-fn a_host_predicts_for_every_line_or_for_as_many_pixels_as_its_link_allows() {
+fn a_host_predicts_an_orientation_for_every_line_or_as_many_orientations_as_its_link_can_carry() {
     use address_recalculation::Latch;
     for (latch, expected) in [(Latch::Field, 1.0), (Latch::Line, 240.0), (Latch::Pixel, 8.0 * 240.0)] {
         let pipeline = FacePipeline { latch, ..FULL };

@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_face_outwards() {
+    fn the_sides_of_all_boxes_face_outwards() {
         let gallery = scene(true);
         for structure in &gallery.structures()[6..] {
             let places = structure.vertices.clone().map(|i| gallery.vertices()[i].position.as_dvec3());

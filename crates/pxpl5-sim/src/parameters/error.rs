@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_name_comes_first_and_only_a_short_list_is_printed() {
+    fn the_error_suggests_the_nearest_name_and_lists_all_names_only_if_the_list_is_short() {
         let short = SettingError::unknown("level", "cycles", ["analytic", "transaction", "cycle"]);
         assert_eq!(short.to_string(), "expected cycle, analytic or transaction, found `cycles`");
         assert_eq!(&*short.nearest, "cycle");

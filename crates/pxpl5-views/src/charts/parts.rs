@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn the_frame_surrounds_the_published_values() {
+    fn in_the_chart_of_parts_the_frame_surrounds_the_published_values() {
         let svg = part_bar(&[part("send", 1.0, false), part("copy", 2.0, true), part("scan", 1.0, false)]);
         // 4 ms take 632 units, and the frame begins at unit 4.
         assert!(svg.contains(r#"<rect x="162.0" y="11" width="316.0""#), "{svg}");

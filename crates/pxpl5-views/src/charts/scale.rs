@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_one_step_apart() {
+    fn on_an_axis_of_names_the_names_are_one_step_apart() {
         let names = AxisScale::Names(vec!["whole".to_owned(), "split".to_owned()]);
         let axis = Axis::reaching(&names, [0.0, 1.0].into_iter());
         assert_eq!((axis.ends, axis.label(1.0)), ((-0.5, 1.5), "split".to_owned()));

@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn a_host_without_a_clock_has_no_rate() {
+    fn a_run_without_a_known_host_time_has_no_rate() {
         let [_, text] = speed(&json!({"fields": 12, "host_seconds": null}));
         assert_eq!(text.to_string(), "<p>12 fields; the host time is not known.</p>");
     }

@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn a_head_has_its_stages_and_its_errors() {
+    fn the_page_of_a_run_with_a_head_shows_its_stages_and_its_errors() {
         let head = json!({"tracker": "T", "predictor": "P", "display": "vdrt", "end_to_end": {"total_ms": 76.5},
             "error": {"pixels": {"p99": 14.25}, "degrees": {"mean": 0.5}}});
         let page = html(&[PageRun { report: json!({"head": head}), ..PageRun::default() }]);

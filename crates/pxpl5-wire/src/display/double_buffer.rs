@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_third_buffer_is_a_fault() {
+    fn a_swap_request_for_a_third_buffer_is_a_fault() {
         let mut buffers = DoubleBuffer::new(640, 480);
         let receipt = buffers.receive(Body::Words(swap_request(2)), Time(1));
         assert!(matches!(receipt, BufferReceipt::Fault));

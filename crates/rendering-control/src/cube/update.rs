@@ -25,7 +25,8 @@ pub struct FaceUpdate {
     pub warp: Option<FaceWarp>,
 }
 
-/// Bit of the third word of an encoded update, set if the words of a warp follow the bits of the structures.
+/// Flag in the third word of an encoded update. The flag is set if the update has a warp. The words of the warp follow
+/// the words with one bit for each structure.
 const WARPED: Word = 1 << 24;
 
 /// Number of words of an encoded update before the bits of the structures.

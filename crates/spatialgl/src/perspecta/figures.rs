@@ -157,8 +157,8 @@ pub fn measured(stats: &VolumeStats) -> Vec<FigureRow> {
     vec![occupancy.with_accepted([5.0, 20.0]), binned]
 }
 
-/// Returns figures from the packed words of white pixels: ten pixels per word in the dense packing (P10), and the
-/// percentage of unused bits in the usual and in the dense packing (D6).
+/// Returns figures from the packed words of white pixels. P10 is the ten pixels per word of the dense packing. D6 is the
+/// percentage of unused bits in the usual and in the dense packing.
 #[must_use]
 pub fn packing() -> Vec<FigureRow> {
     let white = |pixels: usize| pack_dense(&vec![0b111; pixels]);
@@ -221,7 +221,7 @@ mod tests {
     /// Tests the definitions of the figures against the printed numbers of the SpatialGL paper. The
     /// expected values of D5, D7 and D12 were computed by hand for 396 slices of 768 x 768 pixels.
     #[test]
-    fn definitions_equal_the_numbers_of_the_paper() {
+    fn the_definitions_of_the_figures_have_the_printed_numbers_of_the_paper() {
         let all = definitions();
         let values = |id: &str| all.iter().filter(|one| one.id == id).map(|one| one.value).collect::<Vec<_>>();
         for (id, expected) in [("P1", 396.0), ("P6", 32.0), ("P8", 90.625), ("P13", 4.0), ("P16", 32.0), ("P18", 4.0)] {
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn the_code_computes_and_packs_the_derived_values() {
+    fn the_derived_formulas_and_packing_figures_are_met() {
         for figure in formulas().into_iter().chain(packing()) {
             assert!(figure.is_met, "{figure:?}");
         }

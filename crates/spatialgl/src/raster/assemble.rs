@@ -120,8 +120,8 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
     }
 }
 
-/// Returns the part of a line between the near and far planes, as a range of positions on the line: 0 is the corner
-/// `from`, and 1 is the corner `to`. Returns `None` if no part lies between these planes.
+/// Returns the part of a line between the near and far planes, as a range of positions on the line. Position 0 is the
+/// corner `from`, and 1 is the corner `to`. Returns `None` if no part lies between these planes.
 fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
     let from = &from.place;

@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn the_closed_form_agrees_with_a_numerical_integration() {
+    fn the_closed_form_of_the_pendulum_agrees_with_a_numerical_integration() {
         for (arm, amplitude, t) in [(0.5, 20.0, 3.3), (0.5, 90.0, 2.1), (1.0, 170.0, 4.7)] {
             let closed = Pendulum::new(arm, amplitude).unwrap().angle(nearest_ps(t)).0;
             assert!((closed - integrate(arm, amplitude, t)).abs() < 1e-8, "{arm} {amplitude}");

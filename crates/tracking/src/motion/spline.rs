@@ -119,7 +119,7 @@ mod tests {
     const EVEN: Activity = Activity { calm: 1.0, power: 1 };
 
     #[test]
-    fn the_basis_is_a_partition_of_unity() {
+    fn the_weights_of_the_spline_basis_add_up_to_one() {
         for u in [0.0, 0.1, 0.5, 0.77, 1.0] {
             let (weights, slopes) = basis(u);
             assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn the_variance_is_the_square_of_the_deviation() {
+    fn the_variance_of_the_random_spline_is_the_square_of_the_stated_deviation() {
         // The mean covers 200,000 knots. Neighbouring values are correlated, so the standard error is about 0.5 %.
         for activity in [EVEN, Activity { calm: 0.2, power: 3 }] {
             let spline = Spline::new(1000, DVec3::new(1.0, 2.0, 0.5), activity, 9, 4);

@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn the_magnitude_of_the_second_order_is_the_root_of_1_plus_wp_to_the_4_over_4() {
+    fn the_gain_of_second_order_prediction_has_the_magnitude_sqrt_of_1_plus_wp_to_the_4_over_4() {
         for wp in [1e-3, 0.3, 1.0, 2.5, 10.0f64] {
             let expected = (1.0 + wp.powi(4) / 4.0).sqrt();
             assert!((constant_acceleration(wp).magnitude() / expected - 1.0).abs() < 4.0 * f64::EPSILON);
@@ -90,14 +90,14 @@ mod tests {
     }
 
     #[test]
-    fn without_prediction_the_error_is_a_chord() {
+    fn without_prediction_the_relative_error_of_a_sinusoid_is_a_chord() {
         for wp in [0.1, 1.0, 2.5f64] {
             assert!((relative_error(none, wp) - 2.0 * (wp / 2.0).sin()).abs() < 4.0 * f64::EPSILON);
         }
     }
 
     #[test]
-    fn small_errors_follow_the_first_missing_power() {
+    fn small_prediction_errors_follow_the_first_power_that_the_order_omits() {
         let wp = 1e-2f64;
         assert!((relative_error(constant_velocity, wp) / (wp.powi(2) / 2.0) - 1.0).abs() < 1e-4);
         assert!((relative_error(constant_acceleration, wp) / (wp.powi(3) / 6.0) - 1.0).abs() < 1e-4);

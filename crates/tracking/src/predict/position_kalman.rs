@@ -125,7 +125,7 @@ mod tests {
         }
 
         #[test]
-        fn one_step_agrees_with_the_textbook_in_another_library(dt in 1e-4..0.2f64, x in -1.0..1.0f64) {
+        fn a_step_of_the_position_filter_agrees_with_another_library(dt in 1e-4..0.2f64, x in -1.0..1.0f64) {
             let mut filter = PositionKalman::new(BELIEF);
             let p = oracle(&filter.covariance);
             filter.update(nearest_ps(dt), DVec3::X * x);
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn after_an_hour_the_error_is_still_that_of_the_covariance() {
+    fn after_an_hour_the_error_of_the_position_filter_stays_within_its_covariance() {
         // The head is still. Errors over the last minute stay within the deviation that the filter claims, because the
         // filter expects jerks that do not occur.
         let mut filter = PositionKalman::new(BELIEF);

@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_the_levels() {
+    fn samples_of_a_trace_are_its_levels_at_the_sample_times() {
         let trace = ScopeTrace::toggling("screen", vec![10, 30]);
         let levels: Vec<f64> = trace.samples(0, 50, 10).map(|(_, v)| v).collect();
         assert_eq!(levels, [0.0, 1.0, 1.0, 0.0, 0.0]);

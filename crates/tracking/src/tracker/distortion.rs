@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_plane_looks_like_a_bowl() {
+    fn metal_makes_a_level_plane_look_like_a_bowl() {
         // The depth is 20 mm at 1 m, divided by 1 + 1/4 because of the reach.
         assert_eq!(height(0.0), 0.0);
         assert!((height(1.0) + 0.016).abs() < 1e-12);
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn the_reported_head_tilts_with_the_surface() {
+    fn the_reported_orientation_of_the_head_tilts_with_the_distorted_plane() {
         let tilted = METAL.distort(&Pose::at(DVec3::X)).orientation * DVec3::X;
         let slope = (height(1.0 + 1e-6) - height(1.0 - 1e-6)) / 2e-6;
         assert!((tilted.y / tilted.x - slope).abs() < 1e-4, "{tilted} {slope}");
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn far_away_the_error_stays_below_depth_times_reach_squared() {
+    fn far_from_the_metal_the_position_error_stays_below_depth_times_reach_squared() {
         assert!(height(1e6).abs() <= 0.02 * 4.0);
     }
 }

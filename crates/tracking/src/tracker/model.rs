@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_solution_is_at_the_first_sync_at_or_after_the_time() {
+    fn the_first_solution_at_or_after_a_sync_is_the_solution_of_this_sync() {
         for config in [TrackerConfig::fastrak(), TrackerConfig { receivers: 3, ..TrackerConfig::fastrak() }] {
             let tracker = model(config);
             for n in [0, 1, 2, 7, 1_000_003] {
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_settings_are_errors() {
+    fn invalid_settings_of_a_tracker_are_errors() {
         let good = TrackerConfig::fastrak;
         let bad = [
             TrackerConfig { rate_hz: 0, ..good() },

@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn the_order_is_spread_over_the_picture() {
+    fn the_first_pixels_of_a_pass_are_spread_over_the_whole_picture() {
         // Each tenth of the picture contains 300 +- 17 of the first 3,000 of 300,000 pixels.
         let order = RandomOrder::new(300_000, 9).unwrap();
         let mut tenths = [0; 10];
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_give_different_orders_and_the_same_seed_the_same() {
+    fn different_seeds_give_different_pixel_orders_and_a_repeated_seed_gives_the_same_order() {
         assert_eq!(first_pixels(1), first_pixels(1));
         assert_ne!(first_pixels(1), first_pixels(2));
     }

@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_higher_point_has_a_smaller_y() {
+    fn a_higher_point_has_a_smaller_y_coordinate_on_the_screen() {
         assert!(Hmd::unc().project(DVec3::new(0.0, 0.1, -1.0)).unwrap().y < 240.0);
     }
 

@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn yaw_and_pitch_errors_of_distant_points_vanish() {
+    fn the_raster_offset_removes_yaw_and_pitch_errors_of_distant_points() {
         let predicted = Pose::facing(rotation::from_yaw_pitch_roll(0.7, -0.3, 0.2));
         for (yaw, pitch) in [(0.05, 0.0), (0.0, -0.04), (0.06, 0.03)] {
             let actual = wrong_by(yaw, pitch, 0.0, &predicted);
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn roll_remains_and_rotates_the_edge_by_its_sine() {
+    fn the_raster_offset_does_not_remove_roll_errors() {
         let predicted = Pose::IDENTITY;
         let actual = wrong_by(0.05, 0.02, 0.03, &predicted);
         let offset = RasterOffset::between(&predicted, &actual, 0);
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn translation_remains_for_near_points_and_vanishes_with_distance() {
+    fn the_raster_offset_leaves_the_error_of_a_translation_at_near_points() {
         let predicted = Pose::IDENTITY;
         let actual = Pose::at(DVec3::X * 0.01);
         let offset = RasterOffset::between(&predicted, &actual, 0);

@@ -65,8 +65,9 @@ impl LoadSchedule {
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }
 
-    /// Returns the instant at which an orientation is in the display's register. At most one pixel's time later, the
-    /// display latches this orientation for the first pixel that uses the orientation.
+    /// Returns the instant at which the display's register receives an orientation. The display latches (copies) the
+    /// orientation from the register when the first pixel that uses the orientation begins. The display latches at most
+    /// one pixel's time after the returned instant.
     pub(crate) fn loaded(&self, load: Load) -> Time {
         let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
         Time(first.0.saturating_sub(self.depth.0))
@@ -167,7 +168,7 @@ mod tests {
     /// Tests the number of register loads. A message of nine words takes 7.2 us, so the 63.56 us of a line have room
     /// for 8 loads.
     #[test]
-    fn a_line_has_one_orientation_or_as_many_as_the_host_line_carries() {
+    fn a_line_has_one_orientation_or_the_number_of_orientations_that_the_host_line_can_carry() {
         for (latch, link_ns, expected) in [
             (Latch::Line, 7_200, 2 * 240),
             (Latch::Pixel, 7_200, 2 * 240 * 8),
@@ -189,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_orientation_before_a_latch_is_the_one_for_its_pixel() {
+    fn for_each_pixel_the_display_latches_the_newest_orientation_in_its_register() {
         for latch in [Latch::Line, Latch::Pixel] {
             let schedule = schedule(latch, 7_200);
             for (x, y, field) in

@@ -64,8 +64,8 @@ impl Updates {
         }
     }
 
-    /// Returns the view of an eye at the position of the eye in `view`. The axes of the returned view are the world's
-    /// axes, without rotation.
+    /// Returns a view with the same eye position as `view`, but without the rotation of the head. The axes of the
+    /// returned view are the axes of the world.
     ///
     /// Structures attached to the head are drawn for the newest direction of the head. Until the next update, these
     /// structures turn with the faces.

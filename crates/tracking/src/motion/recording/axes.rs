@@ -83,7 +83,7 @@ mod tests {
     ];
 
     #[test]
-    fn right_up_and_ahead_keep_their_meaning() {
+    fn converting_the_axes_of_a_recording_keeps_right_up_and_ahead() {
         let any = DQuat::from_xyzw(0.1, -0.7, 0.3, 0.5).normalize();
         for (axes, [right, up, ahead], world_up) in MEANING {
             let recorded = Pose { position: world_up * 3.0, orientation: any };

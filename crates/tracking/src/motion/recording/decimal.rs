@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn digits_below_the_unit_are_rounded() {
+    fn digits_below_a_picosecond_are_rounded() {
         assert_eq!(scaled("0.0000000000005", 12), Some(1));
         assert_eq!(scaled("0.00000000000049", 12), Some(0));
         assert_eq!(scaled("-1.5e-12", 12), Some(-2));

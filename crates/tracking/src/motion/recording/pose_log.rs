@@ -139,7 +139,7 @@ mod tests {
 "#;
 
     #[test]
-    fn both_formats_of_a_log_give_the_same_motion_with_time_from_the_first_line() {
+    fn csv_and_json_logs_give_the_same_motion_with_time_from_the_first_line() {
         for text in [CSV, JSON] {
             let recording = read(text).expect("a pose log");
             assert_eq!(recording.span_ps(), (0, 1_000_000_000_000));
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_may_have_a_unit_and_columns_any_order() {
+    fn the_time_of_a_pose_log_may_have_a_unit_and_the_columns_may_have_any_order() {
         let text = "orientation_w;orientation_x;orientation_y;orientation_z;position_x;position_y;position_z;predicted_display_time_ms\n\
             1;0;0;0;0;0;0;20\n1;0;0;0;1;0;0;30.5\n";
         assert_eq!(read(text).expect("a pose log").span_ps(), (0, 10_500_000_000));

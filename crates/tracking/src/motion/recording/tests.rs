@@ -19,7 +19,7 @@ fn poses_between_two_samples_are_interpolated() {
 }
 
 #[test]
-fn the_head_stands_still_outside_a_held_recording() {
+fn with_the_end_held_the_head_stands_still_before_and_after_the_recording() {
     let recording = load("1,5,0,0,1,0,0,0\n2,6,0,0,1,0,0,0\n").unwrap();
     assert_eq!(recording.ends_ps(), Some(2 * PS_PER_S), "a run must not go on after it");
     let held = recording.ending(End::Hold);
@@ -240,7 +240,7 @@ fn with_gap(from_ms: u64, to_ms: u64) -> String {
 }
 
 #[test]
-fn a_gap_is_reported_and_a_run_may_not_need_it_unless_the_head_is_held() {
+fn a_gap_causes_a_warning_and_a_run_needs_a_held_head_to_cross_the_gap() {
     let recording = load(&with_gap(280, 2_490)).unwrap();
     assert_eq!(recording.warnings(), ["no pose for 2.210 s from 0.280 s on"]);
     let gap = (280 * PS_PER_MS, 2_490 * PS_PER_MS);
