@@ -10,7 +10,7 @@ use pxpl5::{CriticalPath, Experiment, MachineConfig, Pixels, RenderingControl, s
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// Number of pairs of measurements. The ratio is that of the shortest times.
+/// Number of pairs of measurements. The ratio compares the shortest times.
 const ROUNDS: usize = 7;
 
 /// Largest ratio of the time to follow the path to the time of the run.

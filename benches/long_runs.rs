@@ -1,5 +1,6 @@
 //! Compares the host time of a field in short and in long runs, in one process. The goal is a difference of at most 2
-//! %. An element is a field. The runs keep statistics only (`Keep::Statistics`), as `pxpl5 run` without `--out` does.
+//! %. The throughput counts fields. The runs keep statistics only (`Keep::Statistics`), as `pxpl5 run` without `--out`
+//! does.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 

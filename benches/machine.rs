@@ -21,7 +21,7 @@ fn run(experiment: &Experiment, pixels: Pixels, threads: usize) -> Outcome {
     experiment.clone().pixels(pixels).host(Workstation::with_threads(threads)).run().expect("the preset runs")
 }
 
-/// Measures Slats with 140 triangles. An element is a field.
+/// Measures Slats with 140 triangles. The throughput counts fields.
 fn slats_140(criterion: &mut Criterion) {
     const FIELDS: u64 = 120;
     let aircraft = scene::builtin("mig").and_then(|mig| mig.decimated(140)).expect("it has 417 triangles");
@@ -34,8 +34,8 @@ fn slats_140(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Measures the largest load for every field, with the graphics processor's code on the i860 model. An element is a
-/// field. The goal is 3 fields a second, a twentieth of real time.
+/// Measures Slats at the cycle level with 110 triangles, the largest load that is drawn in every field. The throughput
+/// counts fields. The goal is 3 fields a second, a twentieth of real time.
 fn slats_110_cycle(criterion: &mut Criterion) {
     const FIELDS: u64 = 24;
     let aircraft = scene::builtin("mig").and_then(|mig| mig.decimated(110)).expect("it has 417 triangles");
@@ -47,8 +47,8 @@ fn slats_110_cycle(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Measures Rendering Control. An element is a stereo pair that was shown. The run is long, because three pairs in
-/// progress at its end are additional work.
+/// Measures Rendering Control. The throughput counts stereo pairs that were shown. The run is long, because three pairs
+/// in progress at its end are additional work.
 fn rendering_control_head(criterion: &mut Criterion) {
     let head = scene::builtin("head").expect("built in");
     let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), head).fields(960);
@@ -61,7 +61,7 @@ fn rendering_control_head(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Measures a machine without programs, which handles retraces only. An element is a field.
+/// Measures a machine without programs, which handles retraces only. The throughput counts fields.
 fn idle(criterion: &mut Criterion) {
     const FIELDS: u64 = 1_000;
     let pipeline = RenderingControl::stereo();

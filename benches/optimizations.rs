@@ -1,8 +1,8 @@
 //! Measures the effect of each optimization: the same run with the optimization enabled and disabled, in one process.
 //! The results are equal (`tests/optimizations.rs`).
 //!
-//! Also measures the cost of reading pictures: no pixels, one field of 60 read, all pixels. The goal is that the second
-//! takes at most 10 % longer than the first.
+//! Also measures the cost of reading pictures: without pixels, with one of 60 fields read, and with all pixels. The
+//! goal is that reading one of 60 fields takes at most 10 % longer than no pixels.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
@@ -33,7 +33,7 @@ const fn fields(optimization: Optimization) -> u64 {
     if matches!(optimization, Optimization::IdleBoards) { 2 } else { 20 }
 }
 
-/// Measures every optimization. An element is a field.
+/// Measures every optimization. The throughput counts fields.
 fn optimizations(criterion: &mut Criterion) {
     for (name, experiment) in experiments() {
         for optimization in Optimization::ALL {
@@ -59,7 +59,7 @@ fn run(experiment: &Experiment, fields: u64) -> u64 {
     black_box(machine.finish_pixels())
 }
 
-/// Runs an experiment and reads the left eye's picture `looks` times every 60 fields.
+/// Runs an experiment. Reads the left eye's picture `looks` times at the end of every 60th field.
 fn run_looking(experiment: &Experiment, fields: u64, looks: usize) -> u64 {
     let mut machine = experiment.build().expect("the preset is valid");
     for field in (60..=fields).step_by(60) {
@@ -73,7 +73,7 @@ fn run_looking(experiment: &Experiment, fields: u64, looks: usize) -> u64 {
     black_box(machine.finish_pixels())
 }
 
-/// Measures the scene `head` of 59,592 triangles in stereo. An element is a field.
+/// Measures the scene `head` of 59,592 triangles in stereo. The throughput counts fields.
 fn looking(criterion: &mut Criterion) {
     const FIELDS: u64 = 120;
     let head = scene::builtin("head").expect("built in");

@@ -1,6 +1,6 @@
-//! Compares the software renderers `euc` and `retrofire` with the pixels of the emulated machine, without its simulated
-//! times. The scene `head` of 59,592 triangles is drawn for one eye, 640 x 480, Gouraud, Z-buffered. The machine uses
-//! both pixel arrays, of which the bit-serial one has two modes. An element is a picture.
+//! Compares the software renderers `euc` and `retrofire` with two models of the machine's pixel array, without
+//! simulated times. The scene `head` of 59,592 triangles is drawn for one eye, 640 x 480, Gouraud, Z-buffered. The
+//! bit-serial model runs in both of its modes, the default mode and the skipping mode. The throughput counts pictures.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 

@@ -1,5 +1,5 @@
-//! Limits of Slats by simulation: the prototype, its variants, and experiments beyond them. Prints each limit once and
-//! measures the time of the search.
+//! Searches the largest number of triangles that Slats draws in every field: for the prototype, its variants, and
+//! experiments beyond them. Prints each limit once and measures the time of the search.
 
 #![allow(missing_docs, reason = "criterion_group! makes functions without documentation")]
 

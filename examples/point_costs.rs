@@ -1,7 +1,7 @@
 //! Compares the estimated cost of each point of a sweep with its measured CPU time on one thread.
 //!
 //! `cargo run --release --example point_costs -- OUT SWEEP.toml...` writes OUT/NAME/rows.jsonl for each sweep, for
-//! `pxpl5 plot`, and OUT/costs.md, the table of docs/sweeps.md. `scripts/costs` runs all steps.
+//! `pxpl5 plot`, and OUT/costs.md, the table of docs/guide/sweep-times.md. `scripts/costs` runs all steps.
 
 use cpu_time::ThreadTime;
 use pxpl5::Fingerprint;

@@ -12,7 +12,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Displays of a pipeline, each with its periods in 2.5 s.
+/// Displays of a pipeline, each with its number of periods in 2.5 s.
 type Displays = &'static [(&'static str, i64)];
 
 /// Pipelines with a setting each, and the displays that they can draw for.
@@ -32,7 +32,7 @@ const MOTIONS: [(&str, &str); 4] = [
     ("recorded use, synthetic", "synthetic:1"),
 ];
 
-/// The ways in which pictures come before the eye, with their colours in the figure.
+/// The ways in which pictures are shown to the eye, with their colours in the figure.
 fn showings() -> [(&'static str, &'static str, Showing); 4] {
     let device = |by, every| Showing::Reprojected(Reprojection::new(by, every));
     [
@@ -43,7 +43,7 @@ fn showings() -> [(&'static str, &'static str, Showing); 4] {
     ]
 }
 
-/// Results of a run under one way of showing it.
+/// Results of a run whose pictures are shown in one of these ways.
 struct Shown {
     mean_px: Option<f64>,
     mean_deg: Option<f64>,

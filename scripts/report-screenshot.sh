@@ -1,8 +1,8 @@
 #!/bin/sh
-# Opens a report page in headless Chromium and takes pictures of it: as wide as a desk, as narrow as a phone, and
-# printed. Usage: scripts/report-screenshot.sh [RESULTS-FOLDER [PICTURE-FOLDER]]; default: out out.
-# Without a results folder it makes one with the demo. Chromium comes from the Debian package of that name; where that
-# cannot be had the script says so and ends with 0: a page nobody can look at is no failure of the page.
+# Opens a report page in headless Chromium and takes pictures of the page: as wide as a desktop screen, as narrow as a
+# telephone, and printed. Usage: scripts/report-screenshot.sh [RESULTS-FOLDER [PICTURE-FOLDER]]; default: out out.
+# Without a results folder the script makes one with the demo. Chromium comes from the Debian package of that name.
+# Without Chromium the script prints a message and ends with 0, because a missing browser is no fault of the page.
 set -eu
 
 results=${1:-out}
@@ -33,7 +33,7 @@ $pxpl5 report "$results" --quiet
 mkdir -p "$pictures"
 page="file://$(cd "$results" && pwd)/report.html"
 
-# The sandbox needs rights that containers do not have; the page is our own.
+# The sandbox needs rights that containers do not have. It is not needed, because the page is our own.
 shoot() {
     "$browser" --headless --no-sandbox --disable-gpu --hide-scrollbars "$@" "$page" >/dev/null 2>&1
 }

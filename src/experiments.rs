@@ -1,5 +1,9 @@
 //! Experiments, pipelines, heads, and runs in steps.
 
+/// A machine, a pipeline and a scene, ready to run.
+///
+/// The example runs 60 fields without pixels and reads the latency.
+///
 /// ```
 /// use pxpl5::prelude::*;
 ///
@@ -11,10 +15,13 @@
 /// ```
 pub use pxpl5_run::Experiment;
 
+/// The error of [`Experiment::run`] and of a [`Stepper`].
+///
+/// The run of the example has one field and shows no picture. Its error contains the observations of the run.
+///
 /// ```
 /// use pxpl5::prelude::*;
 ///
-/// // A run of one field shows nothing. The error keeps what was observed.
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene);
 /// match experiment.fields(1).run() {
@@ -25,28 +32,34 @@ pub use pxpl5_run::Experiment;
 /// ```
 pub use pxpl5_run::ExperimentError;
 
+/// The return value of [`Experiment::run`], with everything that was observed.
+///
+/// The example reads the latency of Slats, and the event of the first region that arrived.
+///
 /// ```
 /// use pxpl5::{ObservedEvent, prelude::*};
 ///
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60);
 /// let outcome: Outcome = experiment.run()?;
-/// // Slats shows a new picture in each field, with a latency of one field.
 /// assert!((outcome.latency_fields().mean - 1.0).abs() < 1e-9);
-/// // The events of the run name their boards.
 /// let first: Option<ObservedEvent> = outcome.events().find(|event| matches!(event.kind, ObservedKind::Arrived { .. }));
 /// println!("{}", first.expect("pictures were shown"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub use pxpl5_run::Outcome;
 
+/// The viewer of an experiment, whose head moves and is tracked.
+///
+/// In the example, a head turns by 100 degrees a second, with a magnetic tracker and a Kalman filter. The motion has
+/// the coordinates of the world.
+///
 /// ```
-/// use pxpl5::prelude::*;
+/// use pxpl5::{HeadPlace, prelude::*};
 /// use std::sync::Arc;
 ///
-/// // A head that turns by 100 degrees a second, a magnetic tracker, and a Kalman filter.
 /// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(1.745 * seconds), ..Pose::IDENTITY });
-/// let head = Head::new(Arc::new(turn), TrackerConfig::fastrak(), PredictorKind::Kalman, 1)?;
+/// let head = Head::new(Arc::new(turn), TrackerConfig::fastrak(), PredictorKind::Kalman, 1)?.with_place(HeadPlace::World);
 /// let scene = scene::builtin("full-screen:4")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(90).pixels(Pixels::Off);
 /// let report = experiment.head(head).run()?.report();
@@ -55,6 +68,10 @@ pub use pxpl5_run::Outcome;
 /// ```
 pub use pxpl5_run::Head;
 
+/// A run in steps, as in a debugger.
+///
+/// The example stops at the first event of renderer 0, and then runs to the end.
+///
 /// ```
 /// use pxpl5::prelude::*;
 ///
@@ -63,31 +80,47 @@ pub use pxpl5_run::Head;
 /// let mut stepper = experiment.stepper()?;
 /// assert_eq!(stepper.step_board(Board::Renderer(0)), Pause::Reached);
 /// assert_eq!(stepper.last().map(|event| event.board), Some(Board::Renderer(0)));
-/// // The steps change no result.
+/// // A run in steps has the same results as a run without steps.
 /// let outcome = stepper.finish()?;
 /// assert_eq!(outcome.record().trace_hash(), experiment.run()?.record().trace_hash());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub use pxpl5_run::Stepper;
 
-/// ```
-/// use pxpl5::{PipelineEntry, prelude::*};
+/// A list of pipelines and displays, from which a program selects by name.
 ///
-/// // A pipeline that is chosen by its name at run time.
+/// The example finds a display and a pipeline, and reads the settings of the pipeline.
+///
+/// ```
+/// use pxpl5::{DisplayEntry, Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, TestScene, prelude::*};
+///
 /// let registry = Registry::of_papers();
-/// let entry: &PipelineEntry = registry.pipeline("jitp-scanline-racing")?;
+/// let ntsc: &DisplayEntry = registry.display("ntsc")?;
+/// assert_eq!((ntsc.config)().name(), "ntsc");
+/// let entry: &PipelineEntry = registry.pipeline("slats")?;
 /// let pipeline = (entry.build)(&PipelineSettings::default());
-/// assert_eq!(pipeline.name(), "jitp-scanline-racing");
+/// assert_eq!(pipeline.name(), "slats");
+/// // The setting `copy` has three values.
+/// let copy: &Key = entry.keys.iter().find(|key| key.name == "copy").ok_or("a key")?;
+/// assert_eq!(copy.values.to_string(), "whole, split or backup");
+/// // A scene is small enough if no retrace is missed.
+/// let LimitCriterion { goal, .. } = (entry.limit)(&Default::default());
+/// assert_eq!(goal, Goal::NoMissedRetrace);
+/// # let _ = TestScene::Typical;
+/// # let _ = (KeyValue::Flag(true), KeyValues::Flag);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_run::{PipelineEntry, PipelineSettings, Registry};
+pub use pxpl5_run::Registry;
 
+/// The trait that a pipeline of your own implements, together with [`PictureRules`].
+///
+/// The pipeline of the example loads the firmware of an existing pipeline, and has the same results.
+///
 /// ```
 /// use pxpl5::firmware::{CopyTarget, Layout, PictureNumber, Shading, ViewNumber};
 /// use pxpl5::{Aim, Machine, PictureTimes, Record, SettingError, Setup, Source, Time, prelude::*};
 /// use std::collections::BTreeMap;
 ///
-/// // A pipeline of one's own. This one loads the firmware of another pipeline.
 /// #[derive(Debug)]
 /// struct Mine(RenderingControl);
 ///
@@ -109,7 +142,7 @@ pub use pxpl5_run::{PipelineEntry, PipelineSettings, Registry};
 ///     }
 /// }
 ///
-/// // The rules say what its pictures are, and which view a part of a picture shows.
+/// // The rules define the pictures of the pipeline, and the view for which each part of a picture was drawn.
 /// impl PictureRules for Mine {
 ///     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
 ///         self.0.pictures(record, end)
@@ -140,12 +173,15 @@ pub use pxpl5_run::{PipelineEntry, PipelineSettings, Registry};
 /// assert_eq!(mine.record().trace_hash(), theirs.record().trace_hash());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_run::{PictureRules, Pipeline, Setup, Source};
+pub use pxpl5_run::Pipeline;
 
+/// A pipeline that draws a whole frame before it shows the frame.
+///
+/// The example builds experiments with the same triangles and four pipelines of the papers.
+///
 /// ```
 /// use pxpl5::{Viewpoint, prelude::*};
 ///
-/// // The same triangles with four pipelines of the papers.
 /// let scene = std::sync::Arc::new(scene::builtin("full-screen:4")?);
 /// let slats = Experiment::new(MachineConfig::slats(), Slats::split(), scene.clone());
 /// let machine = MachineConfig::small_hmd();
@@ -156,12 +192,15 @@ pub use pxpl5_run::{PictureRules, Pipeline, Setup, Source};
 /// assert_eq!(names[0], "slats");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_run::{Frameless, Jitp, RenderingControl, Slats};
+pub use pxpl5_run::RenderingControl;
 
+/// A pipeline with a latency of one field.
+///
+/// The example changes two settings. Experiment files use the same names for the values.
+///
 /// ```
 /// use pxpl5::{Code, CopySchedule, FinishedRegions, Interpolation, RegionBinning, Slats, SlatsLighting};
 ///
-/// // The settings of pipelines are fields, and their values have the names of experiment files.
 /// let slats = Slats { copy: CopySchedule::Whole, binning: RegionBinning::Touched, ..Slats::split() };
 /// assert_eq!(slats.copy.to_string(), "whole");
 /// assert_eq!("touched".parse(), Ok(slats.binning));
@@ -170,77 +209,69 @@ pub use pxpl5_run::{Frameless, Jitp, RenderingControl, Slats};
 /// assert_eq!(FinishedRegions::default().name(), "wait");
 /// # let _ = Interpolation::View;
 /// ```
-pub use pxpl5_run::{Code, FinishedRegions, Interpolation, SlatsLighting, Viewpoint};
+pub use pxpl5_run::Slats;
 
-pub use pphigs::RegionBinning;
-pub use slats::CopySchedule;
-
+/// A choice between formulas and models that execute events or instructions.
+///
+/// The example parses and prints the names of the choices of an experiment.
+///
 /// ```
 /// use pxpl5::{Keep, Level, Pixels};
 ///
-/// // Names are read as they are written.
 /// assert_eq!("cycle".parse(), Ok(Level::Cycle));
 /// assert_eq!(Pixels::Lazy.to_string(), "lazy");
 /// assert_eq!("statistics".parse(), Ok(Keep::Statistics));
 /// let error = "cycles".parse::<Level>().expect_err("no level");
 /// assert_eq!(error.to_string(), "expected cycle, analytic or transaction, found `cycles`");
 /// ```
-pub use pxpl5_run::{Keep, Level, Pixels};
+pub use pxpl5_run::Level;
 
+/// A device after the frame buffer that moves pictures to the newest pose of the head.
+///
+/// The device of the example rotates each line. Experiment files use the printed text.
+///
 /// ```
 /// use pxpl5::{Aim, Every, Raster, Reprojection, Warp};
 ///
-/// // A device after the frame buffer that rotates each line to the newest pose.
 /// let device = Reprojection::new(Warp::Rotation, Every::Line);
 /// assert_eq!(device.to_string(), "rotation every line, 100 us");
 /// assert_eq!("rotation every line, 100 us".parse(), Ok(Raster::Reprojected(device)));
-/// // The view is predicted for the middle of the time in which the picture lights.
+/// // By default, the view is predicted for the middle of the time in which the picture lights.
 /// assert_eq!(Aim::default().to_string(), "middle");
 /// ```
-pub use pxpl5_run::{Aim, Every, Raster, Reprojection, Warp};
+pub use pxpl5_run::Reprojection;
 
+/// A host that gives no services to a run.
+///
+/// The example shows that this host measures no computing time.
+///
 /// ```
 /// use pxpl5::{BareHost, Host};
 ///
-/// // Without a clock of the host, a run has no host time. The results are the same.
 /// assert_eq!(BareHost.seconds(), None);
 /// ```
-pub use pxpl5_run::{BareHost, Host};
+pub use pxpl5_run::BareHost;
 
-/// ```
-/// use pxpl5::{DisplayEntry, Goal, Key, KeyValue, KeyValues, LimitCriterion, Registry, TestScene};
+/// An identification of settings or of a scene by their content.
 ///
-/// let registry = Registry::of_papers();
-/// let slats = registry.pipeline("slats")?;
-/// let ntsc: &DisplayEntry = registry.display("ntsc")?;
-/// assert_eq!((ntsc.config)().name(), "ntsc");
-/// // The setting `copy` has three values.
-/// let copy: &Key = slats.keys.iter().find(|key| key.name == "copy").ok_or("a key")?;
-/// assert_eq!(copy.values.to_string(), "whole, split or backup");
-/// // The largest scene is the one with which no retrace is missed.
-/// let LimitCriterion { goal, .. } = (slats.limit)(&Default::default());
-/// assert_eq!(goal, Goal::NoMissedRetrace);
-/// # let _ = TestScene::Typical;
-/// # let _ = (KeyValue::Flag(true), KeyValues::Flag);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub use pxpl5_run::{DisplayEntry, Goal, Key, KeyValue, KeyValues, LimitCriterion, TestScene};
-
-/// ```
-/// use pxpl5::{Cause, Fingerprint};
+/// The example computes a fingerprint, prints it and parses it.
 ///
-/// assert_eq!(Cause::ALL.map(Cause::name), ["latency", "scan-out", "noise", "prediction", "sampling"]);
-/// // A fingerprint identifies settings or the contents of a scene.
+/// ```
+/// use pxpl5::Fingerprint;
+///
 /// let fingerprint = Fingerprint::of(b"a");
 /// assert_eq!(fingerprint.to_string().parse(), Ok(fingerprint));
 /// ```
-pub use pxpl5_run::{Cause, Fingerprint};
+pub use pxpl5_run::Fingerprint;
 
+/// A pipeline for testing how regions are assigned to renderers.
+///
+/// The policy of the example draws region after region, with one renderer after the other.
+///
 /// ```
 /// use pxpl5::firmware::{RegionId, Shading};
 /// use pxpl5::{PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy, SettingError, prelude::*};
 ///
-/// /// Draws region after region, with one renderer after the other.
 /// #[derive(Debug)]
 /// struct InTurn;
 ///
@@ -260,25 +291,18 @@ pub use pxpl5_run::{Cause, Fingerprint};
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), pipeline, scene).fields(60).pixels(Pixels::Off);
 /// assert!(experiment.run()?.latency().is_some());
 ///
-/// // A frame checks an assignment before it is drawn.
+/// // The method `check` refuses an assignment to a renderer that does not exist.
 /// let frame = PolicyFrame { frame: Default::default(), time: Default::default(), columns: 1, primitives: vec![9], renderers: 5 };
 /// let error: SettingError = frame.check(&[(RegionId(0), 5)]).expect_err("renderers 0 to 4");
 /// println!("{error}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_run::{PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy};
+pub use pxpl5_run::PolicyPipeline;
 
-/// ```
-/// use pxpl5::{HeadPlace, prelude::*};
+/// The prediction of a head's pose, repeated after a run.
 ///
-/// // The motion is given in the world's coordinates, not relative to the start of the scene's own motion.
-/// let motion = std::sync::Arc::new(from_fn(|_| Pose::IDENTITY));
-/// let head = Head::new(motion, TrackerConfig::ideal(), PredictorKind::None, 1)?.with_place(HeadPlace::World);
-/// # drop(head);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub use pxpl5_run::HeadPlace;
-
+/// The example lists the poses that Slats requested, and estimates the last pose again.
+///
 /// ```
 /// use pxpl5::{Estimator, HeadViews, SampledPose, prelude::*};
 /// use std::sync::Arc;
@@ -288,7 +312,6 @@ pub use pxpl5_run::HeadPlace;
 /// let scene = scene::builtin("full-screen:4")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
 /// let outcome = experiment.head(head).run()?;
-/// // The poses for which the pictures were drawn, and a new estimate for the same instants.
 /// let views: &Arc<HeadViews> = outcome.head().ok_or("a tracked head")?;
 /// let sampled: Vec<SampledPose> = views.sampled();
 /// let last = sampled.last().ok_or("views were requested")?;
@@ -296,6 +319,13 @@ pub use pxpl5_run::HeadPlace;
 /// println!("{estimate:?}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_run::{Estimator, HeadViews, SampledPose};
+pub use pxpl5_run::Estimator;
 
-pub use pxpl5_run::{FIELDS_RANGE, Pause, out_of_range};
+pub use pphigs::RegionBinning;
+pub use pxpl5_run::{
+    Aim, Cause, Code, DisplayEntry, Every, FIELDS_RANGE, FinishedRegions, Frameless, Goal, HeadPlace, HeadViews, Host,
+    Interpolation, Jitp, Keep, Key, KeyValue, KeyValues, LimitCriterion, Pause, PictureRules, PipelineEntry,
+    PipelineSettings, Pixels, PolicyFrame, Raster, RegionAssignment, RegionPolicy, SampledPose, Setup, SlatsLighting,
+    Source, TestScene, Viewpoint, Warp, out_of_range,
+};
+pub use slats::CopySchedule;

@@ -1,5 +1,9 @@
-//! Experiments in files, saved runs, and questions over many experiments.
+//! Experiments in files, saved runs, and studies of many experiments.
 
+/// An experiment that was read from the text of a file.
+///
+/// The example reads an experiment, prints all its settings, and runs it.
+///
 /// ```
 /// use pxpl5::{Settings, prelude::*};
 ///
@@ -12,8 +16,12 @@
 /// assert!((outcome.latency_fields().mean - 1.0).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_lab::{ExperimentFile, Plan, Settings};
+pub use pxpl5_lab::ExperimentFile;
 
+/// A saved run, which the same experiment can continue later.
+///
+/// The example saves a run after one field. Another experiment cannot continue this run.
+///
 /// ```
 /// use pxpl5::prelude::*;
 ///
@@ -21,7 +29,6 @@ pub use pxpl5_lab::{ExperimentFile, Plan, Settings};
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
 /// let mut stepper = experiment.stepper()?;
 /// stepper.step_period();
-/// // The text of a file. Later, the same experiment continues from the saved field.
 /// let text = Snapshot::of_stepper(&stepper)?.to_text();
 /// let saved = Snapshot::read(&text, "saved")?;
 /// let other = saved.resume(&experiment.clone().seed(2), "saved");
@@ -32,10 +39,13 @@ pub use pxpl5_lab::{ExperimentFile, Plan, Settings};
 /// ```
 pub use pxpl5_lab::Snapshot;
 
+/// Finds the resources of a machine that limit the latency.
+///
+/// The example prints the latency before and after each change. Formulas give the latencies.
+///
 /// ```
 /// use pxpl5::prelude::*;
 ///
-/// // 10 % more of each resource, by the analytic model.
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
 /// for WhatIf { resource, latency_ms: [before, after], .. } in what_if(&registry(), &experiment)? {
@@ -43,23 +53,29 @@ pub use pxpl5_lab::Snapshot;
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_lab::{WhatIf, what_if};
+pub use pxpl5_lab::what_if;
 
+/// The error type of all studies, for invalid settings and failed runs.
+///
+/// The example repeats a paper's drawing of a pipeline as a run.
+///
 /// ```
 /// use pxpl5::StudyError;
 /// use pxpl5::pipeline_figures::PIPELINE_FIGURES;
 ///
-/// // The papers' drawings of pipelines, as runs. An invalid setting or a run that fails is one kind of error.
 /// let run = || -> Result<_, StudyError> { PIPELINE_FIGURES[0].run() };
 /// assert!(run().is_ok());
 /// ```
 pub use pxpl5_lab::StudyError;
 
+/// A host with a clock and threads for [`Experiment::host`](crate::Experiment::host).
+///
+/// In the example, two threads compute the pixels of all regions during the simulation.
+///
 /// ```
 /// use pxpl5::prelude::*;
 /// use pxpl5::Workstation;
 ///
-/// // The pixels of all regions, computed by two threads beside the simulation.
 /// let scene = scene::builtin("full-screen:1")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(12);
 /// let outcome = experiment.pixels(Pixels::All).host(Workstation::with_threads(2)).run()?;
@@ -68,11 +84,14 @@ pub use pxpl5_lab::StudyError;
 /// ```
 pub use pxpl5_lab::Workstation;
 
+/// A signal that ends a long search or a long run.
+///
+/// The example sets the flag before the search. Another thread usually sets a clone of the flag later.
+///
 /// ```
 /// use pxpl5::limit::LimitQuery;
 /// use pxpl5::{ExperimentError, MachineConfig, Slats, StopFlag};
 ///
-/// // A flag that ends a search. Another thread usually holds a clone of the flag, and stops the search later.
 /// let stop = StopFlag::default();
 /// let query = LimitQuery { stop: stop.clone(), ..LimitQuery::of_papers(MachineConfig::slats(), Slats::split())? };
 /// stop.stop();
@@ -81,21 +100,27 @@ pub use pxpl5_lab::Workstation;
 /// ```
 pub use pxpl5_lab::StopFlag;
 
+/// Returns the reason why a machine cannot run a pipeline, for each pipeline.
+///
+/// The example tests the machine of Slats.
+///
 /// ```
 /// use pxpl5::{MachineConfig, Suitability, registry, suitability};
 ///
-/// // Pipelines that can run on a machine, or the reason why not.
 /// let of_slats: Vec<Suitability> = suitability(&registry(), &MachineConfig::slats());
 /// assert!(!of_slats.is_empty());
 /// ```
-pub use pxpl5_lab::{Suitability, registry, suitability};
+pub use pxpl5_lab::suitability;
 
+/// The settings of an experiment file, complete and checked.
+///
+/// The example reads the choices of a plan from its public fields.
+///
 /// ```
 /// use pxpl5::{ExperimentFile, HeadChoice, MotionChoice, Outputs, Published, SceneChoice};
 ///
 /// let text = "pipeline = \"slats\"\nscene = \"mig\"\ntriangles = 100\nhead.motion = \"pan:90\"\n";
 /// let plan = ExperimentFile::parse(text, "an experiment")?.resolve()?;
-/// // The choices of a plan are data.
 /// let (scene, outputs): (&SceneChoice, &Outputs) = (&plan.scene, &plan.output);
 /// assert_eq!(scene.triangles, Some(100));
 /// println!("{outputs:?}");
@@ -106,40 +131,34 @@ pub use pxpl5_lab::{Suitability, registry, suitability};
 /// assert!(published.is_none());
 /// # Ok::<(), pxpl5::SettingError>(())
 /// ```
-pub use pxpl5_lab::{HeadChoice, MotionChoice, Outputs, Published, SceneChoice};
+pub use pxpl5_lab::Plan;
 
 pub use pxpl5_lab::{
-    compare, figures, growth, in_parallel, intervals, levels, limit, pipeline_figures, readings, rig, sweep,
-    tracking_parameters,
+    HeadChoice, MotionChoice, Outputs, Published, SceneChoice, Settings, Suitability, WhatIf, compare, figures, growth,
+    in_parallel, intervals, levels, limit, pipeline_figures, readings, registry, rig, sweep, tracking_parameters,
 };
 
 /// Less common names of the laboratory: trackers, predictors, and estimates of the cost of a run.
 pub mod lab {
+    /// A key that an experiment file can have.
+    ///
+    /// The example lists all keys, and reads the key `head.path`.
+    ///
     /// ```
     /// use pxpl5::lab::{FileKey, PathChoice};
     /// use pxpl5::{ExperimentFile, registry};
     ///
-    /// // All keys of an experiment file.
     /// let keys: Vec<FileKey> = ExperimentFile::keys_of(&registry());
     /// assert!(!keys.is_empty());
-    /// // The key `head.path` selects the path of the head.
     /// let text = "pipeline = \"slats\"\nscene = \"mig\"\nhead.path = \"still\"\n";
     /// let path: PathChoice = ExperimentFile::parse(text, "an experiment")?.resolve()?.scene.motion.path;
     /// assert_eq!(path, PathChoice::Still);
     /// # Ok::<(), pxpl5::SettingError>(())
     /// ```
-    pub use pxpl5_lab::{FileKey, PathChoice};
-
-    /// ```
-    /// use pxpl5::SettingError;
-    /// use pxpl5::lab::motion;
-    ///
-    /// let error: SettingError = motion("pann:200").expect_err("no motion");
-    /// assert!(error.to_string().starts_with("there is no motion `pann:200`"));
-    /// ```
-    pub use pxpl5_lab::motion;
+    pub use pxpl5_lab::FileKey;
 
     pub use pxpl5_lab::{
-        PREDICTORS, TRACKERS, application_time, code_times, diff, estimate, manifest, predictor, tracker,
+        PREDICTORS, PathChoice, TRACKERS, application_time, code_times, diff, estimate, manifest, motion, predictor,
+        tracker,
     };
 }

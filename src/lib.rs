@@ -148,15 +148,21 @@ pub use results::*;
 pub use glam;
 pub use image;
 pub use pphigs::oracle;
+#[doc(inline)]
 pub use pxpl5_analytic as analytic;
 #[cfg(feature = "arp")]
+#[doc(inline)]
 pub use pxpl5_arp as arp;
+#[doc(inline)]
 pub use pxpl5_scene as scene;
 #[cfg(feature = "views")]
+#[doc(inline)]
 pub use pxpl5_views as views;
 #[cfg(feature = "volume")]
+#[doc(inline)]
 pub use pxpl5_volume as volume;
 pub use pxpl5_wire::display;
+#[doc(inline)]
 pub use tracking;
 
 /// Less common names for reading an outcome: cube faces around the viewer's head, updates of display memories, and
@@ -188,7 +194,9 @@ pub mod snapshots {
 }
 
 /// Types for writing a pipeline: firmware on graphics processors, display lists, commands for renderers, and messages
-/// on the ring. Names of other modules that every pipeline needs are included.
+/// on the ring.
+///
+/// Names of other modules that every pipeline needs are included.
 pub mod firmware {
     pub use crate::snapshots::{PixelArray, Priority};
     pub use crate::{PeriodNumber, PictureNumber, RegionBinning, ViewNumber};
@@ -229,7 +237,6 @@ pub mod prelude {
     pub use glam::{DQuat, DVec3, Vec3};
 }
 
-/// Compiles and runs the examples of the README.
 #[cfg(all(doctest, feature = "lab", feature = "views", feature = "volume", feature = "arp"))]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

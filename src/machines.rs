@@ -1,9 +1,12 @@
 //! Machines, their boards and displays, their parameters, and records of their boards during a run.
 
+/// A description of the machine on which an experiment runs.
+///
+/// The example adds boards to the machine of TR94, makes its ring slower, and reads the source of a parameter.
+///
 /// ```
 /// use pxpl5::{MachineConfig, Parameter};
 ///
-/// // The machine of TR94 with more boards and a slower ring.
 /// let mut machine = MachineConfig::small_hmd().with_gps(20).with_renderers(8);
 /// machine.set("ring.word_ns", 100)?;
 /// machine.check()?;
@@ -14,6 +17,10 @@
 /// ```
 pub use pxpl5_machine::MachineConfig;
 
+/// Lists of the arrivals, the swaps and further events of a run.
+///
+/// In the example, each picture of an eye has 20 regions, and no region arrives too late.
+///
 /// ```
 /// use pxpl5::prelude::*;
 /// use pxpl5::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap};
@@ -22,18 +29,21 @@ pub use pxpl5_machine::MachineConfig;
 /// let outcome = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60).run()?;
 /// let observed: &Observation = outcome.observation();
 /// let (arrivals, swaps): (&[Arrival], &[Swap]) = (&observed.arrivals, &observed.swaps);
-/// // The picture of an eye has 20 regions, and two frame buffers swap.
 /// assert!(arrivals.len() >= 20 && swaps.len() >= 2);
 /// let stages: Vec<StageSpan> = outcome.stages();
 /// assert!(stages.iter().all(|stage| stage.end.is_none_or(|end| end >= stage.begin)));
-/// // The pictures that one frame buffer showed, and regions that came too late.
+/// // The pictures that one frame buffer showed, and the regions that arrived too late.
 /// let shown: Vec<Shown> = outcome.record().shown_by(swaps[0].port);
 /// let late: &[LateRegion] = &outcome.tally().first_late_regions;
 /// assert!(!shown.is_empty() && late.is_empty());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_machine::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap};
+pub use pxpl5_machine::Observation;
 
+/// The name of a board, which can be printed and parsed.
+///
+/// The example prints a board, parses a board, and reads an error message.
+///
 /// ```
 /// use pxpl5::{Board, SettingError};
 ///
@@ -44,6 +54,10 @@ pub use pxpl5_machine::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap
 /// ```
 pub use pxpl5_machine::Board;
 
+/// A record of all messages on the ring, which an experiment makes on request.
+///
+/// The example prints the first message. The same messages are events of the outcome.
+///
 /// ```
 /// use pxpl5::prelude::*;
 /// use pxpl5::{Traffic, Transfer};
@@ -55,12 +69,15 @@ pub use pxpl5_machine::Board;
 /// let ports = outcome.record().ports();
 /// let Transfer { source, destination, words, .. } = traffic.transfers[0];
 /// println!("{} sends {words} words to {}", ports.board(source), ports.board(destination));
-/// // The same messages are events of the outcome.
 /// assert!(outcome.events().any(|event| matches!(event.kind, ObservedKind::Message { .. })));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_machine::{ObservedEvent, ObservedKind, Ports, Traffic, Transfer};
+pub use pxpl5_machine::Traffic;
 
+/// A machine with loaded programs, without an experiment around it.
+///
+/// The example prints the first event, and runs the machine for one microsecond.
+///
 /// ```
 /// use pxpl5::prelude::*;
 /// use pxpl5::{EventDescription, Machine, Record};
@@ -75,24 +92,30 @@ pub use pxpl5_machine::{ObservedEvent, ObservedKind, Ports, Traffic, Transfer};
 /// assert!(record.events() <= 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_machine::{EventDescription, Machine, Record};
+pub use pxpl5_machine::Machine;
 
+/// The error of a machine that cannot continue, such as a deadlock.
+///
+/// The example makes the error of a deadlock, which names the waiting boards.
+///
 /// ```
 /// use pxpl5::{Blocked, Board, RunError, Time};
 ///
-/// // A deadlock names the boards that wait, and the boards that they wait for.
 /// let wait = Blocked { board: Board::Renderer(3), waits_on: Some(Board::Display(0)), waits_for: "a port".to_owned() };
 /// assert_eq!(wait.to_string(), "renderer 3 waits for a port");
 /// let error = RunError::Deadlock { time: Time(0), blocked: vec![wait] };
 /// assert_eq!(error.blocked()[0].waits_on, Some(Board::Display(0)));
 /// ```
-pub use pxpl5_machine::{Blocked, RunError};
+pub use pxpl5_machine::RunError;
 
+/// A part of the simulator that saves computing time and changes no result.
+///
+/// The example compares two runs, with and without an optimization.
+///
 /// ```
 /// use pxpl5::prelude::*;
 /// use pxpl5::Optimization;
 ///
-/// // Without an optimization, a run takes longer and has the same result.
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(12);
 /// let slow = experiment.clone().without(Optimization::Transfers).run()?;
@@ -101,50 +124,60 @@ pub use pxpl5_machine::{Blocked, RunError};
 /// ```
 pub use pxpl5_machine::Optimization;
 
+/// A list of named parameters, each with the origin of its value.
+///
+/// The example reads the time of a word on the ring.
+///
 /// ```
 /// use pxpl5::{MachineConfig, ParameterInfo, ParameterTable, Provenance, Value};
 ///
 /// let machine = MachineConfig::small_hmd();
-/// // A table is read by names too. Each entry states where its value comes from.
+/// // An entry of a table can also be read by its name. Each entry has the origin of its value.
 /// let word: &ParameterInfo = machine.ring.entries()[0].info;
 /// assert_eq!(machine.ring.get(word.name)?, word.papers);
 /// assert_eq!("published".parse(), Ok(Provenance::Published));
 /// assert_eq!(Value::Whole(50).to_string(), "50");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_sim::parameters::{ParameterInfo, ParameterTable, Provenance, Value};
+pub use pxpl5_sim::parameters::ParameterTable;
 
+/// The error of functions that read settings.
+///
+/// The example reads the errors of an unknown key, an unknown name and a malformed text.
+///
 /// ```
 /// use pxpl5::{Board, ExperimentFile, Level, MachineConfig, SettingError, SettingErrorKind};
 ///
-/// // An error names the file, the line, the key, the expected value and the found value.
 /// let key: SettingError = ExperimentFile::parse("pipelin = \"slats\"\n", "mine.toml").expect_err("no such key");
 /// assert_eq!(key.to_string(), "mine.toml, line 1: there is no key `pipelin`; did you mean `pipeline`?");
-/// // An unknown name has a nearest valid name. A text in a wrong form has an expected form.
+/// // For an unknown name, the error has the nearest valid name. For a malformed text, it has the expected form.
 /// let name: SettingError = "cicle".parse::<Level>().expect_err("no level");
 /// assert_eq!((name.kind, &*name.nearest), (SettingErrorKind::UnknownName, "cycle"));
 /// let text: SettingError = "gpu".parse::<Board>().expect_err("no board");
 /// assert!(text.expected.starts_with("host, ring"));
 /// ```
-pub use pxpl5_sim::parameters::{SettingError, SettingErrorKind};
+pub use pxpl5_sim::parameters::SettingError;
 
+/// The error of functions that read scenes and other files.
+///
+/// The example reads a scene with a syntax error.
+///
 /// ```
 /// use pxpl5::{FileError, FileErrorKind, scene};
 ///
-/// // An error of a file names the file, the position in the file, the expected and the found content.
 /// let error: FileError = scene::from_bytes(b"v 0 0 x\n", scene::Format::Obj, "a.obj").expect_err("no number");
 /// assert_eq!((error.kind, &*error.place), (FileErrorKind::Syntax, "line 1"));
 /// ```
-pub use pxpl5_sim::parameters::{FileError, FileErrorKind};
+pub use pxpl5_sim::parameters::FileError;
 
-pub use pxpl5_machine::PRESETS;
-pub use pxpl5_sim::parameters::Parameter;
-
+/// Access to settings by their paths, as in files and options.
+///
+/// The example changes a setting of a volumetric display. The error for an unknown path contains the nearest path.
+///
 /// ```
 /// # #[cfg(feature = "volume")] {
 /// use pxpl5::{PathSettings, volume::VolumeSettings};
 ///
-/// // Texts change the settings of a volume by path. Numbers of tables have the range of their source.
 /// let mut settings = VolumeSettings::paper();
 /// settings.assign("clip.variant = hyperbolic", "--set")?;
 /// let error = settings.set("clip.varient", "hyperbolic", "--set").expect_err("no such path");
@@ -154,10 +187,13 @@ pub use pxpl5_sim::parameters::Parameter;
 /// ```
 pub use pxpl5_sim::parameters::PathSettings;
 
+/// A complete machine that is selected by name.
+///
+/// The example reads the description of a machine of the papers, and parses a version of its code.
+///
 /// ```
 /// use pxpl5::{CodeVersion, PRESETS, Preset};
 ///
-/// // The machines of the papers.
 /// let preset: Preset = "small-hmd".parse()?;
 /// assert!(PRESETS.contains(&preset) && preset.about.contains("TR94"));
 /// assert_eq!("scheduled".parse(), Ok(CodeVersion::Scheduled));
@@ -165,12 +201,13 @@ pub use pxpl5_sim::parameters::PathSettings;
 /// ```
 pub use pxpl5_machine::Preset;
 
-pub use pxpl5_gp::CodeVersion;
-
+/// An OLED display of a headset, in place of NTSC displays.
+///
+/// The example adds this display to a machine, and lists the names of five displays.
+///
 /// ```
 /// use pxpl5::{FrameBufferConfig, HiResConfig, LcdConfig, MachineConfig, NtscDisplay, OledConfig, Panel, PanelConfig};
 ///
-/// // The same machine with one of five displays.
 /// let machine = MachineConfig::small_hmd().with_display(OledConfig::PAPERS);
 /// assert!(machine.check().is_ok());
 /// let names = [
@@ -186,28 +223,42 @@ pub use pxpl5_gp::CodeVersion;
 /// assert!(numbers.check("oled").is_ok());
 /// # let _: (Option<Panel>, Option<NtscDisplay>) = (None, None);
 /// ```
-pub use pxpl5_framebuffer::{
-    FrameBufferConfig, HiResConfig, LcdConfig, NtscDisplay, OledConfig, Panel, PanelConfig, PanelNumbers,
-};
+pub use pxpl5_framebuffer::OledConfig;
 
+/// A point on the clock of the machine, as a whole number of picoseconds.
+///
+/// The example computes with times, and parses a hash of a run.
+///
 /// ```
 /// use pxpl5::{Span, Time, TraceHash};
 ///
-/// // Times are whole picoseconds.
 /// let begin = Time(0) + Span::from_us(3);
 /// assert_eq!(begin.since(Time(1_000_000)), Span::from_us(2));
 /// assert_eq!("00000000000000ff".parse(), Ok(TraceHash(255)));
 /// ```
-pub use pxpl5_sim::{Span, Time, TraceHash};
+pub use pxpl5_sim::Time;
 
+/// A number for each picture that a viewer can see, such as the picture of an eye.
+///
+/// On the machine of the example, each surface is the picture of an eye.
+///
 /// ```
 /// use pxpl5::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 ///
-/// // On a machine with one stereo display, surfaces are eyes.
 /// assert_eq!(SurfaceId::from(Eye::Right), SurfaceId(1));
 /// assert_eq!("right".parse(), Ok(Eye::Right));
 /// assert_eq!(PeriodNumber(3).next(), PeriodNumber(4));
-/// // Pipelines number pictures and views.
+/// // Pictures and views have numbers, which can be compared.
 /// assert!(PictureNumber(1) < PictureNumber(2) && ViewNumber(1) < ViewNumber(2));
 /// ```
-pub use pxpl5_wire::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
+pub use pxpl5_wire::SurfaceId;
+
+pub use pxpl5_framebuffer::{FrameBufferConfig, HiResConfig, LcdConfig, NtscDisplay, Panel, PanelConfig, PanelNumbers};
+pub use pxpl5_gp::CodeVersion;
+pub use pxpl5_machine::{
+    Arrival, Blocked, EventDescription, LateRegion, ObservedEvent, ObservedKind, PRESETS, Ports, Record, Shown,
+    StageSpan, Swap, Transfer,
+};
+pub use pxpl5_sim::parameters::{FileErrorKind, Parameter, ParameterInfo, Provenance, SettingErrorKind, Value};
+pub use pxpl5_sim::{Span, TraceHash};
+pub use pxpl5_wire::{Eye, PeriodNumber, PictureNumber, ViewNumber};

@@ -1,11 +1,15 @@
 //! Results of runs: latencies, errors in pixels, the use of boards, and pictures.
 
+/// The methods that read an outcome as numbers and pictures.
+///
+/// The example reads one quantity by its name, a report of all results, and a picture.
+///
 /// ```
+/// // The prelude contains the trait `Measured`.
 /// use pxpl5::prelude::*;
 ///
 /// let scene = scene::builtin("full-screen:12")?;
 /// let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).run()?;
-/// // The trait `Measured` adds methods to an outcome: one quantity by its name, all results as numbers, and a picture.
 /// assert_eq!(outcome.quantity("missed_retraces")?, Some(0.0));
 /// assert_eq!(outcome.report().missed_retraces, Some(0));
 /// assert_eq!(outcome.picture(Eye::Left).map(|picture| picture.dimensions()), Some((640, 480)));
@@ -13,6 +17,10 @@
 /// ```
 pub use pxpl5_measure::Measured;
 
+/// The results of a run as a struct with public fields.
+///
+/// The example prints the parts of the latency, and reads the latencies of both eyes.
+///
 /// ```
 /// use pxpl5::prelude::*;
 /// use pxpl5::{LatencyPartStatistics, SurfaceStatistics, TooHeavy};
@@ -24,28 +32,33 @@ pub use pxpl5_measure::Measured;
 /// for part in parts {
 ///     println!("{}: {:.2} ms", part.name, part.statistics.statistics.mean);
 /// }
-/// // The left eye, the right eye and the pair, each to the end of COPY, to the swap and to the light.
+/// // Latencies of the left eye, the right eye and both, each to the end of COPY, to the swap and to the light.
 /// let eyes: &[SurfaceStatistics] = &report.latency_by_eye_ms;
 /// assert_eq!(eyes.len(), 3 * 3);
-/// // The scene is light enough.
+/// // The scene is small enough for the pipeline, so there is no warning.
 /// let heavy: Option<&TooHeavy> = report.too_heavy.as_ref();
 /// assert!(heavy.is_none());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_measure::{LatencyPartStatistics, Report, SurfaceStatistics, TooHeavy};
+pub use pxpl5_measure::Report;
 
+/// The part of a report about a tracked head.
+///
+/// In the example, a device moves each picture to the newest pose of the head.
+///
 /// ```
 /// use pxpl5::prelude::*;
-/// use pxpl5::{Budget, EyeReport, HeadReport, Raster, Reprojection, ReprojectionReport, Every, Warp};
+/// use pxpl5::{Budget, Every, EyeReport, HeadReport, Raster, RasterOffsets, Reprojection, ReprojectionReport, Warp};
 /// use std::sync::Arc;
 ///
-/// // A device moves each picture to the newest pose.
 /// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(seconds), ..Pose::IDENTITY });
 /// let head = Head::new(Arc::new(turn), TrackerConfig::ideal(), PredictorKind::None, 1)?;
 /// let head = head.with_raster(Raster::Reprojected(Reprojection::new(Warp::Rotation, Every::Line)));
 /// let scene = scene::builtin("full-screen:4")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(90).pixels(Pixels::Off);
-/// let report = experiment.head(head).run()?.report();
+/// let outcome = experiment.head(head).run()?;
+/// assert!(RasterOffsets::of(&outcome).is_some());
+/// let report = outcome.report();
 /// let head: HeadReport = report.head.ok_or("a tracked head")?;
 /// let budget: Budget = head.end_to_end;
 /// assert!(budget.total_ms > 0.0);
@@ -54,12 +67,15 @@ pub use pxpl5_measure::{LatencyPartStatistics, Report, SurfaceStatistics, TooHea
 /// assert!(device.is_some());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_measure::{Budget, EyeReport, HeadReport, ReprojectionReport};
+pub use pxpl5_measure::HeadReport;
 
+/// The name of one number of a run, such as `latency_ms.mean`.
+///
+/// The example prints the first quantity of the list, and measures the mean latency of Slats.
+///
 /// ```
 /// use pxpl5::{QUANTITIES, Quantity, prelude::*};
 ///
-/// // All quantities are in a list.
 /// let first: &Quantity = &QUANTITIES[0];
 /// println!("{}: {}", first.name, first.definition);
 /// let measure: Measure = "latency_ms.mean".parse()?;
@@ -70,15 +86,19 @@ pub use pxpl5_measure::{Budget, EyeReport, HeadReport, ReprojectionReport};
 /// assert!((measure.of(&results).ok_or("pictures were shown")? - 16.683).abs() < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_measure::{Measure, QUANTITIES, Quantity, Results};
+pub use pxpl5_measure::Measure;
 
+/// A list of the resources for which pictures wait.
+///
+/// The example prints the resource with the largest share of the latency.
+///
 /// ```
 /// use pxpl5::prelude::*;
 /// use pxpl5::{CriticalPath, PathPart, Resource, Utilisation};
 ///
 /// let scene = scene::builtin("full-screen:12")?;
 /// let report = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60).run()?.report();
-/// // The resources that the latency waits for, the largest share first.
+/// // The resources for which the picture waits, sorted by their share of the latency.
 /// let path: CriticalPath = report.critical_path.ok_or("pictures were shown")?;
 /// println!("limited by {}", path.limited_by);
 /// assert!(path.share(Resource::Ports) > 0.0);
@@ -88,13 +108,16 @@ pub use pxpl5_measure::{Measure, QUANTITIES, Quantity, Results};
 /// assert!(busy.renderers.executing.max <= 1.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_measure::{CriticalPath, PathPart, Resource, Utilisation};
+pub use pxpl5_measure::CriticalPath;
 
+/// An estimate of the pixel error from a motion and a latency, without a run.
+///
+/// In the example, a latency of 50 ms at 200 degrees a second is an error of 10 degrees.
+///
 /// ```
 /// use pxpl5::LatencyCurve;
 /// use pxpl5::tracking::motion::Pan;
 ///
-/// // The error that a latency of 50 ms alone causes, at a turn of 200 degrees a second: 10 degrees.
 /// let curve = LatencyCurve::of(&Pan::at(200.0), 50, 2, 1.0);
 /// // 320 px are 30 degrees from the middle, and the middle moves by f tan(10 deg).
 /// let middle = 320.0 / 30f64.to_radians().tan() * 10f64.to_radians().tan();
@@ -102,6 +125,10 @@ pub use pxpl5_measure::{CriticalPath, PathPart, Resource, Utilisation};
 /// ```
 pub use pxpl5_measure::LatencyCurve;
 
+/// A table that divides the pixel error of a run among its causes.
+///
+/// The example prints the error that the latency causes.
+///
 /// ```
 /// use pxpl5::prelude::*;
 /// use pxpl5::{Cause, ErrorCauses, ErrorPart, FieldMisregistration, PixelErrors, Registration, Showing};
@@ -116,45 +143,46 @@ pub use pxpl5_measure::LatencyCurve;
 /// assert!(errors.pixels.mean > 0.0);
 /// let fields: &[FieldMisregistration] = &errors.by_field;
 /// assert!(!fields.is_empty() && Registration::of(&outcome).is_some());
-/// // The part of the error that each cause contributes.
 /// let causes = ErrorCauses::of(&outcome, Showing::Plain, &errors).ok_or("a tracked head")?;
 /// let latency: Option<&ErrorPart> = causes.parts_px.iter().find(|part| part.cause == Cause::Latency);
 /// println!("{:.2} px of {:.2} px", latency.ok_or("all causes are listed")?.px, causes.whole_px);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_measure::{ErrorCauses, ErrorPart, FieldMisregistration, PixelErrors, Registration, Showing};
+pub use pxpl5_measure::ErrorCauses;
 
-/// ```
-/// use pxpl5::Percentiles;
+/// A description of a list of numbers by mean and deviation.
 ///
-/// let hundred = Percentiles::of((1..=100).map(f64::from));
-/// assert_eq!((hundred.mean, hundred.max), (50.5, 100.0));
+/// The example computes the statistics of three latencies, and the percentiles of the numbers from 1 to 100.
+///
 /// ```
-pub use pxpl5_measure::Percentiles;
-
-/// ```
-/// use pxpl5::{DefinedStatistics, Samples, Statistics};
+/// use pxpl5::{DefinedStatistics, Percentiles, Samples, Statistics};
 ///
 /// let latencies = Statistics::of([49.0, 50.0, 51.0].into_iter());
 /// assert_eq!((latencies.n, latencies.mean, latencies.sd), (3, 50.0, 1.0));
 /// let defined: DefinedStatistics = latencies.defined("from TRANSFORM to the swap, ms");
 /// assert_eq!(defined.statistics.min, 49.0);
+/// let hundred = Percentiles::of((1..=100).map(f64::from));
+/// assert_eq!((hundred.mean, hundred.max), (50.5, 100.0));
 /// # let _ = Samples::keeping(1);
 /// ```
-pub use pxpl5_run::{DefinedStatistics, Samples, Statistics};
+pub use pxpl5_run::Statistics;
 
+/// The instants at which a picture was begun, drawn and shown.
+///
+/// The example reads the pictures of a run, their latencies, and the periods that the results cover.
+///
 /// ```
 /// use pxpl5::prelude::*;
 /// use pxpl5::{DuePictures, LATENCY_PARTS, LatencyParts, PartDefinition, PictureResult, PictureTimes, ResultWindow, Summary};
 ///
 /// let scene = scene::builtin("full-screen:12")?;
 /// let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).run()?;
-/// // Results cover a window after start-up. In the window, all due pictures were shown.
+/// // Results cover the display periods after the warm-up. In these periods, all due pictures were shown.
 /// let (window, due): (ResultWindow, DuePictures) = outcome.window().zip(outcome.due()).ok_or("a window")?;
 /// assert!(window.periods() > 0 && due.not_shown() == 0);
 /// let picture: &PictureTimes = outcome.complete_pictures().next().ok_or("a picture")?;
 /// assert!(picture.shown_at > picture.transform_at && picture.end == PictureResult::Shown);
-/// // The parts of a latency have definitions.
+/// // Each part of a latency has a definition in words.
 /// let part: &PartDefinition = &LATENCY_PARTS[0];
 /// println!("{part:?}");
 /// let parts: Vec<LatencyParts> = outcome.latency_parts();
@@ -162,16 +190,16 @@ pub use pxpl5_run::{DefinedStatistics, Samples, Statistics};
 /// assert_eq!(parts.len() as u64, summary.latency_ms().n);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_run::{
-    DuePictures, LATENCY_PARTS, LatencyParts, PartDefinition, PictureResult, PictureTimes, ResultWindow, Summary,
-    WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION,
-};
+pub use pxpl5_run::PictureTimes;
 
+/// An observer that computes the results of a tracked head during the run.
+///
+/// The memory of the run in the example does not grow with the length of the run.
+///
 /// ```
 /// use pxpl5::{HeadSum, Keep, prelude::*};
 /// use std::sync::Arc;
 ///
-/// // A run of any length in constant memory. The observer computes the errors while the run goes on.
 /// let head = Head::new(Arc::new(from_fn(|_| Pose::IDENTITY)), TrackerConfig::ideal(), PredictorKind::None, 1)?;
 /// let scene = scene::builtin("full-screen:4")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(90).pixels(Pixels::Off);
@@ -181,12 +209,15 @@ pub use pxpl5_run::{
 /// ```
 pub use pxpl5_measure::HeadSum;
 
+/// The trait of an observer that computes a result of its own during the run.
+///
+/// The observer of the example counts pictures.
+///
 /// ```
 /// use pxpl5::prelude::*;
 /// use pxpl5::{FinalResults, Keep, ObserverFactory, StreamingObserver};
 /// use std::any::Any;
 ///
-/// // An observer that counts pictures while the run goes on.
 /// #[derive(Debug, Default)]
 /// struct Count(usize);
 ///
@@ -206,30 +237,17 @@ pub use pxpl5_measure::HeadSum;
 /// assert!(outcome.observed::<usize>().is_some_and(|pictures| *pictures > 0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_run::{FinalResults, ObserverFactory, StreamingObserver};
+pub use pxpl5_run::StreamingObserver;
 
-/// ```
-/// use pxpl5::prelude::*;
-/// use pxpl5::{Raster, RasterOffsets};
-/// use std::sync::Arc;
+/// Computes how a picture looks after the head has moved.
 ///
-/// // VDRT: the raster is shifted by the error of the pose.
-/// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(seconds), ..Pose::IDENTITY });
-/// let head = Head::new(Arc::new(turn), TrackerConfig::ideal(), PredictorKind::None, 1)?.with_raster(Raster::Vdrt);
-/// let scene = scene::builtin("full-screen:4")?;
-/// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
-/// let outcome = experiment.head(head).run()?;
-/// assert!(RasterOffsets::of(&outcome).is_some());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub use pxpl5_measure::RasterOffsets;
-
+/// In the example, a wall is two metres ahead, and the head moves five centimetres to the right.
+///
 /// ```
 /// use pxpl5::image::RgbImage;
 /// use pxpl5::tracking::view::Hmd;
 /// use pxpl5::{DepthPicture, prelude::*, reproject_with_depth};
 ///
-/// // A wall two metres ahead, and a head that moves five centimetres to the right.
 /// let depths = DepthPicture::from_fn(640, 480, |_, _| 2.0);
 /// let now = Pose { position: DVec3::new(0.05, 0.0, 0.0), ..Pose::IDENTITY };
 /// let moved = reproject_with_depth(&RgbImage::new(640, 480), &depths, &Hmd::unc(), &Pose::IDENTITY, &now);
@@ -238,6 +256,14 @@ pub use pxpl5_measure::RasterOffsets;
 /// assert!(black > 0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_measure::DepthPicture;
+pub use pxpl5_measure::reproject_with_depth;
 
-pub use pxpl5_measure::{picture, reproject, reproject_with_depth, side_by_side};
+pub use pxpl5_measure::{
+    Budget, DepthPicture, ErrorPart, EyeReport, FieldMisregistration, LatencyPartStatistics, PathPart, Percentiles,
+    PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, ReprojectionReport, Resource, Results, Showing,
+    SurfaceStatistics, TooHeavy, Utilisation, picture, reproject, side_by_side,
+};
+pub use pxpl5_run::{
+    DefinedStatistics, DuePictures, FinalResults, LATENCY_PARTS, LatencyParts, ObserverFactory, PartDefinition,
+    PictureResult, ResultWindow, Samples, Summary, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION,
+};

@@ -87,7 +87,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_message_at_any_port_is_used_or_a_fault(messages in prop::collection::vec(message(), 1..60)) {
+    fn any_message_at_any_port_is_accepted_or_a_fault(messages in prop::collection::vec(message(), 1..60)) {
         for entry in registry().displays() {
             let config = (entry.config)();
             let nodes: Vec<NodeId> = (FIRST_PORT..).take(config.ports(2)).map(NodeId).collect();

@@ -31,15 +31,16 @@ fn a_complete_field_goes_to_the_other_buffer_and_is_shown() {
     assert!(buffers.contains(&0) && buffers.contains(&1));
 }
 
-/// The request for each field costs two messages a field more than a split copy, whose limit is 146 triangles.
+/// With a backup, the requests for a field take two messages more than a split copy. The limit of a split copy is 146
+/// triangles.
 #[test]
-fn a_backup_costs_a_few_triangles_of_the_limit_of_a_split_copy() {
+fn with_a_backup_140_triangles_have_no_late_region() {
     let outcome = run(Slats::backup(), "full-screen:140");
     assert_eq!(outcome.report().late_regions, 0);
 }
 
 #[test]
-fn typical_triangles_sent_only_where_they_touch_raise_the_limit() {
+fn sending_triangles_only_to_the_regions_that_they_touch_raises_the_limit() {
     let touched = Slats { binning: RegionBinning::Touched, ..Slats::split() };
     let all = limit(1, 5, Slats::split(), TestScene::Typical);
     let touched = limit(1, 5, touched, TestScene::Typical);
@@ -48,7 +49,7 @@ fn typical_triangles_sent_only_where_they_touch_raise_the_limit() {
 
 /// A finished region leaves through the backing store. Colours take a block of 32 bits, and depths take another block.
 #[test]
-fn a_backing_store_has_room_for_a_finished_region_or_is_refused() {
+fn a_backing_store_too_small_for_a_region_is_refused() {
     for (pipeline, bits) in [("rendering-control", 32), ("arp-full", 64)] {
         let with = |bits: u64| {
             let text = format!(
@@ -66,7 +67,7 @@ fn a_backing_store_has_room_for_a_finished_region_or_is_refused() {
 }
 
 #[test]
-fn every_machine_that_the_papers_name_goes_on_drawing() {
+fn every_machine_named_by_the_papers_runs() {
     // Machines have up to 50 GPs and 20 renderers (I3D95). Full input FIFOs must not block the pixels of their own
     // boards.
     for machine in ["small-hmd", "medium", "large"] {

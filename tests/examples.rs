@@ -30,7 +30,7 @@ fn shown(page: &str) -> String {
 }
 
 #[test]
-fn the_guide_shows_every_example_as_it_is() {
+fn the_guide_shows_every_example_unchanged() {
     let path = root().join("docs/guide/rust.md");
     let page = read(&path);
     assert!(EXAMPLES.iter().all(|name| page.contains(&format!("<!-- examples/{name}.rs -->"))));
@@ -63,7 +63,7 @@ fn number_before(line: &str, word: &str) -> f64 {
 }
 
 #[test]
-fn my_model_is_shown_by_both_pipelines_and_slats_shows_it_in_every_field() {
+fn both_pipelines_show_a_model_file_and_slats_shows_it_in_every_field() {
     let printed = printed("my_model");
     let lines: Vec<&str> = printed.lines().filter(|line| !line.starts_with("warning")).collect();
     let [rendering_control, its_pixels, slats, pixels] = lines[..] else { panic!("{printed}") };
@@ -78,15 +78,15 @@ fn my_model_is_shown_by_both_pipelines_and_slats_shows_it_in_every_field() {
 }
 
 #[test]
-fn the_loop_finds_the_sum_of_squares() {
+fn the_i860_loop_of_the_example_computes_the_sum_of_squares() {
     let printed = printed("i860_loop");
-    // 1 + 4 + .. + 100 = 10 x 11 x 21 / 6.
+    // The sum 1 + 4 + .. + 100 is 10 x 11 x 21 / 6 = 385.
     assert!(printed.lines().any(|line| line == "result 385"), "{printed}");
     assert!(printed.contains("Stopped after "));
 }
 
 #[test]
-fn the_sweep_has_a_line_for_each_point_and_more_processors_are_faster() {
+fn the_sweep_example_prints_a_line_for_each_point_and_more_processors_lower_the_latency() {
     let printed = printed("my_sweep");
     let rows: Vec<&str> = printed.lines().filter(|line| line.ends_with(" Hz")).collect();
     assert_eq!(rows.len(), 3 * 2 * 2);
@@ -101,7 +101,7 @@ fn the_sweep_has_a_line_for_each_point_and_more_processors_are_faster() {
 }
 
 #[test]
-fn the_recording_is_evaluated_under_every_pipeline_and_predictor() {
+fn the_recording_example_evaluates_every_pipeline_with_and_without_prediction() {
     let printed = printed("my_recording");
     let errors: Vec<f64> = printed.lines().map(|line| number_before(line, " px of error")).collect();
     assert_eq!(errors.len(), 3 * 2);

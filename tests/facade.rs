@@ -48,6 +48,23 @@ fn exports(text: &str) -> Vec<(String, String)> {
     names
 }
 
+/// Returns the names of the items in a file that have a comment.
+fn commented_names(text: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut has_comment = false;
+    for line in text.lines().map(str::trim_start) {
+        if line.starts_with("///") {
+            has_comment = true;
+        } else if !line.starts_with("#[") {
+            // A macro that defines a type gets the name alone.
+            let words = line.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty());
+            names.extend(words.take(3).filter(|_| has_comment).map(str::to_owned));
+            has_comment = false;
+        }
+    }
+    names
+}
+
 #[test]
 fn each_item_of_the_facade_has_one_path() {
     let mut paths: BTreeMap<String, usize> = BTreeMap::new();
@@ -57,6 +74,43 @@ fn each_item_of_the_facade_has_one_path() {
     assert!(paths.len() > 200, "{} names", paths.len());
     let twice: Vec<_> = paths.iter().filter(|(_, count)| **count > 1).collect();
     assert!(twice.is_empty(), "exported more than once: {twice:?}");
+}
+
+#[test]
+fn each_comment_of_a_re_export_describes_one_item_and_begins_with_a_summary() {
+    for file in FILES {
+        let text = source(file);
+        let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
+        // A list of several names repeats the comment on the page of each name.
+        let ends = (1..lines.len()).filter(|&n| lines[n].starts_with("pub use ") && lines[n - 1].starts_with("///"));
+        for end in ends {
+            assert!(lines[end].ends_with(';') && !lines[end].contains('{'), "{file}: {}", lines[end]);
+            let begin = lines[..end].iter().rposition(|line| !line.starts_with("///")).map_or(0, |before| before + 1);
+            // The first paragraph is the summary on the index page.
+            assert!(lines[begin].ends_with('.') && lines[begin + 1] == "///", "{file}: {}", lines[begin]);
+        }
+    }
+}
+
+#[test]
+fn each_item_of_the_facade_has_a_comment_in_its_crate() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates");
+    let mut folders = vec![root];
+    let mut commented: BTreeSet<String> = BTreeSet::new();
+    while let Some(folder) = folders.pop() {
+        for path in fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                commented.extend(commented_names(&fs::read_to_string(path).expect("a source file")));
+            }
+        }
+    }
+    let names = FILES.iter().flat_map(|file| exports(&source(file))).map(|(_, name)| name);
+    // Modules and functions have lower-case names. Modules have their comments in their own files.
+    let is_item = |name: &String| name.starts_with(char::is_uppercase);
+    let missing: Vec<String> = names.filter(is_item).filter(|name| !commented.contains(name)).collect();
+    assert!(missing.is_empty(), "items without a comment: {missing:?}");
 }
 
 #[test]

@@ -21,7 +21,7 @@ fn found(text: &str) -> Value {
 }
 
 #[test]
-fn experiments_have_the_hashes_that_python_finds() {
+fn experiments_have_the_same_hashes_in_rust_and_python() {
     let kept: Vec<Value> =
         serde_json::from_str(&std::fs::read_to_string(file()).expect("the file is there")).expect("JSON");
     let texts = kept.iter().map(|entry| entry["experiment"].as_str().expect("a text"));

@@ -31,7 +31,7 @@ fn plan(settings: &[(&str, &str)]) -> Plan {
 }
 
 #[test]
-fn an_experiment_file_gives_the_numbers_of_the_comparison() {
+fn an_experiment_file_gives_the_same_numbers_as_the_comparison() {
     let shared = [
         ("scene", "full-screen:2"),
         ("fields", "40"),
@@ -98,7 +98,7 @@ fn is_wall(picture: &image::RgbImage, x: u32, y: u32) -> bool {
 }
 
 #[test]
-fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
+fn a_shifted_raster_shows_an_edge_at_its_position_when_each_line_lights() {
     const FIELD: PeriodNumber = PeriodNumber(20);
     let pan = Pan::at(30.0);
     let view = Hmd::unc();
@@ -118,13 +118,13 @@ fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
     });
     // Positions are whole columns: half a pixel of error in the picture, and half a pixel in the shift.
     assert!(vdrt <= 1.0, "{vdrt}");
-    // The end of the field is 15.3 ms after its begin, for which the picture is drawn.
+    // The picture is drawn for the begin of the field. The end of the field is 15.3 ms later.
     let expected = 554.256 * (30.0 * 0.0153f64).to_radians().tan();
     assert!((plain - expected).abs() < 1.0, "{plain} {expected}");
 }
 
 #[test]
-fn a_film_on_a_shifted_raster_shows_the_pictures_of_a_run_on_it() {
+fn a_film_with_a_shifted_raster_shows_the_pictures_of_its_run() {
     let mut bytes = Vec::new();
     Film::new(panned(40.0, Raster::Vdrt, 30), PeriodNumber(10), 3, FilmSurfaces::One(Eye::Left.into()))
         .write(&[], &mut bytes)
@@ -139,12 +139,12 @@ fn a_film_on_a_shifted_raster_shows_the_pictures_of_a_run_on_it() {
 }
 
 #[test]
-fn slats_takes_a_report_no_older_than_the_trackers_interval_and_the_way_to_the_processors() {
+fn slats_uses_a_report_no_older_than_the_report_interval_and_the_transfer_to_the_processors() {
     // A report that is sent at once waits for the retrace between zero and one interval. If reports were sent once a
-    // field just after the retrace, each would wait for another field of 16.68 ms. A thousand reports a second fall on
-    // all places of a field, so they wait for half an interval on average. The Fastrak's 120 reports would need 500
-    // fields for that, of which these are a part. Trackers behind the port of a host whose kernel polls 60 times a
-    // second always report at the same place.
+    // field just after the retrace, each would wait for another field of 16.68 ms. A thousand reports a second come at
+    // all phases of a field, so they wait for half an interval on average. The Fastrak's 120 reports a second come at
+    // all phases only within 500 fields, and this run is shorter. Behind a host port that is polled 60 times a second,
+    // reports always come at the same phase.
     for (tracker, least_ms, most_ms) in [("fastrak", 0.0, 1e3 / 120.0), ("ideal", 0.5, 0.5)] {
         let settings = [
             ("pipeline", "slats"),
@@ -163,10 +163,11 @@ fn slats_takes_a_report_no_older_than_the_trackers_interval_and_the_way_to_the_p
     }
 }
 
-/// The head stands still, 3 m to the right of the origin, and looks to the left. In the world of the scene it stays
-/// there. In the scene it is moved to the start of the scene's own motion.
+/// The head stands still, 3 m to the right of the origin, and looks to the left. If the poses are in the coordinates of
+/// the world, the head stays there. If they are in the coordinates of the scene, the head moves to the start of the
+/// scene's own motion.
 #[test]
-fn poses_in_the_world_stay_and_poses_of_the_scene_begin_at_its_start() {
+fn poses_in_the_world_stay_in_place_and_poses_in_the_scene_move_to_the_start_of_the_scene() {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let pose = Pose { position: DVec3::new(3.0, 1.0, -2.0), orientation: DQuat::from_xyzw(0.0, half, 0.0, half) };
     let truth = |place: HeadPlace| {
@@ -187,7 +188,7 @@ fn poses_in_the_world_stay_and_poses_of_the_scene_begin_at_its_start() {
 }
 
 #[test]
-fn a_place_is_part_of_the_settings_only_if_it_is_not_the_usual_one() {
+fn the_place_of_a_head_changes_the_hash_only_if_the_place_is_not_the_default() {
     let usual = [("pipeline", "slats"), ("scene", "room"), ("head.motion", "pan:40")];
     let hash = |more: &[(&str, &str)]| plan(&[&usual[..], more].concat()).fingerprint();
     assert_eq!(hash(&[("head.place", "scene")]), hash(&[]));

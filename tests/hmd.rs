@@ -17,7 +17,7 @@ fn report(settings: &[&str]) -> Report {
 /// A turn by an angle moves the middle of the picture by the focal length times the tangent of the angle. The focal
 /// length is half the width divided by the tangent of half the field of view. The ratio is tan 45 / tan 30 = 1.732.
 #[test]
-fn the_error_in_the_middle_goes_with_the_focal_length() {
+fn the_error_in_the_middle_is_proportional_to_the_focal_length() {
     let centre = |settings: &[&str]| {
         let error = report(settings).head.expect("a tracked head").error;
         let fields: Vec<f64> = error.by_field.iter().map(|field| field.centre_px).filter(|px| px.is_finite()).collect();
@@ -28,7 +28,7 @@ fn the_error_in_the_middle_goes_with_the_focal_length() {
 }
 
 #[test]
-fn every_report_states_the_display_and_hashes_stay_without_changes() {
+fn every_report_states_the_display_and_default_display_settings_do_not_change_the_hashes() {
     let usual = report(&[]);
     assert_eq!(
         (usual.hmd.horizontal_fov_deg, usual.hmd.eye_separation_m, usual.hmd.near_m, usual.hmd.far_m),
@@ -68,7 +68,7 @@ fn impossible_displays_are_refused_by_name() {
 }
 
 #[test]
-fn axes_that_meet_are_in_the_report_and_infinity_is_the_default() {
+fn the_report_states_the_convergence_of_the_eyes_and_parallel_axes_are_the_default() {
     let usual = report(&[]);
     let parallel = report(&["hmd.convergence=inf", "hmd.lens=0"]);
     assert_eq!((&parallel.config_hash, &parallel.trace_hash), (&usual.config_hash, &usual.trace_hash));

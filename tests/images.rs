@@ -171,7 +171,7 @@ fn drawn_by(n_gps: usize, pipeline: Arc<dyn Pipeline>, subject: &Subject) -> Vec
 }
 
 #[test]
-fn a_still_scene_looks_the_same_however_many_processors_draw_it() {
+fn the_picture_of_a_still_scene_does_not_depend_on_the_number_of_processors() {
     let subject = &SUBJECTS[3];
     let control = Arc::new(RenderingControl::stereo());
     let slats = Arc::new(Slats::split());

@@ -96,13 +96,13 @@ fn figure_10_twenty_field_regions_take_eleven_region_times() {
 }
 
 #[test]
-fn figure_11_half_of_them_take_3_9_ms() {
+fn figure_11_half_of_the_field_regions_take_3_9_ms() {
     let outcome = slats("slats", Slats::split(), 60);
     for bottom in [false, true] {
         let half = |a: &&Arrival| a.target.picture == PictureNumber(6) && (a.target.region.0 >= 5) == bottom;
         let us = copy_us(outcome.observation().arrivals.iter().filter(half));
-        // The changes take less than a microsecond, and the ways of the first and the last renderer differ by up to 8
-        // hops.
+        // The changes between renderers take less than a microsecond. The paths of the first and of the last renderer
+        // differ by up to 8 hops.
         assert!((us - 5.0 * REGION_US).abs() < 1.5, "{us} us");
     }
 }
@@ -122,14 +122,14 @@ fn misses(machine: &str, pipeline: Slats, triangles: usize) -> bool {
 }
 
 #[test]
-fn figure_12_without_the_copy_optimisation_110_triangles_are_the_most() {
+fn figure_12_without_the_copy_optimisation_the_limit_is_110_triangles() {
     // The time of a triangle was fitted to this figure.
     assert!(!misses("slats", Slats::whole(), 110));
     assert!(misses("slats", Slats::whole(), 111));
 }
 
 #[test]
-fn figure_13_with_it_the_model_draws_146_triangles_where_140_were_measured() {
+fn figure_13_with_the_copy_optimisation_the_model_draws_146_triangles_where_140_were_measured() {
     // FIXME(accuracy): the limit is 4 % too high, although no number was fitted to it.
     assert!(!misses("slats", Slats::split(), 140));
     assert!(!misses("slats", Slats::split(), 146));
@@ -166,7 +166,7 @@ fn figure_15_the_first_copy_begins_about_12_8_ms_after_the_retrace() {
 }
 
 #[test]
-fn a_field_with_too_many_triangles_names_its_late_regions_and_shows_the_old_ones() {
+fn a_field_with_too_many_triangles_has_late_regions_and_a_picture_is_still_shown() {
     let scene = scene::builtin("full-screen:200").expect("built in");
     let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(16).run().expect("it runs");
     let report = outcome.report();

@@ -30,7 +30,7 @@ fn the_aircraft_is_limited_by_copy_through_the_ports() {
         assert!((port.busy - 15.6 / 33.367).abs() < 0.01, "{port:?}");
     }
     assert!(utilisation.ring.channels.mean < 0.2 && utilisation.renderers.executing.max < 0.2, "{utilisation}");
-    // 2 x 307,200 pixels in 33.37 ms are 18.4 million words a second; commands come to them.
+    // 2 x 307,200 pixels in 33.37 ms are 18.4 million words a second. Commands are additional words.
     assert!((18.4e6..22e6).contains(&utilisation.ring.words_per_second), "{utilisation}");
     assert!((utilisation.ring.capacity - 160e6).abs() < 1.0, "8 channels of 20 million words a second");
 }
@@ -55,9 +55,9 @@ fn the_head_on_the_largest_machine_is_limited_by_one_renderer() {
     assert!(executing.max > 0.97 && executing.busiest == 0 && executing.idle == 9, "{executing:?}");
 }
 
-/// The followed latency is that of the report: from the start of TRANSFORM to the retrace.
+/// The latency along the critical path equals the latency of the report: from the start of TRANSFORM to the retrace.
 #[test]
-fn the_chain_is_as_long_as_the_latency() {
+fn the_links_of_the_critical_path_add_up_to_the_latency() {
     let report = report("full-screen:12", (13, 5), 60);
     let path = report.critical_path.expect("pictures were shown");
     let statistics = report.latency_ms.statistics;

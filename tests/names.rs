@@ -26,7 +26,7 @@ where
         let name = value.to_string();
         assert!(!name.is_empty() && names.insert(name.clone()), "{value:?}: {name:?} is empty or taken");
         assert_eq!(name.parse::<T>().unwrap_or_else(|error| panic!("{name}: {error}")), value);
-        // A name is found as a whole only.
+        // Only the complete name is accepted.
         for other in [format!("{name}x"), format!(" {name}"), String::new()] {
             let error = other.parse::<T>().expect_err("no name");
             assert!(!error.to_string().is_empty());
@@ -46,8 +46,8 @@ where
 }
 
 #[test]
-fn every_public_name_is_read_as_it_is_written() {
-    // Settings of experiments.
+fn every_public_name_is_parsed_as_printed() {
+    // Names in settings of experiments.
     round_trip(Level::ALL);
     listed(Pixels::ALL);
     listed(Keep::ALL);
@@ -56,7 +56,7 @@ fn every_public_name_is_read_as_it_is_written() {
     listed(Aim::ALL);
     listed(HeadPlace::ALL);
     round_trip(Cause::ALL);
-    // Settings of pipelines.
+    // Names in settings of pipelines.
     listed(CopySchedule::ALL);
     listed(RegionBinning::ALL);
     listed(SlatsLighting::ALL);
@@ -64,19 +64,19 @@ fn every_public_name_is_read_as_it_is_written() {
     round_trip(FinishedRegions::ALL);
     listed(FacePolicy::ALL);
     listed(Culling::ALL);
-    // Boards and machines.
+    // Names of boards and machines.
     round_trip([Board::Host, Board::Gp(12), Board::Renderer(0), Board::Display(1), Board::Ring]);
     round_trip(PRESETS);
     round_trip(CodeVersion::ALL);
     listed(Latch::ALL);
     round_trip(Eye::BOTH);
-    // Devices after the frame buffer.
+    // Names of devices after the frame buffer.
     listed(Warp::ALL);
     listed(Every::ALL);
     let devices = Warp::ALL.into_iter().flat_map(|(_, by)| Every::ALL.map(|(_, every)| Reprojection::new(by, every)));
     round_trip(devices.clone());
     round_trip(devices.map(Raster::Reprojected).chain([Raster::Plain, Raster::Vdrt]));
-    // Heads and trackers.
+    // Names of heads and trackers.
     round_trip(PredictorKind::ALL);
     listed(End::NAMES);
     listed(Axes::NAMES);
@@ -86,7 +86,7 @@ fn every_public_name_is_read_as_it_is_written() {
     }
     let columns: Columns = "t_ns=stamp,x=px".parse().expect("a mapping");
     assert_eq!(columns.to_string(), "t_ns=stamp,x=px");
-    // Results.
+    // Names of results.
     round_trip(QUANTITIES.iter().map(|quantity| Measure::named(quantity.name).expect("listed")));
     round_trip(Resource::ALL);
     listed(Stage::ALL);
@@ -115,9 +115,8 @@ fn every_pipeline_and_display_of_the_papers_is_found_by_its_name() {
     );
 }
 
-/// Names of volumetric displays.
 #[test]
-fn every_choice_of_volumes_is_read_as_it_is_written() {
+fn every_choice_of_volumes_is_parsed_as_printed() {
     use pxpl5::volume::spatialgl::{BinTolerance, Binning, Combine, Coverage, Rotation, Strobes, TieRule};
     listed(TieRule::ALL);
     listed(Binning::ALL);
@@ -129,7 +128,7 @@ fn every_choice_of_volumes_is_read_as_it_is_written() {
 }
 
 #[test]
-fn a_preset_is_a_machine() {
+fn every_preset_name_gives_a_machine() {
     let preset: Preset = "slats-1995".parse().expect("listed");
     assert_eq!((preset.name, preset.to_string().as_str()), ("slats-1995", "slats-1995"));
     let error = "slats1995".parse::<Preset>().expect_err("not listed");

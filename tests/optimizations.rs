@@ -61,28 +61,28 @@ fn assert_same(experiment: &Experiment, saving: Optimization, fields: u64) {
 }
 
 #[test]
-fn boards_that_sleep_have_nothing_to_do() {
+fn not_polling_idle_boards_does_not_change_the_trace() {
     for experiment in experiments() {
         assert_same(&experiment.pixels(Pixels::Lazy), Optimization::IdleBoards, 3);
     }
 }
 
 #[test]
-fn transfers_in_closed_form_end_when_their_words_do() {
+fn computing_the_end_of_transfers_in_closed_form_does_not_change_the_trace() {
     for experiment in experiments() {
         assert_same(&experiment.pixels(Pixels::Lazy), Optimization::Transfers, 10);
     }
 }
 
 #[test]
-fn regions_without_primitives_look_as_if_they_had_been_drawn() {
+fn skipped_empty_regions_have_the_same_pixels_as_drawn_ones() {
     for experiment in experiments() {
         assert_same(&experiment.pixels(Pixels::All), Optimization::EmptyRegions, 10);
     }
 }
 
 #[test]
-fn code_that_repeats_takes_the_clocks_that_are_counted() {
+fn memoised_code_takes_the_simulated_clocks() {
     for experiment in experiments() {
         assert_same(&experiment.level(Level::Cycle).pixels(Pixels::Lazy), Optimization::RepeatedCode, 10);
     }
@@ -98,7 +98,7 @@ fn computing_pixels_changes_no_time() {
 
 /// All optimizations are disabled at once, also with code on the graphics processors.
 #[test]
-fn optimizations_do_not_affect_each_other() {
+fn disabling_all_optimizations_at_once_does_not_change_the_trace() {
     let [_, slats, _] = experiments();
     let slats = slats.level(Level::Cycle).pixels(Pixels::All);
     let without = Optimization::ALL.into_iter().fold(slats.clone(), Experiment::without);

@@ -116,7 +116,7 @@ fn results() -> Vec<String> {
 }
 
 #[test]
-fn every_number_of_the_paper_is_a_result_of_a_file_or_a_name() {
+fn every_number_in_the_paper_comes_from_a_result_file() {
     let mut text = body();
     for phrase in results() {
         assert!(text.contains(&phrase), "paper/paper.md must say: {phrase}");
@@ -130,7 +130,7 @@ fn every_number_of_the_paper_is_a_result_of_a_file_or_a_name() {
 }
 
 #[test]
-fn slats_as_published_cannot_draw_the_scene_as_the_paper_says() {
+fn slats_as_published_cannot_draw_the_scene_of_the_paper() {
     let table = read("paper/comparison.csv");
     let row = table.lines().find(|line| line.starts_with("slats,")).expect("a row of Slats");
     assert!(row.contains("cannot draw the scene"), "{row}");
@@ -152,7 +152,7 @@ fn the_paper_is_short_enough_and_cites_only_what_its_bibliography_has() {
 }
 
 #[test]
-fn the_paper_has_each_section_that_the_journal_asks_for() {
+fn the_paper_has_each_section_required_by_the_journal() {
     let paper = read("paper/paper.md");
     for title in ["Summary", "Statement of need", "State of the field", "Validation", "Limits", "References"] {
         assert!(paper.contains(&format!("\n# {title}\n")), "{title}");

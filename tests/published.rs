@@ -34,7 +34,7 @@ fn both_eyes_are_copied_in_31_2_ms() {
 }
 
 #[test]
-fn copy_alone_takes_the_three_fields_of_the_theory() {
+fn with_copy_as_the_only_limit_the_latency_is_the_three_fields_of_the_theory() {
     within("3", 49.5, 50.5);
 }
 
@@ -45,18 +45,18 @@ fn a_trivial_stereo_scene_takes_1_percent_more_than_measured() {
 }
 
 #[test]
-fn equal_stages_keep_30_hz_and_take_four_fields() {
+fn with_equal_stage_times_the_machine_keeps_30_hz_and_has_a_latency_of_four_fields() {
     within("5", 66.7 * 0.98, 66.7 * 1.02);
     assert!(row("5").details.iter().any(|d| d.unit == "Hz" && (29.9..30.0).contains(&d.value)));
 }
 
 #[test]
-fn long_stages_take_three_transforms_and_one_to_two_copies() {
+fn with_long_stages_the_latency_is_three_transforms_and_one_to_two_copies() {
     within("6", 90.6, 106.2);
 }
 
 #[test]
-fn application_scenes_take_as_many_fields_as_measured() {
+fn application_scenes_have_the_measured_latency_in_fields() {
     for (id, mean, sd) in [("7", 4.61, 0.589), ("7b", 4.47, 0.502), ("7c", 8.13, 2.48)] {
         within(id, mean * 0.95, mean * 1.05);
         let found = row(id).details.iter().find(|detail| detail.name == "standard deviation").expect("listed").value;
@@ -74,7 +74,7 @@ fn the_bins_hold_7_700_triangles_that_cover_the_screen() {
 }
 
 #[test]
-fn triangles_touch_fewer_than_1_3_regions_in_the_mean_of_our_scenes() {
+fn the_triangles_of_the_model_scenes_touch_fewer_than_1_3_regions_on_average() {
     // FIXME(accuracy): the published value is 1.3. The mig alone gives 1.4, and the head gives 1.02.
     within("8", 1.1, 1.25);
 }
@@ -87,19 +87,19 @@ fn slats_has_a_latency_of_one_field_always() {
 }
 
 #[test]
-fn twenty_field_regions_take_eleven_region_times_and_ten_take_five() {
+fn twenty_field_regions_take_eleven_region_times_and_ten_field_regions_take_five() {
     within("10", 10.99, 11.01);
     within("11", 3.85, 3.95);
 }
 
 #[test]
-fn the_limits_that_parameters_were_fitted_to_come_out_exactly() {
+fn limits_used_for_fitting_are_reproduced_exactly() {
     within("12", 110.0, 110.0);
     within("14", 100.0, 100.0);
 }
 
 #[test]
-fn the_copy_optimisation_raises_the_limit_by_seven_triangles_too_many() {
+fn the_copy_optimisation_raises_the_limit_by_seven_triangles_more_than_published() {
     // FIXME(accuracy): the published value is 140.
     within("13", 146.0, 147.0);
 }
@@ -110,9 +110,9 @@ fn the_first_copy_of_a_full_field_begins_after_about_12_8_ms() {
 }
 
 #[test]
-fn the_rig_sees_what_the_paper_measured_with_its_photodiode_low_on_the_screen() {
-    // The published range is 54 to 57 ms, without the position of the photodiode. Both copies take 31.2 ms. The wait
-    // for the retrace is 8.3 ms on average over all phases. A field has 240 lines of 63.6 us.
+fn with_a_photodiode_low_on_the_screen_the_rig_measures_the_published_latency() {
+    // The published range is 54 to 57 ms. The position of the photodiode is not published. Both copies take 31.2 ms.
+    // The wait for the retrace is 8.3 ms on average over all phases. A field has 240 lines of 63.6 us.
     let [first, last] = row("17").unprinted.expect("the line is not printed");
     assert!((last - first - 239.0 * 0.063_556).abs() < 0.05, "{first} to {last}");
     assert!(first > 31.2 + 8.3 - 1.0 && first < 54.0 && last > 54.0, "{first} to {last}");
@@ -120,13 +120,13 @@ fn the_rig_sees_what_the_paper_measured_with_its_photodiode_low_on_the_screen() 
 }
 
 #[test]
-fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
-    // The ratio of the latencies, except for the curvature of the motion within them.
+fn the_error_at_90_ms_is_1_8_times_the_error_at_50_ms() {
+    // The ratio of the latencies, apart from the curvature of the motion within each latency.
     within("18", 1.75, 1.8);
 }
 
 #[test]
-fn tracker_and_rendering_together_are_the_parts_that_were_measured_one_by_one() {
+fn tracker_and_rendering_latencies_equal_the_sum_of_the_measured_parts() {
     for (id, rendering) in [("19", row("4").simulated), ("19b", row("9").simulated * 1001.0 / 60.0)] {
         let of = |name: &str| row(id).details.iter().find(|detail| detail.name == name).expect("listed").value;
         assert!((of("tracking") + of("rendering") - row(id).simulated).abs() < 1e-9, "{id}");
@@ -135,7 +135,7 @@ fn tracker_and_rendering_together_are_the_parts_that_were_measured_one_by_one() 
 }
 
 #[test]
-fn every_row_names_its_source_and_every_miss_its_cause() {
+fn every_published_row_names_its_source_and_every_missed_row_names_its_cause() {
     for row in &FIGURES.rows {
         assert!(row.source.contains("TR94") || row.source.contains("I3D95"), "{}", row.id);
         assert!(row.is_met || !row.cause.is_empty(), "figure {} misses without a cause", row.id);
@@ -143,8 +143,8 @@ fn every_row_names_its_source_and_every_miss_its_cause() {
 }
 
 #[test]
-fn the_joint_sample_of_machines_lies_on_both_sides_of_the_presets() {
-    // The presets are not part of the sample, so its range could miss them.
+fn the_joint_sample_of_machines_covers_the_values_of_the_presets() {
+    // The presets are not part of the sample, so the range of the sample could miss their values.
     for interval in &FIGURES.intervals {
         let [low, high] = interval.joint;
         assert!(
@@ -157,7 +157,7 @@ fn the_joint_sample_of_machines_lies_on_both_sides_of_the_presets() {
 }
 
 #[test]
-fn what_is_simulated_lies_in_the_interval_of_the_analytic_level_or_within_3_percent_of_it() {
+fn simulated_values_are_within_the_analytic_interval_or_3_percent_of_it() {
     // The interval was computed at the other level, so agreement is not trivial.
     for row in varied() {
         let [low, high] = row.interval.expect("every figure with a closed form has one");
@@ -168,7 +168,7 @@ fn what_is_simulated_lies_in_the_interval_of_the_analytic_level_or_within_3_perc
         match row.interval {
             // The measuring rig also has its photodiode on the first and on the last line of the screen.
             Some([low, high]) if row.id == "17" => assert!(low < row.simulated && row.simulated < high),
-            // For runs with a tracker, the depth of the FIFO and the channels of a sender are varied, with events.
+            // For runs with a tracker, the depth of the FIFO and the channels of a sender are varied in simulated runs.
             Some([low, high]) => {
                 assert!(["19", "19b"].contains(&row.id) && low <= row.simulated && row.simulated <= high)
             }
@@ -178,15 +178,15 @@ fn what_is_simulated_lies_in_the_interval_of_the_analytic_level_or_within_3_perc
 }
 
 #[test]
-fn no_figure_is_out_of_reach_of_all_parameters_and_readings() {
+fn every_figure_is_within_reach_of_some_parameters_and_interpretations() {
     let out_of_reach: Vec<&str> = FIGURES.rows.iter().filter(|row| row.is_out_of_reach()).map(|row| row.id).collect();
     assert_eq!(out_of_reach, [""; 0]);
 }
 
 #[test]
 fn the_analytic_level_agrees_with_the_transaction_level() {
-    // Closed form and events agree within 3 %. Both use the same views of the head, for more than half of the views of
-    // figures 7 and 7b.
+    // The closed form and the simulation agree within 3 %. Both use the same views of the head, for more than half of
+    // the views of figures 7 and 7b.
     let bench = Bench::new(Level::Analytic).with_mig(6, 150);
     for row in varied() {
         let value = bench.measure(row.id).expect("it runs").value;
@@ -195,7 +195,7 @@ fn the_analytic_level_agrees_with_the_transaction_level() {
 }
 
 #[test]
-fn accuracy_md_is_what_these_runs_give() {
+fn accuracy_md_equals_the_document_computed_from_the_current_figures() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/ACCURACY.md");
     let kept = std::fs::read_to_string(path).expect("ACCURACY.md is part of the project");
     let alternatives = alternatives_with(&BENCH, |_, _| {}).expect("every experiment runs on its preset");
@@ -203,7 +203,7 @@ fn accuracy_md_is_what_these_runs_give() {
 }
 
 #[test]
-fn behind_faces_a_turn_takes_as_long_with_10_000_triangles_as_with_10() {
+fn with_faces_the_latency_of_a_rotation_is_equal_for_10_and_10_000_triangles() {
     let rows = &FIGURES.families[0].rows;
     let of_e1: Vec<_> = rows.iter().filter(|row| row.experiment == "E1").collect();
     assert_eq!((of_e1[0].id, of_e1[0].simulated), ("A4", 0.0), "picoseconds");

@@ -23,7 +23,7 @@ fn rules() -> impl Iterator<Item = (u64, FinishedRegions)> {
 }
 
 #[test]
-fn with_room_for_all_regions_and_a_master_that_goes_on_the_theory_is_three_fields() {
+fn with_stored_regions_and_a_master_that_does_not_wait_the_latency_is_three_fields() {
     // TR94 derives the value: TRANSFORM begins when COPY of the third previous eye has ended, and COPY never pauses.
     // This gives three times 15.6 ms of COPY, or 16.68 ms each at 30 Hz.
     let theory = Bench::new(Level::Transaction).measure("3").expect("it runs").value;
@@ -31,7 +31,7 @@ fn with_room_for_all_regions_and_a_master_that_goes_on_the_theory_is_three_field
 }
 
 #[test]
-fn the_closed_form_follows_every_rule() {
+fn the_closed_form_agrees_with_the_simulation_under_every_rule_of_the_master() {
     for (kept, finished) in rules() {
         for id in ["4", "4b", "6"] {
             let [closed, run] = [Level::Analytic, Level::Transaction]
@@ -53,7 +53,7 @@ fn cover(triangles: usize, bin_bytes: u64) -> Result<Outcome, ExperimentError> {
 }
 
 #[test]
-fn a_triangle_too_many_for_the_bins_is_a_fault_that_names_region_need_and_room() {
+fn one_triangle_too_many_for_the_bins_is_a_fault_that_names_region_needed_and_available_bytes() {
     // 10 triangles a slave in 20 bins take 800 bytes.
     let outcome = cover(120, 800).expect("it fits exactly");
     assert!(outcome.shown() > 3);
@@ -64,7 +64,7 @@ fn a_triangle_too_many_for_the_bins_is_a_fault_that_names_region_need_and_room()
 
 /// Figure 16: this multiple of 12 fits, and one triangle more does not.
 #[test]
-fn the_bins_of_the_machine_hold_7_704_triangles_that_cover_the_screen_and_no_more() {
+fn the_bins_of_the_machine_hold_exactly_7_704_screen_filling_triangles() {
     let presets = MachineConfig::small_hmd().gp.bin_bytes;
     // The run has too few fields for a frame of half a second, but no memory overflows.
     assert!(matches!(cover(7_704, presets), Err(ExperimentError::TooShort { .. })));
@@ -73,7 +73,7 @@ fn the_bins_of_the_machine_hold_7_704_triangles_that_cover_the_screen_and_no_mor
 }
 
 #[test]
-fn where_the_bins_of_both_eyes_do_not_fit_transform_waits_for_render_of_the_eye_before() {
+fn if_the_bins_of_both_eyes_do_not_fit_transform_waits_for_render_of_the_previous_eye() {
     let path_ms = |bin_bytes: u64| {
         let outcome = cover(2_400, bin_bytes).expect("it fits");
         let steady = outcome.steady_pictures().len();
@@ -91,7 +91,7 @@ fn where_the_bins_of_both_eyes_do_not_fit_transform_waits_for_render_of_the_eye_
 }
 
 #[test]
-fn pictures_are_the_same_whatever_becomes_of_finished_regions() {
+fn pictures_do_not_depend_on_the_storage_of_finished_regions() {
     let run = |kept: u64, finished: FinishedRegions, n_renderers: usize, scene: &str| {
         let mut machine = MachineConfig { n_renderers, ..MachineConfig::small_hmd() };
         machine.set("renderer.kept_bits", machine.renderer.backing_bits / kept).expect("within its limits");
@@ -122,7 +122,7 @@ fn still(scene: Scene) -> Scene {
 }
 
 #[test]
-fn of_a_closed_surface_nothing_is_missing_without_its_back_faces_and_half_of_the_work_is() {
+fn culling_back_faces_of_a_closed_surface_halves_the_work_and_keeps_the_picture() {
     let run = |scene: Scene| {
         let pipeline = RenderingControl::stereo();
         let experiment = Experiment::new(MachineConfig::small_hmd(), pipeline, scene).fields(40).pixels(Pixels::Lazy);

@@ -6,7 +6,7 @@ fn read(name: &str) -> String {
 }
 
 #[test]
-fn the_readme_shows_five_figures_of_accuracy_md_as_they_stand_there() {
+fn the_readme_shows_five_figures_of_accuracy_md_unchanged() {
     let readme = read("README.md");
     let accuracy = read("ACCURACY.md");
     let table = readme.lines().skip_while(|line| !line.starts_with("| # | figure"));
@@ -23,7 +23,7 @@ fn the_readme_shows_five_figures_of_accuracy_md_as_they_stand_there() {
 }
 
 #[test]
-fn what_the_readme_says_of_all_figures_is_what_accuracy_md_says() {
+fn the_summary_of_figures_in_the_readme_equals_accuracy_md() {
     let readme = read("README.md");
     let accuracy = read("ACCURACY.md");
     let table = accuracy.lines().skip_while(|line| !line.starts_with("| # | figure")).skip(2);
@@ -67,7 +67,7 @@ fn every_link_of_the_documents_leads_to_a_file() {
 }
 
 #[test]
-fn the_summary_of_the_guide_leaves_no_page_out() {
+fn the_summary_of_the_guide_lists_every_page() {
     let summary = read("docs/SUMMARY.md");
     let listed = links(&summary);
     for page in pages("docs").iter().filter_map(|page| page.strip_prefix("docs/")).filter(|page| *page != "SUMMARY.md")
@@ -78,7 +78,7 @@ fn the_summary_of_the_guide_leaves_no_page_out() {
 
 /// Files to be made are in the last column of the table, after the files at which a task begins.
 #[test]
-fn every_file_at_which_a_first_task_begins_is_there() {
+fn every_first_task_names_an_existing_file() {
     let page = read("docs/first-tasks.md");
     let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
     assert_eq!(rows.len(), 10, "ten tasks");

@@ -16,7 +16,7 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PictureNumber, SurfaceId};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::rc::Rc;
+use std::sync::LazyLock;
 use support::{boards, video};
 
 fn experiment(pipeline: impl Pipeline + 'static, scene: &str, fields: u64) -> Experiment {
@@ -29,33 +29,31 @@ fn run(pipeline: impl Pipeline + 'static, scene: &str, fields: u64) -> Outcome {
     experiment(pipeline, scene, fields).pixels(Pixels::Off).record_traffic(true).run().expect("runs")
 }
 
-thread_local! {
-    static STEREO: Rc<Outcome> = Rc::new(run(RenderingControl::stereo(), "mig", 60));
-    static MONO: Rc<Outcome> = Rc::new(run(RenderingControl::mono(), "molecules", 60));
-    static SPLIT: Rc<Outcome> = Rc::new(run(Slats::split(), "full-screen:100", 30));
-    /// A run with so many triangles that every field misses its retrace.
-    static LATE: Rc<Outcome> = Rc::new(run(Slats::whole(), "full-screen:160", 30));
+static STEREO: LazyLock<Outcome> = LazyLock::new(|| run(RenderingControl::stereo(), "mig", 60));
+static MONO: LazyLock<Outcome> = LazyLock::new(|| run(RenderingControl::mono(), "molecules", 60));
+static SPLIT: LazyLock<Outcome> = LazyLock::new(|| run(Slats::split(), "full-screen:100", 30));
+/// A run with so many triangles that every field misses its retrace.
+static LATE: LazyLock<Outcome> = LazyLock::new(|| run(Slats::whole(), "full-screen:160", 30));
+
+fn stereo() -> &'static Outcome {
+    &STEREO
 }
 
-fn stereo() -> Rc<Outcome> {
-    STEREO.with(Rc::clone)
+fn mono() -> &'static Outcome {
+    &MONO
 }
 
-fn mono() -> Rc<Outcome> {
-    MONO.with(Rc::clone)
+fn split() -> &'static Outcome {
+    &SPLIT
 }
 
-fn split() -> Rc<Outcome> {
-    SPLIT.with(Rc::clone)
-}
-
-fn all() -> [Rc<Outcome>; 4] {
-    [stereo(), mono(), split(), LATE.with(Rc::clone)]
+fn all() -> [&'static Outcome; 4] {
+    [stereo(), mono(), split(), &LATE]
 }
 
 #[test]
 fn the_parts_of_every_latency_add_up_to_the_picosecond() {
-    for outcome in &all() {
+    for outcome in all() {
         let parts = outcome.latency_parts();
         assert_eq!(parts.len(), outcome.complete_pictures().count());
         for (parts, times) in parts.iter().zip(outcome.complete_pictures()) {
@@ -80,7 +78,7 @@ fn racing() -> [Outcome; 3] {
 }
 
 #[test]
-fn where_there_is_no_swap_the_parts_are_those_of_the_part_that_meets_the_beam() {
+fn without_a_swap_the_stages_belong_to_the_strip_that_meets_the_beam() {
     for outcome in racing() {
         let stages = outcome.stages();
         for (parts, times) in outcome.latency_parts().iter().zip(outcome.complete_pictures()) {
@@ -98,8 +96,8 @@ fn where_there_is_no_swap_the_parts_are_those_of_the_part_that_meets_the_beam() 
 }
 
 #[test]
-fn the_means_of_the_report_add_up_to_its_latency() {
-    for outcome in &all() {
+fn the_mean_parts_in_the_report_add_up_to_the_mean_latency() {
+    for outcome in all() {
         let report = outcome.report();
         let published = report.latency_parts_ms.iter().filter(|part| part.in_published_latency);
         let sum: f64 = published.map(|part| part.statistics.statistics.mean).sum();
@@ -124,17 +122,17 @@ fn part(name: &str) -> usize {
 }
 
 #[test]
-fn a_part_is_the_time_between_the_marks_that_define_it() {
+fn a_stage_is_the_time_between_its_two_marks() {
     let outcome = stereo();
     for (parts, times) in stereo().latency_parts().iter().zip(stereo().steady_pictures()) {
         let copied_at = times.copied_at.expect("copied");
         assert_eq!(parts.spans[part("wait_for_retrace")], times.shown_at - copied_at);
-        let rendered_at = end_of(&outcome, Stage::Render, Some(Eye::Right.into()), times.picture);
+        let rendered_at = end_of(outcome, Stage::Render, Some(Eye::Right.into()), times.picture);
         let rest: Span = parts.spans[part("wait_for_copy")] + parts.spans[part("copy")];
         assert_eq!(rest, copied_at - rendered_at);
-        let transformed_at = end_of(&outcome, Stage::Transform, Some(Eye::Left.into()), times.picture);
+        let transformed_at = end_of(outcome, Stage::Transform, Some(Eye::Left.into()), times.picture);
         assert_eq!(parts.spans[part("transform")], transformed_at - times.transform_at);
-        let sent_at = end_of(&outcome, Stage::Send, None, times.picture);
+        let sent_at = end_of(outcome, Stage::Send, None, times.picture);
         assert_eq!(parts.spans[part("send")], sent_at - times.sampled_at.expect("sampled"));
     }
 }
@@ -145,7 +143,7 @@ fn mean_ms(report: &Report, of: &str, until: &str) -> f64 {
 }
 
 #[test]
-fn the_latencies_of_the_eyes_lie_between_their_events() {
+fn the_latencies_of_the_eyes_equal_the_times_between_their_events() {
     let outcome = stereo();
     let report = outcome.report();
     // The latency of a frame is the latency of the pair: from its first TRANSFORM to the swap.
@@ -159,12 +157,12 @@ fn the_latencies_of_the_eyes_lie_between_their_events() {
     let [at_swap, at_light] =
         ["swap", "light"].map(|until| mean_ms(&report, "left", until) - mean_ms(&report, "right", until));
     assert!(at_swap > 0.0 && (at_light - at_swap).abs() < 1e-9);
-    assert!(SPLIT.with(Rc::clone).report().latency_by_eye_ms.is_empty());
+    assert!(split().report().latency_by_eye_ms.is_empty());
 }
 
 #[test]
-fn csv_opens_with_its_names_and_holds_the_latency_of_the_report() {
-    for outcome in &all() {
+fn csv_starts_with_column_names_and_has_the_latency_of_the_report() {
+    for outcome in all() {
         let text = csv(outcome);
         let report = outcome.report();
         let rows = rows(&text);
@@ -198,11 +196,11 @@ fn row(names: &[&str], line: &str) -> BTreeMap<String, Option<u64>> {
 
 #[cfg(feature = "parquet")]
 #[test]
-fn parquet_holds_what_csv_holds() {
+fn parquet_equals_csv() {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
     let mut bytes = Vec::new();
-    pxpl5::views::results::parquet(&stereo(), &mut bytes).expect("written");
+    pxpl5::views::results::parquet(stereo(), &mut bytes).expect("written");
     let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).expect("Parquet");
     let metadata = reader.metadata().file_metadata().key_value_metadata().expect("there").clone();
     let hash = metadata.iter().find(|entry| entry.key == "pxpl5.config_hash").and_then(|entry| entry.value.clone());
@@ -215,7 +213,7 @@ fn parquet_holds_what_csv_holds() {
             row.expect("a row").get_column_iter().map(|(name, field)| (name.clone(), value(field))).collect()
         })
         .collect();
-    assert_eq!(found, rows(&csv(&stereo())));
+    assert_eq!(found, rows(&csv(stereo())));
 }
 
 /// Messages of the Perfetto format for reading traces, from its published description.
@@ -280,8 +278,8 @@ fn parsed(outcome: &Outcome) -> (BTreeMap<u64, proto::TrackDescriptor>, Vec<(u64
 }
 
 #[test]
-fn a_perfetto_trace_read_back_has_begin_after_end_on_every_track() {
-    for outcome in &all() {
+fn in_a_perfetto_trace_begin_and_end_alternate_on_every_track() {
+    for outcome in all() {
         let (descriptors, events) = parsed(outcome);
         assert!(events.windows(2).all(|pair| pair[0].0 <= pair[1].0));
         let mut open: BTreeMap<u64, i32> = BTreeMap::new();
@@ -298,7 +296,7 @@ fn a_perfetto_trace_read_back_has_begin_after_end_on_every_track() {
 
 #[test]
 fn a_trace_has_an_instant_at_every_retrace() {
-    let (_, events) = parsed(&split());
+    let (_, events) = parsed(split());
     let retraces: Vec<_> = events.iter().filter(|(_, event)| event.name.starts_with("retrace ")).collect();
     assert_eq!(retraces.len() as u64, split().fields() + 1);
     for (n, (ns, event)) in retraces.iter().enumerate() {
@@ -310,7 +308,7 @@ fn a_trace_has_an_instant_at_every_retrace() {
 
 #[test]
 fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
-    for outcome in &all() {
+    for outcome in all() {
         let (_, events) = parsed(outcome);
         for times in outcome.steady_pictures() {
             let id = times.picture.next().0;
@@ -326,8 +324,8 @@ fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
 }
 
 #[test]
-fn counters_stay_within_the_machine() {
-    for outcome in &all() {
+fn the_counters_of_a_trace_stay_within_the_limits_of_the_machine() {
+    for outcome in all() {
         let (descriptors, events) = parsed(outcome);
         let machine = outcome.record();
         let mut highest: BTreeMap<String, i64> = BTreeMap::new();
@@ -341,15 +339,15 @@ fn counters_stay_within_the_machine() {
         let channels = machine.ring().stats().channel_busy.len() as i64;
         assert!((1..=channels).contains(&highest["busy channels"]));
         for renderer in 0..machine.renderers().len() {
-            // 448 words of FIFO (derived from TR94's 56.5 ms).
+            // The FIFO holds 448 words (derived from the 56.5 ms of TR94).
             assert!((1..=448).contains(&highest[&format!("FIFO words of renderer {renderer}")]));
         }
     }
 }
 
 #[test]
-fn recorded_messages_are_those_that_the_boards_counted() {
-    for outcome in &all() {
+fn recorded_messages_equal_the_counters_of_the_boards() {
+    for outcome in all() {
         let machine = outcome.record();
         let traffic = outcome.observation().traffic.as_deref().expect("recorded");
         for (renderer, node) in machine.renderers().iter().zip(&machine.ports().renderers) {
@@ -369,10 +367,10 @@ fn recorded_messages_are_those_that_the_boards_counted() {
 }
 
 #[test]
-fn recording_changes_nothing() {
+fn recording_traffic_changes_no_result() {
     let quiet = experiment(Slats::split(), "full-screen:100", 30).pixels(Pixels::Off).run().expect("runs");
     assert_eq!(quiet.record().trace_hash(), split().record().trace_hash());
-    assert!(has_messages(&split()));
+    assert!(has_messages(split()));
     assert!(!has_messages(&quiet));
 }
 
@@ -382,11 +380,13 @@ fn has_messages(outcome: &Outcome) -> bool {
 
 #[test]
 fn chrome_json_has_the_same_slices_to_the_picosecond() {
-    let trace = Trace::of(&mono());
+    // Each picture has slices of all kinds.
+    let outcome = run(RenderingControl::mono(), "molecules", 20);
+    let trace = Trace::of(&outcome);
     let mut bytes = Vec::new();
     chrome(&trace, &mut bytes).expect("memory can be written");
     let json: Value = serde_json::from_slice(&bytes).expect("JSON");
-    assert_eq!(json["otherData"]["config_hash"], mono().report().config_hash);
+    assert_eq!(json["otherData"]["config_hash"], outcome.report().config_hash);
     // The text is decimal and not rounded.
     let text = String::from_utf8(bytes).expect("UTF-8");
     let written = text.lines().filter(|line| line.contains("\"ph\":\"X\""));
@@ -465,7 +465,7 @@ fn pixels(picture: &image::RgbImage, y: u32, x: std::ops::Range<u32>) -> Vec<ima
 }
 
 #[test]
-fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
+fn below_the_beam_a_viewer_still_sees_the_last_field_with_the_same_lines() {
     let (_, outcome) = remembered();
     let board = &boards(&outcome)[0];
     let fields: Vec<_> = (7..10).map(|n| board.seen(PeriodNumber(n)).expect("remembered")).collect();
@@ -487,10 +487,10 @@ fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
 
 #[test]
 fn the_documents_define_every_column() {
-    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/results.md")).expect("there");
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/guide/latency.md")).expect("there");
     for column in columns() {
         let row = text.lines().find(|line| line.starts_with(&format!("| `{}` |", column.name)));
-        assert!(row.is_some(), "{} is not in docs/results.md", column.name);
+        assert!(row.is_some(), "{} is not in docs/guide/latency.md", column.name);
     }
     for part in LATENCY_PARTS {
         let row = text.lines().find(|line| line.starts_with(&format!("| `{}_ps` |", part.name))).expect("a row");

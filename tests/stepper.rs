@@ -3,11 +3,12 @@
 
 use pxpl5::Board;
 use pxpl5::{
-    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber, Slats, Span,
-    SurfaceId, Time, registry, scene,
+    DisplayEntry, Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber,
+    PipelineEntry, Slats, Span, SurfaceId, Time, registry, scene,
 };
 use pxpl5::{Pause, Stepper};
 use pxpl5_renderer::PixelArray;
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 /// Returns an experiment from settings, or `None` if the pipeline does not run on the display.
@@ -40,7 +41,7 @@ impl Dice {
     }
 }
 
-/// Advances by a random kind of piece.
+/// Advances the run by a random kind of step.
 fn step(stepper: &mut Stepper, dice: &mut Dice) {
     match dice.below(6) {
         0 => stepper.run_to(stepper.now() + Span::from_us(dice.below(5_000))),
@@ -97,18 +98,18 @@ fn assert_same(whole: &Outcome, pieces: &Outcome, name: &str) {
 }
 
 #[test]
-fn every_pipeline_on_every_display_runs_in_pieces_as_in_one_go() {
+fn a_stepped_run_equals_an_uninterrupted_run_for_every_pipeline_on_every_display() {
     let registry = registry();
-    let mut ran = BTreeSet::new();
-    for (pipeline, display) in registry
+    let pairs: Vec<_> = registry
         .pipelines()
         .iter()
         .flat_map(|pipeline| registry.displays().iter().map(move |display| (pipeline, display)))
-    {
+        .collect();
+    let check = |(pipeline, display): &(&PipelineEntry, &DisplayEntry)| {
         let pipeline = format!("pipeline={}", pipeline.name);
         let display = format!("display={}", display.name);
         let settings = [pipeline.as_str(), display.as_str(), "scene=full-screen:2", "fields=7"];
-        let Some(experiment) = experiment(&settings) else { continue };
+        let experiment = experiment(&settings)?;
         let whole = outcome(experiment.run());
         for plain in [experiment.clone().record_traffic(false), experiment.clone()].map(|plain| outcome(plain.run())) {
             assert_eq!(plain.record().trace_hash(), whole.record().trace_hash(), "{settings:?}");
@@ -116,14 +117,15 @@ fn every_pipeline_on_every_display_runs_in_pieces_as_in_one_go() {
             assert!(plain.record().events() <= whole.record().events(), "{settings:?}");
         }
         (1..4).for_each(|seed| assert_same(&whole, &in_pieces(&experiment, seed), &format!("{settings:?}, {seed}")));
-        ran.extend([pipeline, display]);
-    }
+        Some([pipeline, display])
+    };
+    let ran: BTreeSet<String> = pairs.par_iter().filter_map(check).flatten_iter().collect();
     let all = registry.pipelines().len() + registry.displays().len();
     assert_eq!(ran.len(), all, "each was run at least once: {ran:?}");
 }
 
 #[test]
-fn a_tracked_head_with_prediction_is_followed_in_pieces_as_in_one_go() {
+fn a_stepped_run_equals_an_uninterrupted_run_for_a_tracked_head_with_prediction() {
     let settings = ["pipeline=slats", "scene=full-screen:2", "fields=7", "head.motion=synthetic:3"];
     let experiment = experiment(&settings).expect("it can be built");
     assert_same(&outcome(experiment.run()), &in_pieces(&experiment, 9), "head");
@@ -152,7 +154,7 @@ fn a_line_step_ends_when_the_next_line_begins_to_light() {
 }
 
 #[test]
-fn an_event_is_taken_at_its_time_and_named_with_its_board() {
+fn a_stepped_event_has_its_own_time_and_the_name_of_its_board() {
     let mut stepper = slats().stepper().expect("it can be built");
     assert_eq!(stepper.step_board(Board::Renderer(3)), Pause::Reached);
     let last = stepper.last().expect("an event");
@@ -165,7 +167,7 @@ fn an_event_is_taken_at_its_time_and_named_with_its_board() {
 
 /// The picture at an instant has all pixels that the beam has drawn by then, and none that it draws later.
 #[test]
-fn what_has_been_drawn_so_far_is_what_the_whole_run_says_of_that_instant() {
+fn partial_pictures_equal_those_of_the_whole_run() {
     let whole = outcome(slats().run());
     let mut stepper = slats().stepper().expect("it can be built");
     let mut lit = 0;
@@ -184,7 +186,7 @@ fn what_has_been_drawn_so_far_is_what_the_whole_run_says_of_that_instant() {
 
 /// The levels of a FIFO are compared with the record of traffic, whose sums cover the whole run.
 #[test]
-fn a_fifo_holds_what_the_record_of_traffic_says() {
+fn the_contents_of_a_fifo_agree_with_the_record_of_traffic() {
     let whole = outcome(slats().run());
     let traffic = whole.record().observation().traffic.as_deref().expect("it was recorded");
     let courses: Vec<_> = (0..4).map(|renderer| traffic.fifo_words(renderer)).collect();
@@ -203,7 +205,7 @@ fn a_fifo_holds_what_the_record_of_traffic_says() {
 }
 
 #[test]
-fn an_array_whose_commands_have_all_started_is_what_was_sent() {
+fn the_array_shows_all_sent_commands_when_the_last_command_has_started() {
     let mut stepper = slats().stepper().expect("it can be built");
     stepper.run_to(stepper.record().tick(PeriodNumber(4)));
     let started = |stepper: &Stepper, at: Time| stepper.record().renderers()[0].look(at).fifo_words == Some(0);
@@ -219,7 +221,7 @@ fn an_array_whose_commands_have_all_started_is_what_was_sent() {
 }
 
 #[test]
-fn pixels_come_into_an_array_one_command_after_the_other() {
+fn pixels_appear_in_an_array_command_by_command() {
     let mut stepper = slats().stepper().expect("it can be built");
     stepper.run_to(stepper.record().tick(PeriodNumber(4)));
     let mut enabled = BTreeSet::new();
@@ -256,7 +258,7 @@ fn breakpoints_show_registers_and_change_no_trace() {
 }
 
 #[test]
-fn a_stepper_stands_at_the_end_and_says_so() {
+fn a_stepper_stops_at_the_end_and_reports_it() {
     let mut stepper = slats().stepper().expect("it can be built");
     assert_eq!(stepper.run_to(stepper.end() + Span(1)), Pause::End);
     assert_eq!(stepper.now(), stepper.end());

@@ -40,11 +40,11 @@ fn bars<'a>(timeline: &'a Timeline, row: &str) -> Vec<&'a Bar> {
     timeline.rows.iter().filter(|r| r.name == row).flat_map(|r| &r.bars).collect()
 }
 
-/// Time of COPY: 20 regions of 15 messages with 1,024 words and 16 words of overhead, 50 ns each (specification: 780 us
-/// a region).
+/// Time of COPY: 20 regions of 15 messages with 1,024 words and 16 words of overhead, 50 ns each (TR94: 780 us a
+/// region).
 const COPY: Span = Span(20 * 15 * (1_024 + 16) * 50_000);
 
-/// Difference of ways on the ring. The first region may come from the farthest of five renderers and the last from the
+/// Difference of paths on the ring. The first region may come from the farthest of five renderers and the last from the
 /// nearest: four hops of 50 ns less.
 const WAYS: Span = Span(4 * 50_000);
 
@@ -61,7 +61,7 @@ fn a_copy_of_the_trivial_scene_takes_twenty_region_times() {
 }
 
 #[test]
-fn the_dark_strip_is_where_regions_arrive_and_nowhere_else() {
+fn the_dark_strip_covers_exactly_the_arrivals_of_regions() {
     let timeline = timeline(&trivial());
     for bar in bars(&timeline, "left frame buffer") {
         let received: Span = bar.receiving.iter().map(|(begin, end)| *end - *begin).sum();
@@ -72,7 +72,7 @@ fn the_dark_strip_is_where_regions_arrive_and_nowhere_else() {
 }
 
 #[test]
-fn of_a_split_copy_the_top_ends_before_the_retrace_and_the_bottom_begins_after() {
+fn in_a_split_copy_the_top_ends_before_the_retrace_and_the_bottom_begins_after_it() {
     let timeline = timeline(&split());
     let copies = bars(&timeline, "right frame buffer");
     assert!(copies.iter().any(|bar| bar.bottom == Some(true)));
@@ -87,7 +87,7 @@ fn of_a_split_copy_the_top_ends_before_the_retrace_and_the_bottom_begins_after()
 }
 
 #[test]
-fn the_way_of_the_chosen_picture_leads_forward_from_its_sample_to_light() {
+fn the_path_of_the_chosen_picture_leads_from_its_sample_to_light() {
     for outcome in [&*trivial(), &*split()] {
         let timeline = timeline(outcome);
         assert!(timeline.arrows.len() >= 6);
@@ -129,7 +129,7 @@ fn every_drawing_is_well_formed_and_the_same_twice() {
 }
 
 #[test]
-fn retraces_stand_where_the_formula_puts_them() {
+fn the_retrace_lines_of_a_timeline_are_at_the_computed_positions() {
     let timeline = timeline(&trivial());
     let drawing = svg(&trivial(), &TimelineOptions::default());
     let document = roxmltree::Document::parse(&drawing).expect("XML");
@@ -147,7 +147,7 @@ fn retraces_stand_where_the_formula_puts_them() {
 }
 
 #[test]
-fn markup_in_names_of_scenes_is_text() {
+fn markup_in_names_of_scenes_is_escaped() {
     let title = Some("<script>&\"'".to_owned());
     let drawing = svg(&trivial(), &TimelineOptions { title, ..TimelineOptions::default() });
     let document = roxmltree::Document::parse(&drawing).expect("XML");
@@ -157,7 +157,7 @@ fn markup_in_names_of_scenes_is_text() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
-    fn whatever_is_asked_for_gives_a_drawing(
+    fn every_request_gives_a_drawing(
         picture in proptest::option::of(prop_oneof![0u64..60, any::<u64>()]),
         first_field in proptest::option::of(prop_oneof![0u64..60, any::<u64>()]),
         fields in proptest::option::of(any::<u64>()),
@@ -223,7 +223,7 @@ fn run_of_figure(name: &str) -> Outcome {
 
 /// Each of TR94's figures 3, 5 and 6 must show the effect for which it was drawn.
 #[test]
-fn the_published_figures_show_what_they_were_drawn_for() {
+fn each_published_figure_shows_the_effect_for_which_it_was_drawn() {
     // A frame takes two fields, so the frame buffers are the bottleneck.
     assert!((run_of_figure("trivial").report().updates_hz.expect("two pictures") - 30.0).abs() < 0.1);
     assert!((run_of_figure("balanced").report().updates_hz.expect("two pictures") - 30.0).abs() < 0.1);
@@ -236,7 +236,7 @@ fn the_published_figures_show_what_they_were_drawn_for() {
 /// The viewer walks sideways through a hall that lies in all four memories. Each memory has a row of its own, and a
 /// heading in the trace.
 #[test]
-fn each_display_memory_has_a_row_of_what_it_received_and_showed() {
+fn each_display_memory_has_a_row_with_received_and_shown_pictures() {
     let registry = pxpl5::registry();
     let entry = registry.pipeline("arp-cells").expect("listed");
     let config = registry.machine_of(MachineConfig::preset(entry.preset).expect("a preset"));

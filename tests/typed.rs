@@ -1,9 +1,9 @@
-//! Short programs with the prelude alone: what a researcher writes first.
+//! Short programs with the prelude alone, like the first programs of a researcher.
 
 use pxpl5::prelude::*;
 use std::sync::Arc;
 
-/// A cube of 12 triangles on a machine of one's own, before a head of one's own motion.
+/// A cube of 12 triangles on a user's own machine, with a user's own motion of the head.
 #[test]
 fn a_cube_with_its_latency_by_stage_error_and_picture_takes_forty_lines() {
     let corners: Vec<Vec3> = (0..8).map(|n| Vec3::new((n & 1) as f32, (n >> 1 & 1) as f32, (n >> 2) as f32)).collect();
@@ -40,14 +40,14 @@ fn a_table_over_renderers_takes_fifteen_lines() {
         let channels = outcome.report().utilisation.expect("it ran").ring.channels;
         (*renderers, channels.mean, outcome.latency().expect("pictures were shown").mean)
     });
-    // COPY sends the same pixels whatever the number of renderers, so the mean stays: 2 x 15.6 ms of 33.37 ms on one of
-    // 8 channels each are 11.7 %, and commands and tokens come to that.
+    // COPY sends the same pixels for any number of renderers, so the mean stays the same. Two copies of 15.6 ms in
+    // 33.37 ms on one of 8 channels are 11.7 %. Commands and tokens are additional.
     assert!(rows.iter().all(|(_, mean, _)| (0.11..0.16).contains(mean)), "{rows:?}");
 }
 
 /// A panel of 1,080 x 1,200 pixels and 90 Hz for each eye.
 #[test]
-fn a_display_of_ones_own_takes_ten_lines() {
+fn a_custom_display_takes_ten_lines() {
     let panel = PanelConfig { width: 1_080, height: 1_200, refresh_hz: 90, ports: 8, ..PanelConfig::PAPERS };
     let machine = MachineConfig::small_hmd().with_renderers(20).with_display(panel);
     let scene = scene::builtin("full-screen:12").expect("built in");
@@ -58,7 +58,7 @@ fn a_display_of_ones_own_takes_ten_lines() {
 }
 
 #[test]
-fn the_programs_are_as_short_as_their_names_say() {
+fn the_programs_have_at_most_the_stated_number_of_lines() {
     let source = include_str!("typed.rs");
     for (name, most) in [("takes_forty_lines", 40), ("takes_fifteen_lines", 15), ("takes_ten_lines", 10)] {
         let (_, program) = source.split_once(&format!("{name}() {{\n")).expect("a program");
@@ -69,7 +69,7 @@ fn the_programs_are_as_short_as_their_names_say() {
 
 /// The events of a run are in the order of time, name their boards, and agree with the run's counters.
 #[test]
-fn events_name_their_boards_in_the_order_of_time() {
+fn events_have_their_boards_and_are_in_order_of_time() {
     let scene = scene::builtin("full-screen:12").expect("built in");
     let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
     let outcome = experiment.pixels(Pixels::Off).record_traffic(true).run().expect("it fits");
@@ -82,7 +82,7 @@ fn events_name_their_boards_in_the_order_of_time() {
     assert_eq!(count(|kind| matches!(kind, ObservedKind::Swapped { .. })), observed.swaps.len());
     let messages = observed.traffic.as_ref().expect("recorded").transfers.len();
     assert_eq!(count(|kind| matches!(kind, ObservedKind::Message { .. })), messages);
-    // Each kind has the boards that can do it: 13 graphics processors, 5 renderers and a stereo display.
+    // Each kind of event comes from a board that can cause it: 13 graphics processors, 5 renderers, a stereo display.
     for event in &events {
         let fits = match (event.kind, event.board) {
             (ObservedKind::Stage { .. }, Board::Host) => true,
@@ -97,7 +97,7 @@ fn events_name_their_boards_in_the_order_of_time() {
 }
 
 #[test]
-fn a_quantity_is_read_by_its_name_and_a_wrong_name_has_a_nearest() {
+fn a_quantity_is_read_by_its_name_and_the_error_for_a_wrong_name_suggests_the_nearest_name() {
     let scene = scene::builtin("full-screen:12").expect("built in");
     let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
     let outcome = experiment.run().expect("it fits");
@@ -109,7 +109,7 @@ fn a_quantity_is_read_by_its_name_and_a_wrong_name_has_a_nearest() {
     assert_eq!(error, "there is no quantity `latency.mean`; did you mean `latency_ms.mean`?");
 }
 
-/// Nothing is shown of a scene that is far too heavy, so there is no latency, and no number stands for it.
+/// A scene that is far too heavy shows nothing, so the latency is missing and has no substitute number.
 #[test]
 fn a_run_that_shows_nothing_has_no_latency() {
     let scene = scene::builtin("mig").expect("built in");

@@ -108,7 +108,7 @@ impl Euc {
     }
 }
 
-/// A vertex of `retrofire`: its number.
+/// A vertex for `retrofire` is the number of a vertex of the scene.
 type Numbered = u32;
 
 pub(crate) struct Retrofire {
@@ -153,7 +153,7 @@ impl Retrofire {
                 rgba(red, green, blue, 255)
             },
         );
-        // Depths are reciprocals: nothing is at 0.
+        // The depth buffer holds reciprocals of depths, so 0 stands for an infinite distance.
         self.target.color_buf.buf.fill(0);
         self.target.depth_buf.fill(0.0);
         let context = Context { face_cull: None, ..Context::default() };
@@ -165,7 +165,7 @@ impl Retrofire {
     }
 }
 
-/// One GP that holds everything, and one pixel array for all regions in turn.
+/// One graphics processor that stores the whole scene, and one pixel array that draws all regions in turn.
 pub(crate) struct Ours<A> {
     share: Share,
     picture: Picture,

@@ -135,7 +135,6 @@ pub(crate) fn chosen(rows: &[Row]) -> Vec<Row> {
     rows.iter().filter(|row| row.is_chosen).cloned().collect()
 }
 
-/// Returns all lines of the table of goals.
 pub(crate) fn goals(rounds: usize, opengl: Option<&str>) -> Fallible<Vec<Row>> {
     let mut rows = heads(rounds)?;
     rows.extend(pictures(rounds, opengl)?);
@@ -316,7 +315,6 @@ const fn fields_without(saving: Optimization) -> u64 {
     if matches!(saving, Optimization::IdleBoards | Optimization::Transfers) { 2 } else { 48 }
 }
 
-/// Measures every optimization, enabled and disabled.
 pub(crate) fn optimizations(rounds: usize) -> Fallible<Vec<OptimizationRow>> {
     let works = [
         ("Mig, Rendering Control", stereo(MachineConfig::small_hmd(), mig(417)?)),

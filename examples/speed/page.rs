@@ -59,7 +59,7 @@ pub(crate) fn replace(path: &Path, name: &str, table: &str) -> Fallible<()> {
 pub(crate) fn conditions(rounds: usize, load_before: &str) -> String {
     format!(
         "The program `scripts/speed` measured the values on {} with {}, {} and the profile {}. The values are CPU \
-         times of the process, the best of {rounds} alternating rounds. The load average was {load_before} at the begin \
+         times of the process, the best of {rounds} alternating rounds. The load average was {load_before} at the start \
          and {} at the end, including the measuring process.",
         date(),
         machine(),

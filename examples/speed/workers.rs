@@ -86,7 +86,6 @@ fn take_until(then: f64, free: &mut [f64], waiting: &mut VecDeque<(f64, f64)>) {
 /// Numbers of threads, including the simulating thread.
 const THREADS: [usize; 7] = [1, 2, 3, 4, 6, 8, 16];
 
-/// Returns the table.
 pub(crate) fn table() -> Fallible<String> {
     const FIELDS: u64 = 480;
     let noting = Noting::default();

@@ -43,10 +43,10 @@ CHUNK_S = 0.5
 ROWS_S = 0.25
 
 #: Least seconds of a chunk for each thread of the cluster. This is twice the time that scheduler and client spend on a chunk with its
-#: messages, so scheduler and client are busy for at most half of the time. Measured: docs/sweeps.md, "A million points".
+#: messages, so scheduler and client are busy for at most half of the time. Measured: docs/guide/sweep-times.md, "A million points".
 HANDING_S = 7e-3
 
-#: Approximate seconds for the estimate of a point (docs/sweeps.md), and the greatest share of its time that the client spends on estimates.
+#: Approximate seconds for the estimate of a point (docs/guide/sweep-times.md), and the greatest share of its time that the client spends on estimates.
 ESTIMATE_S = 8e-4
 ESTIMATING = 0.1
 

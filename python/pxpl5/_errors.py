@@ -26,7 +26,7 @@ class AssemblyError(Pxpl5Error, ValueError):
 
 
 class SweepError(Pxpl5Error, OSError):
-    """A folder of a sweep or a comparison that cannot be used, is in use, or holds another one."""
+    """A folder of a sweep or a comparison that cannot be used, is in use, or holds another sweep or comparison."""
 
 
 class DiscardedError(Pxpl5Error, RuntimeError):

@@ -357,7 +357,7 @@ def compare(
     - ``only``: names of the rows to run; default: one or two rows of each family of pipelines.
     - ``all_rows``: True to run all rows.
     - ``limits``: True to add the largest number of triangles of each pipeline.
-    - ``confidence``: that of all intervals, between 0 and 1.
+    - ``confidence``: confidence level of all intervals, between 0 and 1.
     - ``until_precision``: greatest width of the interval of each mean error, from end to end, as a share of the mean (``"10%"``) or in
       pixels (``"0.2px"``). A row gets more seeds until its interval is narrower, up to ``max_seeds`` (default 50). Only for the head
       ``synthetic``.
@@ -366,7 +366,7 @@ def compare(
       comparison and runs only the others.
 
     Ctrl-C ends the runs in progress. Raises :class:`SettingError` for a setting that is wrong, or a run
-    too short to judge anything, and :class:`SweepError` for a folder that cannot be used, is in use, or holds another comparison.
+    too short for any result, and :class:`SweepError` for a folder that cannot be used, is in use, or holds another comparison.
     """
     if not 0 < confidence < 1:
         raise SettingError(f"confidence: expected a number between 0 and 1, found {confidence!r}")

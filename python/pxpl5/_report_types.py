@@ -281,7 +281,7 @@ class HeadReportData(TypedDict, total=False):
 
 
 class ReportData(HeadReportData):
-    """Everything that a run says, as numbers with definitions."""
+    """All results of a run, as numbers with definitions."""
 
     schema: str
     version: str

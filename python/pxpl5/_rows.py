@@ -27,7 +27,7 @@ class PictureRow(TypedDict):
     """A picture that was begun. Times are picoseconds."""
 
     picture: int
-    #: 1 if the picture is behind the warm-up.
+    #: 1 if the picture is in the window of the report's statistics.
     steady: int
     #: 1 if the picture was complete in time.
     complete: int
@@ -230,7 +230,7 @@ class PictureDifferenceRow(TypedDict):
     largest: int | None
 
 
-#: What more of one resource brings.
+#: Effect of more of one resource.
 WhatIfRow = TypedDict(
     "WhatIfRow",
     {

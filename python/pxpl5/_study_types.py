@@ -287,7 +287,7 @@ class ReadingsData(TypedDict):
 
 
 class SweepHeaderData(TypedDict):
-    """What all rows of a sweep have in common."""
+    """Data that all rows of a sweep share."""
 
     schema: str
     version: str

@@ -1,4 +1,4 @@
-"""Runs that several tests look at."""
+"""Runs that several tests share."""
 
 from pathlib import Path
 

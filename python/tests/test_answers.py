@@ -1,4 +1,4 @@
-"""Answers about a run: what limits it, what more would bring, what differs, and what happens where nothing is shown."""
+"""Tests of answers about a run: its limiting resource, the effect of more resources, differences, and runs that show nothing."""
 
 import warnings
 
@@ -8,7 +8,7 @@ import pxpl5
 
 
 def leaves(value: object) -> list[object]:
-    """All values of nested dictionaries and lists."""
+    """Returns all values of nested dictionaries and lists."""
     if isinstance(value, dict):
         return [leaf for entry in value.values() for leaf in leaves(entry)]
     if isinstance(value, list):
@@ -17,14 +17,14 @@ def leaves(value: object) -> list[object]:
 
 
 def test_a_run_that_shows_nothing_warns_and_has_no_nan() -> None:
-    """The aircraft has 417 triangles; 140 were published for Slats (TR94)."""
+    """The aircraft has 417 triangles, and the published limit of Slats is 140 (TR94)."""
     with pytest.warns(RuntimeWarning, match=r"TOO HEAVY: with 417 triangles .* about \d+ triangles would be in time"):
         outcome = pxpl5.Experiment("slats", "mig").run(progress=False)
     assert outcome.latency_ms.n == 0 and outcome.latency_ms.mean is None and outcome.latency_fields.sd is None
     assert not any(leaf != leaf for leaf in leaves(outcome.report))
     assert not any(value != value for value in outcome.quantities().values())
     html = outcome._repr_html_()
-    # The picture at the end is text without a meaning.
+    # The data of the picture are random text, which can contain "nan".
     html = html.split("<img")[0]
     assert html.startswith("<p><strong>Warning:</strong> TOO HEAVY") and "nan" not in (html + repr(outcome)).lower()
     assert "latency" in html[: html.index("schema")]
@@ -60,7 +60,7 @@ def test_discarded_records_are_refused_instead_of_truncated() -> None:
 
 
 def test_the_boards_of_a_run_and_its_path_name_the_ports(mig: pxpl5.Outcome) -> None:
-    """COPY of the Mig takes both frame buffers in turn: their ports are busy for 47 % of the time each."""
+    """COPY of the Mig uses both frame buffers in turn. The port of each is busy for 47 % of the time."""
     ports = [row for row in mig.boards if row["activity"] == "receiving"]
     assert [row["board"] for row in ports] == ["left frame buffer", "right frame buffer"]
     assert all(row["mean"] == pytest.approx(0.47, abs=0.01) for row in ports)
@@ -77,7 +77,7 @@ def test_more_of_a_resource_has_the_effect_of_an_experiment_with_more() -> None:
     ring = rows["machine.ring.word_ns"]
     # 50 ns / 1.1 = 45.5 ns, rounded up.
     assert (ring["from"], ring["to"]) == (50, 46)
-    # The same by two experiments of the level that gave the results.
+    # Two experiments at the level of the row give the same results.
     found = []
     for word_ns in (50, 46):
         machine = pxpl5.Machine("small-hmd", {"ring.word_ns": word_ns})

@@ -28,7 +28,7 @@ def cluster() -> Iterator[Any]:
 
 
 def cpu_s(cluster: Any) -> tuple[float, float]:
-    """CPU seconds that this process, with client and scheduler in it, and the workers have taken so far."""
+    """Returns the CPU seconds of this process (with client and scheduler) and of the workers."""
     import psutil
 
     workers = [worker.process.pid for worker in cluster.workers.values()]
@@ -37,7 +37,7 @@ def cpu_s(cluster: Any) -> tuple[float, float]:
 
 
 def test_a_cluster_gives_the_same_bytes_as_this_computer(cluster: Any, tmp_path: Path) -> None:
-    """And its efficiency against two threads is told; it is held to nothing here, since other work shares the machine."""
+    """The test also prints the efficiency relative to two threads, without a limit, because other work shares the computer."""
     made = space(2_000)
     begin, begin_cpu = time.monotonic(), time.process_time()
     pxpl5.sweep(made, out=tmp_path / "threads", threads=2, progress=False)
@@ -62,7 +62,7 @@ def test_nothing_is_lost_and_nothing_twice_when_workers_are_killed(
     import signal
     import threading
 
-    # Long enough for a minute of killing, on an idle machine too.
+    # The sweep takes more than a minute, even on an idle computer.
     made = space(2_000, 180)
     pxpl5.sweep(made, out=tmp_path / "threads", threads=2, progress=False)
     killed: list[int] = []
@@ -70,7 +70,7 @@ def test_nothing_is_lost_and_nothing_twice_when_workers_are_killed(
 
     def kill() -> None:
         while len(killed) < KILLS and not done.wait(PERIOD_S):
-            # One at a time, and none that is still being started: a nanny gives up a worker that dies before it is there.
+            # Kill one worker at a time, and only after all have started: a nanny of Dask gives up a worker that dies at its start.
             processes = [worker.process.pid for worker in cluster.workers.values() if worker.process is not None]
             if len(processes) == 2 and len(cluster.scheduler_info["workers"]) == 2:
                 os.kill(processes[len(killed) % 2], signal.SIGKILL)
@@ -101,8 +101,8 @@ def test_nothing_is_lost_and_nothing_twice_when_workers_are_killed(
     print(f"{len(killed)} workers were killed in {took_s:.0f} s; {came} rows came, {came - 2_000} of them again")
 
 
-#: So many workers are killed: for a minute.
+#: Number of workers that are killed within a minute.
 KILLS = 12
 
-#: From one killed worker to the next.
+#: Seconds from one killed worker to the next.
 PERIOD_S = 5.0

@@ -1,4 +1,4 @@
-"""Everything that is public says what it is."""
+"""Tests that every public name has documentation."""
 
 import inspect
 from collections.abc import Iterator
@@ -40,7 +40,7 @@ def test_everything_native_has_a_docstring() -> None:
 
 
 def test_fields_of_records_are_described() -> None:
-    """A comment that begins with `#:` stands before each, as documentation tools read it."""
+    """Each field follows a comment that begins with `#:`, which documentation tools read."""
     for name in pxpl5.__all__:
         thing = getattr(pxpl5, name)
         for field in getattr(thing, "__dataclass_fields__", {}):

@@ -1,6 +1,6 @@
-"""The examples run, and the guide shows them as they are.
+"""Tests that the examples run, and that the guide shows the examples unchanged.
 
-``PXPL5_UPDATE_GUIDE=1 pytest python/tests/test_examples.py`` writes them into the guide anew.
+``PXPL5_UPDATE_GUIDE=1 pytest python/tests/test_examples.py`` writes the examples into the guide.
 """
 
 import os
@@ -23,7 +23,7 @@ def test_an_example_runs(root: Path, tmp_path: Path, name: str) -> None:
 
 
 def shown(page: str, root: Path) -> str:
-    """The page with every example as it stands in its file."""
+    """Returns the page with every example replaced by the content of its file."""
 
     def example(match: re.Match[str]) -> str:
         text = (root / "examples" / f"{match[1]}.py").read_text()

@@ -1,4 +1,4 @@
-"""Heads, trackers and motions."""
+"""Tests of heads, trackers and motions."""
 
 from math import cos, radians, sin
 from pathlib import Path
@@ -10,7 +10,7 @@ import pxpl5
 
 
 def pan(time_s: float) -> tuple[float, ...]:
-    """100 degrees a second about the vertical axis."""
+    """Returns the pose of a head that turns by 100 degrees a second about the vertical axis."""
     half = radians(100 * time_s) / 2
     return (0.0, 0.0, 0.0, cos(half), 0.0, sin(half), 0.0)
 

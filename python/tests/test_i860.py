@@ -1,4 +1,4 @@
-"""The i860."""
+"""Tests of the i860."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def test_a_loop_sums_up_and_stores_the_sum() -> None:
     assert processor.run() == "stopped"
     assert processor.r[6] == 55 and processor.read("total")[0] == 55
     assert processor.pc == program.symbols["end"]
-    # A mov of ten, ten times three, and what stores the sum.
+    # One mov, ten turns of three instructions, and two instructions that store the sum.
     assert processor.instructions >= 1 + 30 + 2
     profile = processor.profile()
     assert profile["clocks"] == processor.clocks >= processor.instructions

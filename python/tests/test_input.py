@@ -1,4 +1,4 @@
-"""What users hand in: arrays of any kind, wrong names and wrong numbers."""
+"""Tests of user input: arrays of any kind, wrong names and wrong numbers."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Figures, limits, comparison."""
+"""Tests of figures, limits and comparisons."""
 
 import json
 from pathlib import Path
@@ -21,7 +21,7 @@ def test_one_latency_figure_is_met() -> None:
 
 
 def test_slats_draws_the_published_110_triangles_with_whole_copies() -> None:
-    """Figure 12, to which the time of a triangle is fitted; the analytic level finds the same."""
+    """The time of a triangle is fitted to figure 12. The analytic level finds the same limit."""
     limit = pxpl5.limit("slats", machine="slats", copy="whole")
     assert limit.triangles == 110 and limit.first_miss == 111
     assert limit.goal == "no_missed_retrace"
@@ -60,7 +60,7 @@ def short(**keywords: object) -> pxpl5.Comparison:
 
 
 def without_host(comparison: pxpl5.Comparison) -> dict[str, object]:
-    """The comparison without the times on the host."""
+    """Returns the comparison without the times on the host."""
     return {**comparison.data, "pipelines": [{**row, "host_seconds": 0} for row in comparison.data["pipelines"]]}
 
 
@@ -69,7 +69,7 @@ def test_an_interrupted_comparison_goes_on_to_the_same_rows(tmp_path: Path) -> N
     whole = short(out=out)
     assert json.loads((out / "comparison.json").read_text()) == whole.data
     assert without_host(short()) == without_host(whole), "a folder changes no number"
-    # A kill leaves one whole row and half of another.
+    # The file after a kill has one complete row and half of a second row.
     rows = out / "rows" / "rows.jsonl"
     lines = rows.read_text().splitlines(keepends=True)
     assert len(lines) == 4
@@ -93,7 +93,7 @@ def test_an_interrupted_comparison_goes_on_to_the_same_rows(tmp_path: Path) -> N
 
 
 def test_seeds_are_added_until_the_interval_is_narrow() -> None:
-    """The ideal picture is exact, so its interval has the width 0. The others do not get as narrow as a thousandth of a pixel."""
+    """The ideal picture is exact, so its interval has the width 0. No other interval becomes as narrow as a thousandth of a pixel."""
     found = short(until_precision="0.001px", max_seeds=4, fields=40)
     assert (found.data["until_precision"], found.data["max_seeds"], found.data["seeds"]) == ("0.001px", 4, [1, 2])
     assert {row["pipeline"]: (row["seeds"], row["is_precise"]) for row in found.data["pipelines"]}["slats"] == (4, False)

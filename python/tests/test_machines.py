@@ -1,4 +1,4 @@
-"""Machines and their parameters."""
+"""Tests of machines and their parameters."""
 
 import pytest
 

@@ -1,6 +1,6 @@
-"""Names as types for type checkers, which are generated from the library.
+"""Tests of the names that the library generates as types for type checkers.
 
-``PXPL5_UPDATE_NAMES=1 pytest python/tests/test_names.py`` writes them anew.
+``PXPL5_UPDATE_NAMES=1 pytest python/tests/test_names.py`` writes the names again.
 """
 
 import os
@@ -20,7 +20,7 @@ LISTS = {
 
 
 def text() -> str:
-    """The module as it should be."""
+    """Returns the expected text of the module."""
     head = '"""' + str(_names.__doc__) + '"""\n\nfrom typing import Literal\n\n'
     parts = []
     for name, (about, values) in LISTS.items():

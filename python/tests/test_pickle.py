@@ -1,4 +1,4 @@
-"""Pickle, and files of outcomes."""
+"""Tests of pickle and of files of outcomes."""
 
 import pickle
 from concurrent.futures import ProcessPoolExecutor
@@ -13,13 +13,13 @@ import pxpl5
 
 
 def pan(time_s: float) -> tuple[float, ...]:
-    """100 degrees a second about the vertical axis."""
+    """Returns the pose of a head that turns by 100 degrees a second about the vertical axis."""
     half = radians(100 * time_s) / 2
     return (0.0, 0.0, 0.0, cos(half), 0.0, sin(half), 0.0)
 
 
 def in_turn(frame: dict[str, object]) -> list[tuple[int, int]]:
-    """Region after region, renderer after renderer."""
+    """Assigns the regions to the renderers in turn."""
     return [(region, region % frame["renderers"]) for region in range(len(frame["primitives"]))]  # type: ignore[arg-type, operator]
 
 

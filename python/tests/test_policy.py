@@ -1,4 +1,4 @@
-"""Pipelines whose policy is a Python callable."""
+"""Tests of pipelines whose policy is a Python callable."""
 
 from typing import Any
 
@@ -8,12 +8,12 @@ import pxpl5
 
 
 def dealt(frame: dict[str, Any]) -> list[tuple[int, int]]:
-    """Region after region, renderer after renderer."""
+    """Assigns the regions to the renderers in turn."""
     return [(region, region % frame["renderers"]) for region in range(len(frame["primitives"]))]
 
 
 def by_one(frame: dict[str, Any]) -> list[tuple[int, int]]:
-    """All on the first renderer."""
+    """Assigns all regions to the first renderer."""
     return [(region, 0) for region in range(len(frame["primitives"]))]
 
 
@@ -23,14 +23,16 @@ def run(policy: pxpl5.PolicyPipeline, **keywords: Any) -> pxpl5.Outcome:
 
 
 def render_ms(outcome: pxpl5.Outcome) -> float:
-    """Mean time of RENDER over the pictures after the warm-up."""
+    """Returns the mean time of RENDER over the pictures after the warm-up."""
     spans = [row["end_ps"] - row["begin_ps"] for row in outcome.stages.rows() if row["stage"] == "render" and row["picture"] > 4]
     return sum(spans) / len(spans) / 1e9
 
 
 def test_five_renderers_take_their_commands_faster_than_one() -> None:
-    """Shading alone takes a renderer 95 us a region: 1.9 ms for 20 regions on one, 0.4 on five (README). The port of the frame
-    buffer, 15.6 ms for them, hides it: the latency is one field for both."""
+    """The shading of a region takes a renderer 95 us: 1.9 ms for 20 regions on one renderer, 0.4 ms on five (README).
+
+    COPY of the 20 regions takes the port of the frame buffer 15.6 ms and hides this difference, so both latencies are one field.
+    """
     five = run(pxpl5.PolicyPipeline(dealt), pixels="off")
     one = run(pxpl5.PolicyPipeline(by_one), pixels="off")
     assert render_ms(five) < 1.9 < render_ms(one)
@@ -51,7 +53,7 @@ def test_a_policy_sees_the_frame() -> None:
         return dealt(frame)
 
     run(pxpl5.PolicyPipeline(watching), pixels="off")
-    # A short run that ends at rest is repeated, to tell whether it is stuck: the frames come again then.
+    # If a short run ends without events, the library repeats the run to detect a deadlock. The frames then occur again.
     frames = [frame["frame"] for frame in seen]
     again = frames.index(0, 1) if 0 in frames[1:] else len(frames)
     assert frames[:again] == list(range(again)) and again > 20

@@ -1,4 +1,4 @@
-"""Experiments and outcomes."""
+"""Tests of experiments and outcomes."""
 
 import json
 import signal
@@ -18,7 +18,7 @@ KEPT = json.loads((Path(__file__).parent / "experiments.json").read_text())
 
 @pytest.mark.parametrize("kept", KEPT, ids=lambda kept: kept["trace_hash"])
 def test_the_same_experiment_has_the_trace_that_rust_finds(kept: dict[str, str]) -> None:
-    """The hashes are held by tests/front_ends.rs."""
+    """tests/front_ends.rs checks the same hashes."""
     experiment = pxpl5.Experiment.from_text(kept["experiment"])
     assert experiment.config_hash == kept["config_hash"]
     outcome = experiment.run(progress=False)
@@ -26,7 +26,7 @@ def test_the_same_experiment_has_the_trace_that_rust_finds(kept: dict[str, str])
 
 
 def fingerprint(picture: np.ndarray) -> str:
-    """64 bits of FNV-1a over size and bytes, as tests/images.rs has it."""
+    """Returns 64 bits of FNV-1a over size and bytes, as in tests/images.rs."""
     hash_ = 0xCBF2_9CE4_8422_2325
     size = picture.shape[1].to_bytes(4, "little") + picture.shape[0].to_bytes(4, "little")
     for byte in size + picture.tobytes():
@@ -64,7 +64,7 @@ def test_pixels_of_a_picture_are_not_copied(slats: pxpl5.Outcome) -> None:
 
 
 def test_a_copied_region_is_what_pixel_memory_holds() -> None:
-    """The colour bits of the last region that a renderer drew, put together by hand, against the frame buffer's pixels."""
+    """The colour bits of the last region that a renderer drew must equal the frame buffer's pixels."""
     outcome = pxpl5.Experiment("rendering-control", "full-screen:12", fields=60).run()
     memory = outcome.pixel_memory(0)
     picture = outcome.picture()
@@ -105,7 +105,7 @@ def test_what_a_callback_raises_ends_the_run() -> None:
 
 
 def test_other_threads_run_while_an_experiment_does() -> None:
-    """A thread that counts is not held up: the lock of the interpreter is released."""
+    """Another thread counts during the run, because the run releases the lock of the interpreter."""
     counted = [0]
     done = threading.Event()
 
@@ -121,7 +121,7 @@ def test_other_threads_run_while_an_experiment_does() -> None:
     took = time.monotonic() - begin
     done.set()
     thread.join()
-    # An interpreter that is held for the whole run would count once or twice.
+    # If the run held the lock, the thread would count once or twice.
     assert counted[0] > min(20, 20 * took)
 
 
@@ -137,7 +137,7 @@ except KeyboardInterrupt:
 
 @pytest.mark.parametrize("head", ["", ", head=pxpl5.Head('pan:100')"], ids=["run", "dry run"])
 def test_ctrl_c_ends_a_run_and_its_dry_run(head: str) -> None:
-    """A million fields would take hours. With a head, the run that tells when views are seen comes first."""
+    """A million fields would take hours. With a head, the dry run comes first."""
     text = INTERRUPTED.format(head=head).replace("1_000_000", "200_000" if head else "1_000_000")
     process = subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None and process.stdout.readline() == "begun\n"

@@ -1,4 +1,4 @@
-"""Files of outcomes that are foreign or damaged, and damaged pickles."""
+"""Tests of foreign and damaged files of outcomes, and of damaged pickles."""
 
 import io
 import json
@@ -17,7 +17,7 @@ from pxpl5 import _pickle
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """A file with a scene, a recorded motion, tables and pictures."""
+    """Returns the bytes of a file with a scene, a recorded motion, tables and pictures."""
     corners = [[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1], [0, 1.5, 0]]
     scene = pxpl5.Scene.from_arrays(corners, [[0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0]], name="pyramid")
     times = np.linspace(0, 2, 21)
@@ -29,7 +29,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 
 def check(place: Path) -> None:
-    """A damaged file is refused with its path, the expected and the found contents; or it can be used."""
+    """Checks that a damaged file is refused with its path, the expected and the found contents; or it can be used."""
     try:
         outcome = pxpl5.Outcome.load(place)
     except pxpl5.SettingError as error:
@@ -48,7 +48,7 @@ def check(place: Path) -> None:
 
 
 def changed(whole: bytes, names: dict[str, bytes | None]) -> bytes:
-    """The archive with other contents of some members. None removes a member."""
+    """Returns the archive with other contents of some members. None removes a member."""
     new = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(whole)) as old, zipfile.ZipFile(new, "w") as file:
         for name in old.namelist():
@@ -59,7 +59,7 @@ def changed(whole: bytes, names: dict[str, bytes | None]) -> bytes:
 
 
 def edited(whole: bytes, edit: Callable[[dict[str, Any]], object]) -> bytes:
-    """The archive with a change of outcome.json."""
+    """Returns the archive with a changed outcome.json."""
     with zipfile.ZipFile(io.BytesIO(whole)) as file:
         plain = json.loads(file.read("outcome.json"))
     edit(plain)

@@ -1,4 +1,4 @@
-"""Scenes: built in, from files, from arrays."""
+"""Tests of scenes: built in, from files, from arrays."""
 
 from pathlib import Path
 
@@ -25,7 +25,7 @@ def test_arrays_come_back_as_they_were_given() -> None:
 
 
 def test_a_fitted_scene_has_the_size_of_imported_models() -> None:
-    """Centred, its farthest point 0.148 m away: what the importers do with files."""
+    """The scene is centred and its farthest point is 0.148 m away, as for imported files."""
     vertices = np.array([[10, 0, 0], [30, 0, 0], [20, 10, 0]], dtype=float)
     scene = pxpl5.Scene.from_arrays(vertices, np.array([[0, 1, 2]]))
     box = (scene.vertices.min(axis=0) + scene.vertices.max(axis=0)) / 2
@@ -34,7 +34,7 @@ def test_a_fitted_scene_has_the_size_of_imported_models() -> None:
 
 
 def test_a_scene_of_arrays_is_drawn_as_its_file(tmp_path: Path) -> None:
-    """The same model through the OBJ importer and through NumPy: the same pixels."""
+    """The same model through the OBJ importer and through NumPy gives the same pixels."""
     rows = ["v -1 -1 0", "v 1 -1 0", "v 1 1 0", "v -1 1 0.5", "f 1 2 3", "f 1 3 4"]
     (tmp_path / "model.obj").write_text("\n".join(rows) + "\n")
     read = pxpl5.Scene.load(tmp_path / "model.obj")

@@ -1,4 +1,4 @@
-"""Runs in steps, and all pictures of a run."""
+"""Tests of runs in steps, and of all pictures of a run."""
 
 import io
 from pathlib import Path

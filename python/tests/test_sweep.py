@@ -1,4 +1,4 @@
-"""Sweeps on this computer."""
+"""Tests of sweeps on this computer."""
 
 import signal
 import subprocess
@@ -27,7 +27,7 @@ def test_all_combinations_are_run_in_order() -> None:
     assert [row["machine.gp.triangle_ns"] for row in rows] == [20_000] * 4 + [90_000] * 4
     assert [row["triangles"] for row in rows] == [50, 50, 90, 90] * 2
     assert [row["seed"] for row in rows] == [1, 2] * 4
-    # 90 triangles of 90 us do not fit into a field of 16.7 ms, 50 of 20 us do.
+    # 90 triangles of 90 us for two eyes do not fit into a field of 16.7 ms. 50 triangles of 20 us fit.
     assert rows[0]["missed_retraces"] == 0 and rows[-1]["missed_retraces"] > 0
 
 
@@ -73,7 +73,7 @@ def test_the_estimate_grows_with_the_work() -> None:
 
 
 class Space:
-    """Points of known cost."""
+    """A space of points with known costs."""
 
     def __init__(self, costs: list[float]) -> None:
         self._costs = costs
@@ -89,7 +89,7 @@ def all_chunks(made: Chunks, most_s: float) -> list[list[int]]:
 def test_chunks_hold_every_point_once_and_no_more_than_is_said() -> None:
     space: Any = Space([0.1, 0.2, 0.3, 5.0, 0.1, 0.1])
     assert all_chunks(Chunks(space, list(range(6)), Pace(1.0, 1.0)), 0.5) == [[0, 1], [2], [3], [4, 5]]
-    # Points that take twice what is estimated.
+    # Points that take twice the estimated time.
     assert all_chunks(Chunks(space, list(range(6)), Pace(2.0, 1.0)), 0.5) == [[0], [1], [2], [3], [4, 5]]
     many: Any = Space([0.0] * 2_500)
     assert [len(chunk) for chunk in all_chunks(Chunks(many, list(range(2_500))), 0.5)] == [1_000, 1_000, 500]
@@ -98,10 +98,10 @@ def test_chunks_hold_every_point_once_and_no_more_than_is_said() -> None:
 def test_chunks_follow_how_long_points_take() -> None:
     space: Any = Space([0.01] * 10_000)
     made = Chunks(space, list(range(10_000)))
-    # Nothing is known: four times the estimate, so that 12 points of 0.04 s are half a second.
+    # Without measured times, a point counts as four times its estimate: 12 points of 0.04 s are half a second.
     first = made.next(0.5)
     assert len(first) == 12
-    # On this host they take ten times the estimate.
+    # The measured times are ten times the estimates.
     for _ in range(20):
         for point in made.next(0.5):
             made.learn(point, 0.1)
@@ -122,7 +122,7 @@ def test_a_large_cluster_has_some_points_estimated_for_all() -> None:
 
     space: Any = Asked([0.1] * 2_000)
     made = Chunks(space, list(range(2_000)), Pace(0.2, 0.2, 2.0))
-    # A thousand threads take 10,000 points of 0.1 s in a second. 0.1 s of that second are 125 estimates: of each 80th point.
+    # A thousand threads compute 10,000 points of 0.1 s in a second. A tenth of this second is enough for 125 estimates, one for 80 points.
     assert [len(made.next(7.0, 1_000)) for _ in range(3)] == [70, 70, 70]
     assert asked == [list(range(0, 2_000, 80))]
 

@@ -1,4 +1,4 @@
-"""Tables and the Arrow PyCapsule interface."""
+"""Tests of tables and of the Arrow PyCapsule interface."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def test_pyarrow_takes_a_table_as_it_is(mig: pxpl5.Outcome) -> None:
 
 
 def test_latencies_of_the_table_are_those_of_the_report(mig: pxpl5.Outcome) -> None:
-    """An independent mean over the steady, complete pictures."""
+    """Compares with an independent mean over the steady, complete pictures."""
     pictures = mig.pictures
     kept = (pictures["steady"] == 1) & (pictures["complete"] == 1)
     assert pictures["latency_ps"][kept].mean() / 1e9 == pytest.approx(mig.latency_ms.mean, rel=1e-12)

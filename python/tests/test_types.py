@@ -1,4 +1,4 @@
-"""The types of dictionaries and rows are those of the data: each key is there, and has a value of its type."""
+"""Tests that dictionaries and rows have their types: each key exists, and its value has the type of the key."""
 
 import re
 from pathlib import Path
@@ -134,7 +134,7 @@ def test_no_signature_has_the_type_any() -> None:
 
 
 def test_a_table_has_the_type_of_its_rows() -> None:
-    """At run time it is only an annotation."""
+    """At run time the type is only an annotation."""
     assert get_args(pxpl5.Table[dict[str, float]]) == (dict[str, float],)
 
 

@@ -1,4 +1,4 @@
-"""Volumes."""
+"""Tests of volumes."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def test_a_turn_has_the_slices_of_the_paper(volume: pxpl5.Volume) -> None:
 
 
 def test_bits_are_the_lit_voxels_of_the_report(volume: pxpl5.Volume) -> None:
-    """Counted one by one over all slices."""
+    """The test counts the lit voxels one by one over all slices."""
     lit = sum(int(volume.bits(number).any(axis=2).sum()) for number in range(volume.slices))
     assert lit == volume.report()["lit_voxels"]
 

@@ -4,7 +4,6 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A crate of the workspace.
 pub(crate) struct Crate {
     /// Name of the folder below `crates`. On a registry, the package's name has the prefix `pxpl5-`.
     pub(crate) name: String,
@@ -16,11 +15,9 @@ pub(crate) struct Crate {
     pub(crate) files: Vec<SourceFile>,
 }
 
-/// A Rust file of a crate.
 pub(crate) struct SourceFile {
     /// Path below `src`, with `/` as separator.
     pub(crate) path: String,
-    /// Content of the file.
     pub(crate) text: String,
 }
 

@@ -53,7 +53,7 @@ fn floor_of(name: &str) -> Option<&'static str> {
 }
 
 #[test]
-fn every_crate_has_its_floor_and_depends_only_on_those_below() {
+fn every_crate_depends_only_on_crates_of_lower_floors() {
     for member in workspace() {
         let floor = floor_of(&member.name).unwrap_or_else(|| panic!("{} is on no floor", member.name));
         let (_, _, allowed) = FLOORS.iter().find(|(name, ..)| *name == floor).expect("listed");
@@ -65,7 +65,7 @@ fn every_crate_has_its_floor_and_depends_only_on_those_below() {
 }
 
 #[test]
-fn no_crate_depends_on_itself_through_others() {
+fn crates_have_no_circular_dependencies() {
     let members = workspace();
     let below: BTreeMap<&str, Vec<&str>> = members
         .iter()
@@ -75,7 +75,7 @@ fn no_crate_depends_on_itself_through_others() {
 }
 
 #[test]
-fn no_module_imports_itself_through_others() {
+fn modules_have_no_circular_imports() {
     let mut found = Vec::new();
     for member in workspace() {
         let graph = modules::imports(&member);
@@ -93,7 +93,7 @@ fn no_module_imports_itself_through_others() {
 }
 
 #[test]
-fn the_facade_only_hands_on() {
+fn the_facade_only_re_exports() {
     let facade = workspace().into_iter().find(|member| member.name == "pxpl5").expect("the root");
     // Examples in comments do not count.
     let texts = facade.files.iter().flat_map(|file| file.text.lines());
@@ -140,7 +140,7 @@ fn closure(members: &[Crate], name: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn eyes_fields_and_beams_are_known_to_ntsc_and_its_pipelines_only() {
+fn only_ntsc_and_its_pipelines_name_eyes_fields_and_beams() {
     let general = ["pxpl5-machine", "pxpl5-measure", "pxpl5-views"];
     for member in workspace().iter().filter(|member| general.contains(&member.name.as_str())) {
         for file in member.files.iter().filter(|file| !KNOWS_EYES.contains(&file.path.as_str())) {
@@ -168,17 +168,17 @@ fn only_the_command_prints() {
 
 /// The counts are only hints, because only a person can judge a text.
 #[test]
-fn no_text_becomes_harder_to_read() {
+fn no_text_is_harder_to_read_than_the_recorded_counts_allow() {
     prose::check(&workspace());
 }
 
 #[test]
-fn architecture_describes_the_crates_as_they_are() {
+fn architecture_describes_the_current_crates() {
     document::check(&workspace());
 }
 
 #[test]
-fn every_published_crate_has_what_a_registry_shows() {
+fn every_published_crate_has_the_metadata_of_a_registry() {
     packages::check();
 }
 

@@ -164,7 +164,6 @@ fn resolve(
     None
 }
 
-/// Returns true if a source defines an item with a name.
 fn defines(text: &str, name: &str) -> bool {
     let kinds = ["fn", "struct", "enum", "trait", "type", "const", "static", "macro_rules!"];
     kinds.iter().any(|kind| source::has_word(text, &format!("{kind} {name}")))
@@ -200,13 +199,13 @@ fn reached<'a>(arrows: &BTreeMap<&'a str, Vec<&'a str>>, from: &str) -> BTreeSet
 }
 
 #[test]
-fn a_tree_of_imports_is_taken_apart() {
+fn nested_imports_are_parsed() {
     let found = leaves("crate::{a::{B, c::D as E}, f::G}");
     assert_eq!(found, ["crate::a::B", "crate::a::c::D", "crate::f::G"]);
 }
 
 #[test]
-fn a_circle_is_found_and_a_line_is_none() {
+fn a_circle_of_imports_is_found_and_a_chain_is_accepted() {
     let line = BTreeMap::from([("a", vec!["b"]), ("b", vec!["c"]), ("c", vec![])]);
     assert!(circles(&line).is_empty());
     let circle = BTreeMap::from([("a", vec!["b"]), ("b", vec!["c"]), ("c", vec!["a"]), ("d", vec!["a"])]);

@@ -1,4 +1,4 @@
-//! Source text as the rules read it.
+//! Source text in the forms that the rules need.
 
 /// Returns a source without its tests: everything before the first `#[cfg(test)]` that begins a module. An attribute
 /// before a single line does not count.

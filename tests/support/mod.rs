@@ -1,8 +1,13 @@
-//! Functions that several tests of the NTSC display share.
+//! Functions that several tests share.
 #![allow(dead_code, reason = "each test binary uses some of it")]
 
 use pxpl5::{NtscDisplay, Outcome, Record};
 use pxpl5_framebuffer::{FrameBuffer, Video};
+
+/// Returns true if campaigns run all cases instead of a sample, as in scripts/nightly.
+pub(crate) fn runs_all_cases() -> bool {
+    std::env::var_os("PXPL5_ALL_CASES").is_some()
+}
 
 /// Returns the NTSC display of a run.
 pub(crate) fn ntsc(record: &Record) -> &NtscDisplay {

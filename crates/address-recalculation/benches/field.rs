@@ -29,12 +29,12 @@ fn striped(config: &ArpConfig, memory: u32) -> FaceSet {
     faces
 }
 
-/// Returns the orientation of a head half turned to the right and looking up, so that several faces are visible.
+/// Returns the orientation of a head that is turned half to the right and looks up, so that several faces are visible.
 fn orientation() -> MatrixWords {
     Orientation::from_quaternion([0.2, -0.35, 0.05, 0.9]).expect("a rotation").words(16)
 }
 
-/// Computes the same pixels one by one: texel addresses, nearest memory, weights.
+/// Computes the same pixels one by one: the texel addresses, the nearest memory, and the weights of the texels.
 fn plain(table: &LensTable, unit: &AddressUnit, matrix: &MatrixWords, memories: &[FaceSet], out: &mut [u32]) {
     for (place, pixel) in (0_u32..).zip(out) {
         let vector = table.entry(place % table.width(), place / table.width());

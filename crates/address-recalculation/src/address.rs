@@ -68,7 +68,6 @@ impl Footprint {
 /// dividers and addresses.
 #[derive(Clone, Copy, Debug)]
 pub struct AddressUnit {
-    /// Size of the faces.
     pub geometry: FaceGeometry,
     /// Number of bits of the quotients that the dividers compute.
     pub quotient_bits: u64,
@@ -78,7 +77,6 @@ pub struct AddressUnit {
 }
 
 impl AddressUnit {
-    /// Returns the address unit of a display with the parameters `timing`.
     #[must_use]
     pub const fn new(timing: &ArpTiming) -> Self {
         let geometry = FaceGeometry { texels: timing.face_texels as u32, guard: timing.guard_texels as u32 };
@@ -104,8 +102,8 @@ impl AddressUnit {
         (i64::from(self.geometry.guard) << self.quotient_bits) + quotient * inner + inner / 2 - half
     }
 
-    /// Returns the fraction of a texel in a position, from 0 to 1 inclusive, in `weight_bits` bits. Halves are rounded
-    /// up.
+    /// Returns the fractional part of a position in texels, from 0 to 1 inclusive, in `weight_bits` bits. Halves are
+    /// rounded up.
     pub(crate) const fn fraction(&self, place: i64) -> u32 {
         let below = self.quotient_bits - self.weight_bits;
         let fraction = place & ((1 << self.quotient_bits) - 1);
@@ -140,7 +138,7 @@ impl AddressUnit {
         Footprint { texels: places.map(|place| self.texel_or_neighbour(face, place)), fractions, is_split }
     }
 
-    /// Returns the texel at a column and row that can lie beyond the edges of a face.
+    /// Returns the texel at this column and row, which can lie beyond the edges of the face.
     ///
     /// Beyond an edge, the result is the neighbouring face's texel in the same direction. Beyond a corner, the result
     /// is `None`.

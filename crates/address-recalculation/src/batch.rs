@@ -24,12 +24,12 @@ type Each<T> = [T; BATCH];
 #[derive(Clone, Debug)]
 pub(crate) struct Batch {
     pub(crate) count: usize,
-    /// Index of the upper left texel of each pixel. The index is 0 for a footprint with texels on other faces.
+    /// Index of the upper left texel of each pixel. The index is 0 for a footprint that extends beyond one face.
     pub(crate) index: Each<u32>,
     right: Each<u32>,
     down: Each<u32>,
-    /// Nonzero for a footprint (four texels) with texels on other faces. The address unit computes such footprints one
-    /// by one.
+    /// Nonzero for a footprint (four texels) that extends beyond one face. The address unit computes such footprints
+    /// one by one.
     leaves: Each<i32>,
     is_left: bool,
     met: Met,
@@ -71,12 +71,12 @@ impl Batch {
         (0..self.count).filter(|i| self.leaves[*i] == 0).map(|i| self.index[i])
     }
 
-    /// Returns true if the footprint of a pixel (its four texels) has texels on other faces.
+    /// Returns true if the footprint of a pixel (its four texels) extends beyond one face.
     pub(crate) const fn leaves(&self, pixel: usize) -> bool {
         self.leaves[pixel] != 0
     }
 
-    /// Returns true if any footprint (four texels) of the group has texels on other faces.
+    /// Returns true if any footprint (four texels) of the group extends beyond one face.
     pub(crate) const fn is_left(&self) -> bool {
         self.is_left
     }
@@ -90,7 +90,6 @@ impl Batch {
 pub(crate) fn addresses(batch: &mut Batch, unit: &AddressUnit, vectors: [&[i32]; 3], matrix: &MatrixWords) {
     batch.count = vectors[0].len().min(BATCH);
     let met = &mut batch.met;
-    // Load the vectors into the lanes.
     for (lanes, axis) in met.vectors.iter_mut().zip(vectors) {
         lanes[..batch.count].copy_from_slice(&axis[..batch.count]);
     }
@@ -189,7 +188,7 @@ fn footprints(batch: &mut Batch, unit: &AddressUnit) {
 
 /// Interpolates the four colours of each footprint (four texels) in a group.
 ///
-/// `reach` is the number of texels from a texel to the texel below it, or 0 without interpolation.
+/// `reach` is the index of the texel below a texel minus the index of this texel, or 0 without interpolation.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u32, out: &mut [u32]) {
     if weight_bits == 0 {
@@ -222,7 +221,8 @@ pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u
 /// The reason is that 255 * 4^4 plus half a unit is below 2^16.
 const MAX_PACKED_WEIGHT_BITS: u32 = 4;
 
-/// Interpolates colours. One product contains red and blue, and another product contains green.
+/// Interpolates colours with two products for each texel: one product for red and blue together, and one product for
+/// green.
 #[inline(always)]
 fn two(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) {
     let one = 1 << weight_bits;

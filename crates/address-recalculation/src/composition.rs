@@ -1,22 +1,22 @@
-//! Composition of a pixel: selection of the nearest memory, and interpolation of four texels.
+//! Composition of a pixel from all display memories: selection of the smallest depth, and interpolation of four texels.
 
 use crate::texel::{colour, nearness};
 use serde::{Deserialize, Serialize};
 
-/// Order of the two steps depth comparison and interpolation.
+/// Order of two steps: comparison of the memories' depths, and interpolation of texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CompositionOrder {
-    /// First, the nearest memory is selected for each texel. Then the four texels are interpolated (assumed).
+    /// First, the memory with the smallest depth is selected for each texel. Then the four selected texels are
+    /// interpolated (assumed).
     #[default]
     DepthFirst,
-    /// First, the four texels of each memory are interpolated, including their depths. Then the nearest memory is
-    /// selected.
+    /// First, the four texels of each memory are interpolated, including their depths. Then the memory with the
+    /// smallest depth is selected.
     InterpolationFirst,
 }
 
 impl CompositionOrder {
-    /// Both orders of depth comparison and interpolation, each with its name on the command line.
     pub const ALL: [(&str, Self); 2] =
         [("depth-first", Self::DepthFirst), ("interpolation-first", Self::InterpolationFirst)];
 }
@@ -24,7 +24,6 @@ impl CompositionOrder {
 /// Rules by which the texels of several memories give the colour of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Composition {
-    /// Order of the two steps depth comparison and interpolation.
     pub order: CompositionOrder,
     /// Colour of empty texels if there is no background memory, 0x00RRGGBB.
     pub background: u32,
@@ -32,11 +31,9 @@ pub struct Composition {
     pub weight_bits: u64,
 }
 
-/// Inputs for the computation of a pixel: four texels in each memory, their weights and the background.
 pub(crate) struct Gathered<'a> {
     /// Words of the upper left, upper right, lower left and lower right texel in each display memory.
     pub(crate) memories: &'a [[u64; 4]],
-    /// Background colours of the four texels.
     pub(crate) behind: [u32; 4],
     /// Weights in units of `4^-weight_bits`. `None` marks a texel beyond a corner. The mean of the other three texels
     /// replaces such a texel.

@@ -13,15 +13,12 @@ use pxpl5_sim::parameters::{SettingError, check};
 /// Parameters, lens and options of an address recalculation pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArpConfig {
-    /// Word lengths, memories and stage time of the pipeline.
+    /// Word lengths, number of memories, and time per stage of the pipeline.
     pub timing: ArpTiming,
-    /// Timing of the video scan.
     pub scan: ScanTiming,
-    /// Lens between the picture and the eye.
     pub lens: Lens,
     /// Times at which the display reads the orientation: once per field, per line or per pixel.
     pub latch: Latch,
-    /// Order of the two steps depth comparison and interpolation.
     pub order: CompositionOrder,
     /// Colour of empty texels, 0x00RRGGBB.
     pub background: u32,
@@ -108,13 +105,11 @@ impl ArpConfig {
         FaceGeometry { texels: self.timing.face_texels as u32, guard: self.timing.guard_texels as u32 }
     }
 
-    /// Returns the format of the texels in a display memory.
     #[must_use]
     pub const fn format(&self) -> TexelFormat {
         TexelFormat::new(&self.timing)
     }
 
-    /// Returns the rules by which the texels of several memories give the colour of a pixel.
     #[must_use]
     pub const fn composition(&self) -> Composition {
         Composition {

@@ -1,4 +1,5 @@
-//! The display on the ring: a port for each memory, and for each eye an orientation register and a picture.
+//! The address recalculation display as a board on the ring: a port for each memory, and for each eye an orientation
+//! register and a picture.
 
 use crate::address::Footprint;
 use crate::config::ArpConfig;
@@ -18,7 +19,6 @@ use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, Word};
 use std::collections::VecDeque;
 use std::sync::OnceLock;
 
-/// The display memories and the orientation register of one eye.
 #[derive(Debug)]
 struct EyeBoards {
     memories: Vec<DisplayMemory>,
@@ -38,7 +38,7 @@ impl EyeBoards {
     /// A group of memories that must swap together swaps only if all memories of the group are ready.
     fn retrace(&mut self, now: Time) -> Vec<(usize, u8)> {
         let ready: Vec<Option<u8>> = self.memories.iter().map(|memory| memory.is_ready(now)).collect();
-        // A memory that is ready for another set, or alone, does not count as ready for this set.
+        // A memory that is ready to swap with another set, or alone, does not count as ready for this set.
         let all_ready = |set: u8| (0..u8::BITS as usize).all(|k| set >> k & 1 == 0 || ready.get(k) == Some(&Some(set)));
         let may_swap: Vec<bool> = ready.iter().map(|set| set.is_some_and(all_ready)).collect();
         let memories = (0..).zip(self.memories.iter_mut().zip(may_swap));
@@ -60,7 +60,6 @@ pub struct AddressRecalculationPipeline {
 }
 
 impl AddressRecalculationPipeline {
-    /// Returns the configuration of the display.
     #[must_use]
     pub const fn config(&self) -> &ArpConfig {
         &self.optics.config
@@ -192,7 +191,6 @@ impl AddressRecalculationPipeline {
     }
 }
 
-/// Name of the display on the command line.
 const NAME: &str = "arp";
 
 impl Display for AddressRecalculationPipeline {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// A direction or a row of a matrix. x points to the right, y up, and z backwards, opposite to the initial view.
 pub type Vector = [f64; 3];
 
-/// A face of the cube around the eye, named by the axis that it lies on.
+/// A face of the cube around the eye, named by the axis through the middle of the face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum CubeFace {
     /// Face to the right of a head in its initial orientation.
@@ -95,7 +95,6 @@ pub(crate) fn longest<T: PartialOrd>([x, y, z]: [T; 3]) -> usize {
     }
 }
 
-/// Returns the component of a vector along an axis.
 fn along(vector: Vector, axis: [i64; 3]) -> f64 {
     (0..3).map(|i| vector[i] * axis[i] as f64).sum()
 }
@@ -124,7 +123,7 @@ impl TexelAddress {
         self.row / 2 * (face_texels / 2) + self.column / 2
     }
 
-    /// Returns the index of the texel in a buffer that stores all texels by face and row.
+    /// Returns the index of the texel in a buffer that stores texels face by face, and row by row within a face.
     #[must_use]
     pub const fn index(self, face_texels: u32) -> usize {
         ((self.face as u32 * face_texels + self.row) * face_texels + self.column) as usize
@@ -179,8 +178,8 @@ impl FaceGeometry {
         Some(TexelAddress { face, column, row })
     }
 
-    /// Returns the face that a direction hits, and the position relative to the middles of its texels. Returns `None`
-    /// for the zero vector.
+    /// Returns the face that a direction hits, and the position relative to the middles of the face's texels. Returns
+    /// `None` for the zero vector.
     ///
     /// The integer parts of the position are column and row of the upper left texel. The fractions are the distances
     /// from this texel to the right and downwards.

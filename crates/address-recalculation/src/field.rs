@@ -1,4 +1,4 @@
-//! A scanned field, whose pixels are computed only when the field is read.
+//! One field of the display, whose pixels are computed only when the picture is read.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::config::ArpConfig;
@@ -13,7 +13,6 @@ use image::{Rgb, RgbImage};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 use std::sync::{Arc, OnceLock};
 
-/// Data that all fields of a display share.
 #[derive(Debug)]
 pub(crate) struct Optics {
     pub(crate) config: ArpConfig,
@@ -61,13 +60,11 @@ impl Field<'_> {
         Some(self.latch.at(self.optics.scan.latches(latch, x, y, self.number)?))
     }
 
-    /// Returns the texels from which a pixel is computed, or `None` if the field does not scan the pixel.
     pub(crate) fn footprint(&self, x: u32, y: u32) -> Option<Footprint> {
         let turned = self.matrix(x, y)?.turn(self.optics.table().entry(x, y));
         AddressUnit::new(&self.optics.config.timing).footprint(turned)
     }
 
-    /// Computes the lines that the field scans, and writes them into a frame.
     pub(crate) fn draw(&self, frame: &mut RgbImage) -> LookStats {
         let parity = FieldParity::of_field(self.number).first_line();
         let lines = (parity..self.optics.scan.height()).step_by(2);
@@ -104,7 +101,6 @@ impl Field<'_> {
         wanted
     }
 
-    /// Divides a line into parts with one orientation each.
     fn runs(&self, y: u32) -> Vec<Run> {
         let width = self.optics.scan.width();
         let whole = self.matrix(0, y).map(|matrix| Run { x: 0, y, count: width, matrix });

@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// Widest angle of a flat picture or a radial lens, in degrees. All displays with flat pictures have the same limit.
 const WIDEST_FLAT_DEG: f64 = 170.0;
 
-/// The lens between the picture and the eye.
+/// The distortion of the lens in front of a display.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Lens {
     /// No lens distortion: the pixels lie on a plane.
@@ -19,27 +19,20 @@ pub enum Lens {
     /// A radial polynomial that multiplies the distance rho from the middle by 1 + k1 rho^2 + k2 rho^4.
     ///
     /// rho is 1 at the left and right ends of the middle line.
-    Radial {
-        /// Coefficient of rho^2.
-        k1: f64,
-        /// Coefficient of rho^4.
-        k2: f64,
-    },
-    /// A lens for which the viewing angle is proportional to the distance from the middle. Pictures can be up to 360
-    /// degrees wide.
+    Radial { k1: f64, k2: f64 },
+    /// A lens for which the viewing angle is proportional to the distance from the middle of the picture. Pictures can
+    /// be up to 360 degrees wide.
     Equidistant,
     /// Viewing vectors from a file, in row order (see [`Lens::read`]).
     Table(Arc<[Vector]>),
 }
 
-/// Size and viewing angle of a picture.
+/// The size and the horizontal angle of the picture behind a [`Lens`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LensPicture {
-    /// Number of pixels in a line.
     pub width: u32,
-    /// Number of lines in a frame.
     pub height: u32,
-    /// Angle between the left and the right edge if there is no lens, in degrees.
+    /// Angle between the left and the right edge of the picture if there is no lens, in degrees.
     pub horizontal_deg: f64,
 }
 
@@ -182,8 +175,8 @@ fn wrong_lens(expected: impl fmt::Display, found: impl fmt::Display) -> SettingE
     SettingError::value("arp.lens", expected, found)
 }
 
-/// Returns the error for a line of a file of viewing vectors, counted from 1. If data are missing, `line` is the number
-/// of lines plus 1.
+/// Returns the error for line `line` of a file of viewing vectors. Lines are counted from 1. If data are missing,
+/// `line` is the number of lines plus 1.
 fn wrong_table(line: usize, expected: &str, found: impl fmt::Display) -> FileError {
     FileError::new(FileErrorKind::Syntax, expected, found).at(format_args!("arp.lens table, line {line}"))
 }
@@ -268,7 +261,6 @@ impl LensTable {
         Ok(Self::of_checked(lens, picture, vector_bits))
     }
 
-    /// Creates the table of viewing vectors for a lens that has already been checked.
     pub(crate) fn of_checked(lens: &Lens, picture: &LensPicture, vector_bits: u64) -> Self {
         let mut words = [Vec::new(), Vec::new(), Vec::new()];
         for y in 0..picture.height {
@@ -282,13 +274,11 @@ impl LensTable {
         Self { width: picture.width, height: picture.height, words }
     }
 
-    /// Returns the number of pixels in a line.
     #[must_use]
     pub const fn width(&self) -> u32 {
         self.width
     }
 
-    /// Returns the number of lines in a frame.
     #[must_use]
     pub const fn height(&self) -> u32 {
         self.height

@@ -65,7 +65,7 @@
 //!
 //! [`literal`] is the reference model. This model simulates, clock by clock, the registers of every stage, partial
 //! products, restoring dividers and banks. [`Lookup`] is the fast model. This model processes 64 pixels at a time in
-//! doubles, which are exact for these word lengths. tests/equal.rs checks that both give identical bits.
+//! doubles, which are exact for these word lengths. tests/equal.rs checks that the two models give identical bits.
 //!
 //! # Not modelled
 //!
@@ -111,7 +111,6 @@ pub use scan::{FaceScan, Latch};
 pub use texel::{DEPTH_FARTHEST, FaceSet, TexelFormat};
 pub use timing::{ArpTiming, ScanTiming};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

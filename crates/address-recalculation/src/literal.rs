@@ -27,7 +27,6 @@ use arithmetic::{Divider, multiply, multiply_unsigned, signed};
 use registers::Registers;
 use std::collections::VecDeque;
 
-/// A stage of the pipeline, which takes one clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     Table,
@@ -67,7 +66,6 @@ pub struct ReferencePipeline {
 }
 
 impl ReferencePipeline {
-    /// Creates an empty pipeline with a table of viewing vectors.
     #[must_use]
     pub fn new(config: &ArpConfig, table: LensTable) -> Self {
         let timing = &config.timing;

@@ -22,7 +22,7 @@ use std::cell::Cell;
 /// Counts of extra memory accesses for a picture, beyond one access per pixel and memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LookStats {
-    /// Number of pixels whose footprint (its four texels) has a texel on another face.
+    /// Number of pixels whose footprint (its four texels) extends beyond one face.
     pub split: u64,
     /// Number of pixels whose footprint (its four texels) has two texels in one bank and therefore needs a second
     /// access.
@@ -30,7 +30,6 @@ pub struct LookStats {
 }
 
 impl LookStats {
-    /// Adds the counts of another picture.
     pub const fn add(&mut self, other: Self) {
         self.split += other.split;
         self.conflicts += other.conflicts;
@@ -42,15 +41,14 @@ impl LookStats {
     }
 }
 
-/// Smallest number of pixels for which the computation in groups is used.
+/// Smallest number of pixels that are computed as a group. Fewer pixels are computed one by one.
 const MIN_GROUP_PIXELS: usize = 4;
 
-/// The part of the fast model that finds the texels of each pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Addressing<'a> {
     table: &'a LensTable,
     unit: AddressUnit,
-    /// True if doubles represent all intermediate values exactly for these word lengths.
+    /// True if doubles represent all intermediate values exactly for the word lengths of this display.
     is_exact: bool,
 }
 
@@ -69,8 +67,8 @@ impl<'a> Addressing<'a> {
     /// Computes the footprints (the four texels and their weights) of up to [`BATCH`] pixels together, and returns
     /// true.
     ///
-    /// Returns false and computes nothing if the words have too many bits for exact results in doubles. The same holds
-    /// if there are so few pixels that a computation pixel by pixel is faster.
+    /// Returns false and computes nothing in two cases. In the first case, the words have too many bits for exact
+    /// results in doubles. In the second case, there are so few pixels that a computation pixel by pixel is faster.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
         let is_worth_it = self.is_exact && vectors[0].len() >= MIN_GROUP_PIXELS;
         if is_worth_it {
@@ -86,12 +84,12 @@ impl<'a> Addressing<'a> {
         for start in (0..count).step_by(BATCH) {
             let here = start..(start + BATCH).min(count);
             let vectors = vectors.map(|axis| &axis[here.clone()]);
-            // Footprints inside a face come from the group computation.
+            // Footprints that lie inside a face are computed in groups.
             let is_filled = self.fill(&mut batch, vectors, matrix);
             if is_filled {
                 batch.inside().for_each(|index| self.mark_square(index, touched));
             }
-            // The others are computed one by one.
+            // Compute all other footprints one by one.
             for i in (0..here.len()).filter(|i| !is_filled || batch.leaves(*i)) {
                 self.mark_footprint(vectors.map(|axis| axis[i]), matrix, touched);
             }
@@ -117,7 +115,7 @@ impl<'a> Addressing<'a> {
     }
 }
 
-/// The fast model, which computes pixels from memories while their visible buffers stay the same.
+/// The fast model, which computes pixels from the visible buffers of all display memories.
 #[derive(Clone, Debug)]
 pub struct Lookup<'a> {
     addressing: Addressing<'a>,
@@ -171,8 +169,8 @@ impl<'a> Lookup<'a> {
         stats
     }
 
-    /// Finds for each pixel the memory whose colour is shown at the texel with the largest weight among the pixel's
-    /// four texels. A pixel gets `None` if all memories are empty at this texel.
+    /// Finds for each pixel the memory whose colour is shown. Only the texel with the largest weight among the pixel's
+    /// four texels is examined. A pixel gets `None` if all memories are empty at this texel.
     ///
     /// # Panics
     ///
@@ -199,14 +197,14 @@ impl<'a> Lookup<'a> {
         let mut stats = LookStats::default();
         let is_filled = self.composition.order == CompositionOrder::DepthFirst
             && self.addressing.fill(&mut self.batch, vectors, matrix);
-        // Group computation for footprints that stay on their face.
+        // Compute footprints that lie inside a face in groups.
         if is_filled {
             self.pixels(out);
             if !self.batch.is_left() {
                 return stats;
             }
         }
-        // Single computation for the remaining pixels.
+        // Compute the remaining pixels one by one.
         for (i, pixel) in out.iter_mut().enumerate().filter(|(i, _)| !is_filled || self.batch.leaves(*i)) {
             let footprint = self.addressing.footprint(vectors.map(|axis| axis[i]), matrix);
             *pixel = footprint.map_or(self.composition.background, |footprint| {
@@ -217,7 +215,6 @@ impl<'a> Lookup<'a> {
         stats
     }
 
-    /// Computes a single pixel from its footprint, the four texels with their weights.
     fn pixel(&self, footprint: &Footprint) -> u32 {
         let words = |faces: &FaceSet| footprint.texels.map(|texel| texel.map_or(0, |texel| word(faces, texel)));
         let memories: Vec<[u64; 4]> = self.memories.iter().map(|faces| words(faces)).collect();
@@ -259,8 +256,8 @@ impl<'a> Lookup<'a> {
 /// Number of consecutive texels for which the nearest memory is selected in one step. The number is a divisor of 128.
 const PIECE: usize = 32;
 
-/// Colour of each texel, taken from the display memory with the smallest depth there. The colour is computed when a
-/// pixel first needs it.
+/// Colour of each texel, taken from the display memory in which the texel has the smallest depth. The colour is
+/// computed when a pixel first needs it.
 ///
 /// Neighbouring pixels share texels, so the depths of a texel are compared once instead of once per reading pixel.
 #[derive(Clone, Debug)]
@@ -276,8 +273,8 @@ impl Composed {
         Self { colours: vec![0; all], is_done: vec![false; all.div_ceil(PIECE)] }
     }
 
-    /// Returns the buffer of this thread's previous lookup if the size matches. Reuse avoids new page faults on the
-    /// host.
+    /// Returns the buffer of this thread's previous lookup, or a new buffer if the size differs. Reuse avoids new page
+    /// faults on the host.
     fn spare(texels: u32) -> Self {
         let all = 6 * (texels * texels) as usize;
         match SPARE.take().filter(|spare| spare.colours.len() == all) {
@@ -301,7 +298,7 @@ impl Drop for Lookup<'_> {
             colours: std::mem::take(&mut self.composed.colours),
             is_done: std::mem::take(&mut self.composed.is_done),
         };
-        // The access fails only while the thread ends. Then the buffer is dropped.
+        // The thread-local variable is unavailable only while the thread ends. Then the buffer is dropped.
         let _ = SPARE.try_with(|spare| spare.set(Some(left)));
     }
 }

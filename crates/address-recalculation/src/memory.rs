@@ -10,7 +10,6 @@ use std::sync::{Arc, OnceLock};
 
 const REGION_TEXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
 
-/// Number of words in a message that contains pixels.
 const MESSAGE_WORDS: u32 = 1_024;
 
 /// A region that has arrived. Its texels are computed only when the region is read.
@@ -23,7 +22,6 @@ pub(crate) struct StoredRegion {
 /// The regions of a buffer that have arrived in the current update. All other regions are empty.
 pub(crate) type Regions = BTreeMap<u16, Arc<StoredRegion>>;
 
-/// Properties of a memory: the size of its faces, the format of its texels, and the presence of depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MemoryKind {
     pub(crate) face_texels: u32,
@@ -40,7 +38,7 @@ impl MemoryKind {
         words * REGION_TEXELS as u32 / MESSAGE_WORDS
     }
 
-    /// Computes the texels of a buffer's regions and writes them into `faces`. `wanted` has true for each region to
+    /// Computes the texels of a buffer's regions and writes them into `faces`. `wanted` is true for each region to
     /// write.
     pub(crate) fn draw(self, regions: &Regions, wanted: &[bool], faces: &mut FaceSet) {
         for (number, region) in regions.iter().filter(|(number, _)| wanted[usize::from(**number)]) {
@@ -73,7 +71,6 @@ impl MemoryKind {
     }
 }
 
-/// A region of which some messages have arrived, but not all.
 #[derive(Clone, Debug)]
 struct Arriving {
     pixels: RegionPixels,
@@ -97,7 +94,7 @@ struct SwapRequest {
     together: u8,
 }
 
-/// Counters of a display memory.
+/// Counts of the regions, updates and delays of a display memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct MemoryStats {
     /// Number of complete regions that arrived.
@@ -125,7 +122,6 @@ pub struct DisplayMemory {
     stats: MemoryStats,
 }
 
-/// Effect of a message that contains pixels.
 pub(crate) enum PixelReceipt {
     /// The message completed a region. The value is the time at which the region's first message arrived.
     Region(Time),
@@ -139,7 +135,6 @@ impl DisplayMemory {
         Self { kind, buffers: Default::default(), shown: 0, request: None, late_since: None, stats }
     }
 
-    /// Returns the counters.
     #[must_use]
     pub const fn stats(&self) -> &MemoryStats {
         &self.stats
@@ -176,7 +171,7 @@ impl DisplayMemory {
         Arc::clone(&self.buffers[usize::from(self.shown)].valid)
     }
 
-    /// Begins an update of a buffer. All its regions are empty until they arrive.
+    /// Begins an update of a buffer. Each region of the buffer is empty until the region arrives.
     pub(crate) fn begin(&mut self, buffer: u8, regions: Vec<u16>) -> Result<(), &'static str> {
         if buffer == self.shown {
             return Err("an update of the buffer that is shown");

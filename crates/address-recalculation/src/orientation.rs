@@ -8,8 +8,8 @@ use pxpl5_sim::parameters::SettingError;
 /// Largest accepted deviation from a rotation matrix, measured in the scalar products of the rows.
 const TOLERANCE: f64 = 1e-3;
 
-/// A rotation from head axes to world axes, checked to be a rotation. The columns of the matrix are the axes of the
-/// head.
+/// A matrix from head axes to world axes, which was checked to be a rotation. The columns of the matrix are the axes of
+/// the head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
     rows: [Vector; 3],
@@ -58,7 +58,6 @@ impl Orientation {
         ])
     }
 
-    /// Returns the rows of the matrix.
     #[must_use]
     pub const fn rows(&self) -> [Vector; 3] {
         self.rows
@@ -101,7 +100,7 @@ fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The orientations that have arrived, each with the time from which on it is valid.
+/// The orientations that have arrived, each with the time at which it became valid.
 ///
 /// A matrix that is not a rotation is refused and counted, and the previous matrix stays valid.
 #[derive(Clone, Debug)]
@@ -149,7 +148,7 @@ impl OrientationLatch {
         self.loaded[after.saturating_sub(1)].1
     }
 
-    /// Discards matrices that the display cannot read any more at `time` or later.
+    /// Discards matrices that the display can no longer read at `time` or later.
     pub fn discard_before(&mut self, time: Time) {
         let after = self.loaded.partition_point(|(arrived, _)| *arrived <= time);
         self.loaded.drain(..after.saturating_sub(1));

@@ -15,15 +15,15 @@
 //!   threshold angle. There are four causes: the eye has moved (chord or sine), the object appears larger (disc or
 //!   sphere), is animated, or rotates. A rotation of the head never makes an image wrong. A face that is out of sight
 //!   can be drawn later ([`time_until_visible_s`]).
-//! - **Objects** ([`Objects`]): each object is in the least often drawn memory that keeps its image right. Memory k is
-//!   drawn every 2^k frames. An object changes its memory only in a frame that draws both memories, and both are shown
-//!   together.
+//! - **Objects** ([`Objects`]): each object is in the least often drawn memory in which its image stays correct. Memory
+//!   k is drawn every 2^k frames. An object changes its memory only in a frame that draws both memories, and both are
+//!   shown together.
 //! - **Cells** ([`Cells`]): the floor of the world is divided into square cells. The home cell is the cell that
 //!   contained the eye when cells were last assigned to memories. All cells at one distance from the home cell form a
 //!   ring, which lies in one memory. Memory 0 holds the inner rings of cells, and memory 1 holds one ring of cells.
-//!   Each further memory holds `ring_growth` times as many rings of cells as the previous memory.
+//!   Memory 2 and all later memories each hold `ring_growth` times as many rings of cells as the memory before.
 //! - **Due memories**: a memory must be drawn again when the eye has moved too far since the memory's last update. The
-//!   permitted distance grows with the distance to the memory's nearest cell. The nearest cell is searched among all
+//!   permitted distance grows with the distance to the memory's nearest cell. The nearest cell is chosen among all
 //!   cells that the memory could hold, or only among cells with content (`to_held_cells`). With warping, an update of a
 //!   memory also makes all more often drawn memories due (cascade).
 //! - **New home cell**: cells are assigned to memories anew when two conditions hold: the eye has left the home cell,

@@ -12,13 +12,10 @@ use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{REGION_SIZE, RegionGrid, RegionId, Word, read_swap_request};
 use std::sync::Arc;
 
-/// First word of a message that begins an update of a buffer.
 const BEGIN: Word = 0x0041_5042;
 
-/// First word of a request to swap at the same retrace as other memories.
 const TOGETHER: Word = 0x0041_5054;
 
-/// First word of a message that sets the orientation.
 const MATRIX: Word = 0x0041_504D;
 
 /// Returns the division of six faces into regions of 128 x 128 texels. The faces lie one below the other, in the order
@@ -29,7 +26,7 @@ pub const fn region_grid(face_texels: u32) -> RegionGrid {
     RegionGrid { width: face_texels, height, region_width: REGION_SIZE, region_height: REGION_SIZE }
 }
 
-/// Returns the index of the region in a column and row of a face's regions. Returns `None` outside the face.
+/// Returns the index of the region at a column and row of regions on a face. Returns `None` outside the face.
 #[must_use]
 pub const fn face_region(face_texels: u32, face: CubeFace, column: u32, row: u32) -> Option<RegionId> {
     let across = face_texels / REGION_SIZE;
@@ -53,7 +50,8 @@ pub fn begin_update(face_texels: u32, buffer: u8, regions: &[RegionId]) -> Arc<[
     words.into()
 }
 
-/// Returns the message that requests to show a buffer at the first retrace at which all memories of a set can swap.
+/// Returns the message that requests to show a buffer together with buffers of other memories. All memories of the bit
+/// mask `memories` swap at the first retrace at which all are ready.
 ///
 /// Bit k of `memories` stands for memory k.
 #[must_use]
@@ -70,11 +68,16 @@ pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ArpMessage {
-    /// Begins an update of a buffer with these regions.
-    Begin { buffer: u8, regions: Vec<u16> },
+    Begin {
+        buffer: u8,
+        regions: Vec<u16>,
+    },
     /// Requests to show a buffer at the same retrace as buffers of other memories. Bit k of `together` stands for
     /// memory k. If `together` is 0, the memory swaps alone.
-    Swap { buffer: u8, together: u8 },
+    Swap {
+        buffer: u8,
+        together: u8,
+    },
     /// Sets an orientation that is not yet checked.
     Matrix([Vector; 3]),
 }

@@ -7,23 +7,23 @@ use pxpl5_wire::{PeriodNumber, Video};
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
-/// Event before which the display reads (latches) the newest orientation.
+/// The part of the video signal for which the display uses one orientation. The newest orientation is read (latched)
+/// just before this part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Latch {
-    /// The first visible pixel of a field (published).
+    /// One orientation for each field, which is read before the field's first visible pixel (published).
     #[default]
     Field,
-    /// The first visible pixel of each line.
+    /// One orientation for each line, which is read before the line's first visible pixel.
     Line,
-    /// Each visible pixel of a line.
+    /// One orientation for each visible pixel.
     Pixel,
 }
 
 pxpl5_sim::parameters::named!(Latch, "latch event", Latch::ALL);
 
 impl Latch {
-    /// All events before which an orientation can be read, each with its name on the command line.
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("line", Self::Line), ("pixel", Self::Pixel)];
 }
 

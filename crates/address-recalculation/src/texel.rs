@@ -16,7 +16,6 @@ pub struct TexelFormat {
 }
 
 impl TexelFormat {
-    /// Returns the format of a display with the parameters `timing`.
     #[must_use]
     pub const fn new(timing: &ArpTiming) -> Self {
         Self { colour_bits: timing.colour_bits as u32, depth_bits: timing.depth_bits as u32 }
@@ -37,7 +36,7 @@ impl TexelFormat {
         if self.colour_bits == 24 { colour & 0x00FF_FFFF } else { widened(narrowed(colour)) }
     }
 
-    /// Returns the bits that a memory stores of a 24-bit depth.
+    /// Returns the part of a 24-bit depth that a memory stores: its highest bits.
     #[must_use]
     pub const fn kept_depth(&self, depth: u32) -> u32 {
         (depth & DEPTH_FARTHEST) >> (24 - self.depth_bits)
@@ -76,13 +75,11 @@ impl FaceSet {
         Self { texels, format, words: vec![0; 6 * (texels * texels) as usize] }
     }
 
-    /// Returns the number of texels along an edge of a face.
     #[must_use]
     pub const fn texels(&self) -> u32 {
         self.texels
     }
 
-    /// Returns the numbers of bits with which colour and depth are stored.
     #[must_use]
     pub const fn format(&self) -> TexelFormat {
         self.format

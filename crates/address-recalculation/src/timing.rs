@@ -1,4 +1,4 @@
-//! All parameters of the display, with their sources.
+//! All parameters of the address recalculation display, with their sources.
 
 use pxpl5_sim::Span;
 use pxpl5_sim::parameters::{MAX, ParameterTable, SettingError, check};
@@ -58,7 +58,7 @@ pxpl5_sim::parameters::parameter_table! {
     }
 }
 
-/// Number of stages apart from dividers and comparators. Each takes one clock.
+/// Number of pipeline stages without dividers and comparators. Each stage takes one clock.
 ///
 /// These stages are table, multiply, two adders, face, address, memory and interpolate.
 const FIXED_STAGES: u64 = 8;

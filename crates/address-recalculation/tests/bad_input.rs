@@ -10,7 +10,7 @@ fn refusal(timing: ArpTiming) -> String {
 }
 
 #[test]
-fn numbers_are_refused_by_name() {
+fn invalid_numbers_are_refused_with_their_name() {
     let papers = ArpTiming::PAPERS;
     let cases = [
         (ArpTiming { face_texels: 200, ..papers }, "arp.face_texels: expected a multiple of 128, found 200"),
@@ -49,7 +49,7 @@ fn table(text: &str) -> Result<Lens, String> {
 }
 
 #[test]
-fn a_table_of_vectors_is_read_and_its_lengths_do_not_matter() {
+fn a_table_of_vectors_is_read_whatever_the_lengths_of_the_vectors() {
     let lens = table("# two pixels\n\n  1 0 -1\n-2e0 0 -2\n").expect("two vectors");
     assert_eq!(lens.view(&TINY, 0, 0), [1.0, 0.0, -1.0]);
     lens.check(&TINY).expect("fits");
@@ -58,7 +58,7 @@ fn a_table_of_vectors_is_read_and_its_lengths_do_not_matter() {
 }
 
 #[test]
-fn a_table_has_a_vector_for_each_pixel_row_by_row() {
+fn a_table_of_vectors_lists_the_pixels_row_by_row() {
     let picture = LensPicture { width: 3, height: 2, ..TINY };
     let text: Vec<String> = (1..=6).map(|n| format!("{n} 0 -1\n")).collect();
     let read = |lines: &[String]| Lens::read(Cursor::new(lines.concat()), &picture).map_err(|error| error.to_string());
@@ -74,10 +74,10 @@ fn a_table_has_a_vector_for_each_pixel_row_by_row() {
     assert_eq!(other, "arp.lens: expected 9 vectors for 3 x 3 pixels, found 6 vectors");
 }
 
-/// Checks a lens that has slope zero in the corner of a picture of 2 x 1 pixels. There rho^2 is 1/4, so the slope is
-/// `1 + 3 x 1/4 x -4/3 = 0`.
+/// Checks a lens whose slope is zero in the corner of a picture of 2 x 1 pixels. The squared distance of this corner
+/// from the middle is 1/4, so the slope is `1 + 3 x 1/4 x -4/3 = 0`.
 #[test]
-fn a_lens_without_slope_and_a_picture_without_angle_are_refused() {
+fn a_lens_with_zero_slope_and_a_picture_with_a_zero_angle_are_refused() {
     let error = Lens::Radial { k1: -4.0 / 3.0, k2: 0.0 }.check(&TINY).expect_err("flat there").to_string();
     assert!(error.contains("found 0 for k1"), "{error}");
     for lens in [Lens::Flat, Lens::Equidistant] {
@@ -87,7 +87,7 @@ fn a_lens_without_slope_and_a_picture_without_angle_are_refused() {
 }
 
 #[test]
-fn a_table_that_cannot_be_read_is_refused_by_its_line() {
+fn an_invalid_table_of_vectors_is_refused_with_its_line() {
     let numbers = "expected three numbers, finite and not all 0, found";
     let cases = [
         ("1 0 -1\n1 0\n", format!("arp.lens table, line 2: {numbers} 1 0")),
@@ -107,16 +107,17 @@ fn a_table_that_cannot_be_read_is_refused_by_its_line() {
 
 proptest! {
     #[test]
-    fn no_table_makes_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+    fn no_text_of_a_table_causes_a_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
         let _ = Lens::read(Cursor::new(bytes), &TINY);
     }
 
     /// Compares the check of a lens with the smallest slope found in a thousand steps from the middle to the corner.
     ///
-    /// The steps are equal in the square of the radius. There the slope is a parabola with the second coefficient 5 k2,
-    /// so between two steps it falls at most 5 |k2| (step / 2)^2 below both. Lenses within this bound are left out.
+    /// The steps are equal in the squared radius. The slope is a parabola of the squared radius with the second
+    /// coefficient 5 k2. Between two steps, it falls at most 5 |k2| (step / 2)^2 below both values. Lenses whose
+    /// smallest slope is positive and within this bound are left out.
     #[test]
-    fn a_lens_that_folds_before_the_corner_is_refused(
+    fn a_lens_whose_slope_is_not_positive_inside_the_picture_is_refused(
         k1 in -1.5..1.5_f64,
         k2 in -1.0..1.0_f64,
         width in 1_u32..700,
@@ -132,7 +133,7 @@ proptest! {
     }
 
     #[test]
-    fn no_lens_makes_it_panic(k1 in any::<f64>(), k2 in any::<f64>(), horizontal_deg in any::<f64>()) {
+    fn no_coefficients_of_a_lens_cause_a_panic(k1 in any::<f64>(), k2 in any::<f64>(), horizontal_deg in any::<f64>()) {
         let picture = LensPicture { horizontal_deg, ..TINY };
         let lens = Lens::Radial { k1, k2 };
         if lens.check(&picture).is_ok() {

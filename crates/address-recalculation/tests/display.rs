@@ -16,7 +16,7 @@ use support::bench::{Bench, CONFIG, flat};
 use support::turned;
 
 #[test]
-fn an_update_is_shown_from_the_next_retrace_on() {
+fn an_update_is_shown_from_the_next_retrace() {
     let mut bench = Bench::new(&ArpConfig { fields_kept: 4, ..CONFIG });
     bench.update(0, 1, &flat(0x11_22_33, 500));
     (1..4).for_each(|field| bench.tick(field));
@@ -75,7 +75,7 @@ fn an_incomplete_update_is_never_shown_and_its_lateness_is_counted() {
 }
 
 #[test]
-fn regions_without_primitives_are_not_sent_and_are_empty() {
+fn regions_without_primitives_are_empty_without_being_sent() {
     let mut bench = Bench::new(&CONFIG);
     bench.update(0, 1, &flat(0xAA, 9));
     bench.tick(1);
@@ -86,7 +86,7 @@ fn regions_without_primitives_are_not_sent_and_are_empty() {
 }
 
 #[test]
-fn a_request_at_the_instant_of_a_retrace_waits_for_the_next() {
+fn a_swap_request_at_the_instant_of_a_retrace_waits_for_the_next_retrace() {
     let retrace = Bench::new(&CONFIG).display.tick(PeriodNumber(1));
     for (at, shown_in) in [(Time(retrace.0 - 1), 1), (retrace, 2)] {
         let mut bench = Bench::new(&CONFIG);
@@ -103,7 +103,7 @@ fn a_request_at_the_instant_of_a_retrace_waits_for_the_next() {
 }
 
 #[test]
-fn memories_that_exchanged_objects_swap_together_or_not_at_all() {
+fn memories_that_exchange_objects_swap_together_or_not_at_all() {
     let mut bench = Bench::new(&CONFIG);
     bench.begin(0, 1, &[]);
     bench.begin(1, 1, &[3]);
@@ -122,7 +122,7 @@ fn memories_that_exchanged_objects_swap_together_or_not_at_all() {
 /// Checks that a swap request that arrives exactly at the retrace is too late for this retrace. The other memory of the
 /// set then has to wait as well.
 #[test]
-fn a_set_of_which_one_is_asked_for_at_a_retrace_waits_for_the_next() {
+fn a_group_of_memories_with_one_late_swap_request_waits_for_the_next_retrace() {
     let mut bench = Bench::new(&CONFIG);
     let retrace = bench.display.tick(PeriodNumber(1));
     [0, 1].into_iter().for_each(|port| bench.begin(port, 1, &[]));
@@ -138,7 +138,7 @@ fn a_set_of_which_one_is_asked_for_at_a_retrace_waits_for_the_next() {
 /// Checks that regions are numbered by face and row. A map has a bit for each region, starting at the lowest bit of its
 /// first word.
 #[test]
-fn a_map_has_a_bit_for_each_region_of_the_six_faces() {
+fn a_region_map_has_one_bit_for_each_region_of_six_faces() {
     for texels in [128, 256, 512] {
         let across = texels / 128;
         let all = CubeFace::ALL
@@ -165,7 +165,7 @@ fn a_map_has_a_bit_for_each_region_of_the_six_faces() {
 /// Checks two memories, of which the second waits to swap together with the first. The first memory shows an update of
 /// its own first. If this update counted as the common update, the common update would wait forever.
 #[test]
-fn an_update_of_another_set_does_not_stand_for_one_of_this() {
+fn an_update_of_one_memory_does_not_complete_the_common_update_of_two_memories() {
     let mut bench = Bench::new(&CONFIG);
     let buffers = |bench: &Bench| [0, 1].map(|k| bench.arp().memories(Eye::Left)[k].shown_buffer());
     bench.begin(0, 1, &[]);
@@ -197,7 +197,7 @@ fn memories_are_composed_by_depth_over_the_ring() {
 type Send = fn(&mut Bench);
 
 #[test]
-fn what_cannot_be_used_is_a_counted_fault_without_effect() {
+fn an_invalid_message_is_counted_as_a_fault_and_has_no_effect() {
     let cases: [(&str, Send); 11] = [
         ("not of six faces", |bench| {
             let target = bench.target(0, 1, 0);
@@ -238,7 +238,7 @@ fn what_cannot_be_used_is_a_counted_fault_without_effect() {
 /// Checks that a memory with depth refuses a region of colours alone, which takes 16 messages. The background memory
 /// accepts nothing else.
 #[test]
-fn a_region_needs_depths_but_in_the_background_memory() {
+fn only_the_background_memory_accepts_regions_without_depths() {
     let config = ArpConfig { has_background_memory: true, ..CONFIG };
     for (port, parts, faults) in [(0, 16, 1), (0, 32, 0), (2, 16, 0), (2, 32, 1)] {
         let mut bench = Bench::new(&config);
@@ -250,7 +250,7 @@ fn a_region_needs_depths_but_in_the_background_memory() {
 }
 
 #[test]
-fn the_background_memory_is_seen_where_nothing_else_is() {
+fn the_background_memory_shows_where_all_other_memories_are_empty() {
     let config = ArpConfig { has_background_memory: true, ..CONFIG };
     let mut bench = Bench::new(&config);
     bench.begin(2, 1, &[0, 1, 2, 3, 4, 5]);
@@ -282,7 +282,7 @@ const QUARTER: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.
 /// Checks a rotation of the head by 90 degrees to the left, about +y. A head that looked along -z then looks along -x
 /// (face 1).
 #[test]
-fn a_turn_of_the_head_needs_no_update() {
+fn a_head_rotation_is_shown_without_an_update() {
     let mut bench = Bench::new(&CONFIG);
     coloured(&mut bench);
     bench.tick(1);
@@ -294,7 +294,7 @@ fn a_turn_of_the_head_needs_no_update() {
 }
 
 #[test]
-fn an_orientation_is_latched_to_the_picosecond() {
+fn the_display_latches_an_orientation_at_the_predicted_picosecond() {
     for (latch, x, y) in [(Latch::Field, 0, 0), (Latch::Line, 0, 100), (Latch::Pixel, 7, 200)] {
         let config = ArpConfig { latch, ..CONFIG };
         let latched = config.scan().expect("valid").latches(latch, x, y, PeriodNumber(2)).expect("an even line");
@@ -313,7 +313,7 @@ fn an_orientation_is_latched_to_the_picosecond() {
 /// Checks a matrix that arrives in the middle of a line. Depending on the setting, it takes effect at the next pixel,
 /// the next line or the next field.
 #[test]
-fn a_picture_is_torn_where_the_latch_lets_it() {
+fn a_picture_is_torn_at_the_line_where_the_orientation_is_latched() {
     let split = |latch| {
         let config = ArpConfig { latch, ..CONFIG };
         let lit = config.scan().expect("valid").latches(Latch::Pixel, 320, 100, PeriodNumber(2)).expect("an even line");
@@ -330,7 +330,7 @@ fn a_picture_is_torn_where_the_latch_lets_it() {
 }
 
 #[test]
-fn nonsense_of_a_tracker_is_refused_and_the_last_good_orientation_stays() {
+fn an_invalid_tracker_orientation_is_refused_and_the_last_valid_one_stays() {
     let mirror = [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let stretched = [[1.01, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let not_finite = [[f64::NAN, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, f64::INFINITY]];
@@ -358,9 +358,8 @@ fn nonsense_of_a_tracker_is_refused_and_the_last_good_orientation_stays() {
     assert_eq!(bench.display.faults().0, 4, "those that came over the ring");
 }
 
-/// Checks that the last orientation stays valid for any number of fields if the tracker stops sending.
 #[test]
-fn a_silent_tracker_leaves_the_last_orientation() {
+fn the_last_orientation_stays_if_the_tracker_stops_reporting() {
     let mut bench = Bench::new(&CONFIG);
     coloured(&mut bench);
     bench
@@ -373,7 +372,7 @@ fn a_silent_tracker_leaves_the_last_orientation() {
 }
 
 #[test]
-fn two_eyes_have_memories_and_orientations_of_their_own() {
+fn each_eye_has_its_own_memories_and_orientation() {
     let nodes: Vec<NodeId> = (1..=4).map(NodeId).collect();
     let display = CONFIG.build(&nodes).expect("valid");
     assert_eq!((display.surfaces().len(), CONFIG.ports(2), display.nodes().len()), (2, 4, 4));
@@ -394,7 +393,7 @@ fn two_eyes_have_memories_and_orientations_of_their_own() {
 }
 
 #[test]
-fn what_is_shown_now_follows_the_newest_orientation() {
+fn the_displayed_picture_follows_the_newest_orientation() {
     let mut bench = Bench::new(&CONFIG);
     coloured(&mut bench);
     bench.tick(1);

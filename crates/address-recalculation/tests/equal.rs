@@ -27,8 +27,7 @@ fn by_lookup(
     (pixels, [stats.split, stats.conflicts])
 }
 
-/// Computes every pixel in the reference model through every stage. A pixel leaves after as many clocks as there are
-/// stages.
+/// Passes every pixel through all stages of the reference model, one stage per clock.
 fn by_registers(
     config: &ArpConfig,
     orientation: &Orientation,
@@ -116,7 +115,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
     #[test]
-    fn the_fast_path_gives_the_bits_of_the_registers(
+    fn the_fast_model_equals_the_register_model_bit_for_bit(
         config in config(),
         axes in prop::array::uniform4(-1.0..1.0_f64),
         seed in any::<u64>(),
@@ -128,7 +127,7 @@ proptest! {
 
 /// Checks rotations by multiples of 45 degrees, which bring edges and corners of faces into the picture.
 #[test]
-fn they_agree_where_faces_meet() {
+fn fast_and_register_models_agree_where_faces_meet() {
     for guard_texels in [0, 1] {
         let timing = ArpTiming { face_texels: 128, guard_texels, horizontal_deg: 3.0, ..ArpTiming::PAPERS };
         let config = ArpConfig { timing, scan: SMALL, ..ArpConfig::MACHINE };
@@ -144,7 +143,7 @@ fn they_agree_where_faces_meet() {
 /// Checks depths that differ by one and whose means are rounded: near an edge, in a corner of three texels, and inside
 /// a face.
 #[test]
-fn they_agree_on_depths_one_apart() {
+fn fast_and_register_models_agree_on_depths_that_differ_by_one() {
     let corner = (1.0 / 2_f64.sqrt()).atan();
     for (order, guard_texels) in CompositionOrder::ALL.into_iter().flat_map(|(_, order)| [(order, 0), (order, 1)]) {
         let timing =
@@ -170,7 +169,7 @@ fn they_agree_on_depths_one_apart() {
 /// Checks directions on edges, whose two or three longest components are equal. A quotient there is 0 or 1, and 1 does
 /// not fit into its word.
 #[test]
-fn they_agree_on_directions_that_faces_share() {
+fn fast_and_register_models_agree_on_directions_shared_by_faces() {
     let all = (0..27).map(|n| [n % 3, n / 3 % 3, n / 9].map(|digit| f64::from(digit) - 1.0));
     let shared: Vec<Vector> = all.filter(|vector| *vector != [0.0; 3]).collect();
     let lens = Lens::Table(shared.iter().copied().cycle().take(31 * 14).collect());
@@ -186,7 +185,7 @@ fn they_agree_on_directions_that_faces_share() {
 /// Checks footprints in corners. Without guard texels such a footprint has texels on several faces. With guard texels
 /// none has.
 #[test]
-fn split_footprints_are_counted_without_a_guard_alone() {
+fn split_footprints_occur_only_without_guard_texels() {
     let corner =
         turned(DQuat::from_rotation_y(45_f64.to_radians()) * DQuat::from_rotation_x((1.0 / 2_f64.sqrt()).atan()));
     let counts = [0, 1].map(|guard_texels| {
@@ -199,8 +198,8 @@ fn split_footprints_are_counted_without_a_guard_alone() {
     assert_eq!(counts[1], [0, 0]);
 }
 
-/// Checks that consecutive pixels with one orientation can have any number. Small numbers are computed one by one,
-/// others in groups.
+/// Checks all numbers of consecutive pixels with one orientation. Few pixels are computed one by one, more pixels in
+/// groups.
 #[test]
 fn a_picture_is_the_same_in_runs_of_any_length() {
     for guard_texels in [0, 1] {

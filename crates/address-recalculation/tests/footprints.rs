@@ -15,7 +15,8 @@ const SIZE: u32 = 128;
 const BARE: ArpTiming = ArpTiming { face_texels: SIZE as u64, guard_texels: 0, ..ArpTiming::PAPERS };
 const FACE: FaceGeometry = FaceGeometry { texels: SIZE, guard: 0 };
 
-/// The distance of a face's plane from the eye. It is large enough that directions in words are exact.
+/// The distance of a face's plane from the eye, in units of directions. At this distance, words hold directions
+/// exactly.
 const ONE: i64 = 1 << 20;
 
 /// Returns the texel of the cube in the direction of a position beside a face, computed in floating point.
@@ -38,9 +39,8 @@ const fn middle(n: u32) -> i64 {
     (2 * n as i64 + 1 - SIZE as i64) * ONE / SIZE as i64
 }
 
-/// Checks that beyond each edge of each face, every row continues with the texel of the neighbouring face.
 #[test]
-fn texels_beyond_an_edge_are_those_of_the_neighbour() {
+fn texels_beyond_an_edge_belong_to_the_neighbouring_face() {
     let edge = f64::from(SIZE);
     for face in CubeFace::ALL {
         for n in 1..SIZE - 2 {
@@ -69,7 +69,7 @@ fn texels_beyond_an_edge_are_those_of_the_neighbour() {
 
 /// Checks corners, where three faces meet. One of the four texels around a corner lies on no face.
 #[test]
-fn the_texel_beyond_a_corner_is_none_and_the_two_beside_it_are_the_neighbours() {
+fn at_a_corner_the_two_adjacent_texels_are_neighbours_and_the_diagonal_texel_does_not_exist() {
     let (first, last) = (-1.0, f64::from(SIZE));
     for face in CubeFace::ALL {
         for (right, down, none) in
@@ -93,7 +93,7 @@ fn the_texel_beyond_a_corner_is_none_and_the_two_beside_it_are_the_neighbours() 
 /// Checks second accesses. A bank holds the texels with one parity of column and row. Two different texels of a
 /// footprint in one bank need two accesses.
 #[test]
-fn a_second_access_is_for_two_texels_of_the_same_parity() {
+fn two_texels_of_a_footprint_in_the_same_bank_need_a_second_access() {
     let mut random = SplitMix64::new(7);
     let mut met = [0; 2];
     for face in CubeFace::ALL {
@@ -122,9 +122,8 @@ fn a_second_access_is_for_two_texels_of_the_same_parity() {
     assert!(!nearest.has_conflict(), "the nearest texel is read once");
 }
 
-/// Checks two lists of texels drawn on top of each other. The nearer texel stays. At equal depth, the first one stays.
 #[test]
-fn of_what_is_drawn_into_faces_the_nearer_stays_and_the_first_on_ties() {
+fn drawing_into_faces_keeps_the_nearer_pixel_and_at_equal_depth_the_first_pixel() {
     let config = ArpConfig { timing: BARE, ..ArpConfig::MACHINE };
     let mut faces = FaceSet::new(SIZE, config.format());
     let mut expected: BTreeMap<TexelAddress, (u32, u32)> = BTreeMap::new();
@@ -156,7 +155,7 @@ fn of_what_is_drawn_into_faces_the_nearer_stays_and_the_first_on_ties() {
 /// Checks a pixel with three texels around a corner. Their mean colour is rounded to the nearest, and the mean nearness
 /// is rounded down.
 #[test]
-fn around_a_corner_the_mean_of_three_is_shown_in_either_order() {
+fn a_corner_shows_the_mean_colour_of_its_three_texels_in_either_order_of_composition() {
     let corner = footprint(CubeFace::NegZ, ONE - 1, 1 - ONE);
     let [a, b, c] = [0, 2, 3].map(|k| corner.texels[k].expect("on a face"));
     for (order, depths, expected) in [
@@ -188,8 +187,8 @@ fn around_a_corner_the_mean_of_three_is_shown_in_either_order() {
         });
         let memories: Vec<FaceSet> = memories.collect();
         let table = config.table().expect("valid");
-        // A picture of one column and two lines looks almost straight ahead. The head rotates these pixels into the
-        // corner.
+        // Both pixels of this picture (one column, two lines) look almost straight ahead. The rotation of the head
+        // turns the pixels towards the corner.
         let towards = corner_turn(table.entry(0, 0));
         let mut pixel = [0];
         Lookup::new(&config, &table, memories.iter().collect(), None).run(0, &towards.words(16), &mut pixel);
@@ -204,9 +203,8 @@ fn corner_turn(vector: [i32; 3]) -> Orientation {
     turned(DQuat::from_rotation_arc(from, to))
 }
 
-/// Checks that the index of a face is its position in a buffer.
 #[test]
-fn faces_are_numbered_as_they_lie_in_a_buffer() {
+fn faces_are_numbered_in_the_order_of_the_buffer() {
     let axes: Vec<[i64; 3]> = CubeFace::ALL.into_iter().map(CubeFace::forward).collect();
     assert_eq!(axes, [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]);
     for (number, face) in CubeFace::ALL.into_iter().enumerate() {

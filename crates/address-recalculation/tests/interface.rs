@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use support::bench::{Bench, CONFIG};
 use support::{texels, turned};
 
-/// Words of a region, with a flag that becomes true when they are read.
+/// Words of a region, with a flag that becomes true when the words are read.
 #[derive(Debug)]
 struct Words {
     words: Arc<[Word]>,
@@ -30,7 +30,7 @@ impl PixelSource for Words {
     }
 }
 
-/// Fills all regions of the first memory with random words. The memory is visible from field 1 on.
+/// Fills each region of the first memory with `parts` messages of random words. The memory is visible from field 1 on.
 fn filled(config: &ArpConfig, parts: u32, seed: u64) -> (Bench, Vec<Arc<Words>>) {
     let mut bench = Bench::new(config);
     let mut random = SplitMix64::new(seed);
@@ -58,7 +58,7 @@ fn widened(number: u32, bits: usize) -> u32 {
 /// Checks texels of 16 + 16 bits. The depth is in the upper half of a word, and colours of 5, 6 and 5 bits are in the
 /// lower half. The farthest depth marks an empty texel.
 #[test]
-fn a_word_of_16_and_16_bits_is_a_texel() {
+fn a_texel_is_packed_into_two_halves_of_16_bits() {
     let timing = ArpTiming { colour_bits: 16, depth_bits: 16, ..CONFIG.timing };
     let config = ArpConfig { timing, ..CONFIG };
     let mut bench = Bench::new(&config);
@@ -107,7 +107,7 @@ fn piece(size: u32, texel: TexelAddress) -> u16 {
 ///
 /// The test covers faces with and without guard texels, and both exact and wider words.
 #[test]
-fn those_regions_are_computed_that_a_pixel_reads() {
+fn only_regions_that_a_pixel_reads_are_computed() {
     let narrow = ArpTiming { display_memories: 1, horizontal_deg: 9.0, ..ArpTiming::PAPERS };
     let wide = ArpTiming { vector_bits: 24, matrix_bits: 24, quotient_bits: 20, ..narrow };
     let scan = ScanTiming { visible_pixels: 30, visible_lines: 10, ..ScanTiming::PAPERS };
@@ -118,7 +118,8 @@ fn those_regions_are_computed_that_a_pixel_reads() {
         let timing = ArpTiming { guard_texels: case / 2 % 2, weight_bits: if case % 5 == 4 { 0 } else { 4 }, ..words };
         let config = ArpConfig { timing, scan, ..CONFIG };
         let mut axis = || f64::from(random.unit()) - 0.5;
-        // Some cases look towards borders between regions. In the middle of a face, four regions meet.
+        // Some cases look at borders: straight ahead at the middle of a face, where four regions meet, and by 45
+        // degrees at an edge between two faces.
         let quaternion = match case / 4 {
             0 => DQuat::IDENTITY,
             1 => DQuat::from_rotation_y(45_f64.to_radians()),
@@ -155,7 +156,7 @@ fn those_regions_are_computed_that_a_pixel_reads() {
 /// Checks views of a small area near a border between regions or across the border. Texels 127 and 128 lie in different
 /// regions.
 #[test]
-fn of_neighbouring_pieces_those_are_computed_on_which_a_texel_lies() {
+fn a_region_is_computed_only_if_a_pixel_reads_one_of_its_texels() {
     let timing = ArpTiming { display_memories: 1, ..ArpTiming::PAPERS };
     let scan = ScanTiming { visible_pixels: 8, visible_lines: 2, ..ScanTiming::PAPERS };
     // Positions of texels on the front face, which has 254 texels between its edges and one guard texel on each side.
@@ -182,7 +183,7 @@ fn of_neighbouring_pieces_those_are_computed_on_which_a_texel_lies() {
 /// Checks a line with two orientations. The display reads the orientation for each pixel, and a matrix arrives in the
 /// middle of the line. Pixels before its arrival use the previous matrix.
 #[test]
-fn a_line_of_two_orientations_is_a_part_of_each_picture() {
+fn pixels_before_the_arrival_of_an_orientation_in_a_line_use_the_previous_orientation() {
     let timing = ArpTiming { display_memories: 1, ..ArpTiming::PAPERS };
     let scan = ScanTiming { visible_pixels: 30, visible_lines: 10, ..ScanTiming::PAPERS };
     let config = ArpConfig { timing, scan, latch: Latch::Pixel, ..CONFIG };
@@ -202,7 +203,7 @@ fn a_line_of_two_orientations_is_a_part_of_each_picture() {
         pixels
     });
     for (at, pixel) in (0..).zip(seen.pixels()) {
-        // Odd lines belong to the previous field.
+        // The beam drew the odd lines in the previous field, with the previous matrix.
         let is_later = at / 30 % 2 == 0 && (at / 30, at % 30) >= (y, x);
         let expected = pictures[usize::from(is_later)][at as usize];
         assert_eq!(u32::from_be_bytes([0, pixel[0], pixel[1], pixel[2]]), expected, "{}, {}", at % 30, at / 30);
@@ -211,7 +212,7 @@ fn a_line_of_two_orientations_is_a_part_of_each_picture() {
 }
 
 #[test]
-fn a_remembered_field_says_with_which_matrix_a_pixel_was_looked_up() {
+fn a_recorded_field_has_the_matrix_of_each_pixel() {
     let mut bench = Bench::new(&CONFIG);
     let orientation = turned(DQuat::from_rotation_x(0.3));
     let after = Time(bench.display.tick(PeriodNumber(1)).0 + 1);
@@ -240,7 +241,7 @@ fn a_memory_has_bits_of_colour_and_depth_for_each_texel_of_two_buffers() {
 }
 
 #[test]
-fn its_clock_and_its_scan_are_those_of_its_numbers() {
+fn clock_and_scan_follow_from_the_parameters() {
     let bench = Bench::new(&CONFIG);
     let scan = CONFIG.scan().expect("valid");
     for n in [0, 1, 2, 59, 60, 1_001] {
@@ -260,7 +261,7 @@ fn its_clock_and_its_scan_are_those_of_its_numbers() {
 }
 
 #[test]
-fn its_configuration_is_known_by_name_and_by_all_that_it_holds() {
+fn a_configuration_is_identified_by_name_and_by_all_its_values() {
     let config: Box<dyn DisplayConfig> = CONFIG.boxed();
     assert_eq!((config.name(), Bench::new(&CONFIG).display.name()), ("arp", "arp"));
     assert!(config.about().starts_with("address recalculation pipeline"));

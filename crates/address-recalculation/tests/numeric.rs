@@ -1,4 +1,5 @@
-//! Tests of the specification's numeric cases for the display: 640 x 480 pixels, 60 degrees, faces of 512 texels.
+//! Tests of the display against numbered cases that were computed by hand: 640 x 480 pixels, 60 degrees, faces of 512
+//! texels.
 
 use address_recalculation::{
     AddressUnit, ArpConfig, ArpTiming, CubeFace, FaceGeometry, Latch, Lens, LensPicture, Orientation, TexelAddress,
@@ -34,19 +35,19 @@ fn texel_by_words(guard: u64, direction: Vector) -> (CubeFace, u32, u32) {
 }
 
 #[test]
-fn case_1_the_corner_pixel_of_a_flat_picture_and_its_words() {
+fn case_1_the_corner_pixel_of_a_flat_picture_has_the_computed_direction_and_words() {
     near(Lens::Flat.view(&PICTURE, 0, 0), [-0.576448159, 0.432110592, -1.0], 1e-9);
     let table = ArpConfig::IDEAL.table().expect("valid");
     assert_eq!(table.entry(0, 0), [-15326, 11488, -26586]);
 }
 
 #[test]
-fn case_2_a_pixel_beside_the_middle() {
+fn case_2_the_pixel_beside_the_middle_has_the_computed_direction() {
     near(Lens::Flat.view(&PICTURE, 320, 240), [0.000902110, -0.000902110, -1.0], 1e-9);
 }
 
 #[test]
-fn cases_3_and_4_a_radial_lens() {
+fn cases_3_and_4_a_radial_lens_stretches_corner_and_edge_by_the_computed_factors() {
     let lens = Lens::Radial { k1: 0.32, k2: 0.0 };
     let flat = Lens::Flat.view(&PICTURE, 0, 0);
     let seen = lens.view(&PICTURE, 0, 0);
@@ -90,7 +91,7 @@ fn case_6_an_equidistant_lens_sees_behind_the_head() {
 /// In 16 bits the quotient 2/3 is 43,690. Then 43,690 x 510 + 255 = 22,282,155 is 85 less than 340 x 65,536, so it
 /// selects the previous texel.
 #[test]
-fn case_7_a_direction_has_a_face_and_a_texel() {
+fn case_7_a_direction_selects_the_computed_face_and_texel() {
     let direction = [0.3, -0.2, -0.9];
     let (face, [u, v]) = GUARDED.place(direction).expect("a direction");
     assert_eq!(face, CubeFace::NegZ);
@@ -103,7 +104,7 @@ fn case_7_a_direction_has_a_face_and_a_texel() {
 /// Checks an interpolated value. The exact fractions 1/2 and 1/6 give 18.3333. With fractions rounded to 3/16, the
 /// result is 15 + 20 x 3/16 = 18.75.
 #[test]
-fn case_8_four_texels_in_four_banks() {
+fn case_8_the_four_texels_of_a_pixel_lie_in_four_banks() {
     let (_, [a, b]) = GUARDED.between_texels([0.3, -0.2, -0.9]).expect("a direction");
     assert_eq!([a.floor(), b.floor()], [340.0, 312.0]);
     assert!((a.fract() - 0.5).abs() < 1e-9 && (b.fract() - 1.0 / 6.0).abs() < 1e-9);
@@ -121,7 +122,7 @@ fn case_8_four_texels_in_four_banks() {
 }
 
 #[test]
-fn cases_9_and_10_corners_and_edges() {
+fn cases_9_and_10_directions_of_corners_and_edges_select_the_expected_texels() {
     use CubeFace::{NegX, PosX, PosY};
     let cases = [
         (1, [1.0, 1.0, 1.0], (PosX, 510, 1)),
@@ -139,7 +140,7 @@ fn cases_9_and_10_corners_and_edges() {
 }
 
 #[test]
-fn case_11_what_is_no_direction_has_no_texel() {
+fn case_11_an_invalid_direction_has_no_texel() {
     assert_eq!(BARE.texel([0.0; 3]), None);
     assert_eq!(BARE.texel([f64::NAN, 1.0, 0.0]), None);
     assert_eq!(BARE.texel([f64::INFINITY, 1.0, 0.0]), None);
@@ -157,7 +158,7 @@ fn turned(quaternion: DQuat) -> Orientation {
 }
 
 #[test]
-fn cases_12_and_13_a_head_that_turns() {
+fn cases_12_and_13_pixels_of_a_rotated_head_select_the_computed_texels() {
     use CubeFace::{NegX, NegZ, PosY};
     let pitch = turned(DQuat::from_rotation_x(60_f64.to_radians()));
     let pixel = |x, y| Lens::Flat.view(&PICTURE, x, y);
@@ -174,7 +175,7 @@ fn cases_12_and_13_a_head_that_turns() {
 }
 
 #[test]
-fn case_14_solid_angles_of_all_texels_are_those_of_a_sphere() {
+fn case_14_the_solid_angles_of_all_texels_add_up_to_a_sphere() {
     let at = |column, row| BARE.solid_angle(TexelAddress { face: CubeFace::PosX, column, row });
     let face: f64 = (0..512).flat_map(|row| (0..512).map(move |column| (column, row))).map(|(c, r)| at(c, r)).sum();
     assert!((6.0 * face - 4.0 * std::f64::consts::PI).abs() < 1e-9);
@@ -224,7 +225,7 @@ fn worst_address(bits: u64) -> f64 {
 /// Checks address errors for several word lengths. The printed errors come from another sample, so each limit is 1.5
 /// times as large.
 #[test]
-fn case_15_addresses_err_by_as_much_as_their_words_are_short() {
+fn case_15_address_errors_follow_from_the_word_lengths() {
     for (bits, printed) in [(8, 5.7), (10, 1.39), (12, 0.33), (14, 0.088), (16, 0.021)] {
         let worst = worst_address(bits);
         assert!(worst <= 1.5 * printed && worst >= printed / 2.0, "{bits} bits: {worst}, printed {printed}");
@@ -232,7 +233,7 @@ fn case_15_addresses_err_by_as_much_as_their_words_are_short() {
 }
 
 #[test]
-fn case_30_when_a_pixel_lights_and_what_happened_before() {
+fn case_30_a_pixel_is_latched_read_and_lit_at_the_computed_times() {
     let scan = ArpConfig::IDEAL.scan().expect("valid");
     let field = PeriodNumber(0);
     assert_eq!(ArpConfig::IDEAL.timing.stages(), 26);
@@ -245,7 +246,7 @@ fn case_30_when_a_pixel_lights_and_what_happened_before() {
 /// Checks the error with an ideal tracker. It is the head's rotation from reading the orientation to displaying the
 /// pixel: f tan(200 deg/s x age).
 #[test]
-fn case_31_a_pan_of_200_degrees_a_second() {
+fn case_31_a_pan_of_200_degrees_a_second_causes_the_computed_error_for_each_latch_mode() {
     let scan = ArpConfig::IDEAL.scan().expect("valid");
     let focal = 320.0 / 30_f64.to_radians().tan();
     let lit = scan.when(320, 240, PeriodNumber(0)).expect("an even line");
@@ -268,15 +269,16 @@ fn the_pipeline_is_shorter_than_a_microsecond() {
     assert!(slowest.depth().0 < 1_000_000);
     let stages = [1, 2, 3, 4, 5, 8].map(|n| ArpTiming { display_memories: n, ..ArpTiming::PAPERS }.stages());
     assert_eq!(stages, [24, 25, 26, 26, 27, 27]);
-    // The stages after the read are memory, interpolation, and one level of comparators for each doubling of memories.
+    // The stages after the read of the orientation are the memory, the interpolation, and one level of comparators for
+    // each doubling of memories.
     let ahead = [1, 2, 3, 4, 5, 8].map(|n| ArpTiming { display_memories: n, ..ArpTiming::PAPERS }.read_ahead().0);
     assert_eq!(ahead, [2, 3, 4, 4, 5, 5].map(|stages| 25_000 * stages));
 }
 
-/// Checks that the scan equals that of the Pixel-Planes 5 frame buffer. Crates of boards do not depend on each other,
-/// but their numbers must agree.
+/// Checks that the scan equals the scan of the frame buffer of Pixel-Planes 5. Crates of boards do not depend on each
+/// other, but their numbers must agree.
 #[test]
-fn the_scan_is_that_of_the_frame_buffer() {
+fn the_scan_times_equal_those_of_the_frame_buffer_of_pixel_planes_5() {
     let video = pxpl5_framebuffer::VideoTiming::PAPERS.video().expect("valid");
     let scan = ArpConfig::IDEAL.scan().expect("valid");
     for n in [0, 1, 2, 59, 60, 1_000_001] {
@@ -294,7 +296,7 @@ fn the_scan_is_that_of_the_frame_buffer() {
 ///
 /// An NTSC pixel of a picture of 60 degrees covers 0.1034 degrees in the middle.
 #[test]
-fn angles_of_faces_and_pixels() {
+fn a_face_spans_90_2242_degrees_and_the_middle_pixel_spans_0_1034_degrees() {
     let degrees = 2.0 * GUARDED.tangent().atan().to_degrees();
     assert!((degrees - 90.2242).abs() < 1e-4, "{degrees}");
     let [across, ..] = Lens::Flat.view(&PICTURE, 320, 240);
@@ -307,7 +309,7 @@ fn angles_of_faces_and_pixels() {
 /// 28,377 is 32,767 cos 30 degrees, and 16,383 is its sine (in doubles just below 16,383.5). The other values were
 /// computed by hand.
 #[test]
-fn the_life_of_a_pixel_in_the_guide() {
+fn the_example_pixel_of_the_guide_has_the_printed_values() {
     let half = 15_f64.to_radians();
     let matrix = Orientation::from_quaternion([0.0, half.sin(), 0.0, half.cos()]).expect("a rotation").words(16);
     assert_eq!(matrix.0, [[28_377, 0, 16_383], [0, 32_767, 0], [-16_383, 0, 28_377]]);
@@ -326,7 +328,7 @@ fn the_life_of_a_pixel_in_the_guide() {
 /// Checks the example of the guide on a complete display: the upper left pixel of a head that looks 30 degrees to the
 /// left.
 #[test]
-fn a_display_tells_the_texels_of_a_pixel() {
+fn a_display_returns_the_texels_of_a_pixel() {
     let half = 15.0_f64.to_radians();
     let turned = Orientation::from_quaternion([0.0, half.sin(), 0.0, half.cos()]).expect("a rotation");
     let footprint = ArpConfig::IDEAL.footprint(0, 0, &turned).expect("valid").expect("in the picture");
@@ -340,7 +342,7 @@ fn a_display_tells_the_texels_of_a_pixel() {
 }
 
 #[test]
-fn a_lens_is_read_from_its_text() {
+fn a_lens_is_parsed_from_text() {
     let read = |text: &str| text.parse::<Lens>();
     assert_eq!(read("flat"), Ok(Lens::Flat));
     assert_eq!(read("equidistant"), Ok(Lens::Equidistant));

@@ -4,7 +4,8 @@ use address_recalculation::priority::{Cell, Cells, Falloff, Objects, PriorityTim
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// Parameters of the specification's examples: rings of equal width, cells of 5 m, and a threshold of 90/512 degrees.
+/// Parameters of the cases that were computed by hand: rings of equal width, cells of 5 m, and a threshold of 90/512
+/// degrees.
 const EQUAL_RINGS: PriorityTiming =
     PriorityTiming { theta_deg: 90.0 / 512.0, ring_growth: 1, cell_m: 5.0, falloff_m: 5.0, ..PriorityTiming::PAPERS };
 const FRAME_M: f64 = 1.0 / 60.0;
@@ -17,8 +18,8 @@ fn at(x: f64, z: f64) -> DVec3 {
     DVec3::new(x, 1.7, z)
 }
 
-/// Returns the number of updates of each memory along a path, without the first frame. Also returns how often cells
-/// were assigned anew.
+/// Returns the number of updates of each memory along a path, without the first frame. Also returns the number of new
+/// assignments of cells.
 fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64) {
     let mut updates = vec![0; 8];
     let mut deals = 0;
@@ -30,8 +31,8 @@ fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64)
     (updates, deals)
 }
 
-/// Returns the update rates of the memories over two minutes of straight walking at 1 m/s. The path has a given heading
-/// and lateral position.
+/// Returns the update rates of the memories over two minutes of straight walking at 1 m/s. `heading` is the direction
+/// of the path in radians, and `lane_m` is the sideways distance of the path from the origin.
 fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
     let timing = PriorityTiming { cell_m: side_m, ..EQUAL_RINGS };
     let mut cells = Cells::new(&timing, square(60), false);
@@ -44,13 +45,14 @@ fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
     [0, 1, 2, 3].map(|k| updates[k] as f64 / 120.0)
 }
 
-/// Compares rates with E5. Table 1 prints 60.00, 39.25, 28.21 and 16.15 Hz, but not the path.
+/// Compares rates with experiment E5 of docs/address-recalculation.md. The paper's table 1 has 60.00, 39.25, 28.21 and
+/// 16.15 Hz, but not the path.
 ///
-/// With cells of 5 m, fitted to the second rate, the specification's simulation gives 37 to 41, 24 to 30 and 17 to 20
-/// Hz. It misses the printed rates by 10 to 14 percent (root mean square). Walks that cross cells diagonally do the
+/// Cells of 5 m fit the second rate. An independent simulation with such cells gave 37 to 41, 24 to 30 and 17 to 20 Hz.
+/// It misses the rates of the paper by 10 to 14 percent (root mean square). Walks that cross cells diagonally do the
 /// same.
 #[test]
-fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
+fn cells_of_5_m_fit_the_second_published_rate_and_miss_the_table_by_9_to_14_percent() {
     for heading in [0.2, 0.4, 0.785] {
         let rates = rates(5.0, heading, 0.7);
         for (rate, expected) in rates.iter().zip([60.0..=60.0, 37.0..=41.0, 24.0..=30.0, 17.0..=20.0]) {
@@ -62,12 +64,12 @@ fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
     }
 }
 
-/// Along a row of cells, the distance to the nearest side of the border determines the rates.
+/// If the viewer walks along a row of cells, the distance to the nearest side of the border determines the rates.
 ///
 /// In the middle half of the row, all lateral positions give equal rates. Near the row's edge, the second memory is
 /// drawn in every frame. There, 2 x 5.3 m x sin(theta / 2) is less than the distance walked in a frame.
 #[test]
-fn a_walk_along_cells_depends_on_its_lane_only_near_their_edges() {
+fn on_a_walk_along_a_row_of_cells_only_positions_near_the_edge_of_the_row_change_the_rates() {
     let middle = rates(5.0, 0.0, 2.5);
     assert_eq!(rates(5.0, 0.0, 1.5), middle);
     assert!(middle.is_sorted_by(|a, b| a > b), "{middle:?}");
@@ -76,7 +78,7 @@ fn a_walk_along_cells_depends_on_its_lane_only_near_their_edges() {
 }
 
 #[test]
-fn a_still_eye_needs_nothing_whatever_the_head_does() {
+fn an_eye_that_stays_in_place_needs_no_updates_however_the_head_turns() {
     let mut cells = Cells::new(&EQUAL_RINGS, square(5), true);
     assert_eq!(cells.frame(at(1.0, 2.0)).due, [true; 4]);
     for _ in 0..100 {
@@ -84,10 +86,10 @@ fn a_still_eye_needs_nothing_whatever_the_head_does() {
     }
 }
 
-/// The margin before a new assignment lies between 0 and D_3. For a = 5 m, D_3 is at least 46.0 mm (15 m x 2 sin(theta
-/// / 2)).
+/// Cells are assigned again after the eye has moved beyond its cell by a margin between 0 and D_3, the allowed movement
+/// for memory 3. For cells of 5 m, D_3 is at least 46.0 mm (15 m x 2 sin(theta / 2)).
 #[test]
-fn to_and_fro_across_a_border_deals_once_at_most() {
+fn moving_to_and_fro_across_a_border_assigns_objects_at_most_once() {
     let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
     assert!((1e3 * threshold.way(15.0) - 46.02).abs() < 0.01);
     for start in [0, 7, 13] {
@@ -99,7 +101,7 @@ fn to_and_fro_across_a_border_deals_once_at_most() {
 }
 
 #[test]
-fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
+fn a_jump_of_a_kilometre_assigns_objects_once_and_leaves_no_tear() {
     let mut cells = Cells::new(&EQUAL_RINGS, square(300), true);
     cells.frame(at(1.0, 2.0));
     let update = cells.frame(at(1_001.0, 2.0));
@@ -113,7 +115,7 @@ fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
 /// With the smallest theta, every memory is drawn in every frame. With the largest theta, no memory is redrawn within a
 /// cell.
 #[test]
-fn thresholds_at_their_ends() {
+fn thresholds_are_accepted_at_both_limits() {
     let walk_with = |theta_deg| {
         let mut cells = Cells::new(&PriorityTiming { theta_deg, ..EQUAL_RINGS }, square(5), false);
         cells.frame(at(0.1, 2.0));
@@ -124,7 +126,7 @@ fn thresholds_at_their_ends() {
 }
 
 #[test]
-fn one_memory_and_eight() {
+fn policies_work_with_one_and_with_eight_memories() {
     for memories in [1, 8] {
         let mut cells = Cells::new(&PriorityTiming { memories, ..EQUAL_RINGS }, square(12), true);
         cells.frame(at(0.0, 0.0));
@@ -163,8 +165,9 @@ fn a_warped_border_is_closed_in_every_frame() {
 }
 
 proptest! {
-    /// If updates take no time, nothing in memory k is off by more than asin(D_k / d_k). This is theta, except for the
-    /// chord rule.
+    /// If updates take no time, no point in memory k has a larger error than asin(D_k / d_k). D_k is the allowed
+    /// movement of the eye, and d_k is the distance at which memory k begins. This error is theta, except for the chord
+    /// rule.
     #[test]
     fn no_point_is_ever_wrong_by_more_than_the_threshold(
         steps in prop::collection::vec((-0.05..0.05_f64, -0.05..0.05_f64), 1..200),
@@ -225,7 +228,7 @@ fn images_are_drawn_again_before_they_are_wrong() {
 
 /// With 64 frames per second, times are exact. An image that is right for two frames is drawn every second frame.
 #[test]
-fn a_memory_rests_while_its_images_are_right_until_its_next_frame() {
+fn a_memory_is_not_drawn_while_its_images_stay_correct_until_its_next_frame() {
     let timing = PriorityTiming { frame_hz: 64.0, memories: 1, ..EQUAL_RINGS };
     let mut policy = Objects::new(&timing, 2);
     let due: Vec<bool> = (0..6).map(|frame| policy.frame(frame, &[2.0 / 64.0; 2]).due[0]).collect();
@@ -236,7 +239,7 @@ fn a_memory_rests_while_its_images_are_right_until_its_next_frame() {
 /// An approaching object moves from memory 1 to memory 0 in the next even frame. Only these two memories are shown
 /// together.
 #[test]
-fn an_object_moves_when_both_memories_are_drawn() {
+fn an_approaching_object_changes_memories_in_a_frame_that_draws_both_memories() {
     let mut policy = Objects::new(&PriorityTiming { memories: 2, ..EQUAL_RINGS }, 2);
     assert_eq!(policy.memory(0), None, "it was not drawn yet");
     policy.frame(0, &[1.0, 1.0]);
@@ -250,7 +253,7 @@ fn an_object_moves_when_both_memories_are_drawn() {
 
 /// From the middle of a cell of 5 m, the slowest memory begins 17.5 m away. 17.5 m x 2 sin(theta / 2) is 53.7 mm.
 #[test]
-fn cells_are_assigned_anew_when_the_eye_leaves_the_home_cell_and_the_slowest_memory_is_due() {
+fn cells_are_assigned_again_when_the_eye_leaves_its_cell_and_the_slowest_memory_is_due() {
     let mut cells = Cells::new(&EQUAL_RINGS, square(8), false);
     let first = cells.frame(at(12.5, 12.5));
     assert!(!first.deals_anew && first.due == [true; 4], "{first:?}");
@@ -270,10 +273,10 @@ fn cells_are_assigned_anew_when_the_eye_leaves_the_home_cell_and_the_slowest_mem
 
 /// The eye walks through the middle of a hall of seven cells of 5 m.
 ///
-/// From the middle cell, the hall reaches three rings. The slowest of four memories is empty, and must not delay a new
-/// assignment.
+/// Around the middle cell, the hall has three rings of cells. The slowest of four memories is empty, and must not delay
+/// a new assignment.
 #[test]
-fn a_memory_without_cells_is_never_due_and_does_not_hold_back_a_dealing() {
+fn a_memory_without_cells_is_never_due_and_does_not_delay_an_assignment() {
     let timing = PriorityTiming { to_held_cells: 1, ..EQUAL_RINGS };
     let hall = || (0..7).flat_map(|x| (0..7).map(move |z| Cell { x, z }));
     let mut cells = Cells::new(&timing, hall(), false);
@@ -288,12 +291,12 @@ fn a_memory_without_cells_is_never_due_and_does_not_hold_back_a_dealing() {
     assert_eq!(cells.dealing().home, Cell { x: 3, z: 4 });
 }
 
-/// The hall has seven cells in a row along z, and the eye is in the last one, 2 m from the border to the next.
+/// The hall has seven cells of 5 m in a row along z. The eye is in the last cell, 2 m from the cell's border in front.
 ///
-/// The nearest cell of ring 2 begins 5 m + 3 m behind the eye. The block's border in front is 7 m away (7.5 m to the
-/// sides), where no cell is occupied.
+/// The nearest cell of ring 2 begins 5 m + 3 m behind the eye. The block's border in front is 5 m + 2 m away (7.5 m to
+/// the sides), where no cell is occupied.
 #[test]
-fn distances_may_be_those_of_cells_that_hold_something() {
+fn distances_can_be_limited_to_cells_with_objects() {
     let row = || (0..7).map(|z| Cell { x: 0, z });
     let eye = at(2.5, 33.0);
     for (to_held_cells, distances) in [(0, [7.0, 12.0]), (1, [8.0, 13.0])] {
@@ -306,7 +309,7 @@ fn distances_may_be_those_of_cells_that_hold_something() {
     }
 }
 
-/// The only occupied cell is two rings away in memory 1, and later one ring away in memory 0.
+/// The only occupied cell is first two rings away, in memory 1, and then one ring away, in memory 0.
 #[test]
 fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
     let mut cells = Cells::new(&EQUAL_RINGS, [Cell { x: 2, z: 0 }], false);
@@ -316,15 +319,15 @@ fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
     assert_eq!((update.together, cells.dealing().memory(Cell { x: 2, z: 0 })), (vec![true, true, false, false], 0));
 }
 
-/// E4 has point objects, uniform on a disc of 100 m around a walker.
+/// Experiment E4 has point objects, uniform on a disc of 100 m around a walker.
 ///
-/// 60 x objects / draws is 6.01 at 1 m/s with four memories, and 13.40 at 0.37 m/s with five.
+/// The quotient 60 x objects / draws is 6.01 at 1 m/s with four memories, and 13.40 at 0.37 m/s with five memories.
 #[test]
 fn far_objects_are_drawn_seldom() {
     let threshold = Threshold::of_degrees(EQUAL_RINGS.theta_deg);
     for (speed, memories, expected) in [(1.0, 4, 6.01), (0.37, 5, 13.40)] {
         let objects = 20_000;
-        // Distance of the n-th of many rings with equal area.
+        // Distance of object n if all objects cover rings of equal area.
         let periods: Vec<f64> = (0..objects)
             .map(|n| threshold.way(100.0 * ((f64::from(n) + 0.5) / f64::from(objects)).sqrt()) / speed)
             .collect();

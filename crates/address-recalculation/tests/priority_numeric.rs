@@ -1,4 +1,4 @@
-//! Numeric cases of the specification for the policies: theta = 90/512 degrees, 60 frames per second.
+//! Numeric cases for the policies, computed by hand: theta = 90/512 degrees, 60 frames per second.
 
 use address_recalculation::priority::{
     Cell, CellAssignment, Distance, Falloff, ObjectView, PriorityTiming, RegionWarp, SizeRule, Threshold, Translation,
@@ -19,7 +19,7 @@ fn at(x: f64, z: f64) -> DVec3 {
 }
 
 #[test]
-fn case_16_translation_and_levels() {
+fn case_16_distance_and_speed_give_the_computed_period_and_memory() {
     for (distance, speed, ms, expected) in
         [(10.0, 1.0, 30.6796, 0), (11.0, 1.0, 33.7476, 1), (0.5, 1.0, 1.53398, 0), (3.0, 0.37, 24.8754, 0)]
     {
@@ -31,7 +31,7 @@ fn case_16_translation_and_levels() {
 
 /// The distances are d = 2^k/60 s x 1 m/s / (2 sin(theta / 2)).
 #[test]
-fn case_17_distances_of_levels() {
+fn case_17_memories_begin_at_the_computed_distances() {
     for (k, distance) in [(1, 10.8650), (2, 21.7300), (3, 43.4599)] {
         near(f64::from(1 << k) / 60.0 / threshold().way(1.0), distance, 5e-5);
         let levels = [distance - 1e-3, distance + 1e-3].map(|d| level(threshold().way(d), 1.0 / 60.0, 4));
@@ -42,7 +42,7 @@ fn case_17_distances_of_levels() {
 }
 
 #[test]
-fn cases_18_and_19_size() {
+fn cases_18_and_19_the_size_of_an_object_limits_the_approach_to_the_computed_distance() {
     let disc = threshold();
     for (c, r, ms) in [(5.0, 1.0, 78.5621), (10.0, 5.0, 76.2315), (1.0, 5.0, 15.9437)] {
         near(1e3 * disc.max_approach(c, r), ms, 1e-4);
@@ -51,16 +51,17 @@ fn cases_18_and_19_size() {
     for (c, r, ms) in [(5.0, 1.0, 74.0137), (5.0, 4.0, 11.4550), (2.0, 1.9, 2.00535)] {
         near(1e3 * sphere.max_approach(c, r), ms, 1e-4);
     }
-    // The angle reaches 90 degrees, so the limit is the remaining distance.
+    // An object that is much nearer than its radius reaches an angle of 90 degrees. The limit is then the remaining
+    // distance.
     near(disc.max_approach(1e-3, 5.0), 1e-3, 0.0);
     near(sphere.max_approach(5.000_001, 5.0), 1e-6, 1e-12);
     near(sphere.max_approach(4.0, 5.0), 0.0, 0.0);
 }
 
-/// A8: with a disc, size never decides. With a sphere, it decides for 2 r > 1.411 c. Neither gives the printed factor
-/// of 10.
+/// Tests statement A8 of the papers. If a disc gives the size, the change of size never limits the validity period. If
+/// a sphere gives the size, the change limits the period for 2 r > 1.411 c. Neither gives the published factor of 10.
 #[test]
-fn size_never_decides_with_a_disc_and_from_1_411_distances_on_with_a_sphere() {
+fn the_size_of_a_sphere_limits_the_period_beyond_1_411_distances_and_the_size_of_a_disc_never_does() {
     let decides = |size: SizeRule, diameter: f64| {
         let threshold = Threshold { size, ..threshold() };
         threshold.max_approach(1.0, diameter / 2.0) < threshold.way(1.0)
@@ -72,7 +73,7 @@ fn size_never_decides_with_a_disc_and_from_1_411_distances_on_with_a_sphere() {
 }
 
 #[test]
-fn case_20_an_object_that_turns() {
+fn case_20_a_rotating_object_has_the_computed_period() {
     let turn = 90_f64.to_radians();
     near(1e3 * threshold().turn_s(5.0, 1.0, turn), 9.76571, 1e-5);
     assert_eq!(threshold().turn_s(652.0, 1.0, turn), f64::INFINITY);
@@ -81,7 +82,7 @@ fn case_20_an_object_that_turns() {
 }
 
 #[test]
-fn case_21_faces_out_of_sight() {
+fn case_21_a_face_becomes_visible_after_the_computed_time() {
     let half_diagonal = (400.0_f64 / (320.0 / 30_f64.to_radians().tan())).atan();
     let turn = PriorityTiming::PAPERS.fastest_turn_deg_per_s.to_radians();
     let wait = |face| 1e3 * time_until_visible_s(DVec3::NEG_Z, face, half_diagonal, turn);
@@ -114,10 +115,10 @@ fn places_of_the_cube() -> impl Iterator<Item = DVec3> {
 
 /// Checks angles that follow from the symmetry of the cube.
 ///
-/// Seen along a corner, an edge's middle or a face's middle, the nearest direction of any face is again one of these.
-/// From an edge's middle, the opposite faces are 90 degrees away.
+/// If the viewer looks towards a corner, the middle of an edge or the middle of a face, the nearest direction of any
+/// face is again such a direction. From an edge's middle, the opposite faces are 90 degrees away.
 #[test]
-fn angles_from_places_that_the_symmetry_of_the_cube_tells() {
+fn angles_to_faces_agree_with_the_symmetry_of_the_cube() {
     for view in places_of_the_cube() {
         for face in places_of_the_cube().filter(|place| place.length() == 1.0) {
             let of_face = places_of_the_cube().filter(|place| place.dot(face) == 1.0);
@@ -137,7 +138,7 @@ fn dealing() -> CellAssignment {
 }
 
 #[test]
-fn case_22_borders_ways_and_periods() {
+fn case_22_the_borders_of_memories_give_the_computed_distances_and_periods() {
     let eye = at(2.0, 1.0);
     for (k, distance, way_mm, frames) in [(1, 6.0, 18.408, 2.0), (2, 11.0, 33.748, 3.0), (3, 16.0, 49.087, 3.0)] {
         near(dealing().distance(eye, k), distance, 1e-12);
@@ -146,14 +147,14 @@ fn case_22_borders_ways_and_periods() {
         near((way * 60.0).ceil(), frames, 0.0);
     }
     assert_eq!(dealing().distance(eye, 0), 0.0);
-    // A memory ends at the border where the slower memory begins.
+    // A memory ends at the border where the next slower memory begins.
     assert_eq!([0, 1, 2, 3].map(|k| dealing().to_slower(eye, k)), [Some(6.0), Some(11.0), Some(16.0), None]);
     assert_eq!(dealing().to_slower(at(99.0, 1.0), 1), Some(0.0), "outside");
     assert_eq!(dealing().distance(at(99.0, 1.0), 2), 0.0, "outside");
 }
 
 #[test]
-fn cases_23_and_24_cells_and_their_memories() {
+fn cases_23_and_24_positions_belong_to_the_expected_cells_and_memories() {
     let cells = [(12.3, -0.1), (5.0, 0.0), (-5.0, 4.999)].map(|(x, z)| Cell::of(x, z, 5.0));
     assert_eq!(cells, [Cell { x: 2, z: -1 }, Cell { x: 1, z: 0 }, Cell { x: -1, z: 0 }]);
     let memories = [(0, 0), (1, -1), (2, 0), (3, -3), (4, 1), (9, 9)].map(|(x, z)| dealing().memory(Cell { x, z }));
@@ -165,7 +166,7 @@ fn cases_23_and_24_cells_and_their_memories() {
 /// Memory k begins outside ring q + 1 + g + ... + g^(k-2). With q = 1 and g = 2, memories 1 to 3 begin outside rings 1,
 /// 2 and 4.
 #[test]
-fn rings_that_double_begin_one_two_and_four_rings_away() {
+fn with_doubling_rings_memories_1_to_3_begin_outside_rings_1_2_and_4() {
     let doubling = CellAssignment { ring_growth: 2, ..dealing() };
     assert_eq!([0, 1, 2].map(|memory| doubling.last_ring(memory)), [1, 2, 4]);
     let memories = (0..=7).map(|ring| doubling.memory(Cell { x: -ring, z: 0 })).collect::<Vec<_>>();
@@ -180,7 +181,7 @@ fn rings_that_double_begin_one_two_and_four_rings_away() {
 }
 
 #[test]
-fn case_25_a_warped_vertex_has_one_direction_and_depth() {
+fn case_25_a_warped_vertex_has_the_same_direction_and_depth_in_both_memories() {
     let faster = at(0.0, 0.0);
     let slower = at(-0.0255, 0.0);
     let vertex = DVec3::new(4.7, 1.0, 2.0);
@@ -198,7 +199,7 @@ fn case_25_a_warped_vertex_has_one_direction_and_depth() {
 
 /// The angle of a chord at 5 m is 2 asin(D / 10).
 #[test]
-fn case_26_the_worst_tear_five_metres_away() {
+fn case_26_the_greatest_tear_at_5_metres_has_the_computed_angle() {
     let way = threshold().way(5.0);
     near(1e3 * way, 15.340, 5e-4);
     let degrees = |chord: f64| (2.0 * (chord / 10.0).asin()).to_degrees();
@@ -208,7 +209,7 @@ fn case_26_the_worst_tear_five_metres_away() {
 }
 
 #[test]
-fn case_27_falloffs() {
+fn case_27_each_falloff_has_the_computed_weights() {
     let weights = |falloff: Falloff| [0.0, 2.0, 5.0, 7.0].map(|s| falloff.weight(s, 5.0));
     assert_eq!(weights(Falloff::Linear), [1.0, 0.6, 0.0, 0.0]);
     assert_eq!(weights(Falloff::Step), [1.0, 1.0, 0.0, 0.0]);
@@ -219,7 +220,7 @@ fn case_27_falloffs() {
 }
 
 #[test]
-fn case_28_draws_of_the_printed_tables() {
+fn case_28_the_printed_tables_give_the_computed_draws_per_second() {
     let rates = [60.0, 39.25, 28.21, 16.15];
     let all = |segments: [u64; 4]| 60.0 * segments.iter().sum::<u64>() as f64;
     let with = [87, 14, 20, 62];
@@ -232,7 +233,7 @@ fn case_28_draws_of_the_printed_tables() {
 }
 
 #[test]
-fn case_29_faces_touched() {
+fn case_29_an_object_touches_the_computed_mean_number_of_faces() {
     for (degrees, faces) in [(1.0_f64, 1.041335), (5.0, 1.212510), (10.0, 1.438624), (30.0, 2.443429)] {
         near(mean_faces_touched(degrees.to_radians()), faces, 5e-7);
     }
@@ -241,14 +242,14 @@ fn case_29_faces_touched() {
 
 /// The chord exceeds the sine by a relative 1.2e-6.
 #[test]
-fn chord_and_sine() {
+fn the_chord_rule_exceeds_the_sine_rule_by_1_2_millionths() {
     let sine = Threshold { translation: Translation::Sine, ..threshold() };
     let more = threshold().way(10.0) / sine.way(10.0) - 1.0;
     near(more, 1.2e-6, 5e-8);
 }
 
 #[test]
-fn periods_of_objects() {
+fn the_period_of_an_object_is_the_least_of_its_limits() {
     let still = ObjectView { distance_m: 5.0, radius_m: 1.0, speed: 0.0, turn: 0.0, animation_s: f64::INFINITY };
     assert_eq!(threshold().period(&still).least(), f64::INFINITY);
     assert_eq!(threshold().period(&ObjectView { distance_m: 0.9, ..still }).least(), 0.0, "inside");
@@ -259,10 +260,10 @@ fn periods_of_objects() {
     assert_eq!(threshold().period(&ObjectView { distance_m: 1.0, ..still }).least(), 0.0, "on its surface");
 }
 
-/// Checks the validity periods of the specification (3.6): the relevant distance for translation, and for a rotating
-/// object.
+/// Checks validity periods against values computed by hand. The distance that counts for translation is the nearest
+/// point or the centre. A rotating object also has a period.
 #[test]
-fn the_distance_of_an_object_is_that_of_its_nearest_point_or_of_its_middle() {
+fn the_validity_period_uses_the_distance_to_the_nearest_point_or_to_the_centre_of_an_object() {
     let seen = ObjectView { distance_m: 5.0, radius_m: 0.5, speed: -2.0, turn: -0.5, animation_s: f64::INFINITY };
     let theta = (90.0_f64 / 512.0).to_radians();
     for (distance, counted) in [(Distance::Nearest, 4.5), (Distance::Centre, 5.0)] {
@@ -277,7 +278,7 @@ fn the_distance_of_an_object_is_that_of_its_nearest_point_or_of_its_middle() {
 /// The period is infinite if the argument of the arcsine is 1 or more, and for objects that do not rotate or have no
 /// size.
 #[test]
-fn what_turns_unseen_is_right_for_ever() {
+fn an_object_without_visible_rotation_stays_correct_for_ever() {
     let right_angle = Threshold::of_degrees(90.0);
     assert_eq!(right_angle.turn_s(2.0, 1.0, 1.0), f64::INFINITY, "2 x sin 90 / 2 is 1");
     near(right_angle.turn_s(1.0, 1.0, 1.0), 2.0 * 0.5_f64.asin(), 1e-12);
@@ -285,12 +286,12 @@ fn what_turns_unseen_is_right_for_ever() {
 }
 
 #[test]
-fn a_frame_is_one_of_sixty_a_second() {
+fn a_frame_lasts_a_sixtieth_of_a_second() {
     near(PriorityTiming::PAPERS.frame_s(), 1.0 / 60.0, 1e-15);
 }
 
 #[test]
-fn memories_that_were_shown_together_are_bits() {
+fn the_memories_that_swap_together_are_encoded_as_a_bit_mask() {
     let update =
         Update { due: vec![true, false, true, true], together: vec![true, false, true, false], deals_anew: false };
     assert_eq!(update.together_bits(), 0b0101);
@@ -300,7 +301,7 @@ fn memories_that_were_shown_together_are_bits() {
 
 /// A vertex far from any border, or beyond the falloff, does not move. Half-way, it moves by half of the displacement.
 #[test]
-fn vertices_are_moved_by_their_distance_from_the_border() {
+fn the_displacement_of_a_vertex_depends_on_its_distance_from_the_border() {
     let displacement = DVec3::new(0.2, -0.1, 0.4);
     let warp = RegionWarp::new(Falloff::Linear, 5.0, at(3.0, 4.0) + displacement, at(3.0, 4.0)).expect("a length");
     let vertex = DVec3::new(7.0, 8.0, 9.0);
@@ -315,9 +316,9 @@ fn vertices_are_moved_by_their_distance_from_the_border() {
 }
 
 proptest::proptest! {
-    /// The result is exact regardless of rounding in the division, even next to a border.
+    /// The cell of a position is exact, although the division is rounded, even next to a border.
     #[test]
-    fn a_place_lies_between_the_borders_of_its_cell(number in -1_000_000i64..1_000_000, side in 1e-3..1e3_f64, beside in -2i8..3) {
+    fn a_position_lies_between_the_borders_of_its_cell(number in -1_000_000i64..1_000_000, side in 1e-3..1e3_f64, beside in -2i8..3) {
         let border = number as f64 * side;
         let x = match beside {
             -2 => border - side / 3.0,
@@ -334,7 +335,7 @@ proptest::proptest! {
 }
 
 #[test]
-fn numbers_are_refused_by_name() {
+fn invalid_numbers_are_refused_with_their_name() {
     PriorityTiming::PAPERS.check().expect("valid");
     let papers = PriorityTiming { cell_m: 5.0, falloff_m: 5.0, ..PriorityTiming::PAPERS };
     papers.check().expect("valid");

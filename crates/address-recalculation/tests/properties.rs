@@ -47,7 +47,7 @@ static TABLE: LazyLock<LensTable> = LazyLock::new(|| ArpConfig::IDEAL.table().ex
 
 proptest! {
     #[test]
-    fn a_direction_has_one_texel_whatever_its_length(
+    fn the_texel_of_a_direction_does_not_depend_on_its_length(
         direction in prop::array::uniform3(-1.0..1.0_f64),
         exponent in -280..280_i32,
         guard in 0_u32..=8,
@@ -63,14 +63,14 @@ proptest! {
     /// Checks that looking up pixels for a new orientation equals drawing for it. The drawn function is linear on each
     /// face.
     #[test]
-    fn a_turn_shows_what_a_redraw_would(axes in prop::array::uniform4(-1.0..1.0_f64), x in 0_u32..640, y in 0_u32..480) {
+    fn a_head_rotation_shows_the_same_as_a_redraw(axes in prop::array::uniform4(-1.0..1.0_f64), x in 0_u32..640, y in 0_u32..480) {
         prop_assume!(axes.iter().map(|a| a * a).sum::<f64>() > 1e-3);
         let picture = ArpConfig::IDEAL.picture();
         let seen = Orientation::from_quaternion(axes).expect("a rotation").turn(Lens::Flat.view(&picture, x, y));
         let face = CubeFace::of(seen).expect("a direction");
         let linear = |direction: Vector| { let [u, v] = on_face(face, direction); 0.3 + 0.5 * u - 0.7 * v };
         prop_assert!((interpolated(GUARDED, seen, linear) - linear(seen)).abs() < 1e-9);
-        // The bound of the interpolation error is (h^2 / 8) 400 with h = 2/510.
+        // The interpolation error is at most h^2 / 8 times the second derivative, with h = 2/510 and 20^2 = 400.
         let smooth = |direction: Vector| (20.0 * on_face(face, direction)[0]).sin();
         prop_assert!((interpolated(GUARDED, seen, smooth) - smooth(seen)).abs() <= 7.69e-4);
     }
@@ -95,7 +95,7 @@ fn axis_aligned() -> Vec<Orientation> {
 }
 
 #[test]
-fn every_texel_is_the_texel_of_its_middle() {
+fn the_centre_of_a_texel_maps_to_that_texel() {
     for guard in [0, 1, 8] {
         let geometry = FaceGeometry { texels: 128, guard };
         let inner = guard..128 - guard;
@@ -129,7 +129,7 @@ fn texels_on_both_sides_of_an_edge_are_neighbours() {
 /// Checks that a guard texel shows the neighbouring face. Its nearest texel there is at most half a texel's diagonal
 /// away.
 #[test]
-fn guard_texels_show_what_the_neighbour_shows() {
+fn guard_texels_equal_the_texels_of_the_neighbouring_face() {
     let geometry = FaceGeometry { texels: 128, guard: 2 };
     let guard = texels(128).filter(|t| [t.column, t.row].iter().any(|n| !(2..126).contains(n)));
     for texel in guard {
@@ -144,7 +144,7 @@ fn guard_texels_show_what_the_neighbour_shows() {
 
 /// Checks that half a texel in the middle of a face is f / 510 = 1.0868 pixels.
 #[test]
-fn the_nearest_texel_is_at_most_1_087_pixels_away_in_the_middle() {
+fn the_nearest_texel_is_at_most_1_087_pixels_away_at_the_centre() {
     let focal = 320.0 / 30_f64.to_radians().tan();
     let mut worst = 0.0_f64;
     for y in 200..280 {
@@ -179,7 +179,7 @@ fn soft(direction: Vector) -> f64 {
 /// Fractions rounded to 1/16 move the position by at most 1/32 texel along each axis. A texel in the middle covers
 /// 2/510 rad. The address adds an error of 0.03 texels. Colours are rounded in the face and in the pixel.
 #[test]
-fn a_turned_picture_is_a_redraw_for_that_orientation() {
+fn a_rotated_picture_equals_a_redraw_for_that_orientation() {
     let grey = |direction: Vector| soft(direction).round() as u32 * 0x01_01_01;
     let config = ArpConfig { timing: ArpTiming { display_memories: 1, ..ArpConfig::IDEAL.timing }, ..ArpConfig::IDEAL };
     let faces = [painted(&config, 77, grey)];
@@ -201,7 +201,7 @@ fn a_turned_picture_is_a_redraw_for_that_orientation() {
 }
 
 #[test]
-fn of_several_memories_the_nearest_shows_and_the_lowest_on_ties() {
+fn a_pixel_shows_the_nearest_memory_and_at_equal_depth_the_memory_with_the_lowest_number() {
     for n in 1..=8 {
         let timing = ArpTiming { face_texels: 128, display_memories: n, ..ArpTiming::PAPERS };
         let config = ArpConfig { timing, background: 0x30_20_10, ..ArpConfig::MACHINE };
@@ -246,7 +246,7 @@ fn a_snapshot_does_not_depend_on_earlier_snapshots() {
 }
 
 #[test]
-fn behind_empty_texels_lies_the_background_memory_and_before_it_everything_else() {
+fn the_background_memory_shows_only_behind_empty_texels() {
     let timing = ArpTiming { face_texels: 128, ..ArpTiming::PAPERS };
     let config = ArpConfig { timing, background: 0x99, has_background_memory: true, ..ArpConfig::MACHINE };
     let mut behind = painted(&config, 0, |_| 0x0B_0B_0B);
@@ -260,10 +260,10 @@ fn behind_empty_texels_lies_the_background_memory_and_before_it_everything_else(
     assert_eq!(upper_half(&look(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x99, 0x99));
 }
 
-/// Checks the rule of experiment E2. Objects distributed over memories, all drawn from one position, give the same bits
-/// as a single memory with all objects.
+/// Checks experiment E2. Objects distributed over several memories, all drawn from one position, give the same bits as
+/// a single memory with all objects.
 #[test]
-fn memories_together_show_what_one_memory_shows() {
+fn several_memories_show_the_same_as_one_memory() {
     let timing = ArpTiming { face_texels: 128, ..ArpTiming::PAPERS };
     let four = ArpConfig { timing, ..ArpConfig::MACHINE };
     let one = ArpConfig { timing: ArpTiming { display_memories: 1, ..timing }, ..ArpConfig::MACHINE };
@@ -287,7 +287,7 @@ fn memories_together_show_what_one_memory_shows() {
 ///
 /// The position of a texel on the flat picture does not depend on the lens.
 #[test]
-fn a_straight_edge_through_the_lens_and_back_is_straight() {
+fn a_straight_edge_in_the_world_is_straight_when_seen_through_the_lens() {
     let picture = ArpConfig::IDEAL.picture();
     let lens = Lens::Radial { k1: 0.32, k2: 0.05 };
     let focal = 320.0 / 30_f64.to_radians().tan();

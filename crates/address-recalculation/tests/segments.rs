@@ -38,7 +38,7 @@ fn lies_in(cell: Cell, place: DVec3, side: f64) -> bool {
 
 proptest! {
     #[test]
-    fn a_closed_surface_stays_closed_and_whole(
+    fn cutting_keeps_a_closed_surface_closed(
         corners in prop::array::uniform6((-12.0..12.0_f64, -3.0..3.0_f64, -12.0..12.0_f64)),
         side in prop_oneof![Just(5.0), Just(0.7), 1.0..20.0_f64],
         on_border in any::<bool>(),
@@ -67,9 +67,9 @@ proptest! {
         }
     }
 
-    /// A line gives bit-identical cut vertices for every triangle that shares it, and for both directions.
+    /// An edge has bit-identical cut vertices for every triangle that shares it, and for both directions of the edge.
     #[test]
-    fn a_shared_line_is_cut_at_the_same_places_by_both_sides(
+    fn both_triangles_of_a_shared_edge_are_cut_at_the_same_points(
         ends in prop::array::uniform2((-12.0..12.0_f64, -3.0..3.0_f64, -12.0..12.0_f64)),
         others in prop::array::uniform2((-12.0..12.0_f64, -3.0..3.0_f64, -12.0..12.0_f64)),
     ) {
@@ -85,7 +85,7 @@ proptest! {
 
 /// A wall of 12 m along x starts at x = 1. Cells of 5 m cut it into 4, 5 and 3 m.
 #[test]
-fn a_wall_is_cut_in_three() {
+fn cells_of_5_m_cut_a_wall_of_12_m_into_three_segments() {
     let corners = [(1.0, 0.0), (13.0, 0.0), (13.0, 3.0), (1.0, 3.0)].map(|(x, y)| DVec3::new(x, y, 2.0));
     let cut = Segmentation::new(&corners, &[[0, 1, 2], [0, 2, 3]], 5.0).expect("cut");
     let areas: Vec<(i64, f64)> =
@@ -102,7 +102,7 @@ fn a_wall_is_cut_in_three() {
 }
 
 #[test]
-fn what_lies_in_a_border_belongs_to_its_positive_side() {
+fn a_triangle_within_a_border_plane_belongs_to_the_positive_side() {
     let corners = [(0.0, 1.0), (0.0, 4.0), (3.0, 2.0)].map(|(y, z)| DVec3::new(5.0, y, z));
     let cut = Segmentation::new(&corners, &[[0, 1, 2]], 5.0).expect("cut");
     assert_eq!(cut.segments.keys().copied().collect::<Vec<_>>(), [Cell { x: 1, z: 0 }]);
@@ -118,7 +118,7 @@ fn what_lies_in_a_border_belongs_to_its_positive_side() {
 
 /// A corner on the border belongs to both parts. Only the line opposite to the corner is cut.
 #[test]
-fn a_corner_on_a_border_is_not_made_again() {
+fn a_vertex_on_a_border_is_not_duplicated() {
     let corners = [(5.0, 0.0), (1.0, 3.0), (9.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 1.0));
     for triangle in [[0, 1, 2], [2, 1, 0]] {
         let cut = Segmentation::new(&corners, &[triangle], 5.0).expect("cut");
@@ -143,10 +143,10 @@ fn an_empty_mesh_is_in_no_memory() {
 /// The number of pieces is bounded by the cells of a triangle's bounding rectangle. 3,125 x 3,200 is ten million, the
 /// limit.
 #[test]
-fn ten_million_pieces_are_the_most() {
+fn more_than_ten_million_segments_are_refused() {
     let from = DVec3::new(100.0, 0.0, -300.0);
     let cut = |columns: f64, rows: f64| {
-        // A triangle without area has few pieces, but the bounding rectangle counts.
+        // This triangle has no area and few pieces, but the check counts the cells of its bounding rectangle.
         let to = from + DVec3::new((columns - 1.0) * 0.5, 7.0, (rows - 1.0) * 0.5);
         Segmentation::new(&[from, to], &[[0, 1, 1]], 0.5)
     };
@@ -158,7 +158,7 @@ fn ten_million_pieces_are_the_most() {
 }
 
 #[test]
-fn what_cannot_be_cut_is_refused() {
+fn a_mesh_that_cannot_be_cut_is_refused() {
     let refusal = |vertices: &[DVec3], triangles: &[[u32; 3]], side: f64| {
         Segmentation::new(vertices, triangles, side).expect_err("refused").to_string()
     };

@@ -1,12 +1,12 @@
-//! Effects of instructions and pairs (a floating-point and a core instruction that execute together). Each effect is
-//! chosen once, at decoding, so execution does not need the instruction bits again.
+//! Effects of instructions and pairs. A pair is a floating-point and a core instruction that execute together. Each
+//! effect is chosen once, at decoding, so execution does not need the instruction bits again.
 
 use crate::decoded::Decoded;
 use crate::dual_operation::source_widths;
 use crate::instruction::{Flags, Instruction, Op};
 
 /// The effect of a core instruction: a load, a store or an integer operation. Branches and control-register moves have
-/// no effect of this type, because the processor executes them from the decoded instruction.
+/// no such effect, because the processor executes them from the decoded instruction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CoreAction {
     pub(crate) does: Core,
@@ -15,20 +15,18 @@ pub(crate) struct CoreAction {
     /// Number of the first source register, or r0 if the first operand is an immediate.
     pub(crate) first: u8,
     pub(crate) second: u8,
-    /// Number of the base register that receives the address of a load or store with auto-increment. The number is 0
-    /// (r0) for other instructions.
+    /// Base register that receives the address of a load or store with auto-increment. It is 0 (r0) for other
+    /// instructions.
     pub(crate) increments: u8,
-    /// Immediate operand or address displacement, which is added to the first source register. The value is 0 if the
-    /// instruction has no immediate and no displacement.
+    /// Immediate operand, or displacement that is added to the first source register. The value is 0 if the instruction
+    /// has neither an immediate operand nor a displacement.
     pub(crate) immediate: u32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Core {
     Nothing,
-    /// An arithmetic operation, a logical operation or a shift.
     Integer,
-    /// Loads one byte into an integer register.
     LoadByte,
     LoadShort,
     LoadLong,
@@ -46,8 +44,8 @@ pub(crate) enum Core {
     PipelinedLoadSingle,
     PipelinedLoadDouble,
     StorePixels,
-    /// All remaining core operations, such as control-register moves, `flush`, `trap` and `lock`. The processor
-    /// executes these operations from the decoded instruction.
+    /// All other core operations, such as control-register moves, `flush`, `trap` and `lock`. The processor executes
+    /// these operations from the decoded instruction.
     System,
     Branch,
 }
@@ -105,8 +103,8 @@ pub(crate) struct FloatingAction {
     pub(crate) second: u8,
 }
 
-/// The kinds of effect that a floating-point instruction can have. The order is: kinds with single-precision operands,
-/// kinds with double-precision operands, then [`Floating::Any`].
+/// The kinds of effect that a floating-point instruction can have. Kinds with single-precision operands come first,
+/// then kinds with double-precision operands, then [`Floating::Any`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Floating {
     /// Pipelined multiplication of two single-precision operands.
@@ -119,17 +117,15 @@ pub(crate) enum Floating {
     Subtract,
     /// Any other operation that reads two single-precision operands.
     Singles,
-    /// Pipelined multiplication of two double-precision operands.
     PipelinedMultiplyDoubles,
     PipelinedAddDoubles,
     PipelinedSubtractDoubles,
-    /// Scalar multiplication of two double-precision operands.
     MultiplyDoubles,
     AddDoubles,
     SubtractDoubles,
     /// Any other operation that reads two double-precision operands.
     Doubles,
-    /// Any operation with mixed precisions, or an operation that can read a result in the clock in which the result
+    /// Any operation with mixed precisions, and any operation that can read a result in the clock in which the result
     /// leaves a pipe.
     Any,
     Nothing,
@@ -148,13 +144,13 @@ impl Floating {
     fn of(d: &Decoded, i: &Instruction) -> Floating {
         const PIPELINED: bool = true;
         const DOUBLES: bool = true;
-        // A source can be the result that leaves the pipe. The specialized kinds do not support such a source.
+        // A source can be the result that leaves the pipe. The kinds for one precision do not support such a source.
         if d.may_bypass() {
             return Floating::Any;
         }
         let doubles = i.has(Flags::SOURCE_DOUBLE);
         let alike = doubles == i.has(Flags::RESULT_DOUBLE);
-        // Operations with one precision have specialized kinds.
+        // Operations on operands of one precision have their own kinds.
         match (i.op, i.has(Flags::PIPELINED), doubles) {
             (Op::Fmul, PIPELINED, DOUBLES) if alike => Floating::PipelinedMultiplyDoubles,
             (Op::Fadd, PIPELINED, DOUBLES) if alike => Floating::PipelinedAddDoubles,
@@ -177,17 +173,16 @@ impl Floating {
     }
 }
 
-/// The effects of a single instruction, or of a floating-point and a core instruction that execute together as a pair.
+/// The effects of a single instruction, or of a pair (a floating-point and a core instruction that execute together).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Action {
     pub(crate) core: CoreAction,
     pub(crate) floating: FloatingAction,
-    /// Index of the instruction or pair in its block of code.
     pub(crate) number: u8,
 }
 
 impl Action {
-    /// Chooses the effects of a single instruction, or of a pair whose core half is `second`.
+    /// Chooses the effects of the single instruction `first`, or of the pair of `first` and `second`.
     pub(crate) fn new(number: u8, first: &Decoded, second: Option<&Decoded>) -> Action {
         // Instructions without any effect get no action.
         let floating = Some(first).filter(|first| first.is_floating() && !first.is_idle());

@@ -1,9 +1,8 @@
-//! IEEE arithmetic on bit patterns, rounded to nearest even. The results have the same bits on every computer.
+//! IEEE arithmetic on bit patterns, rounded to nearest even. The results are the same on every computer.
 //!
-//! Addition, subtraction, multiplication, division and square root of `f32` and `f64` give exactly rounded IEEE results
-//! on every computer. Only the bits of NaN results differ between computers. The model therefore replaces a NaN result
-//! by the first NaN operand, made quiet. If no operand is NaN, the model uses the default NaN (sign set, as on Intel's
-//! other parts).
+//! The operations of `f32` and `f64` are correctly rounded on every computer. Only the bits of NaN results differ
+//! between computers. The model therefore replaces a NaN result by the first NaN operand, converted to a quiet NaN. If
+//! no operand is NaN, the result is the default NaN, whose sign is set as on other Intel processors.
 
 use crate::state::PipeStage;
 
@@ -65,7 +64,7 @@ pub(crate) fn double(operation: Operation, a: f64, b: f64, flush: bool) -> u64 {
     }
 }
 
-/// Converts a single-precision number to double precision. Operand and result are bit patterns.
+/// Converts the bits of a single-precision number to the bits of a double-precision number.
 #[inline]
 pub(crate) fn widen(bits: u32) -> u64 {
     let value = f32::from_bits(bits);
@@ -78,8 +77,7 @@ fn widen_nan(bits: u32) -> u64 {
     sign | 0x7FF0_0000_0000_0000 | u64::from(bits & 0x007F_FFFF) << 29 | QUIET64
 }
 
-/// Converts a double-precision number to single precision, rounded to nearest even. Operand and result are bit
-/// patterns.
+/// Converts the bits of a double-precision number to the bits of a single-precision number, rounded to nearest even.
 #[inline]
 pub(crate) fn narrow(bits: u64, flush: bool) -> u32 {
     let value = f64::from_bits(bits);
@@ -90,8 +88,8 @@ pub(crate) fn narrow(bits: u64, flush: bool) -> u32 {
     if flush && result.is_subnormal() { result.to_bits() & 0x8000_0000 } else { result.to_bits() }
 }
 
-/// Computes one floating-point operation. `source` is the S bit, which selects double precision for the operands.
-/// `result` is the R bit, which selects double precision for the result.
+/// Computes one floating-point operation on bit patterns. If `source` (the S bit) is true, the operands are in double
+/// precision. If `result` (the R bit) is true, the result is in double precision.
 #[inline]
 pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result: bool, flush: bool) -> PipeStage {
     if !source && !result {
@@ -103,7 +101,8 @@ pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result
     PipeStage { bits, double: true }
 }
 
-/// Converts a value that leaves a pipe to a bit pattern in double precision (if `double` is true) or single precision.
+/// Returns the bits of a value that leaves a pipe, in double precision if `double` is true, otherwise in single
+/// precision.
 #[inline]
 pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     match (value.double, double) {
@@ -113,8 +112,8 @@ pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     }
 }
 
-/// Rounds a number to an integer. `mode` is the bit field RM of the register fsr, which selects the rounding: to
-/// nearest even, down, up, or towards zero.
+/// Rounds a number to an integer. `mode` is the bit field RM of the register fsr: 0 to nearest even, 1 down, 2 up, 3
+/// towards zero.
 pub(crate) fn round(value: f64, mode: u32) -> f64 {
     match mode {
         0 => value.round_ties_even(),
@@ -124,14 +123,13 @@ pub(crate) fn round(value: f64, mode: u32) -> f64 {
     }
 }
 
-/// Converts a rounded number to a 32-bit integer, the low word of the result of `fix` or `ftrunc`. The real chip traps
-/// if the number does not fit in 32 bits. In this case, the model returns the nearest representable value, and 0 for
-/// NaN.
+/// Converts a rounded number to a 32-bit integer, which is the low word of the result of `fix` or `ftrunc`. The real
+/// chip traps if the number does not fit in 32 bits. The model then returns the nearest 32-bit integer, or 0 for NaN.
 pub(crate) fn to_integer(rounded: f64) -> u32 {
     rounded as i32 as u32
 }
 
-/// Returns the low 53 bits of the product of two significands, as the instruction `fmlow` does.
+/// Returns the low 53 bits of the product of two significands, like the instruction `fmlow`.
 pub(crate) fn multiply_low(a: u64, b: u64) -> u64 {
     const FRACTION: u64 = (1 << 53) - 1;
     (a & FRACTION).wrapping_mul(b & FRACTION) & FRACTION

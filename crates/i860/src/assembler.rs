@@ -36,7 +36,7 @@ use operand::Filler;
 use source::{Line, is_name, split_label};
 use std::collections::BTreeMap;
 
-/// An assembled program with its labels and source lines, ready to be loaded into memory.
+/// An assembled program with its labels and source lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
     /// Memory address of the first byte of the program.
@@ -45,21 +45,19 @@ pub struct Program {
     pub bytes: Vec<u8>,
     /// Value of each name: the address of a label or the value of a constant.
     pub symbols: BTreeMap<String, u32>,
-    /// The name and the address of each label, sorted by address.
+    /// Name and address of each label, sorted by address.
     pub labels: Vec<(String, u32)>,
     /// Address and source line number of every instruction, sorted by address. After [`link`], line numbers start again
-    /// at 1 in each source.
+    /// at 1 in each source text.
     pub lines: Vec<(u32, usize)>,
     /// Data blocks of the program, sorted by address.
     pub data: Vec<Data>,
-    /// Warnings, sorted by source line.
     pub warnings: Vec<AssemblyWarning>,
 }
 
 /// A block of bytes that one directive puts into memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Data {
-    /// Memory address of the first byte of the data block.
     pub address: u32,
     /// Size of the data block in bytes.
     pub bytes: u32,
@@ -68,14 +66,11 @@ pub struct Data {
     pub kind: DataKind,
 }
 
-/// Type of the values of a data directive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DataKind {
-    /// Integers of `.byte`, `.short` or `.long`. The field is the size of one integer in bytes.
+    /// Integers of `.byte`, `.short` or `.long`, with their size in bytes.
     Integers(u32),
-    /// Single-precision numbers of `.float`.
     Singles,
-    /// Double-precision numbers of `.double`.
     Doubles,
     /// Bytes that the directives `.align`, `.org` and `.space` skip.
     Gap,
@@ -102,14 +97,13 @@ impl Program {
         self.bytes.chunks(4).map(word_of).collect()
     }
 
-    /// Returns the value of a label or constant.
     #[must_use]
     pub fn symbol(&self, name: &str) -> Option<u32> {
         self.symbols.get(name).copied()
     }
 }
 
-/// Assembles independent sources one after the other into one program. Each source begins at a multiple of 32 bytes. If
+/// Assembles independent source texts into one program. The code of each source begins at a multiple of 32 bytes. If
 /// several sources define the same label, the program keeps the first definition.
 ///
 /// # Errors
@@ -123,7 +117,7 @@ impl Program {
 pub fn link(base: u32, sources: &[(&str, &str)]) -> Result<Program, AssemblyErrors> {
     let empty = Program::of_bytes(base, Vec::new());
     sources.iter().try_fold(empty, |mut all, (file, source)| {
-        // The next source begins at a new cache line.
+        // The next source begins at the start of a cache line.
         all.bytes.resize(all.bytes.len().next_multiple_of(32), 0);
         let next = assemble(file, base + all.bytes.len() as u32, source)?;
         all.bytes.extend(next.bytes);
@@ -150,8 +144,8 @@ enum Item {
         template: Instruction,
         operands: String,
     },
-    /// Integer values, stored as the text of their source line. A separate string for each value would need several
-    /// times the memory of this text.
+    /// Integer values, stored as the text of their source line. A string for each value would need several times the
+    /// memory of this text.
     Integers {
         size: u32,
         values: String,
@@ -184,7 +178,7 @@ struct Placed {
     item: Item,
 }
 
-/// Greatest size of an assembled program, in bytes.
+/// Greatest size of an assembled program, in bytes (16 MB).
 const MOST_BYTES: u32 = 16 << 20;
 
 struct Assembler<'a> {
@@ -197,8 +191,8 @@ struct Assembler<'a> {
     errors: Vec<AssemblyError>,
 }
 
-/// Assembles one source text. `file` is the name of the source in error messages. `base` is the address of the first
-/// byte of the program.
+/// Assembles one source text to a program that begins at address `base`. `file` is the name of the source in error
+/// messages.
 ///
 /// # Errors
 /// Returns all errors of the source, each with file, line and reason.
@@ -235,7 +229,7 @@ pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, Assembly
     assembler.finish()
 }
 
-/// Assembles one instruction at an address and returns its word. The function cannot check rules about neighbouring
+/// Returns the word of one instruction at address `pc`. The function cannot check rules about neighbouring
 /// instructions, such as the rules for pairs.
 ///
 /// # Errors
@@ -271,8 +265,7 @@ fn one(word: &str, operands: &str) -> Instructions {
     Ok(vec![plain(word, operands)?])
 }
 
-/// Returns the real instructions of a pseudo-operation such as `mov`. Returns `None` if `word` is not a
-/// pseudo-operation.
+/// Returns the real instructions of a pseudo-operation such as `mov`, or `None` if `word` is not a pseudo-operation.
 fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
     // Split off the D prefix and the p of pipelined moves.
     let (prefix, name) = word.strip_prefix("d.").map_or(("", word), |rest| ("d.", rest));
@@ -296,8 +289,8 @@ fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
     }
 }
 
-/// Makes the instructions of the pseudo-operation `mov`. The source is a register, or a constant that needs one or two
-/// instructions.
+/// Returns the instructions of the pseudo-operation `mov`. The source is a register, or a constant that needs one or
+/// two instructions.
 fn mov(from: &str, to: &str) -> Instructions {
     if operand::integer_register(from).is_some() {
         return one("shl", &format!("r0, {from}, {to}"));
@@ -374,7 +367,7 @@ impl Assembler<'_> {
     }
 
     fn directive(&mut self, word: &str, rest: &str, line: usize) -> Result<(), String> {
-        // The number of values gives the size. The values are evaluated in the second pass.
+        // The number of values gives the size. The second pass evaluates the values.
         let count = operand::split(rest).len() as u32;
         let values = rest.to_owned();
         match word {
@@ -408,7 +401,7 @@ impl Assembler<'_> {
         self.push(line, Item::Gap { end }, end - self.here)
     }
 
-    // Second pass. All symbols have values now, so instructions can be encoded and checked.
+    // Second pass: all symbols have values now, so encode and check the instructions.
     fn finish(mut self) -> Result<Program, AssemblyErrors> {
         let mut bytes = Vec::new();
         let mut instructions = Vec::new();

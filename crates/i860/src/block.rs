@@ -1,5 +1,5 @@
-//! Basic blocks of decoded code. A block extends from an address to the next branch, and includes the branch's delay
-//! slot.
+//! Basic blocks of decoded code. A block extends from an address to the next branch, and includes the delay slot of the
+//! branch.
 
 use crate::action::Action;
 use crate::bus::Bus;
@@ -14,14 +14,14 @@ use crate::state::Mode;
 use crate::timing::ChipSizes;
 use crate::trap::TrapCause;
 
-/// Greatest number of instructions or pairs in a block, without the delay slot.
+/// Maximum number of issues in a block, without the delay slot. An issue is one instruction, or one pair of
+/// instructions in dual-instruction mode.
 const LONGEST: usize = 32;
 
 /// Code that the processor issues in one clock: an instruction, or a pair of instructions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unit {
     pub(crate) pc: u32,
-    /// Pairing mode (single instructions or pairs) for this instruction or pair.
     pub(crate) mode: Mode,
     pub(crate) after: Mode,
     /// The single instruction, or the floating-point half of a pair.
@@ -59,19 +59,17 @@ impl Unit {
         Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second) })
     }
 
-    /// Returns the instruction that can access memory or branch: the core half of a pair, or the single instruction.
+    /// Returns the core half of a pair, or the single instruction. Only this instruction can access memory or branch.
     #[inline]
     pub(crate) fn core(&self) -> &Decoded {
         self.second.as_ref().unwrap_or(&self.first)
     }
 
-    /// Returns the address of the core half of a pair, or of the single instruction.
     #[inline]
     pub(crate) fn core_pc(&self) -> u32 {
         self.pc.wrapping_add(if self.second.is_some() { 4 } else { 0 })
     }
 
-    /// Returns the address of the next instruction or pair.
     #[inline]
     pub(crate) fn next(&self) -> u32 {
         self.pc.wrapping_add(if self.second.is_some() { 8 } else { 4 })
@@ -81,8 +79,8 @@ impl Unit {
         1 + u64::from(self.second.is_some())
     }
 
-    /// Returns true if the block must end after this instruction. This is true for `st.c`, which can change the code or
-    /// the way in which code is fetched.
+    /// Returns true if the block must end after this instruction. This is the case for `st.c`, which can change the
+    /// code or its caching.
     fn ends_block(&self) -> bool {
         self.core().instruction.op == Op::StC
     }
@@ -101,46 +99,42 @@ fn is_store(op: Op) -> bool {
 
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 
-/// Initial value of [`Block::held_in`]. No state of the instruction cache has this number.
+/// Initial value of [`Block::held_in`], which is not the number of any state of the instruction cache.
 const NEVER: u64 = u64::MAX;
 
-/// A basic block of instructions and pairs. A block ends at a branch, at an instruction that cannot be executed, or at
-/// the greatest length.
+/// A basic block of instructions and pairs. It ends at a branch, at an instruction that cannot be executed, or at the
+/// greatest length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
     pub(crate) pc: u32,
-    /// Pairing mode (single instructions or pairs) at the start of the block.
     mode: Mode,
     /// Pairing mode (single instructions or pairs) after the delay slot.
     pub(crate) after_slot: Mode,
-    /// Pairing mode (single instructions or pairs) after the last instruction or pair of the block, not counting a
-    /// delay slot.
+    /// Pairing mode (single instructions or pairs) after the last instruction or pair before a delay slot.
     pub(crate) after: Mode,
-    /// Address after the last instruction or pair of the block, not counting a delay slot. A delay slot begins at this
-    /// address.
+    /// Address after the last instruction or pair before a delay slot. A delay slot begins at this address.
     pub(crate) next: u32,
-    /// Number of issues of the block: each single instruction and each pair counts as one. The delay slot does not
-    /// count.
+    /// Number of instruction issues in the block. A single instruction and a pair each count as one issue. The delay
+    /// slot does not count.
     pub(crate) count: usize,
-    /// Number of instructions of the block. A pair counts as two instructions. The delay slot counts as well.
+    /// Number of instructions in the block. A pair counts as two instructions, and the delay slot counts too.
     pub(crate) instructions: u64,
-    /// Number of the latest state of the instruction cache in which the cache held the whole block.
+    /// Number of the latest state of the instruction cache in which the cache contained the whole block.
     held_in: u64,
-    /// Effects of the instructions and pairs, in the order of execution. The effects of the delay slot come last.
+    /// Effects of the instructions and pairs, in the order of execution. The delay slot comes last.
     pub(crate) actions: Box<[Action]>,
     /// Instructions and pairs of the block that load or store data, in the order of execution.
     pub(crate) accessing: Box<[AccessingUnit]>,
     pub(crate) remembered: BlockMemory,
-    /// All instructions and pairs of the block, in the order of execution. The delay slot is the last element.
+    /// All instructions and pairs of the block, in the order of execution. The delay slot comes last.
     units: Box<[Unit]>,
     /// Index of the first instruction or pair on each cache line of the block.
     lines: Box<[u8]>,
-    /// Cause of the trap that is taken if the final branch is executed, because its delay slot cannot be executed.
+    /// Cause of the trap when the branch at the end executes, because the delay slot cannot be executed.
     pub(crate) wrong_slot: Option<TrapCause>,
 }
 
-/// The properties of a load or store that the timing model needs: operation, register and size, but not the address and
-/// the data.
+/// Properties of a load or store that the timing model needs. They do not include the address and the data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Access {
     pub(crate) op: Op,
@@ -157,10 +151,9 @@ impl Access {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AccessingUnit {
     pub(crate) access: Access,
-    /// Index of the instruction or pair in its block of code.
     pub(crate) number: u8,
     pub(crate) is_store: bool,
-    /// True if the access always goes to the bus, even if the cache holds the data.
+    /// True if the access always uses the bus, even if the cache contains the data.
     pub(crate) leaves_cache: bool,
 }
 
@@ -201,7 +194,7 @@ impl Block {
         }
         let count = units.len();
         let mut wrong_slot = None;
-        // A delayed branch also needs its delay slot, which must not be a branch.
+        // A delayed branch also needs a delay slot, which must not be a branch.
         if last.core().instruction.is_delayed_branch() {
             match Unit::read(last.next(), last.after, code, bus) {
                 Ok(unit) if unit.core().is_branch() => wrong_slot = Some(TrapCause::BranchInSlot),
@@ -249,8 +242,8 @@ impl Block {
         &self.units[number]
     }
 
-    /// Returns an address on the cache line that holds instruction or pair `number`, and the index of the first
-    /// instruction or pair after this cache line.
+    /// Returns an address on the cache line of instruction or pair `number`, and the index of the first instruction or
+    /// pair after this cache line.
     #[inline]
     pub(crate) fn line(&self, number: usize) -> (u32, usize) {
         // Find the last line that begins at or before this instruction.
@@ -260,7 +253,6 @@ impl Block {
         (self.pc.wrapping_add(line as u32 * LINE_BYTES), end)
     }
 
-    /// Returns true if the instruction cache holds all cache lines of the block.
     #[inline]
     pub(crate) fn is_held(&mut self, cache: &InstructionTags) -> bool {
         self.held_in == cache.changes() || self.look_up(cache)
@@ -280,8 +272,7 @@ impl Block {
         self.pc == pc && self.mode == mode
     }
 
-    /// Returns true if `address` lies inside the block, after the first instruction or pair. The delay slot does not
-    /// belong to this range.
+    /// Returns true if `address` is inside the block, after the first instruction or pair and before the delay slot.
     #[inline]
     pub(crate) fn passes(&self, address: u32) -> bool {
         let offset = address.wrapping_sub(self.pc);

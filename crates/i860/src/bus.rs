@@ -1,8 +1,8 @@
-//! The interface to the bus: the memory and devices outside the processor.
+//! The interface to the memory and the devices outside the processor.
 
 use std::fmt;
 
-/// The error of an access to an address without memory and without a device.
+/// An access to an address without memory and without a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no memory and no device answers")]
 pub struct Unmapped;
@@ -24,14 +24,14 @@ pub trait Bus {
     /// Returns [`Unmapped`] if no memory or device answers. The processor then takes a data access trap.
     fn write(&mut self, address: u32, size: u32, value: u64) -> Result<(), Unmapped>;
 
-    /// Returns true if the caches may hold the data at `address`, which the processor reads from its pin KEN#. The
-    /// result must be false for addresses of devices.
+    /// Returns true if the caches may contain the data at `address`. The processor reads this bit from its pin KEN#.
+    /// The result must be false for addresses of devices.
     fn is_cacheable(&self, _address: u32) -> bool {
         true
     }
 }
 
-/// Memory for a range of addresses, which can serve as the bus of a processor.
+/// Memory for a range of addresses, which can be the bus of a processor.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Ram {
     base: u32,
@@ -45,7 +45,6 @@ impl Ram {
         Ram { base, bytes: vec![0; len] }
     }
 
-    /// Returns all bytes of the memory, the lowest address first.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes

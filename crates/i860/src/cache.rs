@@ -1,24 +1,22 @@
-//! Tag arrays of the caches and the TLB. Data always come from memory. The tag arrays only decide between hit, miss and
-//! write-back.
+//! Tag arrays of the caches and the TLB, which decide between hit, miss and write-back. Data always come from memory.
 
 use crate::timing::ChipSizes;
 
 /// A set-associative tag array with pseudo-random replacement. All sizes of the array are powers of two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> {
-    /// Tags of all sets. A tag is the address of a cache line with [`VALID`] and [`DIRTY`] in its low bits, or 0 for an
-    /// empty way.
+    /// Tags of all sets. A tag is the address of a cache line with [`VALID`] and [`DIRTY`] in its low bits. It is 0 if
+    /// the way (place in a set) is empty.
     sets: Box<[[u32; WAYS]; SETS]>,
-    /// Number of times that the array was filled or cleared. While this number stays the same, the array holds the same
-    /// cache lines.
+    /// Number of changes to the array. While this number stays the same, the array contains the same cache lines.
     changes: u64,
 }
 
-/// Flag in the low bits of a tag: the way (place in a set) holds a cache line.
+/// Flag in the low bits of a tag: the tag belongs to a cache line.
 const VALID: u32 = 1;
 const DIRTY: u32 = 2;
 
-/// A tag array with the cache-line size and associativity of the on-chip caches.
+/// A tag array with the line size and associativity of the on-chip caches.
 type CacheTags<const SETS: usize> = Tags<SETS, CACHE_WAYS, { ChipSizes::PAPERS.line_bytes as u32 }>;
 const CACHE_WAYS: usize = ChipSizes::PAPERS.cache_ways as usize;
 
@@ -26,7 +24,6 @@ const fn sets(cache_bytes: u64) -> usize {
     (cache_bytes / ChipSizes::PAPERS.line_bytes) as usize / CACHE_WAYS
 }
 
-/// Tag array of the instruction cache.
 pub(crate) type InstructionTags = CacheTags<{ sets(ChipSizes::PAPERS.instruction_cache_bytes) }>;
 pub(crate) type DataTags = CacheTags<{ sets(ChipSizes::PAPERS.data_cache_bytes) }>;
 
@@ -41,7 +38,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         self.changes
     }
 
-    /// Gives numbers above `latest` to the current state of the array and to all later states.
+    /// Changes the number of the array's state to a number above `latest`, from which later states count on.
     pub(crate) fn number_changes_from(&mut self, latest: u64) {
         self.changes = self.changes.max(latest) + 1;
     }
@@ -51,20 +48,19 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         (address / LINE_BYTES) as usize % SETS
     }
 
-    /// Returns the tag that the cache line of `address` has while the line is clean.
+    /// Returns the tag of the cache line that contains `address`, while the line is clean.
     #[inline]
     fn tag(address: u32) -> u32 {
         address & !(LINE_BYTES - 1) | VALID
     }
 
-    /// Returns true if the array holds the cache line of an address.
     #[inline]
     pub(crate) fn holds(&self, address: u32) -> bool {
         self.sets[Self::set(address)].iter().any(|held| held & !DIRTY == Self::tag(address))
     }
 
-    /// Returns true if the array holds the cache line of an address. If `stores` is true, the function also marks the
-    /// cache line dirty.
+    /// Returns true if the array contains the cache line of `address`. If `stores` is true, also marks the line as
+    /// dirty.
     #[inline]
     pub(crate) fn access(&mut self, address: u32, stores: bool) -> bool {
         let ways = &mut self.sets[Self::set(address)];
@@ -80,18 +76,18 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         false
     }
 
-    /// Adds the cache line of an address to its set. If no way (place) of the set is empty, `random` selects the way
-    /// whose cache line is replaced. Returns the address of a dirty cache line that was replaced.
+    /// Adds the cache line of `address` to its set. If no way (place) of the set is empty, `random` selects the way
+    /// whose line is replaced. Returns the address of a replaced line if this line was dirty.
     pub(crate) fn fill(&mut self, address: u32, random: u32) -> Option<u32> {
         self.changes += 1;
         let ways = &mut self.sets[Self::set(address)];
-        // Empty ways are filled first.
+        // Fill empty ways first.
         let way = ways.iter().position(|tag| *tag == 0).unwrap_or(random as usize % WAYS);
         let left = std::mem::replace(&mut ways[way], Self::tag(address));
         (left & DIRTY != 0).then_some(left & !(VALID | DIRTY))
     }
 
-    /// Marks the cache line of an address clean, if the array holds this line. Returns true if the line was dirty.
+    /// Marks the cache line of `address` as clean. Returns true if the array contained the line and the line was dirty.
     pub(crate) fn clean(&mut self, address: u32) -> bool {
         let dirty = Self::tag(address) | DIRTY;
         let way = self.sets[Self::set(address)].iter_mut().find(|held| **held == dirty);
@@ -104,7 +100,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
     }
 }
 
-/// A 16-bit maximal-length shift register. The pseudo-random numbers of the register choose the cache lines to replace.
+/// A 16-bit shift register of maximal length. Its pseudo-random numbers choose the cache lines to replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Chance(u16);
 
@@ -125,7 +121,7 @@ mod tests {
     use super::{Chance, Tags};
 
     #[test]
-    fn two_ways_hold_two_lines_of_a_set_and_a_third_drives_one_out() {
+    fn a_third_line_of_a_set_replaces_one_of_its_two_lines() {
         let mut tags = Tags::<128, 2, 32>::new();
         let a = 0x1000;
         let b = 0x2000;
@@ -137,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dirty_line_that_leaves_gives_its_address_once() {
+    fn a_replaced_dirty_line_returns_its_address_once() {
         let mut tags = Tags::<1, 2, 32>::new();
         tags.fill(0x40, 0);
         assert!(tags.access(0x40, true) && !tags.access(0x60, true));

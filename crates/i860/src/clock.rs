@@ -1,5 +1,5 @@
-//! The clock of the processor: instruction issue, freezes, caches and queues. The clock counts the time of every
-//! executed block of code, and changes no register or memory.
+//! The clock of the processor: instruction issue, freezes, caches and queues. It counts the time of every executed
+//! block of code, and changes no register or memory.
 
 use crate::block::{Access, Block, Unit};
 use crate::bus::Bus;
@@ -26,20 +26,20 @@ const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 pub(crate) struct Accesses {
     all: [u32; Accesses::MOST],
     count: usize,
-    /// True if every access of the block so far has hit the data cache. False if an access was not checked.
+    /// True if every access of the block so far has hit the data cache. False if some accesses were not checked.
     pub(crate) all_held: bool,
 }
 
 impl Accesses {
-    /// Greatest number of accesses in the list. The number is a power of two and greater than the length of a block.
+    /// Greatest number of accesses in the list: a power of two that is greater than the length of a block.
     const MOST: usize = 64;
 
     pub(crate) fn new() -> Accesses {
         Accesses { all: [0; Accesses::MOST], count: 0, all_held: false }
     }
 
-    /// Discards the accesses of the previous block. `looks_up` is true if each access of the new block must be checked
-    /// for a cache hit.
+    /// Discards the accesses of the previous block. If `looks_up` is true, each access of the new block is checked for
+    /// a cache hit.
     #[inline]
     pub(crate) fn begin(&mut self, looks_up: bool) {
         self.count = 0;
@@ -69,7 +69,6 @@ pub(crate) struct Clock {
     pub(crate) data: DataCache,
     stores: StorePipe,
     loads: LoadPipe,
-    /// Memoized clocks of blocks, or `None` if memoization is off.
     pub(crate) memo: Option<Memo>,
 }
 
@@ -121,8 +120,8 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Exchanges the numbering of scoreboard states with `numbers`, the numbering in a shared store of decoded
-    /// programs. The memoized clocks in the store refer to scoreboard states by these numbers.
+    /// Exchanges the table of numbered scoreboard states with `numbers`, from a shared store of decoded programs. The
+    /// memoized clocks in the store refer to states by these numbers.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {
@@ -130,16 +129,14 @@ impl Clock {
         }
     }
 
-    /// Turns address translation on, with the page directory at address `directory`. With `None`, turns address
-    /// translation off.
     pub(crate) fn set_translation(&mut self, directory: Option<u32>) {
         self.translation.set_directory(directory);
     }
 
     // ---- blocks
 
-    /// Returns true if memoized clocks can be reused. The result is false with address translation or a profile by
-    /// address, because every instruction must then be counted.
+    /// Returns true if memoized clocks can be reused. With address translation or a profile by address, they cannot be
+    /// reused, because every instruction must be counted.
     #[inline]
     pub(crate) fn repeats(&self) -> bool {
         self.on && self.memo.is_some() && !self.translation.is_on() && self.sampler.is_none()
@@ -153,7 +150,6 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of an executed block whose clocks are not memoized as a whole.
     #[inline(never)]
     fn count_block<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !self.on {
@@ -172,7 +168,7 @@ impl Clock {
         let last = execution.units + usize::from(execution.slot) - 1;
         block.executed(execution).iter().enumerate().for_each(|(n, unit)| {
             let before = self.common.now;
-            // Each instruction or pair is fetched and issued. An instruction or pair without a trap is also completed.
+            // Each instruction or pair is fetched and issued. If it does not trap, it is also completed.
             self.fetch(unit, bus);
             self.issue(unit);
             if !(execution.trapped && n == last) {
@@ -236,7 +232,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of all freezes of a single instruction, then the clock of the instruction's issue.
+    /// Counts the clocks of all freezes of a single instruction, and the clock of its issue.
     #[inline]
     fn issue_single(&mut self, d: &Decoded) {
         if self.board.may_wait(d) {
@@ -246,8 +242,8 @@ impl Clock {
         self.common.now += 1;
     }
 
-    /// Counts the clocks of a pair's freeze, then the clock of the pair's issue. The freeze of a pair is the longer
-    /// freeze of its two instructions.
+    /// Counts the clocks of a pair's freeze, and the clock of its issue. The freeze of a pair is the longer freeze of
+    /// its two instructions.
     #[inline]
     fn issue_pair(&mut self, floating: &Decoded, core: &Decoded) {
         // Find the longest wait of both halves.
@@ -278,8 +274,8 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of an integer load. If the load misses the cache, execution continues and the destination
-    /// becomes ready later.
+    /// Counts the clocks of an integer load. After a cache miss, execution continues, and the destination is ready
+    /// later.
     #[inline]
     fn load_integer<B: Bus>(&mut self, address: u32, dest: u8, bus: &B) {
         self.board.forget(dest);
@@ -291,7 +287,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a floating-point load. A cache miss stops the processor until all needed bytes have
+    /// Counts the clocks of a floating-point load. A cache miss stops the processor until all requested bytes have
     /// arrived. A load of 16 bytes takes two transfers.
     #[inline]
     fn load_floating<B: Bus>(&mut self, address: u32, size: u8, bus: &B) {
@@ -304,7 +300,7 @@ impl Clock {
         }
     }
 
-    /// Looks up `size` bytes in the data cache. Returns the bus transfer if the bytes are missing.
+    /// Looks up `size` bytes in the data cache. Returns the bus transfer after a miss, and `None` after a hit.
     fn load<B: Bus>(&mut self, address: u32, size: u32, bus: &B) -> Option<Transfer> {
         self.translation.translate(address, &mut self.common);
         let transfer = self.data.load(address, size, &mut self.stores, &mut self.common, bus)?;
@@ -314,16 +310,16 @@ impl Clock {
         Some(transfer)
     }
 
-    /// If row `why` of the freeze table is enabled, delays all instructions of the class `hazard` until a cache miss
-    /// ends at clock `until`.
+    /// Delays all instructions of the class `hazard` until a cache miss ends at clock `until`. Does nothing if row
+    /// `why` of the freeze table is disabled.
     fn delay_hazard(&mut self, hazard: u16, until: u64, why: Freeze) {
         if self.common.costs.applies(why) {
             self.board.set_hazard_until(hazard, until + self.common.costs.clocks(why), why);
         }
     }
 
-    /// Counts the clocks of a store. If the data cache holds the cache line, the cache line becomes dirty. If not, the
-    /// data go through the store pipe to the bus, and no cache line is filled.
+    /// Counts the clocks of a store. If the data cache contains the cache line, the line becomes dirty. Otherwise the
+    /// data go through the store pipe to the bus, and no line is filled.
     #[inline]
     fn store(&mut self, address: u32, size: u32) {
         self.translation.translate(address, &mut self.common);

@@ -1,24 +1,22 @@
-//! Decoded code: the basic blocks, found by address, and the set of memory words that were decoded.
+//! The store of decoded basic blocks, which finds a block by its address, and the set of decoded memory words.
 
 use crate::assembler::Program;
 use crate::block::Block;
 use crate::code_map::CodeMap;
 use crate::state::Mode;
 
-/// Number of entries in the simulator's table of decoded blocks. This number has no relation to the size of the
-/// processor's instruction cache.
+/// Number of entries in the simulator's table of decoded blocks, which is unrelated to the processor's instruction
+/// cache.
 const BLOCKS: usize = 1 << 12;
 
 fn place(pc: u32) -> usize {
     (pc >> 2) as usize % BLOCKS
 }
 
-/// The decoded basic blocks of the code in memory.
 #[derive(Debug)]
 pub(crate) struct Code {
     blocks: Box<[Option<Box<Block>>]>,
     pub(crate) words: CodeMap,
-    /// True if decoded blocks were discarded because the code in memory may have changed.
     changed: bool,
 }
 
@@ -33,8 +31,8 @@ impl Code {
         Code { words: CodeMap::new(program.base..end), ..Code::new() }
     }
 
-    /// Removes and returns the block that begins at address `pc` in pairing mode `mode`. Returns `None` if this block
-    /// was not decoded.
+    /// Removes and returns the block that begins at address `pc` in pairing mode `mode`. Returns `None` if the table
+    /// does not contain this block.
     #[inline]
     pub(crate) fn take(&mut self, pc: u32, mode: Mode) -> Option<Box<Block>> {
         self.blocks.get_mut(place(pc))?.take().filter(|block| block.begins(pc, mode))
@@ -54,14 +52,13 @@ impl Code {
         self.blocks[place(pc)] = Some(block);
     }
 
-    /// Discards all decoded blocks, because the code in memory may have changed.
     pub(crate) fn clear(&mut self) {
         self.blocks.fill(None);
         self.words.clear();
         self.changed = true;
     }
 
-    /// Returns true if every decoded word comes from the assembled program and no store has changed the program.
+    /// Returns true if all decoded words come from the assembled program, and no store has changed the program.
     pub(crate) fn is_as_assembled(&self) -> bool {
         !self.changed && self.words.is_as_assembled()
     }

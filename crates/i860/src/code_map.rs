@@ -1,18 +1,17 @@
-//! The set of memory words that were decoded.
+//! The set of decoded memory words.
 
 use std::ops::Range;
 
-/// The set of memory words that were decoded. The processor uses this set to detect stores that can change decoded
-/// code.
+/// The set of decoded memory words, with which the processor detects stores that can change decoded code.
 #[derive(Debug)]
 pub(crate) struct CodeMap {
-    /// Address range of the assembled program, or an empty range without a program.
+    /// Address range of the assembled program. Empty if the code does not come from an assembled program.
     program: Range<u32>,
-    /// True if a store has changed a word of the assembled program.
     is_stored_to: bool,
-    /// Lowest and highest address of the program and all decoded words.
+    /// Lowest and highest address of the assembled program and all decoded words.
     range: (u32, u32),
-    /// Set of decoded words. Word `n` of memory is bit `n` modulo [`CodeMap::BITS`], so several words share one bit.
+    /// Set of decoded words, as bits. Word `n` of memory is bit `n` modulo [`CodeMap::BITS`], so several words share a
+    /// bit.
     words: Box<[u64]>,
 }
 
@@ -42,7 +41,7 @@ impl CodeMap {
         self.range = (self.range.0.min(pc), self.range.1.max(pc | 3));
     }
 
-    /// Records a store. Returns true if a stored byte can belong to a decoded word.
+    /// Records a store of `size` bytes. Returns true if a stored byte can belong to a decoded word.
     #[inline]
     pub(crate) fn note_store(&mut self, address: u32, size: u32) -> bool {
         let last = address.wrapping_add(size - 1);
@@ -50,7 +49,7 @@ impl CodeMap {
     }
 
     fn note_near(&mut self, first: u32, last: u32) -> bool {
-        // Record every change of the program, also of words that were not decoded.
+        // Record every change of the program, even of words that were not decoded.
         self.is_stored_to |= last >= self.program.start && first < self.program.end;
         [first, last].into_iter().any(|address| {
             let (at, bit) = CodeMap::bit(address);
@@ -58,7 +57,7 @@ impl CodeMap {
         })
     }
 
-    /// Returns true if every decoded word belongs to the assembled program and no store has changed the program.
+    /// Returns true if all decoded words belong to the assembled program, and no store has changed the program.
     pub(crate) fn is_as_assembled(&self) -> bool {
         !self.is_stored_to && self.range == CodeMap::ends(&self.program)
     }

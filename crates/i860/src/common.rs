@@ -1,4 +1,4 @@
-//! State shared by all parts of the clock: the current clock, the profile, the bus and the pseudo-random numbers.
+//! State that all parts of the clock share: the current clock, the profile, the bus and the pseudo-random numbers.
 
 use crate::cache::Chance;
 use crate::dram::{Dram, Transfer};
@@ -8,22 +8,19 @@ use crate::timing::{Config, Freeze};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Common {
-    /// The current clock, counted since reset.
     pub(crate) now: u64,
-    /// Clock at which the profile was started. Every clock after the start is either a freeze clock or an issue clock.
+    /// Clock at which the profile was started. Every later clock is either a freeze clock or an issue clock.
     profile_start: u64,
-    /// All counts of the profile except issue clocks. [`Common::profile`] computes the issue clocks from the other
-    /// clocks.
+    /// All counts of the profile except issue clocks, which [`Common::profile`] computes from the other clocks.
     pub(crate) profile: Profile,
     pub(crate) costs: Costs,
     pub(crate) bus: Dram,
-    /// Pseudo-random numbers that choose the cache line to replace in a full cache set.
     pub(crate) chance: Chance,
-    /// Clock at which the latest cache-line fill of the data cache ends. An instruction-cache miss that begins before
-    /// this clock takes more clocks (row 1b of the freeze table).
+    /// Clock at which the latest line fill of the data cache ends. A miss of the instruction cache takes more clocks if
+    /// it begins before this clock (row 1b of the freeze table).
     pub(crate) data_fill_end: u64,
-    /// Clock at which the latest cache-line fill of the instruction cache ends. A freeze that begins earlier lasts at
-    /// least until this clock.
+    /// Clock at which the latest line fill of the instruction cache ends. A freeze that begins earlier lasts at least
+    /// until this clock.
     pub(crate) instruction_fill_end: u64,
 }
 
@@ -58,8 +55,8 @@ impl Common {
         self.bus.page_misses = 0;
     }
 
-    /// Freezes the processor until clock `until`. If an instruction-cache line is arriving, the freeze lasts at least
-    /// until the whole line has arrived (row 1 of the freeze table).
+    /// Freezes the processor until clock `until`, or until the arrival of a whole instruction-cache line if this is
+    /// later (row 1 of the freeze table).
     #[inline]
     pub(crate) fn freeze_until(&mut self, until: u64, why: Freeze) {
         if until > self.now {
@@ -71,15 +68,15 @@ impl Common {
         }
     }
 
-    /// Freezes the processor until an instruction arrives at clock `until`. The profile counts these clocks only for
-    /// row 1a of the freeze table.
+    /// Freezes the processor until an instruction arrives at clock `until`. The profile counts these clocks in row 1a
+    /// of the freeze table.
     #[inline]
     pub(crate) fn await_instruction(&mut self, until: u64) {
         self.stand_still(until, Freeze::InstructionMiss);
     }
 
-    /// Freezes the processor for the additional clocks of an instruction-cache miss during a cache-line fill of the
-    /// data cache (row 1b of the freeze table).
+    /// Freezes the processor for the additional clocks of an instruction-cache miss during a line fill of the data
+    /// cache (row 1b of the freeze table).
     pub(crate) fn await_instruction_behind_data(&mut self) {
         let until = self.now + self.costs.clocks(Freeze::InstructionMissBehindData);
         self.stand_still(until, Freeze::InstructionMissBehindData);
@@ -105,7 +102,8 @@ impl Common {
         self.freeze_until(self.now + self.costs.clocks(why), why);
     }
 
-    /// Reads `beats` transfers of 8 bytes for the data cache. The read starts when the bus's address pipe has room.
+    /// Reads `beats` transfers of 8 bytes for the data cache. The read starts as soon as the address pipe of the bus
+    /// has room.
     pub(crate) fn read_data(&mut self, address: u32, beats: u32) -> Transfer {
         self.await_address_pipe();
         self.bus.read(self.now, address, beats)

@@ -19,14 +19,13 @@ fn delayed(taken: bool, target: u32) -> Flow {
     if taken { Flow::Delayed(target) } else { Flow::Skip }
 }
 
-/// Returns the address of the instruction after a branch's delay slot. If the code after the branch is in
-/// dual-instruction mode, the slot is a pair.
+/// Returns the address of the instruction after the delay slot of a branch. The slot is a pair if the code after the
+/// branch is in dual-instruction mode.
 fn after_slot_address(unit: &Unit) -> u32 {
     unit.core_pc().wrapping_add(if unit.after.is_dual() { 12 } else { 8 })
 }
 
 impl Cpu {
-    /// Executes a core instruction, or the core half of a pair.
     #[inline(always)]
     pub(crate) fn core<'a, B: Bus>(&mut self, a: &CoreAction, unit: impl Fn() -> &'a Unit, bus: &mut B) -> Flow {
         // Integer operations return directly, because they cannot trap.
@@ -77,7 +76,7 @@ impl Cpu {
 
     fn call_indirect(&mut self, i: &Instruction, unit: &Unit) -> Flow {
         let target = self.state.r(i.src1);
-        // r1 can be the target register, so the target was read before this write.
+        // r1 can also be the target register, so the target was read before this write.
         self.state.set_r(1, after_slot_address(unit));
         Flow::Delayed(target & !3)
     }
@@ -110,8 +109,8 @@ impl Cpu {
         immediate(equal == (i.op == Op::Bte), target)
     }
 
-    /// Executes `bla`, which adds two registers. The instruction branches if the loop condition code LCC was set
-    /// before. Afterwards, LCC is set if the sum is not negative.
+    /// Executes `bla`, which adds two registers. It branches if the loop condition code LCC was set before. Then LCC is
+    /// set if the sum is not negative.
     fn branch_on_loop(&mut self, i: &Instruction, target: u32) -> Flow {
         let a = self.state.r(i.src1);
         let b = self.state.r(i.src2);
@@ -122,8 +121,8 @@ impl Cpu {
         if taken { Flow::Delayed(target) } else { Flow::Next }
     }
 
-    /// Executes `bri`, an indirect branch. If a trap bit is set, `bri` also returns from the trap: it restores user
-    /// mode (U), interrupt mode (IM) and the pairing mode.
+    /// Executes `bri`, an indirect branch. If a trap bit is set, `bri` returns from the trap: it restores user mode
+    /// (U), interrupt mode (IM) and the pairing mode.
     fn branch_indirect(&mut self, i: &Instruction) -> Flow {
         let target = self.state.r(i.src1);
         if self.state.psr & psr::TRAPS != 0 {

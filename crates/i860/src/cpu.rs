@@ -1,5 +1,4 @@
-//! The processor: instruction fetch, pairs of instructions, delay slots, traps, and the main loop that executes a
-//! program.
+//! The processor: instruction fetch, pairs of instructions, delay slots, traps, and the main loop.
 
 use crate::action::{Action, Floating};
 use crate::assembler::Program;
@@ -19,21 +18,18 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// An i860 XR with its caches and its clock. The memory is not a part of the processor: each call of [`Cpu::run`] or
+/// An i860 XR with its caches and its clock. The memory is not part of the processor: each call of [`Cpu::run`] or
 /// [`Cpu::step`] takes a [`Bus`].
 pub struct Cpu {
-    /// Registers, pipes and pairing mode: the complete state that a program can see.
+    /// Registers, pipes and pairing mode: the complete state that is visible to a program.
     pub state: State,
     pub(crate) time: Clock,
     pub(crate) seeds: SeedTable,
-    /// Pairing mode (single instructions or pairs) to use after the delay slot. A return from a trap sets this mode.
+    /// Pairing mode (single instructions or pairs) after the delay slot. Set by a return from a trap.
     pub(crate) mode_after_slot: Option<Mode>,
     pub(crate) accesses: Accesses,
-    /// Cause of the trap that the current instruction or pair has raised. `None` if no trap was raised.
     cause: Option<TrapCause>,
-    /// New value of the directory-base register, if the current block has written the register.
     pub(crate) directory_base: Option<u32>,
-    /// True if memory may have changed since the code in memory was decoded.
     pub(crate) code_changed: bool,
     pub(crate) code: Code,
     config: Config,
@@ -92,14 +88,14 @@ impl Cpu {
         self.time.instructions()
     }
 
-    /// Returns the number of instructions, since reset, whose clocks came from an earlier execution of the same code
-    /// ([`Config::memoise`]).
+    /// Returns the number of instructions, since reset, whose clocks were reused from an earlier execution of the same
+    /// code ([`Config::memoise`]).
     #[must_use]
     pub fn repeated_instructions(&self) -> u64 {
         self.time.repeated_instructions()
     }
 
-    /// Returns the clocks by cause, and the numbers of cache misses, since reset or [`Cpu::clear_profile`].
+    /// Returns the clocks by cause and the numbers of cache misses, since reset or [`Cpu::clear_profile`].
     #[must_use]
     pub fn profile(&self) -> Profile {
         self.time.profile()
@@ -110,13 +106,12 @@ impl Cpu {
         self.time.clear_profile();
     }
 
-    /// Empties the caches and the TLB without write-backs and without simulated time. A measurement can then start with
-    /// empty caches.
+    /// Empties the caches and the TLB without write-backs and without simulated time, for example before a measurement.
     pub fn empty_caches(&mut self) {
         self.time.empty_caches();
     }
 
-    /// Starts to count clocks for each code address in `addresses`. With `None`, the processor stops this count.
+    /// Starts to count clocks for each code address in `addresses`. With `None`, stops this count.
     pub fn watch(&mut self, addresses: Option<AddressProfile>) {
         self.time.sampler = addresses;
     }
@@ -127,17 +122,17 @@ impl Cpu {
         self.time.sampler.as_ref()
     }
 
-    /// Discards all decoded instructions. The processor decodes instructions ahead, up to the next branch. Call this
-    /// function after another device has written to code in memory. The processor's own stores into code take effect
-    /// immediately (the real chip would need a flush and dirbase.ITI).
+    /// Discards all decoded instructions. Call this function after another device has written code into memory, because
+    /// the processor decodes instructions ahead, up to the next branch. The processor's own stores into code take
+    /// effect immediately (the real chip would need a flush and dirbase.ITI).
     pub fn invalidate_code(&mut self) {
         self.code.clear();
         self.code_changed = false;
     }
 
-    /// Takes the decoded code of `program` from `programs`, the shared store of decoded programs. The processor uses
-    /// the code until [`Cpu::close`]. Memory must hold `program` as assembled. With `None`, the processor decodes all
-    /// code again. The number of clocks does not depend on this call.
+    /// Takes the decoded code of `program` from `programs`, a shared store of decoded programs. The processor uses this
+    /// code until [`Cpu::close`]. Memory must contain `program` as assembled. With `None`, the processor decodes all
+    /// code again. This call does not change the number of simulated clocks.
     ///
     /// All processors that share the store must have the same [`Config::freezes`].
     pub fn open(&mut self, programs: &mut DecodedPrograms, program: Option<&Arc<Program>>) {
@@ -147,9 +142,8 @@ impl Cpu {
         self.time.fetch.number_states_from(programs.cache_states);
     }
 
-    /// Moves the decoded program and its memoized clocks back to `programs`. Returns true if other processors can use
-    /// this program. If a store has changed the program in memory, the function discards the decoded code and returns
-    /// false.
+    /// Returns the decoded program and its memoized clocks to `programs`, and returns true. If a store has changed the
+    /// program in memory, discards the decoded code instead, and returns false.
     pub fn close(&mut self, programs: &mut DecodedPrograms, program: Option<&Arc<Program>>) -> bool {
         self.time.exchange_numbers(&mut programs.numbers);
         programs.cache_states = self.time.fetch.states();
@@ -159,9 +153,9 @@ impl Cpu {
         true
     }
 
-    /// Runs the program until one of three events: `stop` is reached in single-instruction mode, a trap is taken, or
-    /// `budget` more instructions were executed. A branch and its delay slot stay together, so a run can exceed the
-    /// budget by up to three instructions.
+    /// Runs the program until it reaches address `stop` in single-instruction mode, takes a trap, or has executed
+    /// `budget` instructions. A branch and its delay slot stay together, so a run can exceed the budget by up to three
+    /// instructions.
     pub fn run<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, budget: u64) -> RunEnd {
         let end = self.instructions().saturating_add(budget);
         loop {
@@ -177,7 +171,7 @@ impl Cpu {
         }
     }
 
-    /// Executes one instruction, one pair, or one delayed branch together with its slot.
+    /// Executes one instruction, one pair, or one delayed branch together with its delay slot.
     ///
     /// # Errors
     /// Returns the trap that was taken. The next step executes the first instruction of the trap handler.
@@ -186,7 +180,7 @@ impl Cpu {
     }
 
     /// Executes the block that begins at `pc`. If the block contains the address `stop` or has more than `most`
-    /// instructions, the function executes only the first instruction or pair of the block.
+    /// instructions, executes only the first instruction or pair of the block.
     fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
         let pc = self.state.pc;
         // Take the decoded block out of the store, or decode it now.
@@ -198,7 +192,7 @@ impl Cpu {
                 Err(cause) => return Err(self.take_trap(cause)),
             },
         };
-        // Execute the whole block if `stop` and the budget permit, else its first instruction or pair.
+        // Execute the whole block if `stop` and the budget permit. Otherwise execute its first instruction or pair.
         let whole = block.instructions <= most && stop.is_none_or(|stop| !block.passes(stop));
         let units = if whole { block.count } else { 1 };
         self.execute(&mut block, units, bus);
@@ -218,7 +212,7 @@ impl Cpu {
     }
 
     /// Executes up to `most` instructions or pairs of a block, and the delay slot of its branch. Then counts the clocks
-    /// of all executed instructions.
+    /// of these instructions.
     #[inline]
     fn execute<B: Bus>(&mut self, block: &mut Block, most: usize, bus: &mut B) {
         self.accesses.begin(self.time.repeats());
@@ -228,11 +222,11 @@ impl Cpu {
         self.time.pass(block, execution, &self.accesses, bus);
     }
 
-    /// Sets the address and pairing mode of the block that executes next. If the current block ended with a taken
-    /// delayed branch, the function first executes the branch's delay slot.
+    /// Sets the address and pairing mode of the next block. If the current block has ended with a taken delayed branch,
+    /// executes the branch's delay slot first.
     #[inline]
     fn go_on<B: Bus>(&mut self, flow: Flow, block: &Block, execution: &mut Execution, bus: &mut B) {
-        // Begin with the address directly after the executed code. A jump or trap overrides this address below.
+        // Begin with the address after the executed code. A jump or trap overrides this address below.
         let (next, after) = match execution.units == block.count {
             true => (block.next, block.after),
             false => {
@@ -277,8 +271,7 @@ impl Cpu {
         }
     }
 
-    /// Returns the control flow after an instruction. If the instruction trapped, the function records the cause of the
-    /// trap.
+    /// Returns the control flow after an instruction, and records the cause if the instruction has trapped.
     #[inline(always)]
     pub(crate) fn flow(&mut self, done: Result<Flow, TrapCause>) -> Flow {
         done.unwrap_or_else(|cause| self.trapped(cause))
@@ -290,8 +283,8 @@ impl Cpu {
         Flow::Trapped
     }
 
-    /// Executes instructions and pairs of a block until an instruction branches or traps. Returns the number of
-    /// executed instructions or pairs, and the control flow after the last instruction.
+    /// Executes instructions and pairs of a block until one of them branches or traps. Returns the number of executed
+    /// instructions or pairs, and the control flow after the last of them.
     fn units<B: Bus>(&mut self, block: &Block, range: Range<usize>, bus: &mut B) -> (usize, Flow) {
         let actions = &block.actions[range];
         for action in actions {

@@ -1,4 +1,4 @@
-//! The data cache: its cache lines, their fills, and the write-backs of replaced dirty cache lines.
+//! The data cache: its cache lines, line fills, and the write-backs of replaced dirty lines.
 
 use crate::block::AccessingUnit;
 use crate::bus::Bus;
@@ -9,7 +9,7 @@ use crate::store_pipe::StorePipe;
 use crate::timing::ChipSizes;
 
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
-/// Number of bus transfers that fill one cache line.
+/// Number of 8-byte bus transfers that fill one cache line.
 const BEATS: u32 = ChipSizes::PAPERS.line_bytes as u32 / BUS_BYTES;
 
 #[derive(Clone, Debug)]
@@ -29,11 +29,12 @@ impl DataCache {
         self.0.holds(address)
     }
 
-    /// Finds the first access that misses the cache, from access index `from` on, before instruction or pair `limit`.
-    /// An access that always goes to the bus counts as a miss. Stores that hit mark their cache lines dirty.
+    /// Finds the first access that misses the cache. The search begins with access `from`, and ends before instruction
+    /// or pair `limit`. An access that always uses the bus counts as a miss. Stores that hit mark their cache lines as
+    /// dirty.
     ///
-    /// Returns the indices of the missing access and of its instruction or pair. Without a miss, returns the index of
-    /// the first access that was not checked, and `None`.
+    /// After a miss, returns the indices of the access and of its instruction or pair. Without a miss, returns the
+    /// index of the first access that was not checked, and `None`.
     #[inline]
     pub(crate) fn held(
         &mut self,
@@ -63,15 +64,14 @@ impl DataCache {
         (next, None)
     }
 
-    /// Returns true if the data cache holds the cache line at `address`. If the access is a store, the line becomes
-    /// dirty.
+    /// Returns true if the data cache contains the cache line of `address`. A store also marks the line as dirty.
     #[inline]
     pub(crate) fn access(&mut self, address: u32, stores: bool) -> bool {
         self.0.access(address, stores)
     }
 
-    /// Starts a bus transfer for a load of `size` bytes that misses the cache. Returns `None` if the cache holds the
-    /// bytes.
+    /// Starts a bus transfer for a load of `size` bytes. Returns `None` if the cache contains the bytes, so that no
+    /// transfer is necessary.
     #[inline]
     pub(crate) fn load<B: Bus>(
         &mut self,
@@ -84,7 +84,7 @@ impl DataCache {
         if self.holds(address) {
             return None;
         }
-        // Devices and the ring window are read without a line fill.
+        // Read devices and the ring window without a line fill.
         let transfer = match bus.is_cacheable(address) {
             true => self.fill_line(address, stores, common),
             false => common.read_data(address, size.div_ceil(BUS_BYTES)),
@@ -93,12 +93,12 @@ impl DataCache {
         Some(transfer)
     }
 
-    /// Fills a cache line. The requested bytes arrive first. If the fill replaces a dirty cache line, this line is
-    /// written back after the fill.
+    /// Fills the cache line of `address`, and returns the bus transfer. The requested bytes arrive first. A replaced
+    /// dirty line is written back after the fill.
     fn fill_line(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) -> Transfer {
         common.profile.data_misses += 1;
         let transfer = common.read_data(address, BEATS);
-        // Every fill uses a random number, even if a way is empty.
+        // Every fill takes a random number, even if a way is empty.
         let random = common.chance.next();
         if let Some(victim) = self.0.fill(address, random) {
             stores.write_back(transfer.last, victim, common);
@@ -106,7 +106,6 @@ impl DataCache {
         transfer
     }
 
-    /// Writes the cache line of an address back to memory if it is dirty.
     pub(crate) fn flush(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) {
         if self.0.clean(address) {
             stores.write_back(common.now, address, common);

@@ -1,19 +1,16 @@
-//! Decoder that converts instruction words to [`Instruction`].
+//! Decoder from instruction words to [`Instruction`].
 
 use crate::instruction::{FNOP, Flags, Instruction, Op};
 use crate::syntax::register_mask;
 
-/// An error for a word that does not encode an instruction of the i860 XR.
+/// A word that does not encode an instruction of the i860 XR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:08x} is not an i860 XR instruction")]
-pub struct IllegalWord(
-    /// The word that could not be decoded.
-    pub u32,
-);
+pub struct IllegalWord(pub u32);
 
 const D_BIT: u32 = 1 << 9;
-/// Register number of epsr, the control register with the highest number on the i860 XR. The later i860 XP has more
-/// control registers: bear, ccr and p0 to p3.
+/// Number of epsr, the last control register of the i860 XR. The later i860 XP has more control registers: bear, ccr
+/// and p0 to p3.
 const LAST_XR_CONTROL_REGISTER: u8 = 5;
 
 fn field(word: u32, low: u32) -> u8 {
@@ -28,7 +25,7 @@ fn split16(word: u32) -> i32 {
     signed16((word >> 5 & 0xF800) | (word & 0x07FF))
 }
 
-/// Decodes one instruction word. Reserved bit fields are ignored, as on the real chip. Reserved operations are errors.
+/// Decodes one instruction word. Reserved bit fields have no effect, as on the real chip.
 ///
 /// # Errors
 /// Returns [`IllegalWord`] for a reserved operation, an XP-only operation, or a precision that the operation does not
@@ -55,7 +52,6 @@ pub fn decode(word: u32) -> Result<Instruction, IllegalWord> {
     .ok_or(IllegalWord(word))
 }
 
-/// Sets the register bit fields that the operation does not use to zero.
 fn without_reserved_fields(mut i: Instruction) -> Instruction {
     let mask = register_mask(&i, i.has(Flags::IMMEDIATE));
     i.dest &= field(mask, 16);
@@ -80,7 +76,8 @@ fn memory(word: u32, op: u32, mut i: Instruction) -> Option<Instruction> {
         0x18 | 0x19 => Op::Pfld,
         _ => return None,
     };
-    // The offsets of stores are split over two fields. The low bits of other offsets encode sizes.
+    // The offset of a store is split over two fields. In other instructions, the low bits of the offset encode the
+    // size.
     let immediate = (op & 1 == 1 && op != 0x03) || matches!(op, 0x03 | 0x07);
     i.flags = i.flags.with(Flags::IMMEDIATE, immediate);
     match i.op {
@@ -101,7 +98,7 @@ fn memory(word: u32, op: u32, mut i: Instruction) -> Option<Instruction> {
 }
 
 fn sized(word: u32, i: &mut Instruction) -> Option<()> {
-    // The low bits of the offset field hold increment and size.
+    // The low bits of the offset encode auto-increment and size.
     let low = word & 7;
     i.flags = i.flags.with(Flags::AUTOINCREMENT, low & 1 != 0);
     i.size = match (low >> 1 & 1, low >> 2) {
@@ -226,7 +223,7 @@ fn floating_op(code: u32, result_double: bool) -> Option<Op> {
 }
 
 fn floating_is_legal(i: &Instruction, pipelined: bool, source: bool, result: bool) -> bool {
-    // Few operations convert doubles to singles.
+    // Only few operations have double-precision sources and a single-precision result.
     let narrowing = source && !result;
     match i.op {
         Op::Pfgt | Op::Pfle | Op::Pfeq => pipelined,

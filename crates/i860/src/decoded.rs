@@ -1,9 +1,9 @@
-//! Decoded instructions with the properties that the timing model needs, computed once.
+//! Decoded instructions, with the properties that the timing model needs.
 
 use crate::dual_operation::source_widths;
 use crate::instruction::{Flags, Instruction, Op};
 
-/// Bits for the classes of hazards that can delay an instruction.
+/// Classes of hazards that can delay an instruction, one bit each.
 pub(crate) mod hazard {
     pub(crate) const SCALAR: u16 = 1 << 0;
     pub(crate) const DOUBLE_MULTIPLY: u16 = 1 << 1;
@@ -17,7 +17,7 @@ pub(crate) mod hazard {
     pub(crate) const COUNT: usize = 9;
 }
 
-/// Bits for the classes of hazards that an instruction can cause for later instructions.
+/// Classes of hazards that an instruction can cause for later instructions, one bit each.
 pub(crate) mod arm {
     pub(crate) const LOAD: u16 = 1 << 0;
     pub(crate) const LONG_LOAD: u16 = 1 << 1;
@@ -42,12 +42,12 @@ pub(crate) struct Decoded {
     pub(crate) instruction: Instruction,
     pub(crate) sensitive: u16,
     pub(crate) arms: u16,
-    /// Number of the first source register if the multiplier reads this register, else [`NONE`].
+    /// First source register if the multiplier reads this register, otherwise [`NONE`].
     pub(crate) multiplier_source: u8,
     marks: u8,
 }
 
-/// Bits of the field `Decoded::marks`. Each bit is one property of the instruction.
+/// Bits of `Decoded::marks`. Each bit is one property of the instruction.
 mod mark {
     pub(super) const FLOATING: u8 = 1 << 0;
     pub(super) const BRANCH: u8 = 1 << 1;
@@ -88,28 +88,27 @@ impl Decoded {
         op == Op::Fnop || dest == 0 && matches!(op, Op::Shl | Op::Shra | Op::Shrd)
     }
 
-    /// Returns the D bit of the instruction, which requests dual-instruction mode.
     #[inline]
     pub(crate) fn dual(&self) -> bool {
         self.marks & mark::DUAL != 0
     }
 
-    /// Returns true if the instruction accesses data, branches or is `st.c`. Only the clocks of these instructions
-    /// depend on results of the execution, such as an address or a taken branch.
+    /// Returns true if the instruction accesses data, branches or is `st.c`. The clocks of these instructions depend on
+    /// their execution, for example on an address or on a taken branch.
     #[inline]
     pub(crate) fn affects_clock(&self) -> bool {
         self.marks & (mark::ACCESSES | mark::BRANCH) != 0
     }
 
-    /// Returns, for the first and the second source, true if this source is in double precision. Such a source takes a
-    /// pair of registers.
+    /// Returns, for the first and the second source, true if the source is a double-precision number in a pair of
+    /// registers.
     #[inline]
     pub(crate) fn source_widths(&self) -> (bool, bool) {
         (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)
     }
 
-    /// Returns true if a pipelined operation can have the same register as source and destination. The operation then
-    /// reads the result that leaves the pipe in the same clock.
+    /// Returns true if a pipelined operation can have the same register as source and destination. It then reads the
+    /// result that leaves the pipe in the same clock.
     #[inline]
     pub(crate) fn may_bypass(&self) -> bool {
         self.marks & mark::MAY_BYPASS != 0
@@ -124,7 +123,7 @@ fn marks(i: &Instruction) -> u8 {
     let floating = i.is_floating();
     let (first, second) = source_widths(i);
     let pipelined = i.op == Op::DualOp || i.has(Flags::PIPELINED);
-    // Compare the numbers of register pairs, because doubles occupy two registers.
+    // Compare register pairs, because doubles occupy two registers.
     let overlaps = i.dest >= 2 && [i.src1, i.src2].iter().any(|n| n & 30 == i.dest & 30);
     on(mark::FLOATING, floating)
         | on(mark::BRANCH, i.is_branch())
@@ -135,7 +134,7 @@ fn marks(i: &Instruction) -> u8 {
         | on(mark::ACCESSES, i.op <= Op::Pst || matches!(i.op, Op::Flush | Op::StC))
 }
 
-/// Returns the mask of the floating-point registers that hold `bytes` bytes from register `n` on.
+/// Returns the mask of the floating-point registers that hold `bytes` bytes, from register `n` on.
 pub(crate) fn float_mask(n: u8, bytes: u8) -> u64 {
     let n = u32::from(n);
     let low = match bytes {
@@ -249,8 +248,8 @@ fn floating_arms(i: &Instruction) -> u16 {
     }
 }
 
-/// Returns the register for the field [`Decoded::multiplier_source`]. For four of the sixteen data paths of a dual
-/// operation, the first source goes to the multiplier.
+/// Returns the value of [`Decoded::multiplier_source`]. In four of the sixteen data paths of dual operations, the first
+/// source goes to the multiplier.
 fn multiplier_source(i: &Instruction) -> u8 {
     // Row 9 applies only to operations whose first source goes to the multiplier.
     let reads_first = match i.op {

@@ -7,8 +7,8 @@ use crate::instruction::{Flags, Instruction, Op};
 use crate::mnemonic::mnemonic;
 use crate::syntax::{CONTROL_REGISTERS, Syntax};
 
-/// Returns the assembler text of an instruction word at an address. If the assembler would convert this text to another
-/// word, returns a `.long` directive with the word instead.
+/// Returns the assembler text of an instruction word at address `pc`. If this text would not assemble to the same word,
+/// returns a `.long` directive with the word instead.
 #[must_use]
 pub fn disassemble(word: u32, pc: u32) -> String {
     let text = decode(word).ok().map(|i| text(&i, pc));

@@ -1,5 +1,5 @@
-//! The external bus and the page-mode memory on the bus. The model computes the arrival time of all data at the
-//! request, without an event for each transfer.
+//! The external bus, and the page-mode memory on this bus. At a request, the model computes the arrival times of all
+//! data, without an event for each transfer.
 
 use crate::timing::{ChipSizes, DramTiming};
 
@@ -11,14 +11,12 @@ const BUS_DEPTH: usize = ChipSizes::PAPERS.bus_depth as usize;
 pub(crate) struct Transfer {
     /// Clock at which the first 8 bytes arrive. These bytes contain the requested data.
     pub(crate) first: u64,
-    /// Clock at which the last 8 bytes arrive.
     pub(crate) last: u64,
-    /// Number of clocks between successive transfers of 8 bytes.
     step: u64,
 }
 
 impl Transfer {
-    /// Returns the clock at which transfer `number` arrives. Transfer 0 has the requested 8 bytes.
+    /// Returns the clock at which transfer `number` arrives. Transfer 0 contains the requested data.
     pub(crate) fn arrival(&self, number: u32) -> u64 {
         self.first + u64::from(number) * self.step
     }
@@ -27,16 +25,16 @@ impl Transfer {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Dram {
     timing: DramTiming,
-    /// First clock at which a read of the open DRAM row can start. The data of the previous read can still arrive at
+    /// First clock at which a read of the open DRAM row can start. Data of the previous read can still be on the bus at
     /// this clock.
     free: u64,
-    /// Clock at which the transfer of the data of all requests ends. A write, or a request to another DRAM row, starts
-    /// at this clock or later.
+    /// Clock at which the data transfers of all requests end. A write, or a request to another DRAM row, cannot start
+    /// earlier.
     data_end: u64,
     open_page: u64,
     next_refresh: u64,
     next_dma: u64,
-    /// Clocks at which the latest requests end, the oldest request first.
+    /// End of each of the latest requests, in clocks, the oldest request first.
     outstanding: [u64; BUS_DEPTH],
     pub(crate) transfers: u64,
     pub(crate) page_misses: u64,
@@ -59,18 +57,18 @@ impl Dram {
         }
     }
 
-    /// Returns the first clock at which the bus's address pipe can take a request.
+    /// Returns the first clock at which the address pipe of the bus has room for a request.
     pub(crate) fn accepts_at(&self) -> u64 {
         self.outstanding[0]
     }
 
-    /// Returns the clock at which all earlier requests are complete.
     pub(crate) fn idle_at(&self) -> u64 {
         self.data_end.max(self.free)
     }
 
-    /// Adds the time of a refresh and of a transfer by another bus master, if they are due before a request at clock
-    /// `now`. Of several refreshes or transfers that are due, only the latest takes time (assumed).
+    /// Adds the times of a refresh of the DRAM and of a transfer by another bus master. Each time is added only if the
+    /// refresh or transfer is due at clock `now` or earlier. If several refreshes are due, only the latest refresh
+    /// takes time, and the same holds for transfers (assumed).
     fn steal(&mut self, now: u64) {
         let t = self.timing;
         for (interval, clocks, due) in [
@@ -102,7 +100,6 @@ impl Dram {
 
     fn finish(&mut self, transfer: Transfer) -> Transfer {
         self.data_end = self.data_end.max(transfer.last);
-        // The address pipe holds the latest requests.
         self.outstanding.rotate_left(1);
         self.outstanding[BUS_DEPTH - 1] = self.data_end;
         transfer
@@ -110,9 +107,8 @@ impl Dram {
 
     /// Reads `beats` transfers of 8 bytes. The requested 8 bytes arrive first.
     ///
-    /// Requests to the open DRAM row overlap. If the next request is to the same row, its first data follow
-    /// [`DramTiming::next`] clocks after the last data of this request. A row is closed only after the transfer of its
-    /// last data.
+    /// Requests to the open DRAM row overlap: the first data of a request follow [`DramTiming::next`] clocks after the
+    /// last data of the previous request. A row is closed only after the transfer of its last data.
     pub(crate) fn read(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);
@@ -126,7 +122,7 @@ impl Dram {
         self.finish(Transfer { first, last, step: t.next })
     }
 
-    /// Writes `beats` transfers of 8 bytes within one DRAM row. The write begins after the transfers of all reads.
+    /// Writes `beats` transfers of 8 bytes to one DRAM row. The write begins after the transfers of all reads.
     pub(crate) fn write(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);
@@ -149,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_fill_takes_the_first_access_and_three_more() {
+    fn a_line_fill_is_one_first_access_and_three_page_mode_accesses() {
         let t = quiet();
         let mut dram = Dram::new(t);
         let opening = dram.read(0, 0, 4);
@@ -159,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn overlapped_reads_of_the_open_row_arrive_one_after_another() {
+    fn overlapped_reads_of_the_open_row_arrive_in_sequence() {
         let t = quiet();
         let mut dram = Dram::new(t);
         let first = dram.read(0, 0, 1);
@@ -168,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_write_begins_when_the_data_of_a_read_have_passed() {
+    fn a_write_begins_after_the_data_of_the_previous_read() {
         let t = quiet();
         let mut dram = Dram::new(t);
         let line = dram.read(0, 0, 4);
@@ -176,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn another_row_is_opened_when_the_data_of_a_read_have_passed() {
+    fn another_row_is_opened_after_the_data_of_the_previous_read() {
         let t = quiet();
         let mut dram = Dram::new(t);
         let line = dram.read(0, 0, 4);
@@ -184,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn another_row_costs_the_opening_again() {
+    fn changing_the_row_costs_opening_it_again() {
         let t = quiet();
         let mut dram = Dram::new(t);
         dram.read(0, 0, 1);
@@ -193,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refresh_due_holds_a_request_and_one_due_a_clock_later_does_not() {
+    fn a_refresh_delays_a_request_only_if_it_is_due() {
         let t = DramTiming { refresh_interval: 100, refresh_clocks: 7, ..DramTiming::PAPERS };
         let mut due = Dram::new(t);
         assert_eq!(due.read(100, 0, 1).first, 100 + 7 + t.first_miss);
@@ -202,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn the_address_pipe_has_room_when_the_oldest_of_three_is_done() {
+    fn the_address_pipe_holds_three_requests() {
         let mut dram = Dram::new(quiet());
         let oldest = dram.read(0, 0, 1);
         dram.read(0, 8, 1);

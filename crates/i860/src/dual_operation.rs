@@ -2,8 +2,8 @@
 
 use crate::instruction::{Flags, Instruction, Op};
 
-/// A source from which the adder or the multiplier takes an operand in a dual operation. `M` and `A` are the results
-/// that leave the multiplier and the adder.
+/// A source of an operand of the adder or the multiplier in a dual operation. `M` and `A` are the results that leave
+/// the multiplier and the adder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Source {
@@ -16,8 +16,7 @@ pub(crate) enum Source {
     A,
 }
 
-/// One row of the table of data paths. The row is selected by the bit field DPC (data-path control) of a dual
-/// operation.
+/// One row of the table of data paths. The bit field DPC (data-path control) of a dual operation selects the row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Route {
     pub(crate) multiplier: [Source; 2],
@@ -30,8 +29,7 @@ const fn route(multiplier: [Source; 2], adder: [Source; 2], loads_t: bool, loads
     Route { multiplier, adder, loads_t, loads_k }
 }
 
-/// The sixteen data paths of pfam and pfsm, by the bit field DPC (data-path control). For pfmam and pfmsm,
-/// [`MULTIPLIER_ROUTES`] has `M` in place of every `A`.
+/// The sixteen data paths of pfam and pfsm, by the bit field DPC (data-path control).
 pub(crate) const ROUTES: [Route; 16] = {
     use Source::{A, Ki, Kr, M, S1, S2, T};
     [
@@ -54,8 +52,8 @@ pub(crate) const ROUTES: [Route; 16] = {
     ]
 };
 
-/// The sixteen data paths of pfmam and pfmsm. The table equals [`ROUTES`], with `M` (the multiplier's result) instead
-/// of `A`.
+/// The sixteen data paths of pfmam and pfmsm. They equal [`ROUTES`], with `M` (the multiplier's result) in place of
+/// `A`.
 pub(crate) const MULTIPLIER_ROUTES: [Route; 16] = {
     let mut routes = ROUTES;
     let mut n = 0;
@@ -75,8 +73,8 @@ const fn multiplier_for_adder(source: Source) -> Source {
     }
 }
 
-/// Returns, for the first and the second source, true if this source is in double precision. Such a source takes a pair
-/// of registers.
+/// Returns, for the first and the second source, true if the source is a double-precision number in a pair of
+/// registers.
 pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
     let s = i.has(Flags::SOURCE_DOUBLE);
     let r = i.has(Flags::RESULT_DOUBLE);
@@ -94,7 +92,7 @@ pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
 }
 
 /// Returns true if the first source goes to the adder or the graphics unit. Only these units can use a result in the
-/// clock in which the result leaves a pipe.
+/// clock in which it leaves a pipe.
 pub(crate) fn first_has_bypass(i: &Instruction) -> bool {
     match i.op {
         Op::DualOp => ROUTES[(i.imm & 15) as usize].adder[0] == Source::S1,

@@ -8,7 +8,8 @@ fn join16(imm: i32) -> u32 {
     (offset & 0xF800) << 5 | (offset & 0x07FF)
 }
 
-/// Encodes an instruction. All bit fields must be in range, as [`decode`](crate::decode()) and the assembler ensure.
+/// Encodes an instruction. All bit fields must be in range, as they are after [`decode`](crate::decode()) and in the
+/// assembler.
 #[must_use]
 pub fn encode(i: &Instruction) -> u32 {
     // Registers have fixed fields. Unused fields stay zero.

@@ -9,10 +9,9 @@ use crate::memo::ArrivingLine;
 use crate::timing::{ChipSizes, Freeze};
 use crate::translation::Translation;
 
-/// Value of `Fetch::line` when the fetch unit holds no cache line.
+/// Value of `Fetch::line` if the fetch unit holds no cache line.
 const NO_LINE: u32 = u32::MAX;
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
-/// Number of bus transfers that fill one cache line.
 const BEATS: u32 = LINE_BYTES / ChipSizes::PAPERS.bus_bytes as u32;
 
 #[derive(Clone, Debug)]
@@ -20,9 +19,9 @@ pub(crate) struct Fetch {
     cache: InstructionTags,
     /// Number of the cache line from which the last instruction was fetched.
     line: u32,
-    /// Clocks at which the 8-byte transfers of the cache line arrive, sorted by their position in the line.
+    /// Clocks at which the 8-byte transfers of this cache line arrive, in the order of their addresses.
     arrivals: [u64; BEATS as usize],
-    /// Position (0 to 3) within the cache line of the 8-byte transfer that arrives first.
+    /// Index (0 to 3) of the 8 bytes of the cache line that arrive first.
     first: u8,
 }
 
@@ -37,38 +36,37 @@ impl Fetch {
     }
 
     /// Records `line` as the cache line of the last fetch. The clock calls this function after it has reused memoized
-    /// clocks instead of counting each fetch.
+    /// clocks, because it then counts no fetches.
     #[inline]
     pub(crate) fn continue_in(&mut self, line: u32) {
         self.line = line;
     }
 
-    /// Returns true if `pc` is in the cache line of the last fetch.
     #[inline]
     pub(crate) fn is_in_line(&self, pc: u32) -> bool {
         pc / LINE_BYTES == self.line
     }
 
-    /// Returns true if a fetch from address `pc` misses the instruction cache and goes to the bus.
+    /// Returns true if a fetch from address `pc` misses the instruction cache and uses the bus.
     #[inline]
     pub(crate) fn misses(&self, pc: u32) -> bool {
         !self.is_in_line(pc) && !self.cache.holds(pc)
     }
 
-    /// Returns the part of the instruction-cache line that is still arriving from memory.
+    /// Returns the part of a cache line that is still arriving from memory.
     #[inline]
     pub(crate) fn filling(&self, common: &Common) -> ArrivingLine {
         let clocks = common.instruction_fill_end.saturating_sub(common.now);
         ArrivingLine { clocks, first: if clocks == 0 { 0 } else { self.first } }
     }
 
-    /// Gives all later states of the instruction cache numbers above `latest`, so that states of different processors
-    /// have different numbers.
+    /// Gives all later states of the instruction cache numbers above `latest`. States of different processors then have
+    /// different numbers.
     pub(crate) fn number_states_from(&mut self, latest: u64) {
         self.cache.number_changes_from(latest);
     }
 
-    /// Returns the number of the instruction cache's current state. The number changes with every fill of a cache line.
+    /// Returns the number of the current state of the instruction cache. It changes with every line fill.
     pub(crate) fn states(&self) -> u64 {
         self.cache.changes()
     }
@@ -83,7 +81,6 @@ impl Fetch {
         self.line = NO_LINE;
     }
 
-    /// Counts the clocks of the fetch of the instruction or pair at address `pc`.
     #[inline]
     pub(crate) fn fetch<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
         if pc / LINE_BYTES != self.line || common.is_filling() {
@@ -95,7 +92,7 @@ impl Fetch {
         if !common.costs.applies(Freeze::InstructionMiss) {
             return;
         }
-        // A word of the line that is still arriving waits for its own transfer.
+        // A word of a line that is still arriving waits for the word's own transfer.
         if pc / LINE_BYTES == self.line {
             let arrival = self.arrivals[(pc / 8 % BEATS) as usize];
             return common.await_instruction(arrival);

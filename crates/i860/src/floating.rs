@@ -10,8 +10,7 @@ use crate::operands::{Operands, last_product};
 use crate::state::{PipeStage, State, fsr, psr};
 
 impl Cpu {
-    /// Executes a floating-point instruction, alone or as half of a pair. `from` holds the operands, which were already
-    /// read.
+    /// Executes a floating-point instruction, alone or in a pair. `from` holds the values of the operands.
     #[inline(always)]
     pub(crate) fn floating<'a>(&mut self, action: &FloatingAction, unit: impl Fn() -> &'a Unit, from: Operands) {
         use Operation::{Add, Multiply, Subtract};
@@ -30,7 +29,7 @@ impl Cpu {
             Floating::Subtract => self.scalar_single(Subtract, action, from),
             Floating::Nothing => {}
             Floating::Singles | Floating::Doubles | Floating::Any => {
-                // The other kinds read their operation from the instruction.
+                // The remaining kinds read their operation from the instruction.
                 self.by_instruction(&unit().first.instruction, from);
             }
         }
@@ -47,7 +46,7 @@ impl Cpu {
     #[inline(always)]
     fn pipelined_double(&mut self, operation: Operation, action: &FloatingAction, from: Operands) {
         let bits = self.double(operation, from);
-        // For doubles, the multiplier has two stages, and the adder has three stages.
+        // For doubles, the multiplier has two stages and the adder has three stages.
         let last = if operation == Operation::Multiply { 1 } else { 2 };
         let leaving = push(self.pipe_of(operation), last, PipeStage { bits, double: true });
         self.state.set_f(action.dest, leaving);
@@ -77,7 +76,6 @@ impl Cpu {
         single(operation, f32::from_bits(a as u32), f32::from_bits(b as u32), self.flush_to_zero())
     }
 
-    /// Returns the pipe that an operation uses: the pipe of the adder or of the multiplier.
     #[inline(always)]
     fn pipe_of(&mut self, operation: Operation) -> &mut [PipeStage; 3] {
         let State { multiplier, adder, .. } = &mut self.state;
@@ -141,7 +139,7 @@ impl Cpu {
         push(&mut self.state.adder, 2, sum);
     }
 
-    /// Stores a result of the adder. A scalar result goes to its register. A pipelined result enters the adder's pipe.
+    /// Writes a scalar result of the adder to its register, or pushes a pipelined result into the adder's pipe.
     #[inline]
     fn adder_result(&mut self, i: &Instruction, result: PipeStage) {
         if i.has(Flags::PIPELINED) {
@@ -185,13 +183,13 @@ impl Cpu {
             _ => self.seeds.reciprocal_root(x),
         };
         let bits = if r { y } else { u64::from(narrow(y, self.flush_to_zero())) };
-        // A seed goes through the multiplier and destroys its results.
+        // A seed (first approximation) goes through the multiplier and destroys its results.
         lose(&mut self.state.multiplier);
         self.state.set_f(i.dest, PipeStage { bits, double: r });
     }
 
-    /// Converts a floating-point value to an integer. On the real chip the high word of the result is undefined. In
-    /// this model, `fix` clears the high word, and scalar `ftrunc` keeps the old high word.
+    /// Converts a floating-point value to an integer. The high word of the result is undefined on the real chip. In
+    /// this model, `fix` clears it, and scalar `ftrunc` leaves the old high word.
     fn integer_part(&mut self, i: &Instruction, x: u64) {
         let wide = if i.has(Flags::SOURCE_DOUBLE) { x } else { widen(x as u32) };
         let mode = if i.op == Op::Fix { self.state.fsr >> fsr::RM_SHIFT & 3 } else { 3 };
@@ -207,7 +205,7 @@ impl Cpu {
         self.adder_result(i, PipeStage { bits, double: r });
     }
 
-    /// Executes pfam, pfsm, pfmam or pfmsm. The registers K and T are read before new values are loaded into them.
+    /// Executes pfam, pfsm, pfmam or pfmsm. The registers K and T are read before they receive new values.
     fn dual_operation(&mut self, i: &Instruction, from: Operands) {
         let s = i.has(Flags::SOURCE_DOUBLE);
         let r = i.has(Flags::RESULT_DOUBLE);
@@ -220,7 +218,7 @@ impl Cpu {
         if !(s || r || leaving_product.double || leaving_sum.double) {
             return self.single_dual_operation(i, route, from, [leaving_product, leaving_sum]);
         }
-        // Select the sources of adder and multiplier by the DPC route.
+        // Select the sources of adder and multiplier by the bit field DPC.
         let for_adder = self.sources(from, leaving_product, leaving_sum, r);
         let for_multiplier = if s == r { for_adder } else { self.sources(from, leaving_product, leaving_sum, s) };
         let [m1, m2] = route.multiplier.map(|source| for_multiplier[source as usize]);
@@ -228,7 +226,7 @@ impl Cpu {
         let product = operate(Operation::Multiply, m1, m2, s, r, flush);
         let operation = if i.imm & 16 != 0 { Operation::Subtract } else { Operation::Add };
         let sum = operate(operation, a1, a2, r, r, flush);
-        // The destination receives the result that leaves a pipe. T and K are reloaded after their use.
+        // The destination receives the result that leaves a pipe. T and K receive new values only after their use.
         self.state.set_f(i.dest, if pipelined { leaving_sum } else { leaving_product });
         if route.loads_t {
             self.state.t = convert(leaving_product, r, flush);
@@ -240,12 +238,11 @@ impl Cpu {
         self.push_sum(sum);
     }
 
-    /// Executes a dual operation whose operands and results are all in single precision.
     #[inline]
     fn single_dual_operation(&mut self, i: &Instruction, route: &Route, from: Operands, leaving: [PipeStage; 2]) {
         let flush = self.flush_to_zero();
         let [product, sum] = leaving;
-        // Select the four operands by the DPC route.
+        // Select the four operands by the bit field DPC.
         let State { kr, ki, t, .. } = self.state;
         let sources = [kr, ki, t, from.a, from.b, product.bits, sum.bits].map(|bits| f32::from_bits(bits as u32));
         let of = |source: Source| sources[source as usize];
@@ -265,8 +262,8 @@ impl Cpu {
         self.push_sum(PipeStage { bits: u64::from(new_sum), double: false });
     }
 
-    /// Returns the values of all [`Source`]s in the order of the enumeration, as bit patterns. `double` selects double
-    /// precision.
+    /// Returns the bit patterns of all [`Source`]s in the order of the enumeration, in double precision if `double` is
+    /// true.
     #[inline(always)]
     fn sources(&self, from: Operands, product: PipeStage, sum: PipeStage, double: bool) -> [u64; 7] {
         let product = self.in_precision(product, double);
@@ -288,11 +285,11 @@ impl Cpu {
     }
 }
 
-/// Bit pattern that is NaN in both precisions. The model uses this NaN for undefined values, so that their use becomes
-/// visible in results.
+/// A bit pattern that is NaN in both precisions. The model uses it for undefined values, so that their use is visible
+/// in results.
 const LOST: u64 = 0x7FF8_0000_7FC0_0000;
 
-/// Pushes a result into a pipe and returns the value that leaves the stage `last`, which is the last used stage.
+/// Pushes a result into a pipe, and returns the value that leaves the pipe at stage `last`, the last used stage.
 #[inline(always)]
 fn push(pipe: &mut [PipeStage; 3], last: usize, result: PipeStage) -> PipeStage {
     let [first, second, _] = *pipe;
@@ -309,7 +306,7 @@ fn lose(pipe: &mut [PipeStage; 3]) {
     }
 }
 
-/// Converts a bit pattern in single or double precision to a number.
+/// Converts the bits of a single-precision number (or of a double-precision number if `double` is true) to an `f64`.
 fn number(bits: u64, double: bool) -> f64 {
     f64::from_bits(if double { bits } else { widen(bits as u32) })
 }

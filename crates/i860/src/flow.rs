@@ -1,11 +1,9 @@
 //! Control flow after an instruction or pair.
 
-/// Control flow after an instruction or pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Flow {
-    /// Continue with the instruction that follows in memory.
     Next,
-    /// Continue with the instruction that follows in memory, which a store may have changed.
+    /// Continue with the next instruction in memory, which a store may have changed.
     NextOfChangedCode,
     /// Jump to the target address immediately.
     Jump(u32),

@@ -1,31 +1,28 @@
-//! Freezes: hazards for which the processor stops issuing instructions. This module has the rules, and [`FreezeClocks`]
-//! has the delays in clocks.
+//! Freezes: hazards that stop the issue of instructions. This module contains the rules, and [`FreezeClocks`] contains
+//! the delays in clocks.
 
 use crate::timing::FreezeClocks;
 use pxpl5_sim::parameters::{ParameterInfo, ParameterTable};
 
-/// One row of the freeze table [`FREEZES`]: a condition under which the processor stops issuing instructions, and the
-/// delay.
+/// One row of the freeze table [`FREEZES`]: a condition that stops the issue of instructions, and its delay.
 #[derive(Clone, Copy, Debug)]
 pub struct FreezeRow {
-    /// Name of the row in Rust code.
     pub id: Freeze,
-    /// Number of the row in Intel's list of instruction timings, as the authors remember the list. A letter follows the
-    /// number if a row of Intel's list has several delays.
+    /// Number of the row in Intel's list of instruction timings, as the authors remember the list. A letter follows if
+    /// the row of Intel's list has several delays.
     pub number: &'static str,
-    /// Description of the condition under which the processor stops issuing instructions.
+    /// Description of the condition that stops the issue of instructions.
     pub condition: &'static str,
-    /// Description of the variable part of the delay, which is added to or subtracted from the constant part.
+    /// Description of the variable part of the delay, which is added to the constant part or subtracted from it.
     pub variable: &'static str,
-    /// Description of the constant part of the delay: value, range and source. The field of [`FreezeClocks`] with the
-    /// same position holds the value.
+    /// Description of the constant part of the delay: value, range and source. The value itself is in the field of
+    /// [`FreezeClocks`] with the same position.
     pub clocks: &'static ParameterInfo,
 }
 
-/// Declares the enumeration `Freeze` and the table `FREEZES` from one list of rows.
 macro_rules! freezes {
     ($($id:ident $number:literal $condition:literal $variable:literal;)*) => {
-        /// A hazard for which the processor stops issuing instructions. The variants have the order of [`FREEZES`].
+        /// A hazard that stops the issue of instructions. The variants have the order of [`FREEZES`].
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[repr(u8)]
         #[non_exhaustive]
@@ -33,14 +30,13 @@ macro_rules! freezes {
             $(#[doc = concat!("Row ", $number, ": ", $condition, ".")] $id,)*
         }
 
-        /// Number of rows of [`FREEZES`].
         pub const N_FREEZES: usize = [$($number),*].len();
 
-        /// The freeze rules. Of several simultaneous freezes, only the longest freeze counts, but the clocks of cache
-        /// misses are added.
+        /// The freeze rules. Of several simultaneous freezes, only the longest counts. The clocks of cache misses are
+        /// added.
         ///
-        /// In the conditions, the word "since" refers to clocks. If an instruction in between was frozen, the wait is
-        /// shorter by the number of clocks of this freeze.
+        /// In the texts, "since" counts clocks. If an instruction in between was frozen, the wait is shorter by the
+        /// clocks of this freeze.
         pub const FREEZES: [FreezeRow; N_FREEZES] = [$(FreezeRow {
             id: Freeze::$id,
             number: $number,
@@ -85,14 +81,14 @@ freezes! {
     SeedUse "25" "result of frcp or frsqr used by the next instruction" "";
 }
 
-/// The rows of the freeze table that are enabled, and the constant parts of their delays.
+/// The enabled rows of the freeze table, and the constant parts of the delays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FreezeRules {
     enabled: u32,
     /// Constant parts of the delays in all rows of the freeze table, including disabled rows.
     pub clocks: FreezeClocks,
-    /// Row 8 of the freeze table delays a conditional branch after an operation that sets CC. True if row 8 also
-    /// applies after and, andnot, or and xor. Intel's list does not decide this question. The default is false.
+    /// If true, row 8 of the freeze table also applies after and, andnot, or and xor. Row 8 delays a conditional branch
+    /// after an operation that sets CC. Intel's list does not decide this question. The default is false.
     pub logicals_delay_branches: bool,
 }
 
@@ -124,26 +120,24 @@ impl FreezeRules {
         self
     }
 
-    /// Returns a text with the numbers of the enabled rows of the freeze table, in order. If row 8 also applies after
-    /// logical operations, the text states this fact.
+    /// Returns a text with the numbers of the enabled rows of the freeze table, in order. The text also states if row 8
+    /// applies after logical operations.
     pub(crate) fn names(&self) -> String {
         let applying = FREEZES.iter().filter(|row| self.applies(row.id)).map(|row| row.number);
         let logicals = self.logicals_delay_branches.then_some("logicals delay branches");
         applying.chain(logicals).collect::<Vec<_>>().join(" ")
     }
 
-    /// Returns true if a row of the freeze table is enabled.
     #[must_use]
     pub fn applies(&self, id: Freeze) -> bool {
         self.enabled & 1 << id as u32 != 0
     }
 }
 
-/// The delays of the freeze table, stored for quick access by the clock.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Costs {
     enabled: u32,
-    /// Constant part of the delay in each row of the freeze table, in clocks, or 0 if the row is disabled.
+    /// Constant part of the delay in each row, in clocks, or 0 if the row is disabled.
     clocks: [u64; N_FREEZES],
     pub(crate) logicals_delay_branches: bool,
 }
@@ -164,7 +158,7 @@ impl Costs {
         self.enabled & 1 << id as u32 != 0
     }
 
-    /// Returns the constant part of the delay in a row of the freeze table, in clocks, or 0 if the row is disabled.
+    /// Returns the constant part of the delay in row `id` of the freeze table, in clocks, or 0 if the row is disabled.
     #[inline]
     pub(crate) fn clocks(&self, id: Freeze) -> u64 {
         self.clocks[id as usize]

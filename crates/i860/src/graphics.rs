@@ -10,9 +10,8 @@ use crate::state::PipeStage;
 const PIXEL_MERGE: [(u64, u32); 3] =
     [(0xFF00_FF00_FF00_FF00, 8), (0xFC00_FC00_FC00_FC00, 6), (0xFF00_0000_FF00_0000, 8)];
 
-/// Compares the depths in `a` with the depths in `b`. Both words hold unsigned depths of `width` bits. Returns the
-/// smaller depth of each pair, and one bit for each pair. The bit is set if the depth in `b` is not greater than the
-/// depth in `a`.
+/// Compares unsigned depths of `width` bits in `a` and `b`. Returns the smaller depth of each pair, and one bit for
+/// each pair. The bit is set if the depth in `b` is not greater than the depth in `a`.
 fn z_check(a: u64, b: u64, width: u32) -> (u64, u32) {
     let field = (1u64 << width) - 1;
     let mut result = (0, 0);

@@ -1,6 +1,7 @@
 //! The instruction set: operations, bit fields of instructions, and the units and registers that an operation uses.
 
-/// Every operation of the i860 XR. The precision, the addressing form and pipelining are in [`Flags`].
+/// The operations of the i860 XR. Precision, addressing form and pipelining are not part of the operation: they are in
+/// [`Flags`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Op {
@@ -147,32 +148,31 @@ pub enum Op {
     DualOp,
 }
 
-/// A set of flags that modify an instruction.
+/// A set of flags of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct Flags(pub u8);
 
 impl Flags {
-    /// Flag: the first source is an immediate.
+    /// The first source is an immediate.
     pub const IMMEDIATE: Flags = Flags(1);
-    /// Flag: the base register receives the effective address (auto-increment).
+    /// The base register receives the effective address (auto-increment).
     pub const AUTOINCREMENT: Flags = Flags(2);
-    /// Flag: the operation is pipelined. In dual operations the flag selects `pfam` and `pfsm` instead of `pfmam` and
+    /// The operation is pipelined. In dual operations, the flag selects `pfam` and `pfsm` instead of `pfmam` and
     /// `pfmsm`.
     pub const PIPELINED: Flags = Flags(4);
-    /// Flag: the D bit, which starts and continues dual-instruction mode.
+    /// The D bit, which starts and continues dual-instruction mode.
     pub const DUAL: Flags = Flags(8);
     /// The S bit: the sources are in double precision.
     pub const SOURCE_DOUBLE: Flags = Flags(16);
     /// The R bit: the result is in double precision.
     pub const RESULT_DOUBLE: Flags = Flags(32);
 
-    /// Returns true if this set contains all flags of `other`.
     #[must_use]
     pub fn has(self, other: Flags) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// Returns the union of this set and `other` if `condition` is true, else this set.
+    /// Returns the union of this set and `other` if `condition` is true, otherwise this set.
     #[must_use]
     pub fn with(self, other: Flags, condition: bool) -> Flags {
         Flags(self.0 | if condition { other.0 } else { 0 })
@@ -181,43 +181,37 @@ impl Flags {
 
 /// One decoded instruction.
 ///
-/// `dest`, `src1` and `src2` are register numbers 0..=31 as encoded. `op` determines the register file. A store of an
-/// integer register stores register `src1`, and `fst` and `pst` store register `dest`. `imm` holds the immediate, the
-/// displacement in bytes, or the branch offset in words. `size` is the operand size in bytes of fld, fst, pfld and pst,
-/// and 0 for other operations.
+/// `op` determines the register file. A store of an integer register stores register `src1`, and `fst` and `pst` store
+/// register `dest`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Instruction {
-    /// Operation. The precision and the addressing form are in `flags`.
     pub op: Op,
-    /// Number of the destination register. The operation determines whether this is an integer or a floating-point
-    /// register.
+    /// Destination: a register number from 0 to 31. The operation determines the register file.
     pub dest: u8,
-    /// Number of the first source register. (For ld.c and st.c, `src2` selects the control register.)
+    /// Register number of the first source. (For ld.c and st.c, `src2` selects the control register.)
     pub src1: u8,
-    /// Number of the second source register, or of the base register of an address.
+    /// Register number of the second source, or of the base of an address.
     pub src2: u8,
     /// Operand size in bytes for floating-point loads and stores, 0 for other operations.
     pub size: u8,
-    /// Flags for precision, pipelining, addressing form and dual-instruction mode.
     pub flags: Flags,
     /// Immediate, address displacement in bytes, or branch offset in words.
     pub imm: i32,
 }
 
 impl Instruction {
-    /// Makes an instruction with the given operation. All operands and flags are zero.
+    /// Makes an instruction whose operands and flags are all zero.
     #[must_use]
     pub fn new(op: Op) -> Instruction {
         Instruction { op, dest: 0, src1: 0, src2: 0, size: 0, flags: Flags(0), imm: 0 }
     }
 
-    /// Returns true if the instruction has all flags of `flags`.
     #[must_use]
     pub fn has(&self, flags: Flags) -> bool {
         self.flags.has(flags)
     }
 
-    /// Returns true if the operation executes in the floating-point half of a pair.
+    /// Returns true if the operation belongs in the floating-point half of a pair.
     #[must_use]
     pub fn is_floating(&self) -> bool {
         self.op >= Op::Fnop
@@ -245,20 +239,18 @@ impl Instruction {
         logical || matches!(self.op, Addu | Subu | Op::Adds | Subs | Pfgt | Pfle | Pfeq)
     }
 
-    /// Returns true if the operation uses the multiplier.
     #[must_use]
     pub fn uses_multiplier(&self) -> bool {
         matches!(self.op, Op::Fmul | Op::Fmul3 | Op::Fmlow | Op::Frcp | Op::Frsqr | Op::DualOp)
     }
 
-    /// Returns true if the operation uses the adder.
     #[must_use]
     pub fn uses_adder(&self) -> bool {
         use Op::{DualOp, Fadd, Famov, Fix, Fsub, Ftrunc, Pfeq, Pfgt, Pfle};
         matches!(self.op, Fadd | Fsub | Fix | Famov | Pfgt | Pfle | Pfeq | Ftrunc | DualOp)
     }
 
-    /// Returns true if the operation belongs to the graphics unit (`fxfr` included).
+    /// Returns true if the operation belongs to the graphics unit, like `fxfr`.
     #[must_use]
     pub fn uses_graphics(&self) -> bool {
         self.op >= Op::Fxfr && self.op < Op::DualOp

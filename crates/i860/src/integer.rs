@@ -94,7 +94,7 @@ impl Cpu {
         }
     }
 
-    /// Writes a control register. In user mode only fsr, epsr.OF and the user bits of psr can change.
+    /// Writes a control register. In user mode, only fsr, epsr.OF and the user bits of psr can change.
     pub(crate) fn write_control(&mut self, register: u8, value: u32) {
         // In user mode, a program can change only a part of the bits.
         let user = self.state.psr & psr::U != 0;
@@ -114,8 +114,8 @@ impl Cpu {
         self.directory_base = Some(value);
     }
 
-    /// Applies a new value of the directory-base register to caches and translation. The caller has already counted the
-    /// clocks of the instruction that writes the register.
+    /// Applies a new value of the directory-base register to the caches and to address translation. The caller has
+    /// already counted the clocks of the instruction.
     #[cold]
     pub(crate) fn apply_directory_base(&mut self, value: u32) {
         if value & dirbase::ITI != 0 {
@@ -134,7 +134,7 @@ impl Cpu {
     }
 }
 
-/// Returns `new` in the bits that `mask` contains, and `old` in the other bits.
+/// Returns the bits of `new` where `mask` is set, and the bits of `old` elsewhere.
 fn merge(old: u32, new: u32, mask: u32) -> u32 {
     old & !mask | new & mask
 }

@@ -35,9 +35,10 @@
 //!   arithmetic, the 62 dual operations, pipelined loads, graphics unit, delay slots, `bla`, dual-instruction mode, and
 //!   control registers.
 //! - Arithmetic is IEEE, rounded to nearest even, with the same bits on every computer. fsr.FZ flushes results to zero.
-//!   Without traps a NaN result is the first NaN operand made quiet, or the default NaN with its sign set.
-//! - A scalar operation (including `frcp` and `frsqr`) destroys the contents of its unit's pipe. In this model, the
-//!   contents become NaN. The assembler prints a warning for code that reads a result from a pipe after a scalar
+//!   Without traps, a NaN result is the first NaN operand, converted to a quiet NaN, or the default NaN with its sign
+//!   set.
+//! - A scalar operation (including `frcp` and `frsqr`) destroys the contents of its unit's pipe. The contents become
+//!   NaN in this model. The assembler prints a warning for code that reads a result from a pipe after a scalar
 //!   operation.
 //! - The results of the approximations `frcp` and `frsqr` come from a [`SeedTable`], because the chip's table is not
 //!   public.
@@ -48,37 +49,37 @@
 //!
 //! # Timing
 //!
-//! An instruction or pair is issued in one clock unless a row of [`timing::FREEZES`] delays it. If several freezes
-//! occur together, only the longest freeze counts, but the times of cache misses are added. Every row can be disabled
-//! or given another cost. Every DRAM time is a parameter with an allowed range. A [`Profile`] accounts for every clock.
+//! An instruction or pair is issued in one clock unless a row of [`timing::FREEZES`] delays it. Of several simultaneous
+//! freezes, only the longest counts. The times of cache misses are added. An experiment can disable every row or change
+//! its cost. Every DRAM time is a parameter with an allowed range. A [`Profile`] accounts for every clock.
 //!
 //! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte cache
 //! lines and pseudo-random replacement. A write miss allocates no cache line. The TLB has 64 entries.
 //!
-//! All rows are *assumed*. They repeat Intel's list of instruction timings as the authors remember it. Tests compare
+//! All rows are *assumed*: they repeat Intel's list of instruction timings as the authors remember it. Tests compare
 //! the model with published figures: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, and about 48
-//! clocks for a square root. One published figure is a tree-traversal loop of 117 instructions in 106 clocks. The
-//! published description is not sufficient to write the same code. The test runs a loop of the same shape (pairs, odd
-//! entry, taken `bnc.t`). The test therefore checks the issue rules, but not the published program.
+//! clocks for a square root. Another published figure is 106 clocks for 117 instructions of a tree-traversal loop,
+//! whose code is not published. The test therefore runs a loop of the same shape (pairs, odd entry, taken `bnc.t`), and
+//! checks only the issue rules.
 //!
 //! # Speed
 //!
 //! Code is decoded once, as basic blocks. A block extends from an address to the next branch, and includes its delay
 //! slot. The processor executes a block, and the clock then counts its time.
 //!
-//! A *run* is a part of a block whose instructions and data are all in the caches. A run uses neither the bus nor the
-//! queues nor the replacement sequence. The clocks of a run depend only on three things: the remaining waits of earlier
+//! A *run* is a part of a block whose instructions and data are all in the caches. A run does not use the bus, the
+//! queues or the replacement sequence. The clocks of a run depend only on three things: the remaining waits of earlier
 //! instructions, the rest of an arriving instruction-cache line, and taken branches and traps. The model memoizes these
 //! clocks and reuses them, like FastSim (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this optimization
 //! on.
 //!
-//! A block is one run, or several runs separated by accesses that leave the cache. The model counts these accesses, and
-//! instructions after a wait of more than 15 clocks, one by one. A block that is not entirely in the instruction cache
-//! is also split at cache lines.
+//! A block is one run, or several runs between accesses that miss the cache. The model counts the clocks of these
+//! accesses one by one, and also the clocks of instructions after a wait of more than 15 clocks. A block that is not
+//! entirely in the instruction cache is also split at cache lines.
 //!
 //! Counted and reused clocks give the same state, clocks and profile. `tests/memo.rs` checks random programs, including
-//! programs larger than the caches. `crates/pphigs/tests/memo.rs` checks the triangle kernels with changes of every
-//! row. The benchmarks of `crates/pphigs` measure the gain for these kernels.
+//! programs larger than the caches. `crates/pphigs/tests/memo.rs` checks the triangle kernels with changed delays in
+//! every row. The benchmarks of `crates/pphigs` measure the gain for these kernels.
 //!
 //! A [`DecodedPrograms`] keeps decoded programs and their clocks for all processors that run them. Profiles by address
 //! ([`Cpu::watch`]) and address translation always count every instruction.
@@ -95,7 +96,7 @@
 //!   protection.
 //! - Big-endian data (epsr.BE), breakpoints (db), floating-point traps (FTE), kill-next (KNF), the 8-bit boot mode.
 //! - Rounding modes other than to nearest, except in `fix`. The status bits of fsr are not modelled either.
-//! - Results of instructions with undefined choices of registers.
+//! - Results of instructions with registers for which Intel leaves the result undefined.
 //! - Contents of the caches. The caches are always coherent and affect only the time. A store of the processor into its
 //!   own code takes effect immediately.
 //! - XP additions: `pfld.q`, registers bear, ccr, p0 to p3.
@@ -170,7 +171,6 @@ pub use state::State;
 pub use timing::{CHIP_PATH, Config};
 pub use trap::{RunEnd, Trap, TrapCause};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

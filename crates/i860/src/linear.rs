@@ -1,11 +1,11 @@
-//! A scheduler that converts straight-line code to pairs for dual-instruction mode. The source of the code contains no
-//! registers and no order of instructions.
+//! A scheduler that converts straight-line code to instruction pairs for dual-instruction mode. The scheduler chooses
+//! the registers and the order of the instructions.
 //!
 //! A *linear stretch* is the part of an assembler source between `.linear` and `.endlinear`. Each line of a stretch
-//! computes a value from other values. The line states an operation, but not the pipe that executes the operation.
-//! [`schedule`] replaces the stretch by pairs of a floating-point and a core instruction. The scheduler chooses the
-//! order, fills and drains the pipes of adder and multiplier, and assigns registers. The operations and their operands
-//! stay as written, so results do not depend on the order.
+//! computes a value from other values. The line contains an operation, but not the pipe that executes it. [`schedule`]
+//! replaces the stretch by pairs of a floating-point and a core instruction. The scheduler chooses the order, fills and
+//! drains the pipes of adder and multiplier, and assigns registers. The operations and their operands stay as written,
+//! so results do not depend on the order.
 //!
 //! ```text
 //!         .linear                       or with numbers: window, eagerness, reserve, slope, shake
@@ -41,18 +41,18 @@
 //! that begins with the first unissued line. From the operations in the window that can be issued, the scheduler
 //! selects the operation with the longest path to the end of the stretch.
 //!
-//! The first line in the window can take the last free registers. Later lines must leave a *reserve* of free registers.
-//! For each 64 lines of distance from the first line, the reserve increases (*slope*). With this reserve, no schedule
-//! lacks registers.
+//! Only the first line in the window may use the last free registers. Later lines must leave a *reserve* of free
+//! registers. For each 64 lines of distance from the first line, the reserve increases by *slope* registers. With this
+//! reserve, no schedule runs out of registers.
 //!
 //! An operation without operands pushes a pipe (a *drain*) in two cases. In the first case, no operation can be issued.
-//! In the second case, a value in the pipe is more urgent than the best operation by more than the *eagerness*. An
+//! In the second case, a value in the pipe has a longer path than the best operation, by more than the *eagerness*. An
 //! operation that can be a dual operation also pushes the other pipe, if no result is lost.
 //!
 //! The scheduler respects the rules of the freeze table. The scheduled code therefore runs without freezes if all
-//! accesses hit the caches. If the parameter *shake* is not 0, the scheduler changes the priorities a little. The
-//! lengths of schedules of the same text then differ by some per cent. A search can try many values and keep the
-//! shortest schedule.
+//! accesses hit the caches. If the parameter *shake* is not 0, the scheduler changes the priorities at random by small
+//! amounts. The length of the schedule then changes by some per cent. A search can try many values of *shake* and keep
+//! the shortest schedule.
 
 mod machine;
 mod parse;
@@ -64,21 +64,20 @@ use crate::assembler::select;
 use std::cell::RefCell;
 use std::fmt::Write as _;
 
-/// The numbers of floating-point and core operations in a linear stretch, and the number of pairs in its schedule.
-/// Without freezes, each pair takes one clock.
+/// Number of operations in a linear stretch, and number of pairs in its schedule. Without freezes, each pair takes one
+/// clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slots {
-    /// Number of floating-point operations. A multiply with double-precision sources counts twice, because the
-    /// multiplier accepts one such multiply every second clock.
+    /// Number of floating-point operations. A multiplication of doubles counts twice, because the multiplier accepts
+    /// one such multiplication every second clock.
     pub floating: usize,
-    /// Number of core operations. A schedule needs at least as many pairs as the maximum of `floating` and `core`.
+    /// Number of core operations. A schedule needs at least as many pairs as the greater of `floating` and `core`.
     pub core: usize,
-    /// Number of instruction pairs in the schedule.
     pub pairs: usize,
 }
 
-/// Returns the numbers of operations in each linear stretch (from `.linear` to `.endlinear`) of an assembly text, in
-/// the order of the text.
+/// Returns the number of operations in each linear stretch (from `.linear` to `.endlinear`) of an assembly text, in the
+/// order of the text.
 ///
 /// # Errors
 /// Returns the errors of [`schedule`].
@@ -87,7 +86,7 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, AssemblyError> {
     stretches(
         source,
         |operations, pairs| {
-            // A multiply of doubles takes two slots.
+            // A multiplication of doubles takes two slots.
             let floating = operations.iter().filter(|operation| operation.name.unit.is_floating());
             let doubles = floating
                 .clone()
@@ -102,7 +101,7 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, AssemblyError> {
 }
 
 /// Replaces every linear stretch (from `.linear` to `.endlinear`) of an assembly text by instruction pairs. Lines that
-/// a condition (`.if`) excludes become empty. Other lines stay unchanged.
+/// a condition (`.if`) excludes become empty. All other lines stay unchanged.
 ///
 /// # Errors
 /// Returns an [`AssemblyError`] for the first line with an error, or for a stretch whose values need too many
@@ -123,8 +122,8 @@ pub fn schedule(source: &str) -> Result<String, AssemblyError> {
     Ok(out.into_inner())
 }
 
-/// Reads an assembly text in order. For each linear stretch, calls `linear` with the operations and their schedule of
-/// pairs. For every line outside a stretch, calls `other`.
+/// Reads an assembly text from top to bottom. Calls `linear` with the operations and the schedule of each linear
+/// stretch, and `other` with each line outside a stretch.
 fn stretches(
     source: &str,
     mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),

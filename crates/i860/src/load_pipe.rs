@@ -1,5 +1,5 @@
-//! The pipe of pipelined loads (`pfld`). The data of a `pfld` bypass the cache. The third `pfld` after this load writes
-//! the data to a register.
+//! The pipe of pipelined loads (`pfld`), whose data bypass the cache. The third `pfld` after a load writes the data of
+//! this load to a register.
 
 use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};
@@ -9,13 +9,12 @@ const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LoadPipe {
-    /// Clocks at which the data of the latest pipelined loads (`pfld`) arrive, the oldest load first.
+    /// Clocks at which the data of the latest `pfld` instructions arrive, the oldest first.
     arrivals: [u64; DEPTH],
 }
 
 impl LoadPipe {
-    /// Starts a pipelined load. If three loads are outstanding, the processor first waits for the data of the oldest
-    /// load.
+    /// Starts a pipelined load. If three loads are outstanding, the processor first waits for the data of the oldest.
     pub(crate) fn load(&mut self, address: u32, size: u32, is_in_cache: bool, common: &mut Common) {
         // The pipe has three stages, so the fourth load waits for the first.
         let oldest = self.arrivals[0];
@@ -31,7 +30,8 @@ impl LoadPipe {
     }
 }
 
-/// Returns the clock at which data from the cache arrive. These data arrive after the end of all earlier bus cycles.
+/// Returns the clock at which data from the cache are ready. The data are ready only after the end of all earlier bus
+/// cycles.
 fn from_cache(common: &mut Common) -> u64 {
     if common.costs.applies(Freeze::PipelinedLoadHit) {
         let until = common.bus.idle_at().max(common.now) + common.costs.clocks(Freeze::PipelinedLoadHit);

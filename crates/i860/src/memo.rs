@@ -1,55 +1,52 @@
-//! Memoization: the clocks of repeated code are stored and reused instead of counted again.
+//! Memoization: the model stores the clocks of code, and reuses them when the code runs again.
 //!
 //! The idea comes from FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
 //! 1998). A run is a part of a basic block whose instructions and data are all in the caches. A run leaves the bus, the
 //! queues and the replacement sequence unchanged. The clocks of a run depend on three things: the scoreboard before the
 //! run, the rest of an arriving instruction-cache line, and branches and traps.
 //!
-//! Each distinct scoreboard has a number, so a comparison of integers finds a run. Between two runs, accesses that need
-//! the bus are counted with the full scoreboard.
+//! Each distinct scoreboard has a number, so a comparison of integers finds a run. Accesses that need the bus end a
+//! run, and their clocks are counted with the full scoreboard.
 
 use crate::profile::Profile;
 use crate::scoreboard::{PendingWaits, Scoreboard};
 use crate::timing::{FREEZES, N_FREEZES};
 use rustc_hash::FxHashMap;
 
-/// Longest wait, in clocks, that a numbered scoreboard state can contain. States with longer waits get no number, so
-/// their clocks are not memoized.
+/// Longest wait, in clocks, in a numbered scoreboard state. States with longer waits get no number, so their clocks are
+/// not memoized.
 pub(crate) const MOST_CLOCKS: u8 = 15;
-/// Greatest number of scoreboard states that get a number. In a state without a number, the clocks of code are counted
-/// instruction by instruction.
+/// Greatest number of scoreboard states that get a number. Code that starts in a state without a number is not
+/// memoized.
 const MOST_NUMBERS: usize = 1 << 15;
 
 /// The number of a scoreboard state (the remaining waits for registers and units). The highest bit is set if an
-/// instruction-cache line is arriving in this state.
+/// instruction-cache line is arriving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Number(u32);
 
 impl Number {
     const FILLING: u32 = 1 << 31;
 
-    /// Returns true if an instruction-cache line was still arriving in this state.
+    /// Returns true if, in this scoreboard state, an instruction-cache line is still arriving.
     #[inline]
     pub(crate) fn is_filling(self) -> bool {
         self.0 & Number::FILLING != 0
     }
 }
 
-/// All scoreboard states that have occurred so far, with their numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbers {
     numbers: FxHashMap<PendingWaits, Number>,
     leftovers: Vec<PendingWaits>,
 }
 
-/// The numbering of scoreboard states, and the number of the current state.
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the current scoreboard state, if the latest clocks were reused from the memo. `None` means that the
-    /// [`Scoreboard`] itself holds the state.
+    /// Number of the current scoreboard state. `None` if the [`Scoreboard`] itself contains the state, because the
+    /// latest clocks were counted instead of reused.
     present: Option<Number>,
-    /// Number of executed instructions whose clocks were reused from an earlier execution.
     pub(crate) instructions: u64,
 }
 
@@ -63,7 +60,8 @@ impl Memo {
         self.present
     }
 
-    /// Returns the number of a scoreboard state. A new state gets a new number, or `None` if the table is full.
+    /// Returns the number of a scoreboard state, which can be a new number. Returns `None` if a wait is too long or the
+    /// table is full.
     pub(crate) fn number_of(&mut self, written: &Scoreboard, now: u64, fill: ArrivingLine) -> Option<Number> {
         if fill.clocks > u64::from(MOST_CLOCKS) {
             return None;
@@ -85,15 +83,15 @@ impl Memo {
         Some(number)
     }
 
-    /// Sets the current scoreboard state to the state after the memoized run `remembered`, which is a part of a block.
+    /// Sets the current scoreboard state to the state at the end of `remembered`, a memoized part of a block.
     #[inline]
     pub(crate) fn follow(&mut self, remembered: &RememberedClocks) {
         self.present = Some(remembered.exit);
         self.instructions += u64::from(remembered.instructions);
     }
 
-    /// Discards the number of the current scoreboard state, so that the [`Scoreboard`] holds the state again. Returns
-    /// the waits from which the [`Scoreboard`] must be restored, or `None` if the [`Scoreboard`] is up to date.
+    /// Returns the waits from which the caller must restore the [`Scoreboard`], or `None` if the [`Scoreboard`] is up
+    /// to date. Afterwards, the [`Scoreboard`] holds the current state.
     #[inline]
     pub(crate) fn leave(&mut self) -> Option<&PendingWaits> {
         self.present.take().map(|number| &self.numbers.leftovers[(number.0 & !Number::FILLING) as usize])
@@ -102,24 +100,22 @@ impl Memo {
 
 const _: () = assert!(size_of::<RememberedClocks>() == 32);
 
-/// The part of an instruction-cache line that has not arrived yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ArrivingLine {
     /// Number of clocks until the last transfer of the cache line arrives, or 0 if no cache line is arriving.
     pub(crate) clocks: u64,
-    /// Position, within the cache line, of the 8-byte transfer that arrives first.
+    /// Index, within the cache line, of the 8-byte transfer that arrives first.
     pub(crate) first: u8,
 }
 
-/// The key of a run, a part of a block whose instructions and data are all in the caches. The key is a number other
-/// than 0.
+/// Key of a run (a part of a block whose instructions and data are all in the caches). The key is not 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Run(u64);
 
 impl Run {
-    /// Makes the key of a run, which is the part of a block from position `from` to position `to`. `entry` is the
-    /// number of the scoreboard state before the run. `taken` is true if the branch was taken, and `trapped` if the
-    /// last instruction trapped. `continues` is true if the first fetch is from a cache line that is still arriving.
+    /// Makes the key of a run, the part of a block from position `from` to position `to`. `entry` is the number of the
+    /// scoreboard state before the run. `taken` is true if the branch was taken, and `trapped` if the last instruction
+    /// trapped. `continues` is true if the first fetch is from a cache line that is still arriving.
     #[inline]
     pub(crate) fn new(entry: Number, [from, to]: [usize; 2], [taken, trapped, continues]: [bool; 3]) -> Run {
         let flags = u64::from(taken) | u64::from(trapped) << 1 | u64::from(continues) << 2;
@@ -132,25 +128,24 @@ impl Run {
         usize::from(self.0 as u8)
     }
 
-    /// Returns a hash of the key, which gives the position in a hash table.
+    /// Returns a hash of the key, from which the place in the hash table follows.
     #[inline]
     fn hash(self) -> usize {
         (self.0.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as usize
     }
 }
 
-/// Clocks of delay in a run, by cause. Each entry has the cause in its lower five bits and the number of clocks above.
-/// Unused entries at the end are zero.
+/// Clocks of delay in a part of a block, by cause. Each entry has the cause in its lower five bits, and the number of
+/// clocks in the bits above. Unused entries at the end are zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WaitedClocks([u16; WaitedClocks::MOST]);
 
 impl WaitedClocks {
     const CAUSE_BITS: u32 = 5;
-    /// Greatest number of causes of delay that a run (a part of a block) can have.
     const MOST: usize = 6;
 
-    /// Returns the clocks of delay between the profiles `before` and `after`, by cause. Returns `None` if the clocks or
-    /// their causes do not fit into the packed format.
+    /// Returns the clocks of delay between the profiles `before` and `after`, by cause. Returns `None` if they do not
+    /// fit in the packed format.
     fn between(before: &Profile, after: &Profile) -> Option<WaitedClocks> {
         let clocks = FREEZES.iter().map(|row| (row.id, after.frozen_by(row.id) - before.frozen_by(row.id)));
         let mut all = WaitedClocks::default();
@@ -160,7 +155,7 @@ impl WaitedClocks {
         Some(all)
     }
 
-    /// Adds the clocks to `frozen`, an array with one sum for each row of the freeze table.
+    /// Adds the clocks to `frozen`, which has one sum for each row of the freeze table.
     #[inline]
     pub(crate) fn add_to(&self, frozen: &mut [u64; N_FREEZES]) {
         for wait in self.0 {
@@ -174,13 +169,12 @@ impl WaitedClocks {
     }
 }
 
-/// The memoized clocks of a run, which is a part of a block. The entry takes 32 bytes, half a cache line of most
-/// present computers.
+/// The memoized clocks of a run (a part of a block). The entry has 32 bytes, half a cache line of most present
+/// computers.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct RememberedClocks {
     run: Run,
-    /// Number of the scoreboard state after the run (a part of a block).
     exit: Number,
     pub(crate) clocks: u16,
     pub(crate) instructions: u16,
@@ -199,8 +193,8 @@ impl RememberedClocks {
         waited: WaitedClocks([0; WaitedClocks::MOST]),
     };
 
-    /// Makes the entry that memoizes the clocks of a run (a part of a block). The delays are the difference between the
-    /// profiles before and after the run. Returns `None` if a number is too large for its field.
+    /// Makes the entry for a run (a part of a block). The delays are the difference between the profiles before and
+    /// after the run. Returns `None` if a number is too large for its bit field.
     pub(crate) fn new(run: Run, exit: Number, clocks: u64, line: u32, [before, after]: [&Profile; 2]) -> Option<Self> {
         let waited = WaitedClocks::between(before, after)?;
         let instructions = u16::try_from(after.instructions - before.instructions).ok()?;
@@ -208,16 +202,15 @@ impl RememberedClocks {
     }
 }
 
-/// The memoized runs (parts) of a block, as a hash table. Each run lies within [`BlockMemory::REACH`] entries of the
-/// position that its hash gives.
+/// The memoized runs (parts) of a block, as a hash table. A run is in one of [`BlockMemory::REACH`] successive entries,
+/// of which its hash selects the first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockMemory(Box<[RememberedClocks]>);
 
 impl BlockMemory {
-    /// Smallest size of the hash table, in entries.
     const LEAST: usize = 8;
     const MOST: usize = 1 << 11;
-    /// Number of successive entries of the hash table that a search for a run (a part of a block) examines.
+    /// Number of successive entries of the hash table that a search examines.
     const REACH: usize = 4;
 
     #[inline]
@@ -242,8 +235,8 @@ impl BlockMemory {
         }
     }
 
-    /// Puts a run (a part of a block) into a free entry near the position that its hash gives. Returns false if no
-    /// entry is free.
+    /// Puts a run (a part of a block) into a free entry near the place that its hash selects. Returns false if no entry
+    /// is free.
     fn put(&mut self, remembered: RememberedClocks) -> bool {
         let length = self.0.len();
         let mut places = (0..BlockMemory::REACH.min(length)).map(|n| (remembered.run.hash() + n) & (length - 1));
@@ -251,7 +244,8 @@ impl BlockMemory {
         free.map(|place| self.0[place] = remembered).is_some()
     }
 
-    /// Doubles the size of the hash table. Runs (parts of a block) without a free entry in the new table are discarded.
+    /// Doubles the size of the hash table. Runs (parts of a block) that find no free entry in the new table are
+    /// discarded.
     fn grow(&mut self) {
         let larger = vec![RememberedClocks::NOTHING; (2 * self.0.len()).max(BlockMemory::LEAST)];
         let all = std::mem::replace(&mut self.0, larger.into_boxed_slice());

@@ -15,8 +15,8 @@ impl Cpu {
         if address & (size - 1) == 0 { Ok(address) } else { Err(TrapCause::Unaligned { address, size }) }
     }
 
-    /// Records the address of a load or store for the clock. With auto-increment, the address is also written to the
-    /// base register.
+    /// Records the address of a load or store for the clock. With auto-increment, also writes the address to the base
+    /// register.
     #[inline(always)]
     fn accessed(&mut self, a: &CoreAction, address: u32, stores: bool) {
         self.state.set_r(a.increments, address);
@@ -38,8 +38,7 @@ impl Cpu {
         Ok(())
     }
 
-    /// Returns the control flow after a store: [`Flow::NextOfChangedCode`] if the store has changed decoded code, else
-    /// [`Flow::Next`].
+    /// Returns [`Flow::NextOfChangedCode`] if the latest store has changed decoded code, otherwise [`Flow::Next`].
     #[inline(always)]
     fn after_store(&self) -> Flow {
         if self.code_changed { Flow::NextOfChangedCode } else { Flow::Next }
@@ -148,7 +147,7 @@ impl Cpu {
     }
 
     /// Executes `pst`: stores the pixels whose bits in psr.PM are set. Bit 0 belongs to the pixel at the lowest
-    /// address. Afterwards, PM is shifted right by the number of pixels.
+    /// address. Then shifts PM right by the number of pixels.
     pub(crate) fn store_pixels<B: Bus>(&mut self, a: &CoreAction, bus: &mut B) -> Result<Flow, TrapCause> {
         let address = self.effective_address(a, 8)?;
         // If the address is not mapped, trap before the first write of a pixel.
@@ -166,7 +165,7 @@ impl Cpu {
         Ok(self.after_store())
     }
 
-    /// Executes `flush`. The address can be unaligned, and can be an address without memory.
+    /// Executes `flush`. The address can be unaligned, and memory at the address is not necessary.
     pub(crate) fn flush_line(&mut self, i: &Instruction) {
         let offset = if i.has(Flags::IMMEDIATE) { i.imm as u32 } else { self.state.r(i.src1) };
         let address = offset.wrapping_add(self.state.r(i.src2));

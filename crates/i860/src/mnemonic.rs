@@ -5,8 +5,8 @@ use crate::instruction::{FNOP, Flags, Instruction, Op};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-/// Names of the data paths of the dual operations, in the order of the DPC bit field. The character `_` stands for p
-/// (plus) or s (minus). The first row is for pfam and pfsm, and the second row is for pfmam and pfmsm.
+/// Names of the data paths of dual operations, in the order of the bit field DPC. `_` stands for p (plus) or s (minus).
+/// The first row belongs to pfam and pfsm, the second to pfmam and pfmsm.
 const PATHS: [[&str; 16]; 2] = [
     [
         "r2_1", "r2_t", "r2a_1", "r2a_t", "i2_1", "i2_t", "i2a_1", "i2a_t", "rat1_2", "m12a_m", "ra1_2", "m12tt_a",
@@ -147,13 +147,12 @@ fn is_canonical(i: &Instruction) -> bool {
     }
 }
 
-/// Returns all mnemonics without the prefix `d.`, each with its instruction. The registers and immediates of the
-/// instructions are zero.
+/// Returns all mnemonics without the prefix `d.`, each with an instruction whose registers and immediates are zero.
 pub(crate) fn templates() -> &'static BTreeMap<String, Instruction> {
     static TABLE: OnceLock<BTreeMap<String, Instruction>> = OnceLock::new();
     TABLE.get_or_init(|| {
         let mut table = BTreeMap::new();
-        // If several words have the same name, the first word determines the fields.
+        // If several words have the same mnemonic, the first word determines the unused bits.
         for i in every_word().filter_map(|word| decode(word).ok()).filter(is_canonical) {
             let name = mnemonic(&i);
             let plain = Flags(i.flags.0 & !(Flags::IMMEDIATE.0 | Flags::AUTOINCREMENT.0));
@@ -163,15 +162,14 @@ pub(crate) fn templates() -> &'static BTreeMap<String, Instruction> {
     })
 }
 
-/// Iterates over words that cover every form of instruction: all opcodes, operand sizes and floating-point operations.
+/// Iterates over words with every form of instruction: all opcodes, operand sizes and floating-point operations.
 fn every_word() -> impl Iterator<Item = u32> {
     let floating = (0..2048u32).filter(|low| low & 0x200 == 0).map(|low| 0x12 << 26 | low);
     let core = (0..64u32).filter(|op| *op != 0x12).flat_map(|op| (0..8).map(move |low| op << 26 | low));
     core.chain(floating).chain([FNOP])
 }
 
-/// Returns the instruction with the mnemonic `name`, or `None` if no instruction has this mnemonic. The prefix `d.`
-/// sets the D bit.
+/// Returns the instruction with the mnemonic `name`, or `None` if there is none. The prefix `d.` sets the D bit.
 pub(crate) fn lookup(name: &str) -> Option<Instruction> {
     let (plain, dual) = match name.strip_prefix("d.") {
         Some(rest) => (rest, true),
@@ -190,7 +188,7 @@ mod tests {
     use super::templates;
 
     #[test]
-    fn the_mnemonics_of_the_xr_part_are_all_there() {
+    fn the_table_of_mnemonics_has_every_instruction_of_the_i860_xr() {
         let names: Vec<&str> = templates().keys().map(String::as_str).collect();
         // The 4 families of dual operations have 16 + 16 + 15 + 15 data paths, each in the three precisions .ss, .sd
         // and .dd.

@@ -8,8 +8,8 @@ use crate::dual_operation::first_has_bypass;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::{PipeStage, State};
 
-/// Source operands of a floating-point instruction. The operands are read before an instruction of the pair writes a
-/// result. However, an operand can be a result that leaves a pipe in the same clock.
+/// Values of the source operands of a floating-point instruction. In a pair, they are read before the core instruction
+/// writes its result. An operand can be a result that leaves a pipe in the same clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Operands {
     pub(crate) a: u64,
@@ -17,7 +17,6 @@ pub(crate) struct Operands {
 }
 
 impl Cpu {
-    /// Reads the source operands of a floating-point instruction, alone or as half of a pair.
     #[inline(always)]
     pub(crate) fn read_operands<'a>(&self, a: &FloatingAction, unit: impl Fn() -> &'a Unit) -> Operands {
         let state = &self.state;
@@ -54,14 +53,14 @@ fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Op
     Operands { a, b }
 }
 
-/// Returns the contents of the multiplier's last stage. The last stage is the second stage for double-precision
-/// sources, and the third stage for single-precision sources.
+/// Returns the value in the multiplier's last stage, which is the second stage for double-precision sources and the
+/// third stage for single-precision sources.
 pub(crate) fn last_product(state: &State, source_double: bool) -> PipeStage {
     state.multiplier[if source_double { 1 } else { 2 }]
 }
 
-/// For a pipelined instruction, returns the result that leaves the pipe and goes to the destination register. Returns
-/// `None` for a scalar instruction.
+/// Returns the result that a pipelined instruction moves out of its pipe into the destination register. Returns `None`
+/// for a scalar instruction.
 fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     if i.op == Op::DualOp {
         let product = last_product(state, i.has(Flags::SOURCE_DOUBLE));
@@ -78,8 +77,8 @@ fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     })
 }
 
-/// Reads register `n`. If `n` belongs to the destination `dest`, the function returns the result that leaves the pipe,
-/// as if the register were already written.
+/// Reads register `n`. If `n` belongs to the destination `dest`, returns the result that leaves the pipe, as if the
+/// register already contained it.
 fn read_bypassed(state: &State, n: u8, double: bool, dest: u8, leaving: PipeStage) -> u64 {
     if dest & 30 != n & 30 || dest < 2 {
         return state.f_bits(n, double);

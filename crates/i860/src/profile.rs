@@ -1,4 +1,4 @@
-//! Profiles: the clocks that programs have taken, by cause and by code address.
+//! Profiles: the clocks that a program takes, by cause and by code address.
 
 use crate::timing::{FREEZES, Freeze, N_FREEZES};
 use std::fmt;
@@ -7,17 +7,16 @@ use std::fmt;
 /// [`Cpu::clear_profile`](crate::Cpu::clear_profile).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Profile {
-    /// Number of executed instructions. A pair counts as two. `fnop` and `nop` also count.
+    /// Number of executed instructions, including `fnop` and `nop`. A pair counts as two.
     pub instructions: u64,
-    /// Number of clocks in which an instruction or a pair was issued.
+    /// Number of clocks in which an instruction or pair was issued.
     pub issue: u64,
     /// Number of clocks lost to each row of the freeze table, in the order of [`FREEZES`].
     pub frozen: [u64; N_FREEZES],
-    /// Number of requests that the processor has made on the bus.
+    /// Number of requests of the processor on the bus.
     pub bus_requests: u64,
     /// Number of bus requests that had to open a DRAM row.
     pub page_misses: u64,
-    /// Number of instruction-cache misses.
     pub instruction_misses: u64,
     /// Number of loads that missed the data cache.
     pub data_misses: u64,
@@ -36,7 +35,7 @@ impl Profile {
         }
     }
 
-    /// Returns the number of clocks lost to one row of the freeze table.
+    /// Returns the number of clocks lost to row `id` of the freeze table.
     #[must_use]
     pub fn frozen_by(&self, id: Freeze) -> u64 {
         self.frozen[id as usize]
@@ -62,7 +61,7 @@ impl fmt::Display for Profile {
     }
 }
 
-/// Number of clocks and number of executions of each instruction word in a range of addresses.
+/// Number of clocks and of executions for each instruction word in a range of addresses.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AddressProfile {
     base: u32,
@@ -70,7 +69,7 @@ pub struct AddressProfile {
 }
 
 impl AddressProfile {
-    /// Makes an empty profile for `words` instruction words that begin at address `base`.
+    /// Makes an empty profile for `words` instruction words from address `base` on.
     #[must_use]
     pub fn new(base: u32, words: usize) -> AddressProfile {
         AddressProfile { base, rows: vec![(0, 0); words] }
@@ -84,8 +83,8 @@ impl AddressProfile {
         }
     }
 
-    /// Returns the clocks and the number of executions of the instruction or pair at an address. Outside the profile's
-    /// range of addresses, the two numbers are zero.
+    /// Returns the clocks and the number of executions of the instruction or pair at `pc`. Both numbers are zero
+    /// outside the profile's range of addresses.
     #[must_use]
     pub fn at(&self, pc: u32) -> (u64, u64) {
         let at = (pc.wrapping_sub(self.base) / 4) as usize;
@@ -93,7 +92,7 @@ impl AddressProfile {
     }
 
     /// Returns the clocks of the code from each label to the next label. `labels` must be sorted by address. Clocks
-    /// before the first label are left out.
+    /// before the first label do not count.
     #[must_use]
     pub fn by_label<'a>(&self, labels: &[(&'a str, u32)]) -> Vec<(&'a str, u64)> {
         let end = self.base.wrapping_add(4 * self.rows.len() as u32);

@@ -1,10 +1,11 @@
-//! The clocks of a basic block, counted in parts. A *run* is a part of a block whose instructions and data are all in
-//! the caches. The memoized clocks of a run are reused. Between runs, accesses that need the bus are counted.
+//! Counting of the clocks of a basic block in parts. A *run* is a part of a block whose instructions and data are all
+//! in the caches. The clocks of a run are memoized and reused. The clocks of accesses that need the bus, between two
+//! runs, are counted each time.
 //!
-//! A *place* is a position in a block. The place is three times the index of an instruction or pair, plus 1 after its
-//! fetch or plus 2 after its issue. A run ends before an access that needs the bus, or before a cache line that the
-//! instruction cache does not hold. Otherwise, the run ends at the end of the executed code. After an access that needs
-//! the bus, the next run begins with the scoreboard after this access.
+//! A *place* is a position in a block: three times the index of an instruction or pair, plus 1 after its fetch or plus
+//! 2 after its issue. A run ends before an access that needs the bus, or before a cache line that is not in the
+//! instruction cache. Otherwise, it ends at the end of the executed code. After an access that needs the bus, the next
+//! run begins with the scoreboard after this access.
 
 use crate::block::{AccessingUnit, Block};
 use crate::bus::Bus;
@@ -13,27 +14,26 @@ use crate::execution::Execution;
 use crate::memo::{Memo, Number, RememberedClocks, Run};
 use crate::timing::Freeze;
 
-/// Number of positions that each instruction or pair has: before its fetch, before its issue, and after its issue.
+/// Number of positions of each instruction or pair: before its fetch, before its issue, and after its issue.
 const PLACES: usize = 3;
 const FETCHED: usize = 1;
 const ISSUED: usize = 2;
 
-/// The progress of the clock in a block: the executed part, and the position up to which clocks are counted.
+/// Progress of the clock in a block: the executed part, and the position up to which clocks are counted.
 struct Course<'a> {
     execution: Execution,
     units: usize,
     last: usize,
     accesses: &'a [u32],
-    /// Number of data accesses whose clocks were counted so far.
     accessed: usize,
-    /// Position in the block up to which clocks are counted. Each instruction or pair has [`PLACES`] positions.
+    /// Position up to which clocks are counted. Each instruction or pair has [`PLACES`] positions.
     at: usize,
 }
 
 impl Course<'_> {
-    /// Returns three flags for the key of a run, which is the part of a block up to position `to`. The flags state if
-    /// the branch at the end was taken, if the last instruction trapped, and the value `continues`. The value is true
-    /// if the first fetch is from a cache line that is still arriving.
+    /// Returns the three flags in the key of a run, the part of a block up to position `to`. The flags are: the branch
+    /// was taken, the last instruction trapped, and the first fetch is from a cache line that is still arriving
+    /// (`continues`).
     #[inline]
     fn flags(&self, to: usize, continues: bool) -> [bool; 3] {
         let ends = to == PLACES * self.units || to > PLACES * self.last;
@@ -42,8 +42,8 @@ impl Course<'_> {
 }
 
 impl Clock {
-    /// Reuses the memoized clocks of a whole block whose data accesses all hit the cache. Returns false if the
-    /// instruction cache does not hold the block, or if the clocks of the whole block are not memoized.
+    /// Reuses the memoized clocks of a whole block whose data accesses all hit the cache. Returns false if the block is
+    /// not in the instruction cache, or if the clocks of the whole block are not memoized.
     #[inline]
     pub(crate) fn reuse_block_clocks(&mut self, block: &mut Block, execution: Execution) -> bool {
         let Some(entry) = self.memo.as_ref().and_then(Memo::present) else { return false };
@@ -59,15 +59,15 @@ impl Clock {
         true
     }
 
-    /// Returns true if no fetch from the block adds clocks, because the instruction cache holds the block or because
+    /// Returns true if fetches from the block add no clocks, because the block is in the instruction cache or because
     /// fetches take no time.
     #[inline]
     fn holds(&self, block: &mut Block) -> bool {
         !self.common.costs.applies(Freeze::InstructionMiss) || self.fetch.holds(block)
     }
 
-    /// Counts the clocks of a block. The block is split at accesses that need the bus. The memoized clocks of the parts
-    /// between these accesses are reused.
+    /// Counts the clocks of a block. Accesses that need the bus divide the block into parts, whose memoized clocks are
+    /// reused.
     #[inline]
     pub(crate) fn go<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &[u32], bus: &B) {
         let units = execution.units + usize::from(execution.slot);
@@ -76,7 +76,8 @@ impl Clock {
         let whole = self.holds(block);
         while course.at < PLACES * units {
             match self.number() {
-                // With a number, the next run can be memoized. Without a number, one instruction or pair is counted.
+                // If the state has a number, the next run can be memoized. Otherwise, one instruction or pair is
+                // counted.
                 Some(entry) => self.next_run(block, &mut course, entry, whole, bus),
                 None => {
                     let to = (course.at / PLACES + 1) * PLACES;
@@ -92,8 +93,8 @@ impl Clock {
         memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
     }
 
-    /// Writes the state with the current number into the scoreboard. This is necessary because the reuse of memoized
-    /// clocks changes only the number of the state.
+    /// Restores the scoreboard to its current state. While clocks were reused, the model stored only the number of this
+    /// state.
     #[inline]
     pub(crate) fn write_board(&mut self) {
         if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {
@@ -101,14 +102,14 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks to the end of the current run (a part of the block). Also counts the clocks of the access or
-    /// cache miss that ends the run.
+    /// Counts the clocks up to the end of the current run (a part of the block). Also counts the clocks of the access
+    /// or cache miss that ends the run.
     #[inline]
     fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
         let number = course.at / PLACES;
         let is_unfetched = course.at.is_multiple_of(PLACES);
-        // If the cache holds the whole block, cache lines matter only if the run begins with a fetch while another line
-        // is arriving.
+        // If the whole block is in the cache, cache lines matter only if the run begins with a fetch while a line is
+        // arriving.
         let (line, end) = match whole && !(entry.is_filling() && is_unfetched) {
             true => (0, usize::MAX),
             false => block.line(number),
@@ -138,15 +139,14 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of an access that needs the bus.
     #[inline]
     fn count_cache_exit<B: Bus>(&mut self, unit: &AccessingUnit, address: u32, bus: &B) {
         if !unit.is_store {
             self.write_board();
             return self.access(unit.access, address, bus);
         }
-        // A store that misses the cache adds no wait to the scoreboard. If the store does not wait, the scoreboard
-        // stays the same.
+        // A store that misses the cache adds no wait to the scoreboard. If the store itself does not wait, the
+        // scoreboard stays the same.
         let before = self.common.now;
         self.access(unit.access, address, bus);
         if self.common.now != before
@@ -156,7 +156,6 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of the fetch of a cache line that the instruction cache does not hold.
     fn miss<B: Bus>(&mut self, block: &Block, course: &mut Course<'_>, bus: &B) {
         self.write_board();
         let unit = block.unit(course.at / PLACES);
@@ -206,10 +205,10 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a run (a part of the block) and memoizes the clocks for later executions of the same run.
+    /// Counts the clocks of a run (a part of the block), and memoizes them for later executions.
     #[cold]
     fn learn<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, run: Run, bus: &B) {
-        // Count the run with the full rules and compare the profiles before and after.
+        // Count the run with all rules, and compare the profiles before and after.
         let began = self.common.now;
         let before = self.common.profile.clone();
         self.advance(block, course, run.end(), bus);

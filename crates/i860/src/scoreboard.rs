@@ -1,16 +1,15 @@
-//! Scoreboard: the registers that are not ready and the execution units that are busy. The clock at which a wait ends
-//! is computed when the wait begins.
+//! Scoreboard: registers that are not ready and units that are busy. The end of each wait is computed at its start.
 
 use crate::decoded::{Decoded, arm, float_mask, hazard};
 use crate::freeze::Costs;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::timing::{Config, FREEZES, Freeze};
 
-/// Value of `last_result` while no result can delay a multiplication. No source register has this number, and it
-/// differs from `NONE`, the number of an absent operand.
+/// Value of `last_result` while no result can delay a multiplication. It is not the number of a register, and differs
+/// from `NONE`, the number of an absent operand.
 const NO_RESULT: u8 = 0xFE;
 
-/// A delay that a hazard causes: the clock at which the delay ends, and the row of the freeze table with the cause.
+/// The clock at which a delay ends, and the row of the freeze table that causes the delay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Wait {
     pub(crate) until: u64,
@@ -19,13 +18,13 @@ pub(crate) struct Wait {
 
 pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 
-/// First value of [`Left::place`] that stands for a hazard. Lower values are register numbers. The highest value stands
-/// for the last floating-point result.
+/// First value of [`Left::place`] that stands for a hazard instead of a register. The highest value stands for the last
+/// floating-point result.
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 
-/// A remaining wait, packed into 16 bits. The upper seven bits hold the number of the register or hazard that is not
-/// ready. The next four bits hold the remaining clocks. The lower five bits hold the row of the freeze table.
+/// A remaining wait, packed into 16 bits. The upper seven bits contain the number of the register or hazard that is not
+/// ready. The next four bits contain the remaining clocks, and the lower five bits the row of the freeze table.
 struct Left {
     place: u8,
     clocks: u8,
@@ -52,30 +51,29 @@ impl Left {
     }
 }
 
-/// Greatest number of waits that a [`PendingWaits`] can hold.
 const MOST_WAITS: u32 = u128::BITS / Left::BITS;
 
-/// A compact copy of the scoreboard's state at one clock: all waits that have not ended.
+/// A compact copy of the scoreboard at one clock: all waits that have not ended.
 ///
 /// Two scoreboards with equal pending waits delay all later instructions equally.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct PendingWaits {
-    /// Packed waits, sorted by [`Left::place`]. The lowest bits hold the first wait. The bits above the last wait are
-    /// zero.
+    /// Packed waits, sorted by [`Left::place`], with the first wait in the lowest bits. The bits above the last wait
+    /// are zero.
     waits: u128,
     graphics_result: u64,
     stored: u64,
     last_result: u8,
     scalar_double: bool,
-    /// State of the instruction-cache line that is still arriving: the number of remaining clocks, and the position of
-    /// the 8-byte transfer that arrived first.
+    /// The instruction-cache line that is still arriving: the number of remaining clocks, and the index of the 8-byte
+    /// transfer that arrived first.
     beside: [u8; 2],
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Scoreboard {
     costs: Costs,
-    /// Bit mask of the hazard classes for which at least one row of the freeze table is enabled.
+    /// Mask of the hazard classes for which at least one row of the freeze table is enabled.
     arms_seen: u16,
     /// Mask of the registers whose value may be unavailable: integer registers in the low word, floating-point
     /// registers in the high word.
@@ -90,11 +88,11 @@ pub(crate) struct Scoreboard {
     scalar_double: bool,
     graphics_result: u64,
     stored: u64,
-    /// A clock by which all waits in the scoreboard have ended.
+    /// A clock at which all waits in the scoreboard have ended.
     latest: u64,
 }
 
-/// Iterates over the positions of the set bits, the lowest position first.
+/// Iterates over the indices of the set bits, the lowest first.
 fn bits(mut set: u64) -> impl Iterator<Item = u8> {
     std::iter::from_fn(move || {
         let lowest = (set != 0).then(|| set.trailing_zeros() as u8);
@@ -121,8 +119,8 @@ impl Scoreboard {
         }
     }
 
-    /// Returns the waits that remain at clock `now`, together with `beside`, the state of an arriving instruction-cache
-    /// line. Returns `None` if there are too many waits, or if a wait lasts longer than `most` clocks.
+    /// Returns the waits that remain at clock `now`. `beside` describes the arriving instruction-cache line. Returns
+    /// `None` if there are too many waits, or if a wait lasts longer than `most` clocks.
     pub(crate) fn leftover(&self, now: u64, most: u8, beside: [u8; 2]) -> Option<PendingWaits> {
         if self.latest > now + u64::from(most) {
             return None;
@@ -165,7 +163,6 @@ impl Scoreboard {
         (count <= MOST_WAITS).then_some(left)
     }
 
-    /// Restores the scoreboard at clock `now` from the pending waits `left`.
     pub(crate) fn restore(&mut self, left: &PendingWaits, now: u64) {
         self.pending = 0;
         self.armed = 0;
@@ -196,20 +193,20 @@ impl Scoreboard {
         }
     }
 
-    /// Removes the wait for an integer register because a new load is about to overwrite the register.
+    /// Removes the wait for an integer register, because a new load overwrites the register.
     #[inline]
     pub(crate) fn forget(&mut self, dest: u8) {
         self.pending &= !(1 << dest);
     }
 
-    /// Returns true if a wait in the scoreboard can delay the instruction `d`. The caller must then call
-    /// [`Scoreboard::wait`] to find the length of the wait.
+    /// Returns true if a wait can delay the instruction `d`. The caller must then call [`Scoreboard::wait`] for the
+    /// length of the wait.
     #[inline]
     pub(crate) fn may_wait(&self, d: &Decoded) -> bool {
         d.reads & self.pending != 0 || d.sensitive & self.armed != 0 || d.multiplier_source == self.last_result
     }
 
-    /// Returns the longest of all waits that delay the instruction `d`. Also removes hazards that have ended.
+    /// Returns the longest wait that delays the instruction `d`, and removes hazards that have ended.
     pub(crate) fn wait(&mut self, d: &Decoded, now: u64) -> Wait {
         let mut longest = self.wait_for_registers(d.reads, now);
         let mut bits = d.sensitive & self.armed;
@@ -284,7 +281,6 @@ impl Scoreboard {
 
     // ---- hazards that an instruction leaves
 
-    /// Records the hazards that the executed instruction `d` causes for later instructions.
     #[inline]
     pub(crate) fn retire(&mut self, d: &Decoded, now: u64) {
         match d.arms & self.arms_seen {
@@ -342,7 +338,7 @@ impl Scoreboard {
         }
     }
 
-    // Marks the destination of a load or seed as not ready. A longer wait because of a cache miss is kept.
+    // Marks the destination of a load or seed as not ready. A longer wait because of a cache miss remains.
     fn arm_destination(&mut self, d: &Decoded, now: u64) {
         let i = &d.instruction;
         // The row depends on the kind of the result.
@@ -378,8 +374,8 @@ impl Scoreboard {
         if d.arms & arm::DOUBLE_MULTIPLY != 0 {
             self.set_hazard(hazard::DOUBLE_MULTIPLY, Freeze::DoubleMultiply, now);
         }
-        // In the next clock, floating-point units cannot use the result of the graphics unit yet. Registers f0 and f1
-        // hold no results.
+        // Floating-point units cannot use a result of the graphics unit in the next clock. Registers f0 and f1 hold no
+        // results.
         if d.arms & arm::GRAPHICS != 0 {
             self.graphics_result = float_mask(d.instruction.dest, 8) & !(3 << 32);
             self.set_hazard_until(hazard::GRAPHICS, now + 1, Freeze::GraphicsToFloating);

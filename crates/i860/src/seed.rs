@@ -1,9 +1,9 @@
-//! The first approximations that frcp (reciprocal) and frsqr (reciprocal square root) return. These results are the
-//! *seeds* of Newton steps.
+//! The results of frcp (reciprocal) and frsqr (reciprocal square root). They are approximations, from which programs
+//! begin Newton steps (*seeds*).
 //!
 //! The chip's table is not public. Only a limit of the error is known: the error of the fraction is below 2^-7. The
-//! user therefore chooses one of three tables. Programs refine the seeds by Newton steps, so the choice affects the
-//! last one or two bits of their results. The number of clocks stays the same.
+//! user therefore chooses one of three tables. Programs refine the seeds by Newton steps. The choice therefore affects
+//! only the last one or two bits of their results, and does not affect the number of clocks.
 
 use crate::arithmetic::{narrow, widen};
 
@@ -16,15 +16,15 @@ pub enum SeedTable {
     /// result.
     Truncated8,
     /// The result for the middle of the interval that contains the operand, rounded to 8 fraction bits. The first 8
-    /// fraction bits of the operand determine the interval. A ROM of 256 entries can hold these values (512 entries for
-    /// frsqr, because of the parity of the exponent). This choice is assumed.
+    /// fraction bits of the operand determine the interval. A ROM of 256 entries can hold these results (512 entries
+    /// for frsqr, because of the parity of the exponent). Assumed.
     Midpoint8,
-    /// The correctly rounded result. With this choice, the table adds no error.
+    /// The correctly rounded result.
     Exact,
 }
 
 impl SeedTable {
-    /// Returns the name of this table in lists of settings.
+    /// Returns the name of this table of approximations, for lists of settings.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -55,7 +55,7 @@ fn midpoint(x: f64) -> f64 {
 }
 
 impl SeedTable {
-    /// Returns an upper bound of the relative error of the results that this table gives.
+    /// Returns an upper bound of the relative error of the approximations in this table.
     #[must_use]
     pub fn relative_error_bound(self) -> f64 {
         match self {
@@ -77,33 +77,33 @@ impl SeedTable {
         }
     }
 
-    /// Returns the result of `frcp` in double precision. Operand and result are bit patterns.
+    /// Returns the double-precision result of `frcp`. Operand and result are bit patterns.
     #[must_use]
     pub fn reciprocal(self, bits: u64) -> u64 {
         quiet(bits, self.apply(f64::from_bits(bits), |x| 1.0 / x))
     }
 
-    /// Returns the result of `frsqr` in double precision. Operand and result are bit patterns.
+    /// Returns the double-precision result of `frsqr`. Operand and result are bit patterns.
     #[must_use]
     pub fn reciprocal_root(self, bits: u64) -> u64 {
         quiet(bits, self.apply(f64::from_bits(bits), |x| 1.0 / x.sqrt()))
     }
 
-    /// Returns the result of `frcp` in single precision. Operand and result are bit patterns.
+    /// Returns the single-precision result of `frcp`. Operand and result are bit patterns.
     #[must_use]
     pub fn reciprocal32(self, bits: u32) -> u32 {
         narrow(self.reciprocal(widen(bits)), false)
     }
 
-    /// Returns the result of `frsqr` in single precision. Operand and result are bit patterns.
+    /// Returns the single-precision result of `frsqr`. Operand and result are bit patterns.
     #[must_use]
     pub fn reciprocal_root32(self, bits: u32) -> u32 {
         narrow(self.reciprocal_root(widen(bits)), false)
     }
 }
 
-/// Returns `result`, or a quiet NaN if `result` is NaN. The quiet NaN comes from `operand` if `operand` is NaN,
-/// otherwise it is the default NaN.
+/// Returns `result` unless it is NaN. For NaN, returns a quiet NaN: the NaN of `operand`, or the default NaN if
+/// `operand` is not NaN.
 fn quiet(operand: u64, result: u64) -> u64 {
     match (f64::from_bits(result).is_nan(), f64::from_bits(operand).is_nan()) {
         (true, true) => operand | 0x0008_0000_0000_0000,
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn the_seed_of_zero_is_infinite_and_of_a_negative_root_not_a_number() {
+    fn the_seed_of_zero_is_infinite_and_of_a_negative_root_is_nan() {
         let table = SeedTable::Truncated8;
         assert_eq!(table.reciprocal32(0), f32::INFINITY.to_bits());
         assert!(f32::from_bits(table.reciprocal_root32((-1.0f32).to_bits())).is_nan());

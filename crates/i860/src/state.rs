@@ -1,4 +1,4 @@
-//! The state that a program can see: registers, control registers, pipes and dual-instruction mode.
+//! State that is visible to a program: registers, control registers, pipes and dual-instruction mode.
 
 /// Bits of the processor status register, psr.
 pub mod psr {
@@ -14,7 +14,7 @@ pub mod psr {
     pub const IM: u32 = 1 << 4;
     /// PIM: value of IM before the trap.
     pub const PIM: u32 = 1 << 5;
-    /// U: user mode. The processor is in user mode while this bit is set.
+    /// U: set in user mode, clear in supervisor mode.
     pub const U: u32 = 1 << 6;
     /// PU: value of U before the trap.
     pub const PU: u32 = 1 << 7;
@@ -32,21 +32,21 @@ pub mod psr {
     pub const DS: u32 = 1 << 13;
     /// DIM: the trap occurred in dual-instruction mode.
     pub const DIM: u32 = 1 << 14;
-    /// KNF: a request to skip (kill) the next floating-point instruction. The model ignores this bit.
+    /// KNF (kill next): skip the next floating-point instruction. The model ignores this bit.
     pub const KNF: u32 = 1 << 15;
-    /// Position, in psr, of the lowest bit of SC, the shift count.
+    /// Index, in psr, of the lowest bit of SC, the shift count.
     pub const SC_SHIFT: u32 = 17;
     /// SC: shift count of `shrd`, five bits.
     pub const SC: u32 = 31 << SC_SHIFT;
-    /// Position, in psr, of the lowest bit of PS, the pixel size.
+    /// Index, in psr, of the lowest bit of PS, the pixel size.
     pub const PS_SHIFT: u32 = 22;
     /// PS: pixel size. The values 0, 1, 2 stand for 8, 16, 32 bits.
     pub const PS: u32 = 3 << PS_SHIFT;
-    /// Position, in psr, of the lowest bit of PM, the pixel mask.
+    /// Index, in psr, of the lowest bit of PM, the pixel mask.
     pub const PM_SHIFT: u32 = 24;
     /// PM: pixel mask, eight bits. `pst` stores only pixels whose bits are set.
     pub const PM: u32 = 0xFF << PM_SHIFT;
-    /// All bits that state the cause of a trap.
+    /// All bits that give the cause of a trap.
     pub const TRAPS: u32 = IT | IN | IAT | DAT | FT;
     /// Bits that a program can write in user mode.
     pub const USER: u32 = CC | LCC | SC | PS | PM;
@@ -68,7 +68,7 @@ pub mod epsr {
 pub mod fsr {
     /// FZ: flush to zero. Results that underflow become zero.
     pub const FZ: u32 = 1;
-    /// Position, in fsr, of the lowest bit of RM, the rounding mode. In this model only `fix` uses RM.
+    /// Index, in fsr, of the lowest bit of RM, the rounding mode. In this model, only `fix` uses RM.
     pub const RM_SHIFT: u32 = 2;
 }
 
@@ -87,23 +87,23 @@ pub mod dirbase {
 /// A value in one stage of a pipe, with its precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PipeStage {
-    /// Bit pattern of the value. A value in single precision occupies the low word.
+    /// Bit pattern of the value. A single-precision value is in the low word.
     pub bits: u64,
-    /// True if the value is in double precision and fills two registers.
+    /// True if the value is in double precision and occupies two registers.
     pub double: bool,
 }
 
-/// Pairing mode: the way in which the next instructions form pairs in dual-instruction mode.
+/// Pairing mode: decides if the next instructions execute alone or as pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Mode {
     /// Instructions execute one at a time.
     #[default]
     Single,
-    /// The next instruction executes alone, and pairs begin after it. This mode follows an instruction whose D bit is
-    /// set. The next instruction lies in the upper half of 8 aligned bytes.
+    /// The next instruction executes alone, and pairs begin after it. This mode follows an instruction in the lower
+    /// half of 8 aligned bytes whose D bit is set.
     Entering,
-    /// The next two instructions form a pair. This pair is the first or the last of dual-instruction mode. Another pair
-    /// follows only if this pair has its D bit set.
+    /// The next two instructions form a pair. Another pair follows only if this pair has its D bit set. This mode
+    /// belongs to the first and the last pair of dual-instruction mode.
     DualOnce,
     /// The next two instructions form a pair, and another pair follows.
     Dual,
@@ -116,7 +116,6 @@ impl Mode {
         matches!(self, Mode::DualOnce | Mode::Dual)
     }
 
-    /// Returns the pairing mode after a pair whose D bit is `d`.
     pub(crate) fn after_pair(self, d: bool) -> Mode {
         match (self, d) {
             (Mode::DualOnce, false) => Mode::Single,
@@ -126,7 +125,7 @@ impl Mode {
     }
 }
 
-/// The complete state that a program can see: registers, pipes and pairing mode.
+/// The complete state that is visible to a program: registers, pipes and pairing mode.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct State {
     /// Address of the next instruction or pair.
@@ -135,17 +134,17 @@ pub struct State {
     pub r: [u32; 32],
     /// Floating-point registers. `f[0]` and `f[1]` stay 0.
     pub f: [u32; 32],
-    /// psr, processor status: the bits of [`psr`].
+    /// psr, the processor status, with the bits in [`psr`].
     pub psr: u32,
-    /// epsr, extended processor status: the bits of [`epsr`].
+    /// epsr, the extended processor status, with the bits in [`epsr`].
     pub epsr: u32,
-    /// fsr, floating-point status: the bits of [`fsr`].
+    /// fsr, the floating-point status, with the bits in [`fsr`].
     pub fsr: u32,
-    /// dirbase, directory base and cache control: the bits of [`dirbase`].
+    /// dirbase, the directory base and cache control, with the bits in [`dirbase`].
     pub dirbase: u32,
-    /// db, data breakpoint. The value is stored but never compared with addresses.
+    /// db, the data breakpoint. The model stores it, but never compares it with addresses.
     pub db: u32,
-    /// fir, address of the instruction that trapped.
+    /// fir, the address of the instruction that trapped.
     pub fir: u32,
     /// KR, the first constant register of dual operations.
     pub kr: u64,
@@ -155,15 +154,13 @@ pub struct State {
     pub t: u64,
     /// MERGE, the register in which the graphics unit collects pixels or depths.
     pub merge: u64,
-    /// Pipe of the adder. The value in the last element leaves the pipe at the next push.
+    /// Pipe of the adder. The value in the last stage leaves the pipe at the next push.
     pub adder: [PipeStage; 3],
     /// Pipe of the multiplier. Double-precision operations use only the first two stages.
     pub multiplier: [PipeStage; 3],
     /// Pipe of the pipelined loads (`pfld`).
     pub load: [PipeStage; 3],
-    /// Pipe of the graphics unit, with a single stage.
     pub graphics: PipeStage,
-    /// Pairing mode: single instructions or pairs.
     pub mode: Mode,
 }
 
@@ -171,7 +168,8 @@ pub struct State {
 pub const TRAP_VECTOR: u32 = 0xFFFF_FF00;
 
 impl State {
-    /// Returns the state after reset: all registers are zero, supervisor mode, next instruction at [`TRAP_VECTOR`].
+    /// Returns the state after reset: all registers are zero, the processor is in supervisor mode, and the next
+    /// instruction is at [`TRAP_VECTOR`].
     #[must_use]
     pub fn reset() -> State {
         State {
@@ -212,7 +210,7 @@ impl State {
         self.f[usize::from(n & 31)]
     }
 
-    /// Returns the 64-bit value of the register pair that contains floating-point register `n`.
+    /// Returns the bits of the register pair that contains floating-point register `n`.
     #[inline]
     pub(crate) fn f64_bits(&self, n: u8) -> u64 {
         let low = usize::from(n & 30);

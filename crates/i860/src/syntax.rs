@@ -1,25 +1,25 @@
-//! The operands of each kind of instruction in assembler text, and the register bit fields of its word.
+//! The operands of each kind of instruction: their form in assembler text, and their bit fields in the instruction
+//! word.
 
 use crate::instruction::{Instruction, Op};
 
-/// The form of an instruction's operands in assembler text, in the order in which the operands are written.
+/// Operands of an instruction, in the order of assembler text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Syntax {
-    /// No operands: the instruction is only a mnemonic.
     Bare,
-    /// Operands `src1 or immediate, src2, dest`.
+    /// `src1 or immediate, src2, dest`: an integer operation.
     Integer,
-    /// Operands `address, dest`: a load into an integer register.
+    /// `address, dest`: a load into an integer register.
     Load,
-    /// Operands `src1, address`: a store from an integer register.
+    /// `src1, address`: a store from an integer register.
     Store,
-    /// Operands `address, fdest`: a load into floating-point registers. The address can have auto-increment, `++`.
+    /// `address, fdest`: a load into floating-point registers. The address can have auto-increment, `++`.
     FloatingLoad,
-    /// Operands `fdest, address`: a store from floating-point registers. The address can have auto-increment, `++`.
+    /// `fdest, address`: a store from floating-point registers. The address can have auto-increment, `++`.
     FloatingStore,
-    /// Operands `control, dest` of an instruction that reads a control register.
+    /// `control, dest`: a read of a control register.
     LoadControl,
-    /// Operands `src1, control` of an instruction that writes a control register.
+    /// `src1, control`: a write of a control register.
     StoreControl,
     /// `src1, fdest`: copies an integer register to a floating-point register.
     ToFloating,
@@ -27,13 +27,13 @@ pub(crate) enum Syntax {
     ToInteger,
     /// `address`: the only operand of `flush`. The address can have auto-increment, `++`.
     Flush,
-    /// Operands `src1, src2, dest` of `trap`, which can be left out.
+    /// `src1, src2, dest`: the operands of `trap`, which can be left out.
     Trap,
     /// `src1`: one integer register, such as the target address of `bri`.
     Register,
     /// `target`: a label or an address as the branch target.
     Branch,
-    /// Operands `src1 or 5-bit constant, src2, target` of a compare-and-branch.
+    /// `src1 or 5-bit constant, src2, target`: a compare-and-branch.
     CompareBranch,
     /// `src1, src2, target`: two integer registers and a branch target.
     LoopBranch,
@@ -72,10 +72,10 @@ impl Syntax {
     }
 }
 
-/// Names of the control registers, by register number.
+/// Names of the control registers, in the order of their numbers.
 pub(crate) const CONTROL_REGISTERS: [&str; 6] = ["fir", "psr", "dirbase", "db", "fsr", "epsr"];
 
-/// Returns the mask of those register bit fields of an instruction word that the instruction `i` uses.
+/// Returns the mask of the register bit fields that the instruction `i` uses in its word.
 pub(crate) fn register_mask(i: &Instruction, immediate: bool) -> u32 {
     const SRC2: u32 = 31 << 21;
     const DEST: u32 = 31 << 16;

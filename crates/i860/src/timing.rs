@@ -1,7 +1,7 @@
 //! All constants of the timing model.
 //!
-//! Clocks are processor clocks: 25 ns at 40 MHz. *Intel's list* means the table of instruction timings in the
-//! programmer's manual, as the authors remember the table.
+//! Clocks are processor clocks: 25 ns at 40 MHz. *Intel's list* is the table of instruction timings in the programmer's
+//! manual, as the authors remember it.
 
 pub use crate::freeze::{FREEZES, Freeze, FreezeRow, FreezeRules, N_FREEZES};
 use pxpl5_sim::parameters::ParameterTable;
@@ -148,37 +148,32 @@ pxpl5_sim::parameters::parameter_table! {
     }
 }
 
-/// Prefix of the parameter names in the table of freeze delays.
 const FREEZES_PATH: &str = "i860.freezes";
 const DRAM_PATH: &str = "i860.dram";
 
-/// Prefix of the parameter names of on-chip sizes. Lists of parameters show these sizes, but users cannot set the
-/// sizes.
+/// Prefix of the names of on-chip sizes in lists of parameters. Users cannot set these sizes.
 pub const CHIP_PATH: &str = "i860.chip";
 
 /// Configuration of a processor: timing rules, memory timing, and results of the reciprocal approximations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// True if the processor counts clocks. If false, only instructions are counted.
+    /// True if the processor counts clocks. Otherwise it counts only instructions.
     pub timing: bool,
-    /// Rows of the freeze table that are enabled, and their delays in clocks.
+    /// Enabled rows of the freeze table, and their delays in clocks.
     pub freezes: FreezeRules,
-    /// Timing of the memory on the bus.
     pub dram: DramTiming,
-    /// Table from which `frcp` and `frsqr` take their results, the first approximations of reciprocals and reciprocal
-    /// roots.
+    /// Table from which `frcp` and `frsqr` take their results, approximations of reciprocals and reciprocal roots.
     pub seeds: crate::SeedTable,
     /// Seed of the pseudo-random sequence that chooses the cache line to replace.
     pub replacement_seed: u16,
-    /// True if the clocks of repeated code are reused instead of counted again. Clocks are reused only for code that is
-    /// in the instruction cache and whose data are in the data cache. The method comes from FastSim (Schnarr and Larus,
-    /// 1998). This optimization changes only the computing time of the simulation, and is on by default.
+    /// True if the clocks of repeated code are reused instead of counted again. The code must be in the instruction
+    /// cache, and its data in the data cache. The method comes from FastSim (Schnarr and Larus, 1998). This
+    /// optimization changes only the computing time of the simulation, and is on by default.
     pub memoise: bool,
 }
 
 impl Config {
-    /// Returns the configuration with all rows of the freeze table and the default memory timing. A processor with this
-    /// configuration counts its clocks.
+    /// Returns the configuration with all rows of the freeze table and the default memory timing.
     #[must_use]
     pub fn cycle() -> Config {
         Config {
@@ -197,14 +192,14 @@ impl Config {
         [(FREEZES_PATH, &self.freezes.clocks), (DRAM_PATH, &self.dram), (CHIP_PATH, &ChipSizes::PAPERS)]
     }
 
-    /// Returns the tables of timing parameters whose values can be changed: all tables except the on-chip sizes.
+    /// Returns the tables whose values can be changed: all tables except the on-chip sizes.
     pub fn tables_mut(&mut self) -> [(&'static str, &mut dyn ParameterTable); 2] {
         [(FREEZES_PATH, &mut self.freezes.clocks), (DRAM_PATH, &mut self.dram)]
     }
 
-    /// Returns the settings that differ from [`Config::cycle`], as keys and values. The list has only settings that
-    /// change results and are not in the parameter tables. Names of experiments include these settings. Memoization
-    /// changes no result, so the list does not contain memoization.
+    /// Returns the settings that differ from [`Config::cycle`] and change results, as keys and values. Names of
+    /// experiments include these settings. Parameter tables are not part of the list. Memoization is not part of it
+    /// either, because it changes no result.
     #[must_use]
     pub fn unusual_settings(&self) -> Vec<(&'static str, String)> {
         // The pattern lists every field, so that the compiler reports a new field that is not handled here.
@@ -219,7 +214,7 @@ impl Config {
         all.into_iter().filter(|(_, differs, _)| *differs).map(|(key, _, value)| (key, value)).collect()
     }
 
-    /// Returns a configuration that counts no clocks. Programs compute the same results as with [`Config::cycle`].
+    /// Returns a configuration without clocks. Programs compute the same results as with [`Config::cycle`].
     #[must_use]
     pub fn functional() -> Config {
         Config { timing: false, ..Config::cycle() }
@@ -231,7 +226,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_number_lies_in_its_range() {
+    fn every_number_of_the_timing_tables_lies_in_its_range() {
         for (name, table) in Config::cycle().tables() {
             assert_eq!(table.out_of_range(), [], "{name}");
             assert_eq!(table.check(), Ok(()), "{name}");

@@ -5,7 +5,6 @@ use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};
 
 const PAGE_BYTES: u32 = ChipSizes::PAPERS.page_bytes as u32;
-/// Associativity of the TLB: number of entries in each set.
 const WAYS: usize = ChipSizes::PAPERS.tlb_ways as usize;
 const SETS: usize = ChipSizes::PAPERS.tlb_entries as usize / WAYS;
 
@@ -26,8 +25,7 @@ impl Translation {
         self.directory.is_some()
     }
 
-    /// Turns address translation on, with the page directory at address `directory`. With `None`, turns address
-    /// translation off.
+    /// Turns on address translation with the page directory at `directory`, or turns it off with `None`.
     pub(crate) fn set_directory(&mut self, directory: Option<u32>) {
         self.directory = directory;
     }
@@ -36,8 +34,8 @@ impl Translation {
         self.tlb.clear();
     }
 
-    /// Counts the clocks of a TLB miss: the constant part, a read of the page directory and a read of a page table. The
-    /// model assumes that the page tables follow the directory in memory.
+    /// Counts the clocks of a TLB miss: the constant part, a read of the page directory, and a read of a page table.
+    /// The model assumes that the page tables follow the directory in memory.
     #[inline]
     pub(crate) fn translate(&mut self, address: u32, common: &mut Common) {
         if let Some(directory) = self.directory

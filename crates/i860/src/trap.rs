@@ -1,17 +1,12 @@
-//! Causes of traps, and ends of program runs.
+//! Causes of traps, and reasons why a run of a program ends.
 
-/// The cause of a trap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrapCause {
     /// A word that does not encode an XR instruction.
     #[error("{word:08x} is not an i860 XR instruction")]
-    Illegal {
-        /// The instruction word that was fetched.
-        word: u32,
-    },
-    /// A pair whose first instruction is not a floating-point instruction, or whose second instruction is not a core
-    /// instruction.
+    Illegal { word: u32 },
+    /// A pair that does not consist of a floating-point instruction and then a core instruction.
     #[error("a pair must be one floating-point and one core instruction")]
     IllegalPair,
     /// A branch in a delay slot (undefined on the real chip).
@@ -31,42 +26,32 @@ pub enum TrapCause {
     InstructionAccess,
     /// A load or store at an address at which no memory or device answers.
     #[error("no memory at {address:#010x}")]
-    DataAccess {
-        /// The physical address of the access.
-        address: u32,
-    },
+    DataAccess { address: u32 },
     /// A load or store at an address that is not a multiple of the access size.
     #[error("{address:#010x} is not a multiple of {size}")]
-    Unaligned {
-        /// The address of the access.
-        address: u32,
-        /// The size of the access in bytes.
-        size: u32,
-    },
+    Unaligned { address: u32, size: u32 },
     /// The interrupt pin was raised while psr.IM was set.
     #[error("interrupt")]
     Interrupt,
 }
 
-/// A trap that was taken. The next instruction is the first instruction of the trap handler. Register fir holds `pc`.
-/// Register psr has the trap bit, PU, PIM, DIM and DS. The next pc is [`TRAP_VECTOR`](crate::state::TRAP_VECTOR).
+/// A trap that was taken. Register fir contains `pc`, and psr contains the trap bit, PU, PIM, DIM and DS. The next
+/// instruction is the first instruction of the trap handler, at [`TRAP_VECTOR`](crate::state::TRAP_VECTOR).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("trap at {pc:#010x}: {cause}")]
 pub struct Trap {
     pub cause: TrapCause,
-    /// Address of the instruction or pair that has trapped and had no effect. If the instruction was in a delay slot,
-    /// its branch has already changed registers, as on the real chip. These registers are r1 for a call, LCC and the
-    /// counter for `bla`.
+    /// Address of the instruction or pair that trapped and had no effect. If it was in a delay slot, the branch has
+    /// already changed registers, as on the real chip: r1 for a call, LCC and the counter for `bla`.
     pub pc: u32,
 }
 
 /// The reason why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunEnd {
-    /// The stop address was reached in single-instruction mode. The instruction at the stop address was not executed.
+    /// The stop address was reached in single-instruction mode. The instruction at this address was not executed.
     Stopped,
-    /// A trap was taken.
     Trapped(Trap),
-    /// The instruction budget was used up.
+    /// The run has executed its budget of instructions.
     Exhausted,
 }

@@ -1,5 +1,5 @@
-//! Conformance vectors. A vector is a program with the memory before its run and the expected state after its run. The
-//! file has one JSON object per line.
+//! Conformance vectors. A vector consists of a program, the memory before its run, and the expected state after its
+//! run. A file of vectors has one JSON object per line.
 //!
 //! ```text
 //! {"id","group","what","load","code":["hex32",...],"entry","stop",
@@ -13,46 +13,43 @@ use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Largest number of instructions that the program of a vector may execute. A longer run fails. The programs execute
-/// fewer than 1,000 instructions.
+/// Largest number of instructions that the program of a vector may execute. A longer run fails. The actual programs
+/// execute fewer than 1,000 instructions.
 pub const BUDGET: u64 = 10_000;
 
-/// One conformance vector: a program, the memory before the program runs, and the state expected afterwards.
+/// One conformance vector: a program, the memory before its run, and the expected state after its run.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct TestVector {
     /// Identifier of the vector, unique in its file.
     pub id: String,
-    /// Name of the group of vectors, within the file, to which this vector belongs.
+    /// Name of the group of vectors in the file to which this vector belongs.
     #[serde(default)]
     pub group: String,
-    /// Description of the tested behaviour.
     #[serde(default)]
     pub what: String,
     /// Address of the first word of `code`.
     pub load: u32,
-    /// Instruction words, which are loaded into memory from address `load` on.
+    /// Instruction words, loaded into memory from address `load` on.
     #[serde(deserialize_with = "hex_list")]
     pub code: Vec<u32>,
-    /// Address of the first instruction to execute.
     pub entry: u32,
-    /// Address at which the run must end.
     pub stop: u32,
-    /// Words that are written to memory before the program runs, each with its address.
+    /// Addresses and words that are written to memory before the program runs.
     #[serde(default, deserialize_with = "hex_pairs")]
     pub mem: Vec<(u32, u32)>,
     pub expect: Expectation,
 }
 
-/// The registers and memory words that are expected after the program of a vector has run.
+/// Expected registers and memory words after the program of a vector has run.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct Expectation {
-    /// Expected values of the integer registers, as bit patterns.
+    /// Expected integer registers, as bit patterns.
     #[serde(deserialize_with = "registers")]
     pub r: [u32; 32],
-    /// Expected values of the floating-point registers, as bit patterns.
+    /// Expected floating-point registers, as bit patterns.
     #[serde(deserialize_with = "registers")]
     pub f: [u32; 32],
-    /// Words that memory must contain after the program has run, each with its address.
+    /// Addresses and words that memory must contain after the run.
     #[serde(default, deserialize_with = "hex_pairs")]
     pub mem: Vec<(u32, u32)>,
 }
@@ -78,7 +75,7 @@ fn registers<'de, D: Deserializer<'de>>(from: D) -> Result<[u32; 32], D::Error> 
     list.try_into().map_err(|_| serde::de::Error::custom(format_args!("expected 32 registers, found {found}")))
 }
 
-/// Memory that exists at every address. Words that were never written are zero.
+/// Memory at every address. Words that were never written are zero.
 #[derive(Clone, Debug, Default)]
 struct Sparse(BTreeMap<u32, u32>);
 
@@ -119,14 +116,11 @@ impl Bus for Sparse {
     }
 }
 
-/// One register or memory word that differs from its expected value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     /// Name of the register (such as `r5` or `f12`), or address of the memory word.
     pub place: String,
-    /// Bit pattern that the vector expects.
     pub expected: u32,
-    /// Bit pattern that the model has produced.
     pub found: u32,
 }
 
@@ -136,15 +130,14 @@ impl fmt::Display for Difference {
     }
 }
 
-/// The reason why a vector failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Failure {
-    /// The program caused a trap before it reached its stop address.
+    /// The program trapped before it reached its stop address.
     Trapped(Trap),
     /// The program used up its instruction budget before it reached its stop address.
     Exhausted {
-        /// Address of the instruction that would have been executed next.
+        /// Address at which the program was stopped.
         pc: u32,
     },
     /// The run ended correctly, but some registers or memory words differ.
@@ -164,12 +157,11 @@ impl fmt::Display for Failure {
     }
 }
 
-/// An error for a line that does not contain a valid vector.
+/// A line that does not contain a valid vector.
 #[derive(Debug, thiserror::Error)]
 #[error("line {line}: not a vector: {reason}")]
 pub struct MalformedLine {
     pub line: usize,
-    /// Description of the error.
     pub reason: String,
 }
 
@@ -208,14 +200,14 @@ impl TestVector {
     /// Runs the program of the vector on a new processor, and compares the state after the run with the expected state.
     ///
     /// # Errors
-    /// Returns the differences in the state, or the reason why the program did not reach its stop address.
+    /// Returns the differences, or the reason why the program did not reach its stop address.
     pub fn check(&self, config: Config) -> Result<(), Failure> {
         let mut cpu = Cpu::at(config, self.entry);
         self.check_on(&mut cpu)
     }
 
-    /// Resets a processor, runs the program of the vector on this processor, and compares the state after the run with
-    /// the expected state.
+    /// Resets `cpu`, runs the program of the vector on it, and compares the state after the run with the expected
+    /// state.
     ///
     /// # Errors
     /// Returns the same errors as [`TestVector::check`].
@@ -244,24 +236,21 @@ impl TestVector {
     }
 }
 
-/// Results of a conformance test with a list of vectors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct VectorSummary {
-    /// Number of vectors that passed.
     pub passed: usize,
     /// Identifier, description and reason of each failed vector.
     pub failures: Vec<(String, String, Failure)>,
 }
 
 impl VectorSummary {
-    /// Returns the number of vectors that failed.
     #[must_use]
     pub fn failed(&self) -> usize {
         self.failures.len()
     }
 }
 
-/// Runs the programs of all vectors on one processor. The processor is reset before each program.
+/// Runs the programs of all vectors on one processor, which is reset before each program.
 #[must_use]
 pub fn run(vectors: &[TestVector], config: Config) -> VectorSummary {
     let mut cpu = Cpu::new(config);

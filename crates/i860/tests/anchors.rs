@@ -45,7 +45,7 @@ fn single_precision_peak_is_two_operations_per_clock() {
 
 /// 60 MFLOPS at 40 MHz: an addition in every clock and a multiplication in every second clock.
 #[test]
-fn double_precision_peak_is_one_and_a_half() {
+fn double_precision_peak_is_one_and_a_half_operations_per_clock() {
     let body = "m12apm.dd f8, f10, f0\npfadd.dd f12, f14, f0\n".repeat(32);
     let m = measure(&format!("begin: {body}end: nop"), &[]);
     assert_eq!((32 * 3, m.clocks), (96, 64));
@@ -124,7 +124,7 @@ fn singles(n: usize) -> String {
 /// but cannot be rewritten from its description. Only its shape is known: 11 pairs, 95 single instructions, a taken
 /// bnc.t, a label at 4 mod 8, and no freeze.
 #[test]
-fn a_loop_of_the_shape_of_the_tree_code_takes_106_clocks_a_turn() {
+fn a_loop_like_the_published_tree_code_takes_106_clocks_an_iteration() {
     // The entry word has two single instructions. Then 11 pairs follow, and the D bit of the last two pairs is clear.
     let pairs =
         "d.m12apm.ss f9, f10, f11\nadds 1, r6, r6\n".repeat(9) + &"m12apm.ss f9, f10, f11\nadds 1, r6, r6\n".repeat(2);

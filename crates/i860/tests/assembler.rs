@@ -16,7 +16,7 @@ fn assert_fault(source: &str, line: usize, reason: &str) {
 }
 
 #[test]
-fn words_known_from_published_encodings_come_out() {
+fn published_encodings_are_assembled() {
     for (text, word) in [
         ("nop", 0xA000_0000),
         ("fnop", 0xB000_0000),
@@ -39,7 +39,7 @@ fn words_known_from_published_encodings_come_out() {
 }
 
 #[test]
-fn labels_macros_and_constants_make_a_program() {
+fn a_program_can_use_labels_macros_and_constants() {
     let program = assemble(
         "t.s",
         0x1000,
@@ -70,7 +70,7 @@ fn labels_macros_and_constants_make_a_program() {
 }
 
 #[test]
-fn a_constant_may_begin_like_a_register() {
+fn the_name_of_a_constant_may_begin_with_the_name_of_a_register() {
     let program =
         assemble("t.s", 0, "size = 5\nmov size, r4\nmov sp, r5\nmov ha%0x7fffffffffffffff, r6").expect("correct");
     let text: Vec<String> = program.words().iter().map(|word| disassemble(*word, 0)).collect();
@@ -78,13 +78,13 @@ fn a_constant_may_begin_like_a_register() {
 }
 
 #[test]
-fn repetition_writes_its_block_out() {
+fn a_repetition_is_expanded() {
     let program = assemble("t.s", 0, ".rept 3\nadds 1, r4, r4\n.endr").expect("correct");
     assert_eq!(program.words(), vec![0x9484_0001; 3]);
 }
 
 #[test]
-fn pairing_faults_name_their_line() {
+fn pairing_errors_name_their_line() {
     assert_fault("d.fnop\nnop\nnop\nnop", 3, "expected a floating-point instruction");
     assert_fault("d.fnop\nnop\nd.fnop\nfadd.ss f2, f3, f4", 4, "expected a core instruction");
     assert_fault("d.fnop\nnop\nd.fadd.ss f2,f3,f4\nfld.l 0(r5),f4", 4, "the same register");
@@ -94,7 +94,7 @@ fn pairing_faults_name_their_line() {
 }
 
 #[test]
-fn a_stretch_that_leaves_dual_mode_by_the_rule_is_accepted() {
+fn a_correct_exit_from_dual_instruction_mode_is_accepted() {
     let pairs = "d.fnop\nnop\nd.fnop\nnop\nfnop\nnop\nfnop\nnop\nadds 1,r4,r4\nadds 1,r4,r4";
     assert!(assemble("t.s", 0, pairs).is_ok());
     let short = "d.fnop\nnop\nfnop\nnop\nadds 1,r4,r4";
@@ -102,7 +102,7 @@ fn a_stretch_that_leaves_dual_mode_by_the_rule_is_accepted() {
 }
 
 #[test]
-fn single_instruction_faults_name_their_line() {
+fn errors_of_one_instruction_name_their_line() {
     assert_fault("nop\nfoo r1", 2, "`foo` is not an operation");
     assert_fault("adds r1, r2", 1, "expected 3 operands, found 2");
     assert_fault("adds 40000, r2, r3", 1, "40000 is not in");
@@ -123,14 +123,14 @@ fn single_instruction_faults_name_their_line() {
 }
 
 #[test]
-fn all_faults_of_a_source_are_reported_in_line_order() {
+fn all_errors_of_a_source_are_reported_in_line_order() {
     let errors = assemble("t.s", 0, "foo\nadds r1\nbte 32, r1, 0").expect_err("wrong").0;
     assert_eq!(errors.iter().map(|e| e.line).collect::<Vec<_>>(), [1, 2, 3]);
     assert_eq!(errors[0].to_string(), "t.s:1: `foo` is not an operation");
 }
 
 #[test]
-fn semicolons_part_statements() {
+fn semicolons_separate_statements() {
     let lines = "start: adds 1,r0,r4\nadds 2,r0,r5\naddu r4,r5,r6\nnop\nend: nop";
     let expected = assemble("t.s", 0x1000, lines).expect("correct");
     for source in [
@@ -148,7 +148,7 @@ fn semicolons_part_statements() {
 }
 
 #[test]
-fn a_listing_shows_source_lines_and_data_as_data() {
+fn a_listing_shows_the_source_line_of_each_instruction_and_marks_data_as_data() {
     let source = "start: mov 0x12345678, r5 // both halves\n.macro two\nnop\nnop\n.endm\ntwo; nop\nend: nop\n.align 8\n\
                   table: .long 7, end\n.byte 1, 2, 3, 4, 255\n.byte 0\n.short 0xffff\n.align 8\n.double -1.5\n.float 0.5\nlast:";
     let program = assemble("t.s", 0x1000, source).expect("correct");
@@ -188,7 +188,7 @@ fn warning(source: &str) -> Option<(Rule, String)> {
 }
 
 #[test]
-fn rules_that_programs_break_are_warned_of() {
+fn broken_programming_rules_cause_warnings() {
     let reason = "t.s:2: a `d.` instruction must lie at a multiple of 8 (put a nop or .align 8 before it) [alignment]";
     assert_eq!(warning("nop\nd.fadd.ss f2, f3, f4\nnop"), Some((Rule::Alignment, reason.to_owned())));
     let reason = "t.s:1: a pipelined multiply must not have its first source as destination [multiply-source]";
@@ -202,7 +202,7 @@ fn rules_that_programs_break_are_warned_of() {
 
 /// According to the manual, a scalar operation uses the pipe of its unit and destroys the results in the pipe.
 #[test]
-fn a_result_taken_out_behind_a_scalar_operation_is_warned_of() {
+fn reading_a_pipe_after_a_scalar_operation_causes_a_warning() {
     let fault = |source: &str| {
         warning(source).map(|(rule, text)| {
             assert_eq!(rule, Rule::LostResult);
@@ -232,14 +232,14 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn what_is_decoded_encodes_to_a_word_that_decodes_alike(word: u32) {
+    fn decoding_encoding_and_decoding_again_gives_the_same_instruction(word: u32) {
         if let Ok(i) = decode(word) {
             prop_assert_eq!(decode(encode(&i)), Ok(i));
         }
     }
 
     #[test]
-    fn the_text_of_any_word_assembles_to_that_word(word: u32, pc in 0u32..0x1000_0000) {
+    fn disassembled_words_assemble_to_the_same_words(word: u32, pc in 0u32..0x1000_0000) {
         let pc = pc & !7;
         let text = disassemble(word, pc);
         if !text.starts_with(".long") {
@@ -248,7 +248,7 @@ proptest! {
     }
 
     #[test]
-    fn floating_words_have_a_text(low in 0u32..2048, registers: u32) {
+    fn floating_point_words_can_be_disassembled(low in 0u32..2048, registers: u32) {
         let word = 0x12 << 26 | (registers & 0x03DE_F000) | low;
         let text = disassemble(word, 0);
         let bits_without_meaning = [0x40, 0x50, 0x51, 0x57, 0x5A, 0x5F, 0x35].contains(&(low & 0x7F));
@@ -267,7 +267,7 @@ proptest! {
 /// The assembler rejects endless expansion quickly and with little memory. The error states the source line that causes
 /// the expansion.
 #[test]
-fn what_spends_the_budget_is_refused_at_its_line() {
+fn exceeding_the_expansion_budget_is_refused_at_its_line() {
     let spent = "written out to more than";
     assert_fault("nop\n.rept 1000000000000\n.macro a\n.endm\n.endr", 2, spent);
     assert_fault(".macro e\n.endm\n.rept 1000000000000\ne\n.endr", 3, spent);
@@ -282,13 +282,13 @@ fn what_spends_the_budget_is_refused_at_its_line() {
 }
 
 #[test]
-fn the_line_that_spent_most_is_named_and_not_the_last_one() {
+fn exceeding_the_expansion_budget_names_the_line_with_the_most_expanded_words() {
     let source = ".rept 900000\nnop\n.endr\nnop\n.rept 200000\nnop\n.endr";
     assert_fault(source, 1, "written out to more than");
 }
 
 #[test]
-fn repetitions_lie_in_each_other_only_so_deep() {
+fn nested_repetitions_have_a_depth_limit() {
     let nested = |depth: usize| format!("{}nop\n{}", ".rept 1\n".repeat(depth), ".endr\n".repeat(depth));
     assert_fault(&nested(20_000), 33, "nest deeper than 32");
     assert_eq!(assemble("t.s", 0, &nested(32)).expect("allowed").words().len(), 1);
@@ -296,13 +296,13 @@ fn repetitions_lie_in_each_other_only_so_deep() {
 
 /// A million repetitions of a word give a program of a million words, a fourth of the longest program.
 #[test]
-fn a_million_words_are_written_out() {
+fn a_million_words_are_assembled() {
     let program = assemble("t.s", 0, ".rept 1000000\n.long 7\n.endr").expect("within the budget");
     assert_eq!(program.bytes.len(), 4_000_000);
 }
 
 #[test]
-fn conditions_select_lines_by_constants_above() {
+fn conditions_select_lines_by_constants_defined_above() {
     let source = |phong: u32, strips: u32| {
         format!(
             "PHONG = {phong}; STRIPS = {strips}
@@ -335,7 +335,7 @@ fn conditions_select_lines_by_constants_above() {
 }
 
 #[test]
-fn wrong_conditions_are_named_with_their_line() {
+fn the_error_of_an_invalid_condition_names_its_line() {
     assert_fault("nop\n.if 1\nnop", 2, ".if without .endif");
     assert_fault("nop\n.endif", 2, ".endif without .if");
     assert_fault(".if 1\n.else\n.else\n.endif", 3, ".else without .if");

@@ -19,7 +19,7 @@ fn assert_all_pass(config: Config) {
 }
 
 #[test]
-fn every_vector_gives_its_registers_and_memory() {
+fn every_vector_ends_with_its_expected_registers_and_memory() {
     assert_all_pass(Config::functional());
 }
 

@@ -41,7 +41,7 @@ fn clocks(rows: &[Freeze], source: &str) -> u64 {
 
 /// Intel's list, row 1: "+ remaining READY#s of the block if a jump or another freeze occurs meanwhile".
 #[test]
-fn row_1_another_freeze_while_a_line_comes_in_waits_for_the_rest_of_it() {
+fn row_1_a_second_freeze_during_a_line_fill_lasts_until_the_end_of_the_fill() {
     let source = "adds 1, r5, r5\nbc end\nnop\nnop\nnop\nnop\nnop\nnop";
     // The first word arrives at clock 11, and adds ends at 12. bc would wait until 13, so it waits for the line until
     // 17 and ends at 18. Six more instructions end at 24.
@@ -56,7 +56,7 @@ fn row_1_another_freeze_while_a_line_comes_in_waits_for_the_rest_of_it() {
 
 /// The constant part of a freeze row at the end of an instruction also waits for the rest of the line.
 #[test]
-fn row_1_a_branch_within_the_line_waits_for_the_rest_of_it() {
+fn row_1_a_branch_within_a_line_being_filled_waits_for_the_rest_of_the_line() {
     let source = "bnc on\nnop\nnop\non: nop\nnop\nnop\nnop\nnop";
     // The first word arrives at clock 11, bnc ends at 12, and the taken branch at 13 waits until 17. Five nops follow.
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::BranchTaken], source), 22);
@@ -84,21 +84,21 @@ fn a_read_of_another_row_waits_for_the_last_word_of_a_fill() {
 /// Intel's list, row 3: the instruction waits for the data. A bus of 64 bits needs two transfers for 16 bytes.
 #[test]
 fn row_3_a_miss_of_16_bytes_waits_for_both_transfers() {
-    // The load is issued at clock 1. The first 8 bytes arrive at 12 and the next at 14. The list adds one clock.
+    // The load is issued at clock 1. The first 8 bytes arrive at 12 and the next at 14. Intel's list adds one clock.
     assert_eq!(clocks(&[Freeze::FloatingLoadMiss], "fld.q 0(r4), f8"), 15);
     assert_eq!(clocks(&[Freeze::FloatingLoadMiss], "fld.d 0(r4), f8"), 13);
 }
 
 /// Intel's list, row 16, address pipe full: "until next address can issue", for any instruction that issues an address.
 #[test]
-fn row_16_holds_a_store_behind_three_requests() {
+fn row_16_a_store_waits_while_the_address_pipe_has_three_requests() {
     let source = "pfld.d 8(r4)++, f8\npfld.d 8(r4)++, f8\npfld.d 8(r4)++, f8\nst.l r5, 0(r4)";
     // The requests are at clocks 1, 2 and 3, and the data of the first arrive at 12. The store is issued at 4.
     assert_eq!(clocks(&[Freeze::AddressPipeFull], source), 12);
 }
 
 #[test]
-fn row_16_holds_an_instruction_fill_behind_three_requests() {
+fn row_16_an_instruction_fill_waits_while_the_address_pipe_has_three_requests() {
     let loads = "pfld.d 8(r7)++, f8\n".repeat(3);
     let source = format!("mov 0x1800, r7\nnop\nnop\nnop\nnop\n{loads}nop");
     // mov and the nops end at clock 16. The loads of the open row are requested at 17, 18 and 19, and their data arrive
@@ -125,7 +125,7 @@ fn sum_behind(operation: &str) -> f32 {
 
 /// According to the manual, a scalar operation uses the pipe of its unit and destroys the results in the pipe.
 #[test]
-fn a_scalar_operation_destroys_what_the_pipe_of_its_unit_holds() {
+fn a_scalar_operation_clears_the_pipe_of_its_unit() {
     for keeps in ["nop", "fmul.ss f2, f3, f4", "frcp.ss f2, f4", "fiadd.ss f2, f3, f4"] {
         assert_eq!(sum_behind(keeps).to_bits(), 3f32.to_bits(), "{keeps}");
     }

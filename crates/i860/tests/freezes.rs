@@ -99,7 +99,7 @@ fn stores(n: u64) -> String {
 /// Every number of the table has its effect exactly once. With five more clocks in a row, the program of the row takes
 /// five more clocks.
 #[test]
-fn every_row_costs_what_its_number_says() {
+fn every_freeze_row_costs_its_parameter() {
     for Sample { row, beside, source } in samples() {
         let rules = beside.with(row);
         let mut dearer = rules;
@@ -110,9 +110,9 @@ fn every_row_costs_what_its_number_says() {
     }
 }
 
-/// Rows 1a and 16 of the list consist only of waiting: their constant part is 0.
+/// Rows 1a and 16 of Intel's list consist only of waiting: their constant part is 0.
 #[test]
-fn every_row_with_a_constant_part_has_a_sample() {
+fn every_freeze_row_with_a_constant_part_has_a_test_program() {
     let sampled: Vec<_> = samples().iter().map(|sample| sample.row).collect();
     let constant = FREEZES.iter().filter(|row| row.clocks.limits != (Value::Whole(0), Value::Whole(0)));
     assert_eq!(sampled, constant.map(|row| row.id).collect::<Vec<_>>());
@@ -121,14 +121,14 @@ fn every_row_with_a_constant_part_has_a_sample() {
 }
 
 #[test]
-fn rows_and_numbers_stand_in_the_same_order() {
+fn freeze_rows_and_parameters_have_the_same_order() {
     for (n, row) in FREEZES.iter().enumerate() {
         let name = row.clocks.name.replace('_', "");
         assert_eq!((row.id as usize, format!("{:?}", row.id).to_lowercase()), (n, name));
     }
 }
 
-/// The list, 1, I-cache miss: "clocks from ADS# to READY# of the needed word".
+/// Row 1 of Intel's list, I-cache miss: "clocks from ADS# to READY# of the needed word".
 #[test]
 fn row_1_an_instruction_miss_waits_for_the_word_needed() {
     let t = dram();
@@ -137,7 +137,7 @@ fn row_1_an_instruction_miss_waits_for_the_word_needed() {
     assert_eq!(cost(Freeze::InstructionMiss, ".rept 9\nnop\n.endr"), second_line);
 }
 
-/// The list, 1: "+ remaining READY#s of the block if a jump [occurs] meanwhile".
+/// Row 1 of Intel's list: "+ remaining READY#s of the block if a jump [occurs] meanwhile".
 #[test]
 fn row_1_leaving_the_line_early_waits_for_the_rest_of_it() {
     let t = dram();
@@ -150,19 +150,19 @@ fn row_1_leaving_the_line_early_waits_for_the_rest_of_it() {
 }
 
 #[test]
-fn row_1_a_line_that_is_held_costs_nothing() {
+fn row_1_a_cached_line_costs_nothing() {
     let t = dram();
     let twice = "adds 1, r0, r8\nloop: bte r8, r9, end\nmov r8, r9\nbr loop\nnop";
     assert_eq!(cost(Freeze::InstructionMiss, twice), t.first_miss);
 }
 
-/// The list, 1: "+2 if D-cache busy".
+/// Row 1 of Intel's list: "+2 if D-cache busy".
 #[test]
-fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
+fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more_clocks() {
     let t = dram();
     let others = FreezeRules::none().with(Freeze::InstructionMiss);
-    // The data lie in another DRAM row and come after the instructions. The next line is needed after the first word,
-    // mov, ld, the turns and four nops.
+    // The data lie in another DRAM row and come after the instructions. The next line is needed after the first word of
+    // the instructions, mov, ld, the turns of the loop and four nops.
     let fill = 2 * (t.first_miss + 3 * t.next);
     let turns_until_full = (fill - t.first_miss - 6).div_ceil(2);
     let row = Freeze::InstructionMissBehindData;
@@ -171,10 +171,10 @@ fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
     assert_eq!(cost_beside(others, row, &next_line_behind_load(turns_until_full + 1)), 0);
 }
 
-/// The list, 2, use of the destination of an integer load that missed: "1 + read clocks - instructions executed since
-/// the load".
+/// Row 2 of Intel's list, use of the destination of an integer load that missed: "1 + read clocks - instructions
+/// executed since the load".
 #[test]
-fn row_2_the_destination_of_a_load_that_missed_is_waited_for() {
+fn row_2_an_instruction_that_uses_a_missed_load_waits_for_the_loaded_word() {
     let t = dram();
     let read = t.first_miss;
     assert_eq!(cost(Freeze::LoadMissUse, "ld.l 0(r4), r5\nadds r5, r0, r6"), 1 + read);
@@ -185,9 +185,9 @@ fn row_2_the_destination_of_a_load_that_missed_is_waited_for() {
     assert_eq!(cost(Freeze::LoadMissUse, "ld.l 0(r4), r5\nadds r7, r0, r6"), 0);
 }
 
-/// The list, 3, fld miss: "1 + clocks ADS# to READY# (blocking)".
+/// Row 3 of Intel's list, fld miss: "1 + clocks ADS# to READY# (blocking)".
 #[test]
-fn row_3_a_floating_load_that_misses_blocks_and_one_that_hits_does_not() {
+fn row_3_only_a_floating_load_that_misses_the_cache_stops_the_processor() {
     let read = dram().first_miss;
     assert_eq!(cost(Freeze::FloatingLoadMiss, "fld.d 0(r4), f8"), 1 + read);
     assert_eq!(cost(Freeze::FloatingLoadMiss, "fld.d 0(r4), f8\nfld.d 24(r4), f8"), 1 + read);
@@ -206,7 +206,8 @@ fn pipelined_loads(n: usize) -> String {
     "pfld.d 8(r4)++, f8\n".repeat(n)
 }
 
-/// The list, 4, call, calli, ixfr, fxfr, ld.c, st.c while a data miss is in progress: "1 + clocks to first READY#".
+/// Row 4 of Intel's list, call, calli, ixfr, fxfr, ld.c, st.c while a data miss is in progress: "1 + clocks to first
+/// READY#".
 #[test]
 fn row_4_transfers_wait_for_the_first_word_of_a_fill() {
     let read = dram().first_miss;
@@ -218,9 +219,10 @@ fn row_4_transfers_wait_for_the_first_word_of_a_fill() {
     }
 }
 
-/// The list, 5, ld, st, fld, fst, pfld while a data miss is in progress: "1 + clocks to last READY# of the line".
+/// Row 5 of Intel's list, ld, st, fld, fst, pfld while a data miss is in progress: "1 + clocks to last READY# of the
+/// line".
 #[test]
-fn row_5_accesses_wait_for_the_whole_line() {
+fn row_5_loads_and_stores_wait_until_a_line_fill_ends() {
     let t = dram();
     let line = t.first_miss + 3 * t.next;
     for access in ["ld.l 4(r4), r6", "st.l r6, 4(r4)", "fld.d 8(r4), f8", "fst.d f8, 8(r4)"] {
@@ -231,9 +233,9 @@ fn row_5_accesses_wait_for_the_whole_line() {
     }
 }
 
-/// The list, 6, destination of ld, ld.c, call, calli, fxfr used by the next instruction: "1".
+/// Row 6 of Intel's list, destination of ld, ld.c, call, calli, fxfr used by the next instruction: "1".
 #[test]
-fn row_6_the_next_instruction_waits_for_a_load_and_the_one_after_does_not() {
+fn row_6_only_the_instruction_right_after_a_load_waits_for_the_loaded_value() {
     for (load, user) in [
         ("ld.l 0(r4), r5", "adds r5, r0, r6"),
         ("ld.c psr, r5", "adds r5, r0, r6"),
@@ -246,9 +248,10 @@ fn row_6_the_next_instruction_waits_for_a_load_and_the_one_after_does_not() {
     assert_eq!(cost(Freeze::LoadUse, "ld.l 0(r4), r5\nadds r7, r0, r6"), 0);
 }
 
-/// The list, 7, destination of fld, pfld, ixfr used within the next two instructions: "2 in the 1st, 1 in the 2nd".
+/// Row 7 of Intel's list, destination of fld, pfld, ixfr used within the next two instructions: "2 in the 1st, 1 in the
+/// 2nd".
 #[test]
-fn row_7_a_floating_load_is_waited_for_by_two_instructions() {
+fn row_7_two_instructions_after_a_floating_load_wait_for_it() {
     for load in ["fld.d 0(r4), f8", "pfld.d 0(r4), f8", "ixfr r5, f8"] {
         for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
             let found = cost_apart(Freeze::FloatingLoadUse, load, gap, "pfadd.ss f8, f10, f12");
@@ -259,7 +262,7 @@ fn row_7_a_floating_load_is_waited_for_by_two_instructions() {
     assert_eq!(cost(Freeze::FloatingLoadUse, "fld.d 0(r4), f8\npfadd.ss f10, f2, f3"), 0);
 }
 
-/// The list, 8, bc, bnc right after addu, adds, subu, subs, pfeq, pfgt: "1".
+/// Row 8 of Intel's list, bc, bnc right after addu, adds, subu, subs, pfeq, pfgt: "1".
 #[test]
 fn row_8_a_branch_waits_for_a_condition_just_set() {
     for setter in ["adds 1, r5, r5", "subu r5, r6, r7", "pfgt.ss f8, f9, f0"] {
@@ -272,9 +275,9 @@ fn row_8_a_branch_waits_for_a_condition_just_set() {
     assert_eq!(clocks_with(rules, "and 1, r5, r5\nbnc end"), 3);
 }
 
-/// The list, 9, multiplier operation whose fsrc1 is the result of the operation before: "1".
+/// Row 9 of Intel's list, multiplier operation whose fsrc1 is the result of the operation before: "1".
 #[test]
-fn row_9_the_first_source_of_a_multiply_waits_for_the_result_before_it() {
+fn row_9_a_multiply_waits_if_its_first_source_is_the_result_of_the_previous_operation() {
     let row = Freeze::MultiplierFirstSource;
     assert_eq!(cost(row, "pfadd.ss f8, f9, f10\npfmul.ss f10, f9, f11"), 1);
     assert_eq!(cost(row, "pfadd.ss f8, f9, f10\npfmul.ss f9, f10, f11"), 0, "the second source does not");
@@ -283,9 +286,9 @@ fn row_9_the_first_source_of_a_multiply_waits_for_the_result_before_it() {
     assert_eq!(cost(row, "pfadd.ss f8, f9, f10\nr2p1.ss f10, f9, f11"), 0, "r2p1 sends it to the adder");
 }
 
-/// The list, 10, operation while a scalar one is in flight: "2 - instructions since".
+/// Row 10 of Intel's list, operation while a scalar one is in flight: "2 - instructions since".
 #[test]
-fn row_10_a_scalar_operation_holds_the_unit_for_two_clocks_more() {
+fn row_10_a_scalar_operation_occupies_the_floating_point_unit_for_two_more_clocks() {
     for scalar in ["fadd.ss f8, f9, f10", "fmul.ss f8, f9, f10", "famov.ss f8, f10"] {
         for next in ["fadd.ss f2, f3, f4", "fst.l f3, 0(r4)", "fiadd.ss f2, f3, f4", "pfadd.ss f2, f3, f0"] {
             for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
@@ -297,18 +300,19 @@ fn row_10_a_scalar_operation_holds_the_unit_for_two_clocks_more() {
     assert_eq!(cost(Freeze::ScalarBusy, "frcp.ss f8, f10\nfadd.ss f2, f3, f4"), 0);
 }
 
-/// The list, 10: "fmul.dd 3 - instructions since".
+/// Row 10 of Intel's list: "fmul.dd 3 - instructions since".
 #[test]
-fn row_10b_a_double_multiply_holds_it_for_three() {
+fn row_10b_a_scalar_double_multiply_occupies_the_floating_point_unit_for_three_more_clocks() {
     let row = Freeze::ScalarDoubleMultiplyBusy;
     assert_eq!(cost(row, "fmul.dd f8, f10, f12\nfadd.dd f2, f4, f6"), 3);
     assert_eq!(cost(row, "fmul.dd f8, f10, f12\nnop\nnop\nfadd.dd f2, f4, f6"), 1);
     assert_eq!(cost(row, "fmul.dd f8, f10, f12\nnop\nnop\nnop\nfadd.dd f2, f4, f6"), 0);
 }
 
-/// The list, 10: "+1 if precision changes; +1 if the new operation is pipelined with destination other than f0".
+/// Row 10 of Intel's list: "+1 if precision changes; +1 if the new operation is pipelined with destination other than
+/// f0".
 #[test]
-fn rows_10c_and_10d_add_to_a_wait_but_make_none() {
+fn rows_10c_and_10d_only_lengthen_existing_waits() {
     let busy = FreezeRules::none().with(Freeze::ScalarBusy);
     for (gap, expected) in [(0, 1), (1, 1), (2, 0)] {
         let source = apart("fadd.ss f8,f9,f10", gap, "fadd.dd f2,f4,f6");
@@ -320,10 +324,10 @@ fn rows_10c_and_10d_add_to_a_wait_but_make_none() {
     }
 }
 
-/// The list, 11, multiplier operation after a double-precision multiply: "1". The 60 MFLOPS in double precision at 40
-/// MHz in the data sheet mean one multiplication every second clock and one addition every clock.
+/// Row 11 of Intel's list, multiplier operation after a double-precision multiply: "1". The 60 MFLOPS in double
+/// precision at 40 MHz in the data sheet mean one multiplication every second clock and one addition every clock.
 #[test]
-fn row_11_the_multiplier_takes_a_double_every_second_clock() {
+fn row_11_the_multiplier_starts_a_double_multiply_at_most_every_second_clock() {
     let row = Freeze::DoubleMultiply;
     assert_eq!(cost(row, "pfmul.dd f8, f10, f12\npfmul.dd f8, f10, f12"), 1);
     assert_eq!(cost(row, "pfmul.dd f8, f10, f12\npfadd.dd f8, f10, f12\npfmul.dd f8, f10, f12"), 0);
@@ -331,9 +335,9 @@ fn row_11_the_multiplier_takes_a_double_every_second_clock() {
     assert_eq!(cost(row, "pfmul.ss f8, f10, f12\npfmul.ss f8, f10, f12"), 0);
 }
 
-/// The list, 12, TLB miss: "5 + two reads".
+/// Row 12 of Intel's list, TLB miss: "5 + two reads".
 #[test]
-fn row_12_a_page_seen_first_costs_five_and_two_reads() {
+fn row_12_a_tlb_miss_costs_five_clocks_and_the_time_of_two_reads() {
     let t = dram();
     let translation_on = "adds 1, r0, r5\nst.c r5, dirbase\n";
     let reads = t.first_miss + t.first_miss;
@@ -344,9 +348,9 @@ fn row_12_a_page_seen_first_costs_five_and_two_reads() {
     assert_eq!(cost(Freeze::TlbMiss, "ld.l 0(r4), r6"), 0, "translation is off");
 }
 
-/// The list, 13, pfld with three outstanding: "1 + clocks until first returns".
+/// Row 13 of Intel's list, pfld with three outstanding: "1 + clocks until first returns".
 #[test]
-fn row_13_the_fourth_pipelined_load_waits_for_the_first() {
+fn row_13_the_fourth_pipelined_load_waits_for_the_data_of_the_first_load() {
     let t = dram();
     assert_eq!(cost(Freeze::LoadPipeFull, &pipelined_loads(3)), 0);
     // The first load was requested after one clock. The fourth load is issued at clock 4 and then waits.
@@ -355,9 +359,9 @@ fn row_13_the_fourth_pipelined_load_waits_for_the_first() {
     assert_eq!(cost(Freeze::LoadPipeFull, &late), 0);
 }
 
-/// The list, 14, pfld that hits the data cache: "2 + clocks to finish all outstanding bus cycles".
+/// Row 14 of Intel's list, pfld that hits the data cache: "2 + clocks to finish all outstanding bus cycles".
 #[test]
-fn row_14_a_pipelined_load_that_hits_waits_for_the_bus_and_two_more() {
+fn row_14_a_pipelined_load_that_hits_the_cache_waits_until_two_clocks_after_the_last_bus_cycle() {
     let t = dram();
     let line = t.first_miss + 3 * t.next;
     let row = Freeze::PipelinedLoadHit;
@@ -366,37 +370,38 @@ fn row_14_a_pipelined_load_that_hits_waits_for_the_bus_and_two_more() {
     assert_eq!(cost_apart(row, "ld.l 0(r4), r5", 0, "pfld.d 8(r4), f8"), line - 1 + 2);
 }
 
-/// The list, 15, store pipe full (2 internal and the bus) and a store misses: "1 + clocks to READY# of next write".
+/// Row 15 of Intel's list, store pipe full (2 internal and the bus) and a store misses: "1 + clocks to READY# of next
+/// write".
 #[test]
-fn row_15_the_fourth_store_waits_for_the_first_to_leave() {
+fn row_15_the_fourth_store_waits_until_the_first_store_is_written() {
     let t = dram();
     assert_eq!(cost(Freeze::StorePipeFull, &stores(3)), 0);
     // The first store is requested at clock 1 and ends at 1 + write_miss. The fourth store is issued at clock 4.
     assert_eq!(cost(Freeze::StorePipeFull, &stores(4)), t.write_miss + 1 - 4 + 1);
 }
 
-/// The list, 16, address pipe full: "until next address can issue".
+/// Row 16 of Intel's list, address pipe full: "until next address can issue".
 #[test]
-fn row_16_a_fourth_request_waits_for_the_first_to_end() {
+fn row_16_a_fourth_bus_request_waits_until_the_first_request_ends() {
     let t = dram();
     // Without row 13, pipelined loads use only the address pipe. The requests are at clocks 1, 2, 3 and then 4.
     assert_eq!(cost(Freeze::AddressPipeFull, &pipelined_loads(3)), 0);
     assert_eq!(cost(Freeze::AddressPipeFull, &pipelined_loads(4)), 1 + t.first_miss - 4);
 }
 
-/// The list, 17, ld or fld right after a store that hit: "1".
+/// Row 17 of Intel's list, ld or fld right after a store that hit: "1".
 #[test]
-fn row_17_a_load_right_behind_a_store_that_hit_waits() {
+fn row_17_a_load_waits_right_after_a_store_that_hits_the_cache() {
     let store = apart("ld.l 0(r4), r5", 30, "st.l r5, 4(r4)");
     assert_eq!(cost_apart(Freeze::LoadAfterStoreHit, &store, 0, "ld.l 8(r4), r6"), 1);
     assert_eq!(cost_apart(Freeze::LoadAfterStoreHit, &store, 1, "ld.l 8(r4), r6"), 0);
     assert_eq!(cost(Freeze::LoadAfterStoreHit, "st.l r5, 4(r4)\nld.l 8(r4), r6"), 0, "the store missed");
 }
 
-/// The list, 18, delayed conditional branch not taken: "1". A taken branch takes only the clock of its delay slot. For
-/// example, the loop of a tree code of the period takes 106 clocks with such a branch (anchors.rs).
+/// Row 18 of Intel's list, delayed conditional branch not taken: "1". A taken branch takes only the clock of its delay
+/// slot. For example, the loop of a tree code of the period takes 106 clocks with such a branch (anchors.rs).
 #[test]
-fn row_18_a_delayed_branch_not_taken_costs_one_and_taken_none() {
+fn row_18_a_delayed_branch_costs_one_clock_only_if_the_branch_is_not_taken() {
     let row = Freeze::DelayedBranchNotTaken;
     assert_eq!(cost(row, "bc.t end\nnop"), 1);
     assert_eq!(cost(row, "bnc.t end\nnop"), 0);
@@ -404,34 +409,34 @@ fn row_18_a_delayed_branch_not_taken_costs_one_and_taken_none() {
     assert_eq!(cost(row, "adds -1, r0, r5\nmov 9, r6\nbla r5, r6, a\nnop\na: bla r5, r6, end\nnop"), 1, "then set");
 }
 
-/// The list, 19, branch without slot taken: "1 bc, bnc; 2 bte, btne".
+/// Row 19 of Intel's list, branch without slot taken: "1 bc, bnc; 2 bte, btne".
 #[test]
-fn row_19_a_branch_without_slot_costs_when_taken() {
+fn row_19_a_branch_without_delay_slot_costs_extra_clocks_only_if_the_branch_is_taken() {
     assert_eq!(cost(Freeze::BranchTaken, "bnc end\nnop"), 1);
     assert_eq!(cost(Freeze::BranchTaken, "bc end\nnop"), 0);
     assert_eq!(cost(Freeze::CompareBranchTaken, "bte r0, r0, end\nnop"), 2);
     assert_eq!(cost(Freeze::CompareBranchTaken, "btne r0, r0, end\nnop"), 0);
 }
 
-/// The list, 20, bri, calli: "1".
+/// Row 20 of Intel's list, bri, calli: "1".
 #[test]
-fn row_20_a_branch_through_a_register_costs_one() {
+fn row_20_a_branch_to_an_address_in_a_register_costs_one_extra_clock() {
     assert_eq!(cost(Freeze::IndirectBranch, "mov end, r5\nbri r5\nnop"), 1);
     assert_eq!(cost(Freeze::IndirectBranch, "mov end, r5\ncalli r5\nnop"), 1);
     assert_eq!(cost(Freeze::IndirectBranch, "br end\nnop"), 0);
 }
 
-/// The list, 21, st.c: "2".
+/// Row 21 of Intel's list, st.c: "2".
 #[test]
-fn row_21_a_write_to_a_control_register_costs_two() {
+fn row_21_a_write_to_a_control_register_costs_two_extra_clocks() {
     assert_eq!(cost(Freeze::ControlStore, "st.c r0, fsr\nld.c fsr, r5"), 2);
     assert_eq!(cost(Freeze::ControlStore, "ld.c fsr, r5"), 0);
 }
 
-/// The list, 22, graphics result used by the next adder or multiplier operation: "1"; by the next graphics operation:
-/// "1".
+/// Row 22 of Intel's list, graphics result used by the next adder or multiplier operation: "1"; by the next graphics
+/// operation: "1".
 #[test]
-fn row_22_a_graphics_result_is_late_by_one() {
+fn row_22_the_result_of_a_graphics_instruction_is_one_clock_late_for_the_next_instruction() {
     let first = "fiadd.ss f8, f9, f10";
     assert_eq!(cost(Freeze::GraphicsToFloating, &format!("{first}\npfadd.ss f10, f2, f3")), 1);
     assert_eq!(cost(Freeze::GraphicsToFloating, &format!("{first}\nnop\npfadd.ss f10, f2, f3")), 0);
@@ -440,18 +445,18 @@ fn row_22_a_graphics_result_is_late_by_one() {
     assert_eq!(cost(Freeze::GraphicsToGraphics, &format!("{first}\npfadd.ss f10, f2, f3")), 0);
 }
 
-/// The list, 23, flush after flush: "2 - instructions between".
+/// Row 23 of Intel's list, flush after flush: "2 - instructions between".
 #[test]
-fn row_23_a_flush_waits_for_the_flush_before() {
+fn row_23_a_flush_waits_for_the_previous_flush() {
     for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
         let found = cost_apart(Freeze::FlushAfterFlush, "flush 0(r4)", gap, "flush 32(r4)");
         assert_eq!(found, expected, "{gap} between");
     }
 }
 
-/// The list, 24, fst, pst, then a pipelined operation that overwrites the stored register: "1".
+/// Row 24 of Intel's list, fst, pst, then a pipelined operation that overwrites the stored register: "1".
 #[test]
-fn row_24_a_pipelined_result_waits_for_the_store_of_its_register() {
+fn row_24_a_pipelined_result_waits_until_its_register_is_stored() {
     let row = Freeze::StoreThenOverwrite;
     assert_eq!(cost(row, "fst.l f8, 0(r4)\npfadd.ss f2, f3, f8"), 1);
     assert_eq!(cost(row, "fst.l f8, 0(r4)\nnop\npfadd.ss f2, f3, f8"), 0);
@@ -459,10 +464,10 @@ fn row_24_a_pipelined_result_waits_for_the_store_of_its_register() {
     assert_eq!(cost(row, "fst.l f8, 0(r4)\nfadd.ss f2, f3, f8"), 0);
 }
 
-/// The list has no such row, because its row 10 does not include frcp and frsqr. A published code for three reciprocal
-/// roots in 39 clocks is possible if the result can be used two instructions later.
+/// Intel's list has no such row, because its row 10 does not include frcp and frsqr. A published code for three
+/// reciprocal roots in 39 clocks is possible if the result can be used two instructions later.
 #[test]
-fn row_25_a_seed_is_late_by_one() {
+fn row_25_the_seed_of_a_reciprocal_is_one_clock_late_for_the_next_instruction() {
     assert_eq!(cost(Freeze::SeedUse, "frcp.ss f8, f9\nfmul.ss f9, f9, f10"), 1);
     assert_eq!(cost(Freeze::SeedUse, "frcp.ss f8, f9\nnop\nfmul.ss f9, f9, f10"), 0);
 }
@@ -495,7 +500,7 @@ fn both_halves_of_a_pair_wait_together_for_the_longer_freeze() {
 }
 
 #[test]
-fn a_row_switched_off_among_all_others_costs_nothing() {
+fn a_disabled_freeze_row_costs_nothing() {
     let all_but = FreezeRules::all().without(Freeze::ConditionUse);
     // The branch is after the last word of the line. Before the last word, row 1 would make the freeze longer
     // (fills.rs).

@@ -64,7 +64,7 @@ fn data() -> Vec<u32> {
 }
 
 #[test]
-fn a_stretch_computes_what_its_lines_say() {
+fn scheduled_code_computes_the_same_as_its_statements() {
     let (found, _) = run("", BODY, &data());
     let v = |at: usize| f32::from_bits(data()[at]);
     for i in 0..3 {
@@ -81,7 +81,7 @@ fn a_stretch_computes_what_its_lines_say() {
 }
 
 #[test]
-fn every_schedule_computes_the_same() {
+fn every_schedule_computes_the_same_results() {
     let (expected, _) = run("", BODY, &data());
     for window in [1, 2, 5, 20, 100] {
         for eagerness in [0, 5, 1000] {
@@ -94,7 +94,7 @@ fn every_schedule_computes_the_same() {
 }
 
 #[test]
-fn nothing_waits_but_for_what_is_around_the_stretch() {
+fn inside_a_scheduled_stretch_of_code_no_instruction_waits() {
     let (_, profile) = run("", BODY, &data());
     // The branch back and the code after the branch are outside the stretch, and enter the cache only in the second
     // run.
@@ -104,7 +104,7 @@ fn nothing_waits_but_for_what_is_around_the_stretch() {
 }
 
 #[test]
-fn what_is_wrong_is_said_with_its_line() {
+fn errors_name_their_line() {
     let fault = |body: &str| schedule(&format!(".pool r8\n.linear\n{body}\n.endlinear")).map_err(|e| e.to_string());
     for (body, expected) in [
         ("x = frob.ss f0, f0", "line 3: `frob.ss` is not an operation"),
@@ -124,7 +124,7 @@ fn what_is_wrong_is_said_with_its_line() {
 
 /// The stretch has two additions, a product of doubles that takes two slots, and four accesses to memory.
 #[test]
-fn slots_are_counted_by_unit_and_no_schedule_is_shorter() {
+fn no_schedule_is_shorter_than_the_slots_of_its_busiest_unit() {
     let source = "        .linear\n\
         a = fld.d 0(r16)\n\
         b = fld.d 8(r16)\n\

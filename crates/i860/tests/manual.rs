@@ -256,7 +256,7 @@ fn name(text: &str) -> String {
 }
 
 #[test]
-fn there_are_no_instructions_but_those_of_the_manual() {
+fn no_instruction_is_missing_from_the_manual() {
     let known: BTreeSet<String> =
         CORE.iter().map(|(text, _)| name(text)).chain(floating().iter().map(|(text, _)| name(text))).collect();
     // Try all low bits that can select an operation, for every operation code. Floating-point codes are tried without
@@ -268,7 +268,7 @@ fn there_are_no_instructions_but_those_of_the_manual() {
             assert!(text.starts_with(".long") || known.contains(&name(&text)), "{word:08x} {text}");
         }
     }
-    // Words of the i860 XP, reserved codes, and precisions that an operation does not have.
+    // These words are invalid: words of the i860 XP, reserved codes, and precisions that an operation does not have.
     for word in [
         0x6044_0804,
         0x4C00_0408,
@@ -293,7 +293,7 @@ fn there_are_no_instructions_but_those_of_the_manual() {
 
 /// According to the manual, `pfmul3` advances all three stages, also in double precision.
 #[test]
-fn a_multiply_through_three_stages_takes_the_result_of_the_third_one_before_it() {
+fn a_three_stage_multiply_returns_the_product_of_the_third_previous_multiply() {
     let source = "start: mov data, r4; fld.d 0(r4), f2; fld.d 8(r4), f4; nop; nop
         pfmul3.dd f2, f4, f0; pfmul3.dd f4, f4, f0; pfmul3.dd f2, f2, f0
         pfmul3.dd f0, f0, f6; pfmul3.dd f0, f0, f8; pfmul3.dd f0, f0, f10

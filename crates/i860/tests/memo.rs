@@ -26,8 +26,8 @@ impl Twins {
         }))
     }
 
-    /// Executes one step, or up to a number of instructions. If the execution has left the program, the program starts
-    /// again.
+    /// Executes one step, or at most `instructions` instructions. If the execution has left the program, the program
+    /// starts again.
     fn go(&mut self, instructions: u64) -> Result<(), TestCaseError> {
         let [memoised, counted] = self.0.each_mut().map(|(cpu, ram)| {
             let outcome = match instructions {
@@ -91,7 +91,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 3_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn random_programs_take_the_same_clocks_by_the_same_causes(
+    fn memoised_random_programs_take_the_counted_clocks_for_each_cause(
         words in prop::collection::vec(likely_word(), 1..60),
         registers in registers(),
         freezes in rules(),
@@ -164,7 +164,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn code_and_data_larger_than_their_caches_take_the_same_clocks(
+    fn memoised_code_larger_than_the_caches_takes_the_same_clocks(
         words in pieces(),
         registers in far_registers(),
         freezes in prop_oneof![2 => Just(FreezeRules::all()), 1 => slow_rules()],
@@ -188,7 +188,7 @@ proptest! {
 /// Repeatedly executes code of three times the size of the instruction cache. The code has stores that miss the data
 /// cache.
 #[test]
-fn code_that_does_not_fit_the_caches_is_mostly_repeated() {
+fn most_blocks_of_code_larger_than_the_caches_are_repeated_from_the_memo() {
     let body = "adds 1, r6, r6\n fadd.ss f8, f9, f10\n st.l r6, 0(r4)\n adds 32, r4, r4\n".repeat(768);
     let source = format!("{body}\nend: nop");
     let program = assemble("long.s", CODE, &source).unwrap_or_else(|e| panic!("{e}"));
@@ -232,14 +232,14 @@ fn run_loop(prepare: impl Fn(&mut Cpu)) -> (Cpu, Ram) {
 /// The first turn misses the cache. In the second turn, the state of the cache has changed. Later turns are memoized
 /// with the state after the previous turn. The last turn leaves the loop. At most ten of a hundred turns are counted.
 #[test]
-fn a_loop_in_cache_is_counted_only_until_it_is_known() {
+fn a_cached_loop_is_simulated_only_until_it_is_memoised() {
     let (cpu, _) = run_loop(|_| {});
     let repeated = cpu.repeated_instructions();
     assert!((8 * 90..=8 * 100).contains(&repeated), "{repeated} of 800");
 }
 
 #[test]
-fn a_profile_by_address_accounts_for_the_same_clocks() {
+fn the_clocks_of_a_profile_by_address_add_up_to_the_clocks_of_the_run() {
     let (plain, _) = run_loop(|_| {});
     let (watched, _) = run_loop(|cpu| cpu.watch(Some(AddressProfile::new(CODE, 16))));
     assert_eq!(watched.profile(), plain.profile());
@@ -258,7 +258,7 @@ proptest! {
 
     /// Programs can store into their own code, so each program is loaded again before its turn.
     #[test]
-    fn processors_that_share_a_shelf_take_the_clocks_that_each_takes_alone(
+    fn processors_with_a_shared_memo_take_the_same_clocks_as_processors_without_a_memo(
         words in prop::collection::vec(prop::collection::vec(likely_word(), 1..60), 2),
         registers in prop::collection::vec(far_registers(), 3),
         freezes in rules(),
@@ -301,7 +301,7 @@ fn two_loops() -> [Arc<Program>; 2] {
 /// Two programs run in turn at the same addresses, with exchanged or discarded decoded code. Both ways must reach the
 /// same state at the same clock.
 #[test]
-fn programs_that_take_turns_are_decoded_once_and_take_the_same_clocks() {
+fn alternating_programs_are_decoded_once_and_take_the_same_clocks() {
     let programs = two_loops();
     let take_turns = |exchange: bool| {
         let mut ram = Ram::new(0, MEMORY);
@@ -333,7 +333,7 @@ fn misses(cpu: &Cpu) -> (u64, u64) {
 }
 
 #[test]
-fn caches_emptied_between_runs_are_noticed() {
+fn the_memo_respects_caches_that_were_emptied_between_runs() {
     let (mut cpu, mut ram) = run_loop(|_| {});
     let before = misses(&cpu);
     cpu.empty_caches();

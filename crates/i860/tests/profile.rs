@@ -27,7 +27,7 @@ fn clocks_by_label_are_those_of_the_code_up_to_the_next_label() {
 }
 
 #[test]
-fn every_clock_is_an_issue_or_one_cause() {
+fn every_clock_is_counted_as_an_issue_or_for_one_cause_of_waiting() {
     let (cpu, _) = run(LOOP, FreezeRules::all());
     let profile = cpu.profile();
     assert_eq!(profile.clocks(), cpu.clocks());
@@ -37,7 +37,7 @@ fn every_clock_is_an_issue_or_one_cause() {
 }
 
 #[test]
-fn a_cleared_profile_starts_from_nothing_while_the_clock_goes_on() {
+fn clearing_a_profile_does_not_stop_the_clock() {
     let (mut cpu, _) = run(LOOP, FreezeRules::all());
     let before = cpu.clocks();
     cpu.clear_profile();

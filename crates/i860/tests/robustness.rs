@@ -27,7 +27,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 4_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn random_words_end_with_a_trap_or_a_budget(
+    fn random_words_end_with_a_trap_or_at_the_budget(
         words in prop::collection::vec(likely_word(), 1..40),
         registers: [u32; 8],
     ) {
@@ -39,7 +39,7 @@ proptest! {
     }
 
     #[test]
-    fn timing_never_changes_what_a_program_does(
+    fn timing_never_changes_the_results_of_a_program(
         words in prop::collection::vec(likely_word(), 1..40),
         registers: [u32; 8],
     ) {
@@ -71,7 +71,7 @@ fn an_unaligned_access_traps_without_any_effect() {
 }
 
 #[test]
-fn an_access_to_nothing_traps_and_keeps_the_address_register() {
+fn an_access_outside_memory_traps_and_keeps_the_address_register() {
     let (cpu, cause, pc) = trap_of("mov 0x100000, r9\nfld.d 8(r9)++, f8");
     assert_eq!((cause, pc), (TrapCause::DataAccess { address: 0x10_0008 }, 0x1004));
     assert_eq!((cpu.state.r[9], cpu.state.psr & psr::TRAPS), (0x10_0000, psr::DAT));
@@ -85,13 +85,13 @@ fn a_trap_in_a_pair_undoes_both_halves() {
 }
 
 #[test]
-fn an_illegal_word_names_itself_and_its_address() {
+fn the_error_of_an_illegal_word_has_the_word_and_its_address() {
     let (_, cause, pc) = trap_of("nop\n.long 0x18000000");
     assert_eq!((cause, pc), (TrapCause::Illegal { word: 0x1800_0000 }, 0x1004));
 }
 
 #[test]
-fn traps_by_instruction_set_their_bits() {
+fn trap_instructions_set_their_status_bits() {
     assert_eq!(trap_of("trap").1, TrapCause::Instruction);
     assert_eq!(trap_of("mov -1, r9\naddu r9, r9, r9\nintovr").1, TrapCause::Overflow);
     assert_eq!(trap_of("mov 0x200000, r9\nbri r9\nnop").1, TrapCause::InstructionAccess);
@@ -134,7 +134,7 @@ impl i860::Bus for TwoBanks {
 }
 
 #[test]
-fn an_interrupt_waits_for_the_interrupt_mode() {
+fn an_interrupt_waits_until_interrupts_are_enabled() {
     let mut cpu = Cpu::at(Config::cycle(), 0x1000);
     assert!(!cpu.interrupt());
     cpu.state.psr |= psr::IM;

@@ -21,8 +21,9 @@ pub enum Interpolation {
     View,
 }
 
-/// The instants for which the parts of a field are drawn. Each part shows the scene as the viewer sees it at one
-/// instant.
+/// The instants for which the parts of a field are drawn.
+///
+/// Each part shows the scene as the viewer sees it at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Viewpoint {
     /// The whole field shows one instant.
@@ -39,7 +40,6 @@ pub enum Viewpoint {
 pub enum DrawingSchedule {
     /// Strips of lines, from the top to the bottom of each field.
     Beam {
-        /// Choice of the instants for which the strips are drawn.
         viewpoint: Viewpoint,
         /// True if strips reach the frame buffer just before the beam. False if strips arrive one field earlier.
         racing: bool,
@@ -52,7 +52,6 @@ pub enum DrawingSchedule {
         block: u32,
         /// Number of blocks in one order to a slave.
         batch: u32,
-        /// The random order of the blocks.
         order: BlockOrder,
     },
 }
@@ -60,7 +59,8 @@ pub enum DrawingSchedule {
 /// The times at which the beam of the display reaches each pixel.
 #[derive(Clone)]
 pub struct Beam {
-    /// The time for a field, a row of this field and a pixel of this row.
+    /// Function that returns the time at which the beam reaches a pixel. The arguments are the field, the row of the
+    /// field, and the pixel of the row.
     at: Arc<dyn Fn(PeriodNumber, u32, u32) -> Time + Send + Sync>,
     retrace: Arc<dyn Fn(PeriodNumber) -> Time + Send + Sync>,
 }
@@ -120,10 +120,10 @@ impl fmt::Debug for BlockOrder {
 pub struct Wanted {
     /// Number of the view: see [`JitpConfig::view_number`].
     pub number: ViewNumber,
-    /// The view must depend only on reports that the host received before this instant, because later reports have not
-    /// reached the master.
+    /// Instant until which reports count. The view must depend only on reports that the host received before this
+    /// instant, because later reports have not reached the master.
     pub known: Time,
-    /// Instant for which the view is drawn.
+    /// Instant for which the pose of the view is predicted.
     pub shown_at: Time,
 }
 
@@ -138,15 +138,12 @@ pub struct JitpConfig {
     pub slaves: Vec<NodeId>,
     /// Ring ports of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// Ring port of the frame buffer. The display is mono.
+    /// Ring port of the frame buffer. The pipeline draws for one eye only.
     pub frame_buffer: NodeId,
-    /// The parts in which a picture is drawn, and their order.
     pub schedule: DrawingSchedule,
-    /// The times at which the beam reaches each pixel.
     pub beam: Beam,
     /// Choice of the instant for which a part is drawn, such as the middle of the time in which the part lights.
     pub aim: Aim,
-    /// Use of the bits of a pixel's memory.
     pub layout: Layout,
     /// True if the run can compute pixels. If false, no command words are made, but all times stay the same.
     pub pixels: bool,
@@ -181,8 +178,8 @@ impl JitpConfig {
 
     /// Returns the number of the view for strip `strip` of a field.
     ///
-    /// If all strips share one view, its number is that of strip 0. The views for the start and the end of a field have
-    /// the numbers of strips 0 and 1.
+    /// If all strips share one view, the view has the number of strip 0. The views for the start and the end of a field
+    /// have the numbers of strips 0 and 1.
     #[must_use]
     pub const fn view_number(field: PeriodNumber, strip: u64) -> ViewNumber {
         ViewNumber(field.0 * VIEWS_PER_FIELD + strip)

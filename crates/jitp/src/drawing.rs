@@ -62,7 +62,6 @@ impl fmt::Debug for DrawnList {
 }
 
 impl Ends {
-    /// Transforms the list for one view, or for the two views at the start and at the end of a field.
     pub(crate) fn new(list: &DisplayList, views: Vec<FrameView>, viewport: Viewport) -> Self {
         let triangles = match &views[..] {
             [from, to] => triangle_ends(list, from, to, viewport),
@@ -82,8 +81,8 @@ fn triangle_ends(
     placed.map(|(from, to)| structure_ends(list, &from, &to)).collect()
 }
 
-/// Returns the corners of a structure's triangles on the screen, in both views. The entry is `None` if a view has no
-/// position for the triangle.
+/// Returns the corners of a structure's triangles on the screen, in the views `from` and `to`. The entry of a triangle
+/// is `None` if one of the views has no screen position for the triangle.
 fn structure_ends(list: &DisplayList, from: &PlacedStructure, to: &PlacedStructure) -> Vec<Option<TriangleEnds>> {
     let numbers = from.structure.triangles.clone();
     numbers.map(|number| from.transform.as_ref()?.ends(to.transform.as_ref()?, &list.corners(number))).collect()
@@ -196,7 +195,7 @@ impl DrawnList {
 
     /// Returns the work of interpolating the primitives near `windows`, or `None` if there is only one view.
     ///
-    /// The code reads the triangles of both views from the part `ends` of the board's memory. The code writes commands
+    /// The i860 code reads the triangles of both views from the part `ends` of the board's memory, and writes commands
     /// to the part `commands`.
     pub(crate) fn interpolating<'a>(
         &'a self,

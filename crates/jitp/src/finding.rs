@@ -1,8 +1,3 @@
-//! CPU work of a slave between TRANSFORM and the drawing of a strip or a batch of blocks.
-//!
-//! The slave interpolates primitives, finds the primitives in each region, and lists the messages that draw these
-//! primitives.
-
 use pphigs::{PrimitiveCounts, StripInterpolation, WindowSearchWork};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
@@ -14,7 +9,6 @@ pub(crate) struct StripSearchWork<'a> {
     /// The interpolation, or `None` if the display list was transformed for only one view.
     pub(crate) interpolating: Option<StripInterpolation<'a>>,
     pub(crate) met: PrimitiveCounts,
-    /// Time to interpolate one primitive, in nanoseconds, from the timing table.
     pub(crate) interpolate_ns: u64,
 }
 

@@ -1,5 +1,3 @@
-//! Program of the host, which forwards the tracker's reports.
-
 use crate::config::JitpConfig;
 use crate::protocol::DrawingOrder;
 use pphigs::send_as_tracked;

@@ -39,8 +39,8 @@
 //!
 //! - For one view, TRANSFORM of the whole list stores commands with their bounding boxes. For two views, TRANSFORM
 //!   stores the positions of triangles at the start and at the end of the field.
-//! - For a strip between two views, code interpolates the triangles between these two positions. The strip begins with
-//!   a separate pass that uses the interpolated matrices.
+//! - For a strip between two views, code interpolates the triangles between these two positions. First, code computes
+//!   the data of each structure (such as the direction of its light) with interpolated matrices.
 //! - Code finds the primitives in a strip or block by their bounding boxes, and sends the primitives' commands like the
 //!   bin of a region.
 //! - Code assembles the master's orders.
@@ -75,7 +75,6 @@ pub use master::master;
 pub use slave::{Transforms, slave};
 pub use timing::JitpTiming;
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

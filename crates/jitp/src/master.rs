@@ -74,14 +74,14 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         let strips = self.config.grid().rows();
         for field in first.onwards() {
             for strip in 0..strips {
-                // Order the fields whose preparation must begin before this strip.
+                // Send the orders for the fields whose preparation must begin before this strip.
                 let order_at = before(self.config.deadline(field, strip), ahead);
                 while viewpoint != Viewpoint::Strip && self.preparation_at(prepared, viewpoint, ahead) <= order_at {
                     self.wait_until(self.preparation_at(prepared, viewpoint, ahead)).await;
                     self.order_field(prepared, viewpoint).await?;
                     prepared = prepared.next();
                 }
-                // The master orders no strip whose deadline has passed.
+                // The master sends no order for a strip whose deadline has passed.
                 self.wait_until(order_at).await;
                 if self.gp.now() < self.config.deadline(field, strip) {
                     self.order_strip(field, strip, viewpoint).await?;
@@ -151,7 +151,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Sends the next blocks and the newest view to each slave that has finished its blocks.
+    /// Sends the next blocks and the newest view to each slave that has finished its earlier blocks.
     async fn roam(&mut self, batch: u64) -> Result<(), Fault> {
         let slaves = self.config.slaves.len();
         self.state.done.borrow_mut().extend(0..slaves as u32);
@@ -170,7 +170,6 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Returns the instant for which the blocks of an order are drawn, if the master sends the order now.
     fn aimed_at_blocks(&self, expected: Expected) -> Time {
         let first = self.gp.now() + expected.drawing;
         let beam = &self.config.beam;
@@ -182,13 +181,12 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
 }
 
 /// Expected times of a batch of blocks: from the order until the blocks are visible (`drawing`), and from then until
-/// newer blocks replace them (`standing`).
+/// newer blocks replace these blocks (`standing`).
 struct Expected {
     drawing: Span,
     standing: Span,
 }
 
-/// Times of recent orders, from which the master estimates the times of the next order.
 struct OrderTimes {
     last_order_of: Vec<Option<Time>>,
     /// Times of the newest orders, oldest first. Together, these orders draw every block of the frame once.

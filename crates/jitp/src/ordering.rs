@@ -1,5 +1,3 @@
-//! CPU work of assembling the master's orders.
-
 use crate::protocol::DrawingOrder;
 use pphigs::{TransformCost, assemble_order};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
@@ -35,7 +33,7 @@ mod tests {
     /// Tests the time in which i860 code assembles an order. Each word takes six instructions (kernels/order.s of
     /// pphigs), and each instruction takes at least a clock of 25 ns. Cache misses add a few clocks per word.
     #[test]
-    fn by_code_an_order_takes_at_least_six_clocks_a_word() {
+    fn the_code_of_an_order_takes_at_least_six_clocks_a_word() {
         let views = |n: u64| (0..n).map(view).collect();
         for order in [
             DrawingOrder::Field { field: PeriodNumber(3), views: views(1) },

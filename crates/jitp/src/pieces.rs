@@ -25,7 +25,6 @@ fn line_of_row(viewport: &Viewport, row: i32) -> i32 {
     viewport.first_line() as i32 + row * viewport.line_step() as i32
 }
 
-/// The content of one of the messages that draw a region.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Part {
     first: bool,
@@ -85,7 +84,6 @@ impl Part {
     }
 }
 
-/// Returns the messages that draw a region and copy it to the frame buffer.
 pub(crate) fn messages(
     config: &JitpConfig,
     drawing: &Arc<DrawnList>,
@@ -134,7 +132,6 @@ struct RegionWords {
     origin: SelectRegion,
     target: CopyTarget,
     parts: Vec<Part>,
-    /// Words of the commands of all triangles and of all spheres, computed at the first use.
     primitives: OnceLock<[Vec<Word>; 2]>,
 }
 
@@ -198,7 +195,7 @@ mod tests {
     use pxpl5_wire::FieldParity;
 
     #[test]
-    fn rows_of_a_field_are_every_second_line_of_its_frame() {
+    fn a_field_has_every_second_line_of_its_frame() {
         for parity in [FieldParity::Even, FieldParity::Odd] {
             let viewport = Viewport::field(parity);
             let lines = [0, 1, 239].map(|row| line_of_row(&viewport, row));
@@ -209,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn every_message_but_the_last_is_as_full_as_it_can_be() {
+    fn all_messages_but_the_last_are_full() {
         let of = CommandKind::Triangle.words();
         let parts = parts(PrimitiveCounts { triangles: 500, spheres: 77 });
         for part in parts.iter().filter(|part| !part.last) {
@@ -222,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn words_of_commands_are_cut_out_between_their_neighbours() {
+    fn commands_cut_out_of_a_list_have_exactly_their_own_words() {
         let of = CommandKind::Sphere.words();
         let all: Vec<Word> = (0..5 * of).collect();
         let expected: Vec<Word> = (2 * of..4 * of).collect();
@@ -230,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn messages_hold_every_primitive_once_and_none_is_too_long() {
+    fn messages_have_each_primitive_once_and_no_message_is_too_long() {
         for (triangles, spheres) in [(0, 0), (1, 0), (33, 0), (34, 0), (500, 77), (0, 40)] {
             let parts = parts(PrimitiveCounts { triangles, spheres });
             assert_eq!(parts.iter().map(|p| p.triangles.len()).sum::<usize>(), triangles as usize);

@@ -24,7 +24,7 @@ pub(crate) enum DrawingOrder {
     Blocks { update: PictureNumber, step: u64, view: FrameView },
     /// A tracker report from the host. The master may use all reports that the host received before `known`.
     Report { known: Time },
-    /// A slave can take another order.
+    /// The slave has finished an order and is ready for the next order.
     Done { slave: u32 },
 }
 
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn every_order_survives_its_words() {
+    fn every_order_is_decoded_from_its_words() {
         let big = (1 << 40) + 3;
         for order in [
             DrawingOrder::Field { field: PeriodNumber(big), views: vec![view(1), view(2)] },
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn words_cut_short_are_a_fault_and_no_panic() {
+    fn truncated_words_are_a_fault_and_no_panic() {
         let (_, body) = DrawingOrder::Field { field: PeriodNumber(1), views: vec![view(1)] }.message();
         let Body::Words(words) = body else { panic!("orders are words") };
         for length in 0..words.len() {
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_without_a_view_is_no_order() {
+    fn a_field_without_a_view_is_refused() {
         let (_, body) = DrawingOrder::Field { field: PeriodNumber(1), views: Vec::new() }.message();
         let Body::Words(words) = body else { panic!("orders are words") };
         assert_eq!(DrawingOrder::from_words(&words), None);

@@ -19,8 +19,8 @@ use std::sync::Arc;
 /// Number of transformed fields in memory, including the current and the next field.
 const FIELDS_KEPT: usize = 3;
 
-/// Number of parts of the slave's memory for fields: the stored fields, and the field that is being transformed. A
-/// further part is for a strip between two views.
+/// Number of parts into which the slave's memory for fields is divided: one part for each stored field, and one part
+/// for the field that is being transformed. One more part, not counted here, is for a strip between two views.
 const PARTS_OF_FIELDS: u8 = FIELDS_KEPT as u8 + 1;
 const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS as usize, PARTS_OF_FIELDS + 1);
 
@@ -28,13 +28,13 @@ const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS as usize, PARTS_OF_F
 struct SlaveFields {
     /// Fields that the master has ordered but that are not transformed yet, oldest first, with their views.
     ordered: VecDeque<(PeriodNumber, Vec<FrameView>)>,
-    /// Transformed fields, oldest first, with their parts of memory.
+    /// Transformed fields, oldest first, each with the part of memory that holds the result.
     transformed: VecDeque<(PeriodNumber, Field, MemoryPart)>,
-    /// Number of fields that were transformed in the run.
     n_transformed: usize,
 }
 
-/// A transformed field. The list `whole`, for the first view, serves all strips if the field has only one view.
+/// A transformed field. The list `whole` has the primitives in the first view. If the field has only one view, all
+/// strips use this list.
 #[derive(Clone)]
 struct Field {
     ends: Ends,
@@ -234,7 +234,6 @@ impl Slave {
         }
     }
 
-    /// Draws the next blocks and asks the master for another order.
     async fn blocks(&self, update: PictureNumber, step: u64, view: &FrameView) -> Result<(), Fault> {
         let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return Ok(()) };
         let viewport = self.config.extent(update).0;
@@ -252,8 +251,8 @@ impl Slave {
 
     /// Finds the primitives in some regions and sends the messages that draw these regions, as one chain.
     ///
-    /// Several slaves use the same region memory of a renderer. The messages of a region therefore reserve the
-    /// renderer's port until the last message, so that no other slave can draw into the region.
+    /// Several slaves use the same region context (part of pixel memory) of a renderer. The messages of a region
+    /// therefore reserve the renderer's port until the last message, so that no other slave can draw into the region.
     async fn send(
         &self,
         picture: PictureNumber,

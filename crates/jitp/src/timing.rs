@@ -1,5 +1,3 @@
-//! Times of this firmware that the processor's timing table does not contain.
-
 pxpl5_sim::parameters::parameter_table! {
     /// Times of just-in-time firmware.
     pub struct JitpTiming {

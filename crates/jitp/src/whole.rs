@@ -1,5 +1,3 @@
-//! CPU work of TRANSFORM for the whole display list.
-
 use pphigs::{FrameView, MemoryPart, Picture, RegionBinning, Shading, Share, TransformCost, TriangleEndsRecorder};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
@@ -12,7 +10,6 @@ use pxpl5_sim::Span;
 pub(crate) struct WholeList<'a> {
     pub(crate) share: &'a Share,
     pub(crate) pass: TransformCost,
-    /// One view, or the two views at the start and at the end of a field.
     pub(crate) views: &'a [FrameView],
     pub(crate) viewport: Viewport,
     pub(crate) layout: Layout,

@@ -96,12 +96,10 @@ impl PassStartWork {
         Self { bins: 0, ..self }
     }
 
-    /// Limits the work to some structures. `chosen` has one entry for each structure.
     pub(crate) fn for_structures(self, chosen: Option<&[bool]>) -> Self {
         Self { chosen: chosen.map(Arc::from), ..self }
     }
 
-    /// Returns the structures of an eye that are drawn.
     fn begun<'a>(&'a self, placed: &'a [PlacedStructure]) -> impl Iterator<Item = &'a PlacedStructure> {
         let is_chosen = |number: usize| self.chosen.as_ref().is_none_or(|chosen| chosen.get(number) == Some(&true));
         let chosen = placed.iter().enumerate().filter(move |(number, _)| is_chosen(*number)).map(|(_, place)| place);

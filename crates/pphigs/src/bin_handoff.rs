@@ -77,8 +77,8 @@ impl BinHandoffWork<'_> {
     /// Returns the parameters for the commands before and after a region's primitives.
     ///
     /// Six parameters are address and length of three sequences of commands. The sequences belong to the start of the
-    /// region, to the start of each further message, and to the end of the region. The seventh parameter is the number
-    /// of words of a message without primitives and without the end of the region.
+    /// region, to the start of each message except the first, and to the end of the region. The seventh parameter is
+    /// the number of words of a message without primitives and without the end of the region.
     fn enclosing(&self) -> [Word; 7] {
         let words = |kind: CommandKind, is_there: bool| kind.words() * u32::from(is_there);
         let contexts = self.pass.picture().layout.plan().contexts > 1;
@@ -92,7 +92,7 @@ impl BinHandoffWork<'_> {
         [at_begin, begin, at_again, again, at_end, end, nothing]
     }
 
-    /// Returns the messages that the last execution of the code has listed.
+    /// Returns the messages that the last execution of the i860 code has listed.
     ///
     /// # Errors
     ///

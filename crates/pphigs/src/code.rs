@@ -77,7 +77,6 @@ pub struct KernelOutput {
 }
 
 impl KernelOutput {
-    /// Returns the number of entries in all bins together.
     #[must_use]
     pub fn entries(&self) -> u64 {
         self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
@@ -98,13 +97,13 @@ impl Work for TransformWork<'_> {
             }
             _ => Span::ZERO,
         };
-        // One pass for both eyes, if a kernel supports that.
+        // Use one pass for both eyes if a kernel supports this.
         if let [left, right] = self.passes
             && let Some(outputs) = left.run_code_for_both(right, processor, self.context)?
         {
             return Ok(outputs.iter().fold(span, |all, output| all + output.span));
         }
-        // Otherwise one pass for each eye, in alternating contexts.
+        // Otherwise use one pass for each eye, in alternating contexts.
         for (context, pass) in (self.context..).zip(self.passes) {
             span += match pass.run_code(processor, context % 2)? {
                 Some(output) => output.span,
@@ -156,7 +155,6 @@ impl Share {
     }
 }
 
-/// Memory for the output of a kernel for one view: bytes of all commands, and entries of each bin.
 pub(crate) struct OutputSize {
     commands: u32,
     entries: Vec<u32>,
@@ -192,7 +190,8 @@ pub(crate) struct Next {
 }
 
 impl Next {
-    /// Returns the addresses for the next call, which the last call has left in the processor's registers.
+    /// Returns the addresses for the next call of the kernel. The last call has left these addresses in the processor's
+    /// registers.
     pub(crate) const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
         let table = if keeps_boxes { processor.register(19) } else { self.table };
         Self { command: processor.register(18), table }
@@ -225,8 +224,8 @@ impl Pass {
         TransformCost { clipped: self.stats().clipped, entries: self.entries(), ..counted }
     }
 
-    /// Executes the kernels for all primitives on a board that holds the display list. `context` is the set of bins, 0
-    /// or 1.
+    /// Executes the kernels for all primitives. The board's memory must already contain the display list. `context` is
+    /// the set of bins, 0 or 1.
     ///
     /// Returns `None` if no kernel can draw this kind of picture.
     ///
@@ -325,7 +324,6 @@ impl Pass {
         Ok((span, next))
     }
 
-    /// Executes the kernels for the primitives with a set bit in `marks`, or for all primitives if `marks` is `None`.
     pub(crate) fn run_kernels(
         &self,
         processor: &mut Processor,
@@ -360,7 +358,6 @@ impl Pass {
         Ok(KernelOutput { span, of_spheres, commands: places.commands..end, spheres, bins })
     }
 
-    /// Executes the triangle kernel. Returns the time, and the addresses for the next output.
     pub(crate) fn run_triangles(
         &self,
         processor: &mut Processor,
@@ -389,7 +386,6 @@ impl Pass {
         Ok((span, next))
     }
 
-    /// Executes the sphere kernel. Returns the time, and the addresses for the next output.
     pub(crate) fn run_spheres(
         &self,
         processor: &mut Processor,
@@ -440,7 +436,7 @@ impl Pass {
         self.picture().binning == RegionBinning::Touched
     }
 
-    /// Returns the words that all triangle commands have in common, from the encoding of a command with zeros.
+    /// Returns the words that all triangle commands have in common, found by encoding a command with zeros.
     pub(crate) fn heads(&self) -> Heads {
         let blank = match self.picture().shading {
             Shading::Gouraud | Shading::Precomputed => Command::Triangle(TriangleCommand::default()),
@@ -457,12 +453,10 @@ impl Pass {
         words
     }
 
-    /// Returns each drawn structure with its range of triangles, among the triangles of the graphics processor.
     pub(crate) fn calls_of_triangles(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.triangles, Share::held_places)
     }
 
-    /// Returns each drawn structure with its range of spheres, among the spheres of the graphics processor.
     pub(crate) fn calls_of_spheres(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.spheres, Share::held_places_of_spheres)
     }
@@ -480,8 +474,8 @@ impl Pass {
     /// Returns the memory that a kernel needs for its output.
     ///
     /// The memory has room for the commands of all primitives in `given`, visible or not, and of the pieces of clipped
-    /// triangles. The kernel needs room for one more command, which it can discard. [`pxpl5_gp::Memory`] counts only
-    /// the commands of visible primitives.
+    /// triangles. The memory also has room for one more command that the kernel may write and then discard.
+    /// [`pxpl5_gp::Memory`] counts only the commands of visible primitives.
     pub(crate) fn needs(&self, kernel: Kernel, given: PrimitiveCounts) -> OutputSize {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries = (0..regions).map(|region| {
@@ -551,7 +545,6 @@ pub(crate) const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
 
 pub(crate) type Programs<K> = LazyLock<Mutex<HashMap<K, Arc<Program>>>>;
 
-/// Returns the program of a kernel from the cache, assembled at its first use.
 pub(crate) fn kept<K: Copy + Eq + Hash>(
     programs: &Programs<K>,
     kernel: K,
@@ -564,7 +557,6 @@ pub(crate) fn kept<K: Copy + Eq + Hash>(
 /// Name and source of the code that calls a kernel for each group of successive marked primitives.
 const RUNS: (&str, &str) = ("runs", include_str!("../kernels/runs.s"));
 
-/// Returns the program of a triangle kernel with its clipper. `by_runs` adds the code for marked primitives.
 fn program(kernel: Kernel, by_runs: bool) -> Arc<Program> {
     static PROGRAMS: Programs<(Kernel, bool)> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, (kernel, by_runs), assembled)
@@ -583,7 +575,6 @@ fn assembled((kernel, by_runs): (Kernel, bool)) -> Program {
     }
 }
 
-/// Returns the program of a sphere kernel. `by_runs` adds the code for marked primitives.
 fn sphere_program(kernel: SphereKernel, by_runs: bool) -> Arc<Program> {
     static PROGRAMS: Programs<(SphereKernel, bool)> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, (kernel, by_runs), |(kernel, by_runs)| {

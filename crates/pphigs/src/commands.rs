@@ -1,5 +1,5 @@
-//! Messages with renderer commands. A message states the kinds of its commands at once, but computes their words only
-//! when the words are read.
+//! Messages with renderer commands. The kinds of a message's commands are known from the start, but the words of the
+//! commands are computed only when the words are read.
 
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
@@ -30,12 +30,13 @@ pub struct RegionEnvelope {
     /// True if the renderer computes the colours of all pixels at the end. Only pictures with Phong shading have a
     /// command for this step.
     pub shade: bool,
-    /// Copy of the region to the frame buffer at the end, if any.
+    /// Copy of the region to the frame buffer after its primitives, or `None` if the region is not copied.
     pub copy: Option<CopyOrder>,
 }
 
-/// Returns the messages with the primitives of a region's bin and the commands of the envelope. The number of messages
-/// is as small as their maximum length permits.
+/// Returns the messages with the primitives of a region's bin and with the commands that `envelope` selects.
+///
+/// The number of messages is as small as their maximum length permits.
 #[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
     if pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0 {
@@ -73,7 +74,6 @@ struct RegionPart {
     clear: bool,
     triangles: Range<u32>,
     spheres: Range<u32>,
-    /// True if the message contains the commands after the primitives.
     ends: bool,
 }
 
@@ -123,7 +123,7 @@ impl Parts {
 impl Iterator for Parts {
     type Item = RegionPart;
 
-    /// Returns the next message, unless it would only select the region.
+    /// Returns the next message, or `None` if that message would only select the region.
     fn next(&mut self) -> Option<RegionPart> {
         if self.has_ended {
             return None;
@@ -321,7 +321,7 @@ impl RegionWords {
             match some {
                 SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.gouraud_lanes(lanes, &mut stats);
-                    // A sink that accepts batches needs no words.
+                    // If the sink accepts batches, it needs no words.
                     if !out.triangles(&expressions.batch(entries.len())) {
                         let words = out.words();
                         (0..entries.len()).for_each(|i| encoder.encode(&gouraud_triangle(expressions.get(i)), words));
@@ -364,7 +364,7 @@ impl RegionWords {
                     let colour = |entry: &BinEntry| list.colours[list.triangles[entry.triangle as usize][0] as usize];
                     let mut colours = [0; LANES];
                     colours.iter_mut().zip(entries).for_each(|(out, entry)| *out = rgb(colour(entry)));
-                    // A sink that accepts batches needs no words.
+                    // If the sink accepts batches, it needs no words.
                     if !out.triangles(&expressions.batch(entries.len(), colours)) {
                         let words = out.words();
                         for (i, entry) in entries.iter().enumerate() {
@@ -449,7 +449,6 @@ enum SetupBatch<'a> {
     /// Triangles whose edges and planes are computed together. A triangle without area takes the place of an invisible
     /// triangle.
     Unclipped(&'a [BinEntry], &'a TriangleLanes<'a>),
-    /// A piece of a clipped triangle, in a batch of its own.
     Clipped(&'a BinEntry),
 }
 

@@ -70,7 +70,6 @@ impl TransformCost {
             + timing.bin_entry_ns * self.entries
     }
 
-    /// Returns the processor time as a span of simulated time.
     #[must_use]
     pub const fn span(self, timing: &GpTiming) -> Span {
         Span::from_ns(self.ns(timing))
@@ -114,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_transform_takes_the_time_of_its_pass_its_structures_its_primitives_and_its_entries() {
+    fn the_time_of_a_transform_is_the_sum_for_pass_structures_primitives_and_bin_entries() {
         let counts = PrimitiveCounts { triangles: 11, spheres: 13 };
         let cost = TransformCost { clipped: 4, entries: 9, ..TransformCost::pass_over(&list(), counts) };
         let begin = 5_000 + 3 * 900 + 30;
@@ -124,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_means_take_the_time_of_counts() {
+    fn mean_counts_that_are_whole_numbers_take_the_time_of_the_counts() {
         let means = TransformCost {
             passes: 1.0,
             structures: 3.0,

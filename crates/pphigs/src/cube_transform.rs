@@ -35,7 +35,6 @@ pub struct CubeTransform<'a> {
 /// Result of TRANSFORM for six views, in the memory of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CubeTransformOutput {
-    /// Simulated time of all steps.
     pub span: Span,
     /// Simulated time of the steps before the first primitive, which is included in `span`.
     pub start_span: Span,
@@ -48,8 +47,8 @@ pub struct CubeTransformOutput {
 }
 
 impl CubeTransform<'_> {
-    /// Executes the code on a board that holds the display list. Returns `None` if no kernel can draw this kind of
-    /// picture.
+    /// Executes the i860 code of TRANSFORM for the six views. The board's memory must already contain the display list.
+    /// Returns `None` if no kernel can draw this kind of picture.
     ///
     /// # Errors
     ///
@@ -161,7 +160,6 @@ impl ViewSort {
         processor.call(&PROGRAM, entry, &[data.as_slice(), &numbers].concat(), budget(count))
     }
 
-    /// Returns the number of marked primitives for each view.
     fn counts(&self, processor: &Processor) -> Result<[u32; MOST_VIEWS as usize], ProcessorFault> {
         let words: Vec<Word> = processor.read(self.words(), self.held.len())?;
         Ok(std::array::from_fn(|view| words.iter().map(|word| word >> view & 1).sum()))

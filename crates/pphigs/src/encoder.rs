@@ -1,5 +1,3 @@
-//! Encoders of triangle commands for each kind of shading.
-
 use crate::picture::{Picture, Shading};
 use pxpl5_renderer::{PhongTriangleEncoder, TriangleEncoder};
 
@@ -10,8 +8,8 @@ pub(crate) enum Encoder {
 }
 
 impl Encoder {
-    /// Creates the encoder of a picture. Returns `None` if the layout of pixel memory lacks a field, which the
-    /// machine's configuration refuses.
+    /// Creates the encoder of a picture. Returns `None` if the layout of pixel memory lacks a bit field of the
+    /// commands. The machine's configuration refuses such a layout.
     pub(crate) fn for_picture(picture: &Picture) -> Option<Self> {
         match picture.shading {
             Shading::Gouraud | Shading::Precomputed => Some(Self::Gouraud(TriangleEncoder::new(&picture.layout))),

@@ -1,8 +1,8 @@
 //! CPU work of interpolating triangles between two views (a *dual display list*).
 //!
-//! The code records each triangle's corners in the views at the start and at the end of a field. For each strip of
-//! lines, the code then makes commands for a view between these views. The code is `ends.s` and `compiled.s` of
-//! `pxpl5-geometry`. No paper describes the code; kernels/between_rules.md states its rules.
+//! The i860 code records each triangle's corners in the views at the start and at the end of a field. For each strip of
+//! lines, the i860 code then makes commands for a view between these views. The sources are `ends.s` and `compiled.s`
+//! of `pxpl5-geometry`. No paper describes the code; kernels/between_rules.md states its rules.
 
 use crate::code::{BUDGET, Next, Programs, TRIANGLE_BYTES, budget, kept};
 use crate::layout::{BLENDED, BLENDED_ELEMENTS, CODE, DISPLAY_LIST, PARAMETERS, STACK};
@@ -26,19 +26,16 @@ const VIEW_BYTES: u32 = 4 * ENDS_VIEW_WORDS as u32;
 /// Work that records the corners of all triangles in two views, in a part of the board's memory.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleEndsRecorder<'a> {
-    /// Primitives of the graphics processor.
     pub share: &'a Share,
     /// Views at the start and at the end of a field.
     pub views: [&'a FrameView; 2],
-    /// Picture that the views show.
     pub picture: Picture,
-    /// Part of the board's memory for the records.
     pub part: MemoryPart,
 }
 
 impl TriangleEndsRecorder<'_> {
-    /// Executes the code on a board that holds the display list, and returns the simulated time. The time includes the
-    /// preparation of structures for both views.
+    /// Executes the i860 code that records the corners, and returns the simulated time. The board's memory must already
+    /// contain the display list. The time includes the preparation of structures for both views.
     ///
     /// Returns `None` if no kernel can draw this kind of picture.
     ///
@@ -68,7 +65,6 @@ impl TriangleEndsRecorder<'_> {
     }
 }
 
-/// Returns the address of the first triangle, the number of triangles, and the address of the first record.
 const fn addresses(held: &Range<usize>, records: u32) -> [u32; 3] {
     let first = held.start as u32;
     [DISPLAY_LIST + first * TRIANGLE_BYTES, (held.end - held.start) as u32, records + first * RECORD_BYTES]
@@ -79,7 +75,6 @@ const fn addresses(held: &Range<usize>, records: u32) -> [u32; 3] {
 /// The result has commands and bounding boxes of the triangles near the strip, and of all spheres.
 #[derive(Clone, Copy, Debug)]
 pub struct StripInterpolation<'a> {
-    /// Primitives of the graphics processor.
     pub share: &'a Share,
     /// Views at the start and at the end of a field, in which a [`TriangleEndsRecorder`] has recorded the triangles.
     pub views: [&'a FrameView; 2],
@@ -94,7 +89,6 @@ pub struct StripInterpolation<'a> {
     /// First and last line of a range around the strip, in 1/16 px from the top of the frame. Triangles outside this
     /// range cannot touch the strip in any view between the two views.
     pub near: [i32; 2],
-    /// Picture that contains the strip.
     pub picture: Picture,
     /// Part of the board's memory with the [recorded corners](TriangleEndsRecorder).
     pub ends: MemoryPart,
@@ -103,8 +97,9 @@ pub struct StripInterpolation<'a> {
 }
 
 impl StripInterpolation<'_> {
-    /// Executes the code on a board that holds the recorded corners. Returns `None` if no kernel can draw this kind of
-    /// picture.
+    /// Executes the i860 code that makes the strip's commands, and returns the simulated time. The board's memory must
+    /// already contain the corners that a [`TriangleEndsRecorder`] has recorded. Returns `None` if no kernel can draw
+    /// this kind of picture.
     ///
     /// # Errors
     ///
@@ -120,7 +115,6 @@ impl StripInterpolation<'_> {
         Ok(Some(blended + beginning + of_kernels))
     }
 
-    /// Interpolates the matrices of the eyes and of the edited structures between the two views.
     fn blend(&self, processor: &mut Processor, kernel: Kernel) -> Result<Span, ProcessorFault> {
         let [from, to] = self.views.map(elements);
         let [low, high] = [self.part_of_way.to_bits(), self.part_of_way.to_bits() >> 32].map(|word| word as Word);
@@ -165,14 +159,14 @@ impl StripInterpolation<'_> {
     }
 }
 
-/// Returns the matrix elements to interpolate. Projection matrices are left out, because both views have the same.
+/// Returns the matrix elements to interpolate. Projection matrices are left out, because both views have the same
+/// projection.
 fn elements(view: &FrameView) -> Vec<Word> {
     let of_eyes = view.eyes.iter().flat_map(|eye| [eye.world_to_eye, eye.head_to_eye]);
     let matrices = of_eyes.chain(view.edits.iter().map(|edit| edit.model));
     matrices.flat_map(|matrix| matrix.to_cols_array()).map(f32::to_bits).collect()
 }
 
-/// Returns one program with the code of all steps, and the kernel's clipper.
 pub(crate) fn program(kernel: Kernel) -> Arc<Program> {
     static PROGRAMS: Programs<Kernel> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, kernel, |kernel| {

@@ -6,30 +6,24 @@
 //!   | table of bins, stack             | of context 0          |  of context 1  |
 //! ```
 
-/// Address of the code for triangles, with the clipper. The processor's trap vectors are below this address.
+/// Address of the i860 code for triangles, with the clipper (the program that cuts triangles at the guard band). The
+/// processor's trap vectors are below this address.
 pub(crate) const CODE: u32 = 0x1000;
-/// Address of the code that finds the views of a cube that contain a primitive.
 pub(crate) const SORT_CODE: u32 = 0xB000;
-/// Address of the code that edits and places structures before the first triangle of a pass.
 pub(crate) const BEGIN_CODE: u32 = 0xC000;
-/// Address of the code for spheres.
 pub(crate) const SPHERE_CODE: u32 = 0xE000;
-/// Address of the parameters of a triangle kernel.
 pub(crate) const PARAMETERS: u32 = 0x1_0000;
 /// Address of the table of bins. A kernel reads and updates the end of each bin in this table.
 pub(crate) const BIN_TABLE: u32 = 0x1_0200;
-/// Address of the parameters of a sphere kernel.
 pub(crate) const SPHERE_PARAMETERS: u32 = 0x1_0400;
 /// Address of the stack frame of a kernel. The stack frames of the clipper and of kernels/runs.s are below this
 /// address.
 pub(crate) const STACK: u32 = 0x1_1400;
-/// Address of the parameters for the right eye, if a kernel transforms both eyes.
 pub(crate) const RIGHT_PARAMETERS: u32 = 0x1_2500;
 /// Address of the display list, after the first megabyte, which belongs to the program.
 pub(crate) const DISPLAY_LIST: u32 = 1 << 20;
 /// Address of a message from the host, with matrices or edits.
 pub(crate) const MESSAGE: u32 = 0x1_4000;
-/// Address of the model matrices, sorted by structure.
 pub(crate) const MODELS: u32 = 0x1_6000;
 /// Address of the bounds of the bins for the second and later views in a set of bins, in the format of [`BINS`].
 const MORE_BINS: u32 = 0x7_D000;
@@ -42,7 +36,6 @@ pub(crate) const WINDOWS_CODE: u32 = 0x7_8000;
 /// Address of the windows (rectangles of the screen) to search. The rectangle around all windows comes first.
 pub(crate) const WINDOWS: u32 = 0x7_9000;
 pub(crate) const REGION_WINDOWS: u32 = 0x7_9C00;
-/// Address of the upper left pixel of each window (rectangle of the screen).
 pub(crate) const WINDOW_PLACES: u32 = 0x7_AE00;
 /// Address of the lists of the primitives in windows (rectangles of the screen), each with a start and an end like a
 /// bin (see [`bins`]).
@@ -52,16 +45,12 @@ pub(crate) const WINDOW_LISTS: u32 = 0x7_B000;
 pub(crate) const KEPT: u32 = 0x7_B400;
 /// Size of the record of a stored pass, in bytes.
 pub(crate) const KEPT_BYTES: u32 = 32;
-/// Largest number of stored passes in a board's memory.
 pub(crate) const MOST_KEPT: u32 = 16;
-/// Address of the code that assembles an order, the message of a master to its slaves.
 pub(crate) const ORDER_CODE: u32 = 0x7_B600;
 /// Address of the first words of an order, before its views.
 pub(crate) const ORDER_HEAD: u32 = 0x7_B800;
 pub(crate) const ORDER_VIEWS: u32 = 0x7_C000;
-/// Largest number of windows (rectangles of the screen) in one search.
 pub(crate) const MOST_WINDOWS: u32 = 64;
-/// Size of the description of a window (rectangle of the screen), in bytes.
 pub(crate) const WINDOW_BYTES: u32 = 32;
 /// Bytes at the end of memory for the primitives that one search finds.
 pub(crate) const ENTRY_BYTES: u32 = 4 * (LISTS_END - PIECES) / 8;
@@ -71,7 +60,6 @@ pub(crate) const MOST_VIEWS: u32 = 6;
 const BINS: u32 = 0x1_2F00;
 /// Bytes of the bounds of one set of bins: the address of the first sphere command, and two addresses for each region.
 const BIN_BOUNDS_BYTES: u32 = 0x480;
-/// Address of the parameters of the code that sends a region's bin.
 pub(crate) const TOKEN_PARAMETERS: u32 = 0x1_3800;
 pub(crate) const ENVELOPES: u32 = 0x1_3900;
 pub(crate) const TOKEN_CODE: u32 = 0x1_3C00;

@@ -71,7 +71,6 @@ pub use structure::{DisplayStructure, ModelFrame};
 pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit};
 pub use windows::{MemoryPart, SearchOutput, WindowSearchWork};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

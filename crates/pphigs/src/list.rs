@@ -1,5 +1,3 @@
-//! The display list and its division among the graphics processors (GPs).
-
 use crate::counts::PrimitiveCounts;
 use crate::placed::RecentViews;
 use crate::structure::DisplayStructure;
@@ -14,7 +12,6 @@ use std::sync::Arc;
 pub struct DisplayList {
     /// Positions of the vertices, in the coordinates of their structure.
     pub positions: Vec<Vec3>,
-    /// Normals of the vertices.
     pub normals: Vec<Vec3>,
     /// Colours of the vertices: red, green and blue.
     pub colours: Vec<[u8; 3]>,
@@ -24,7 +21,8 @@ pub struct DisplayList {
     pub spheres: Vec<WorldSphere>,
     /// Structures. The ranges of triangles and of spheres of successive structures follow each other without gaps.
     pub structures: Vec<DisplayStructure>,
-    /// Unit vector towards the light source, in the room or, for structures that move with the head, in the head.
+    /// Unit vector towards the light source: in head coordinates for structures that move with the head, otherwise in
+    /// room coordinates.
     pub towards_light: Vec3,
     /// Fraction of the colour that is visible without the light, 0 to 1.
     pub ambient: f32,
@@ -32,7 +30,8 @@ pub struct DisplayList {
     pub diffuse: f32,
     /// Background colour: red, green and blue.
     pub background: [u8; 3],
-    /// True if surfaces have no highlight. A highlight needs one eye direction for the whole picture.
+    /// True if surfaces have no highlight. A highlight needs one direction to the eye for the whole picture, which the
+    /// face of a cube does not have.
     pub is_matte: bool,
     /// Cache of placed structures, which all graphics processors share. Code that changes the list must empty this
     /// cache.
@@ -127,9 +126,7 @@ pub struct Share {
     pub(crate) list: Arc<DisplayList>,
     first: usize,
     step: usize,
-    /// Range of this share in the list of the graphics processor's triangles.
     triangles: Range<usize>,
-    /// Range of this share in the list of the graphics processor's spheres.
     spheres: Range<usize>,
 }
 
@@ -155,20 +152,18 @@ impl Share {
         Self { list, first: index, step: of, triangles, spheres }
     }
 
-    /// Returns the whole display list.
     #[must_use]
     pub fn list(&self) -> &Arc<DisplayList> {
         &self.list
     }
 
-    /// Returns the same primitives of another list. The other list must have the same structures, but its vertices may
-    /// be in another order.
+    /// Returns a share with the same indices of primitives in the display list `list`. This list must have the same
+    /// structures as the current list, but its vertices may be in a different order.
     #[must_use]
     pub fn with_list(&self, list: Arc<DisplayList>) -> Self {
         Self { list, ..self.clone() }
     }
 
-    /// Returns the numbers of primitives in the share.
     #[must_use]
     pub fn counts(&self) -> PrimitiveCounts {
         PrimitiveCounts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
@@ -202,7 +197,6 @@ impl Share {
         })
     }
 
-    /// Returns a share without primitives.
     #[must_use]
     pub fn nothing(&self) -> Self {
         Self { triangles: 0..0, spheres: 0..0, ..self.clone() }
@@ -276,7 +270,7 @@ mod tests {
     use pxpl5_geometry::Culling;
 
     #[test]
-    fn shares_hold_every_primitive_once() {
+    fn shares_have_each_primitive_once() {
         let list = Arc::new(DisplayList { triangles: vec![[0; 3]; 417], ..DisplayList::default() });
         let shares: Vec<_> = (0..12).map(|i| Share::new(Arc::clone(&list), i, 12)).collect();
         for range in [0..417, 5..17, 100..101, 416..417, 3..3] {
@@ -288,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_in_order_leave_all_triangles_as_they_were() {
+    fn sorting_vertices_changes_no_triangle() {
         let structure =
             |triangles| DisplayStructure { triangles, spheres: 0..0, frame: ModelFrame::World, culling: Culling::None };
         // Vertex 0 is used last, vertices 3 and 4 are used by both structures, and vertex 5 is used by no structure.
@@ -307,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn clumps_hold_every_primitive_of_a_share_once_triangles_first() {
+    fn clumps_have_each_primitive_of_a_share_once_and_begin_with_the_triangles() {
         let sphere = WorldSphere { centre: Vec3::ZERO, radius: 1.0, colour: [0; 3] };
         let list = DisplayList { triangles: vec![[0; 3]; 70], spheres: vec![sphere; 25], ..DisplayList::default() };
         let clumps: Vec<_> = Share::new(Arc::new(list), 0, 1).clumps(30).collect();

@@ -1,5 +1,6 @@
-//! Ideal renderer, which computes the correct picture directly. Every picture of the simulated machine can be compared
-//! with the correct picture.
+//! Ideal renderer, which computes the correct picture directly.
+//!
+//! Every picture of the simulated machine can be compared with the correct picture.
 //!
 //! ```text
 //!   DisplayList, FrameView --place_all--> Transform --gouraud, phong, sphere--> expressions of one primitive

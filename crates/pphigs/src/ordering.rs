@@ -53,7 +53,7 @@ mod tests {
 
     /// Tests that the code writes exactly the words of an order into the message buffer, for orders of any length.
     #[test]
-    fn an_order_lies_in_the_buffer_word_for_word() {
+    fn the_code_of_an_order_writes_exactly_the_words_of_the_order() {
         let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Compiled, i860::Config::cycle());
         for (words, head) in [(1, 1), (6, 6), (110, 4), (MAX_MESSAGE_WORDS, 6)] {
             let order: Vec<Word> = (0..words).map(|word| 0x1000_0000 + 7 * word).collect();

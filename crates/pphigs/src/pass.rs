@@ -1,5 +1,3 @@
-//! The result of TRANSFORM on one graphics processor, for one eye.
-
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
 use crate::list::Share;
@@ -13,10 +11,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// A triangle, or a piece of a clipped triangle, as an entry of a bin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BinEntry {
-    /// Index of the triangle in the display list.
     pub(crate) triangle: u32,
     /// Index of the piece of a clipped triangle, 0 for an unclipped triangle. `None` for an invisible triangle.
     pub(crate) piece: Option<u8>,
@@ -38,9 +34,8 @@ pub struct Pass {
     walk: Walk,
     found: Found,
     stats: SetupStats,
-    /// Bins of the regions, filled at the first use.
     bins: OnceLock<Vec<Bin>>,
-    /// Triangles that touch each region, found at the first use. Needed only if every region receives all triangles.
+    /// Triangles that touch each region, found at the first use. Only [`RegionBinning::All`] needs this list.
     touching: OnceLock<RegionTriangles>,
     encoder: OnceLock<Option<Encoder>>,
 }
@@ -54,16 +49,15 @@ struct Walk {
     chosen: Option<Box<[bool]>>,
 }
 
-/// Receives the results of the binning, in the order of the display list.
+/// A receiver of the results of binning, in the order of the display list.
 trait BinningSink {
-    /// Receives a triangle that touches only one region.
     fn triangle_in(&mut self, region: RegionId, triangle: u32);
 
-    /// Receives a triangle, or a piece of a clipped triangle, and the regions that it touches. Under
+    /// Takes a triangle, or a piece of a clipped triangle, and the regions that the piece touches. Under
     /// [`RegionBinning::All`], the entry belongs to the bins of all regions.
     fn piece(&mut self, touched: RegionMask, entry: BinEntry);
 
-    /// Receives the index of a sphere in the display list, and the regions that the sphere touches.
+    /// Takes the index of a sphere in the display list, and the regions that the sphere touches.
     fn sphere(&mut self, regions: RegionMask, number: u32);
 }
 
@@ -71,15 +65,16 @@ trait BinningSink {
 struct Found {
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
-    /// Indices of the triangles and spheres in at least one bin. Recorded only if the pass draws chosen structures.
+    /// Indices of the triangles and spheres in at least one bin. `None` for a pass over all structures.
     touching: Option<[Vec<u32>; 2]>,
 }
 
-/// Counts primitives without storing them.
+/// A sink that counts primitives and does not store them.
 struct PrimitiveCounter {
-    /// Number of triangles for each region that touch only this region.
+    /// For each region, the number of triangles that touch only this region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// Number of triangles for each region that also touch another region, and number of spheres that touch the region.
+    /// Two counts for each region: triangles that touch this region and at least one other region, and spheres that
+    /// touch this region.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,
@@ -127,7 +122,7 @@ impl BinningSink for PrimitiveCounter {
     }
 }
 
-/// Counts primitives, and records the indices of those in at least one bin.
+/// A sink that counts primitives, and stores the indices of the primitives in at least one bin.
 struct PrimitiveRecorder {
     counting: PrimitiveCounter,
     touching: [Vec<u32>; 2],
@@ -177,7 +172,7 @@ impl BinningSink for BinFiller {
     }
 }
 
-/// Collects the triangles that touch each region, if every region receives all triangles.
+/// A sink that collects the triangles that touch each region, for a pass in which every region receives all triangles.
 #[derive(Debug)]
 struct RegionTriangles {
     /// Triangles of each region, with their indices in the region's bin.
@@ -308,7 +303,6 @@ impl Pass {
         touching
     }
 
-    /// Returns the numbers of triangles and spheres in a region's bin.
     #[must_use]
     pub fn counts(&self, region: RegionId) -> PrimitiveCounts {
         self.found.counts[usize::from(region.0)]
@@ -320,7 +314,6 @@ impl Pass {
         self.found.on_screen
     }
 
-    /// Returns the number of entries in all bins together.
     #[must_use]
     pub fn entries(&self) -> u64 {
         self.found.counts.iter().map(|counts| u64::from(counts.total())).sum()
@@ -345,13 +338,11 @@ impl Pass {
         self.stats
     }
 
-    /// Returns the picture for which the primitives were transformed.
     #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.walk.picture
     }
 
-    /// Returns the background colour: red, green and blue, 0 to 255 each.
     #[must_use]
     pub fn background(&self) -> [u8; 3] {
         self.walk.share.list.background

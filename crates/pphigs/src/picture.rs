@@ -1,5 +1,3 @@
-//! Settings for the drawing of a view, such as shading and binning.
-
 use pxpl5_geometry::Viewport;
 use pxpl5_geometry::kernel::{Kernel, KernelSurface, Schedule};
 use pxpl5_renderer::Layout;
@@ -38,13 +36,10 @@ pxpl5_sim::parameters::named!(RegionBinning, "choice of regions", RegionBinning:
 /// Settings for the drawing of a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture {
-    /// Lines of the frame in the picture, and division into regions.
+    /// The lines of the video frame that the picture has (all, even or odd), and the picture's division into regions.
     pub viewport: Viewport,
-    /// Method of shading.
     pub shading: Shading,
-    /// Choice of the regions that receive a primitive's commands.
     pub binning: RegionBinning,
-    /// Use of the bits of a pixel's memory.
     pub layout: Layout,
     /// True if the run can compute pixels, so that the words of commands are needed.
     pub pixels: bool,

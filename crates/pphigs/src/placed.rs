@@ -16,7 +16,6 @@ pub struct PlacedStructure {
     pub transform: Option<Transform>,
     /// The light source in eye coordinates.
     pub light: Light,
-    /// The structure's primitives and settings.
     pub structure: DisplayStructure,
     /// Three matrices: from the room (or the head) to the eye, from the structure to the room, and from the eye to the
     /// picture.

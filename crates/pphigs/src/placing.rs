@@ -38,7 +38,7 @@ fn named(list: &DisplayList) -> Vec<Range<usize>> {
     list.structures.iter().map(of).collect()
 }
 
-/// Places structures like [`place_all`], but takes known results from the list's cache.
+/// Places structures like [`place_all`], but reads results that were computed before from the list's cache.
 pub(crate) fn place_cached(
     list: &DisplayList,
     view: &FrameView,

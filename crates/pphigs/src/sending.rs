@@ -42,7 +42,7 @@ pub async fn send_as_tracked(
     Ok(())
 }
 
-/// Sends a message after its transfer over the host's link.
+/// Waits for the transfer of a message over the host's link, and then sends the message on the ring.
 async fn send(gp: &Gp, receiver: NodeId, timing: HostTiming, words: Vec<Word>) -> Ticket {
     let length = words.len() as u32;
     gp.spend(timing.link_span(length)).await;

@@ -1,5 +1,3 @@
-//! Structures: groups of primitives that move together.
-
 use pxpl5_geometry::Culling;
 use std::ops::Range;
 
@@ -19,7 +17,6 @@ pub struct DisplayStructure {
     pub triangles: Range<usize>,
     /// Range of the structure's spheres in the display list.
     pub spheres: Range<usize>,
-    /// The coordinates in which the structure is placed.
     pub frame: ModelFrame,
     /// Choice of the triangles that are not drawn because of their winding. PHIGS+ has this choice for each structure.
     pub culling: Culling,

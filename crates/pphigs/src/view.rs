@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_view_survives_its_words_bit_for_bit() {
+    fn a_view_is_decoded_from_its_words_bit_for_bit() {
         let edits = vec![ModelEdit { structure: 3, model: some_matrix(9.0) }];
         let view = FrameView { number: ViewNumber(1 << 40), eyes: vec![some_eye(1.0), some_eye(2.0)], edits };
         assert_eq!(FrameView::from_words(&view.to_words()), Ok(view));
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_holds_the_most_edits() {
+    fn the_largest_number_of_edits_fits_one_message() {
         assert!(HEADER_WORDS + 2 * EYE_WORDS + MAX_EDITS * EDIT_WORDS + 8 <= MAX_MESSAGE_WORDS as usize);
     }
 }

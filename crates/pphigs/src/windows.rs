@@ -125,7 +125,7 @@ impl Pass {
     ///
     /// # Errors
     ///
-    /// Returns [`ProcessorFault`] if the code does not end, or its data do not fit.
+    /// Returns [`ProcessorFault`] if the i860 code of TRANSFORM does not end, or if its data do not fit.
     pub fn keep(
         &self,
         timing: &GpTiming,
@@ -156,8 +156,7 @@ impl Pass {
         let first = self.room(processor, kernel, part)?;
         let (of_triangles, next) = triangles(processor, first)?;
         let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), next, None)?;
-        // The distance between the two addresses of boxes gives the number of boxes, which equals the number of
-        // commands.
+        // The number of boxes follows from the two addresses of boxes. It equals the number of commands.
         let commands = |from: Next, to: Next| KeptCommands {
             first: from.command,
             count: (to.table - from.table) / BOX_BYTES,
@@ -184,9 +183,7 @@ impl Pass {
 pub struct WindowSearchWork<'a> {
     /// Part of memory with the stored commands and bounding boxes.
     pub part: MemoryPart,
-    /// Picture for which [`Pass::keep`] stored the commands.
     pub viewport: Viewport,
-    /// Division of the picture into windows.
     pub grid: RegionGrid,
     /// Windows to search, by index in the grid.
     pub windows: &'a [RegionId],
@@ -207,7 +204,6 @@ impl Work for WindowSearchWork<'_> {
 /// Time of a search, and the number of messages for each window.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SearchOutput {
-    /// Simulated time of all steps together.
     pub span: Span,
     /// Simulated time to list the messages, which is included in `span`.
     pub handoff_span: Span,
@@ -231,8 +227,8 @@ impl WindowSearchWork<'_> {
         self.counts.iter().map(|counts| counts.total()).sum()
     }
 
-    /// Executes the code on a board with commands that [`Pass::keep`] stored. Returns `None` if there are no stored
-    /// commands.
+    /// Executes the i860 code of the search. The board's memory must already contain the commands that [`Pass::keep`]
+    /// stores. Returns `None` if there are no stored commands.
     ///
     /// # Errors
     ///
@@ -326,12 +322,14 @@ impl WindowSearchWork<'_> {
     }
 }
 
-/// Returns two registers: the frame line of row 0, and the distance between rows in lines, minus one.
+/// Returns the values of two registers, from number `first` on: the frame line of row 0, and the distance between rows
+/// in lines, minus one.
 fn line_registers(viewport: &Viewport, first: usize) -> [(usize, Word); 2] {
     [(first, viewport.first_line()), (first + 1, viewport.line_step() - 1)]
 }
 
-/// Executes the code that computes the limits of the windows, which are cut off at the edges of the picture.
+/// Executes the code that computes the first and last columns and rows of the windows. Windows are cut off at the edges
+/// of the picture.
 fn make_windows(
     processor: &mut Processor,
     grid: RegionGrid,
@@ -375,8 +373,8 @@ pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)
 }
 
-/// The code that searches windows and lists messages. Every message has room for the copy command, like the messages of
-/// the same search in Rust.
+/// The i860 code that finds the primitives in windows and lists the messages. Every message has room for the copy
+/// command, as in the messages that the simulator makes without code.
 static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
     let token = token_source([MAX_MESSAGE_WORDS - CLOSING, MAX_MESSAGE_WORDS]);
     let sources = [("windows", include_str!("../kernels/windows.s")), ("token", token.as_str())];

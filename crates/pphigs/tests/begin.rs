@@ -151,7 +151,7 @@ fn edits_replace_the_matrices_of_their_structures_and_no_others() {
 
 /// A structure number beyond the table of matrices must be ignored, however large it is.
 #[test]
-fn edits_of_structures_that_are_not_there_change_nothing() {
+fn edits_of_missing_structures_change_nothing() {
     let edits = vec![ModelEdit { structure: u32::MAX, model: Mat4::IDENTITY }];
     let view = FrameView { number: ViewNumber::FIRST, eyes: Vec::new(), edits };
     let mut processor = board();
@@ -161,7 +161,7 @@ fn edits_of_structures_that_are_not_there_change_nothing() {
 
 /// If there are no structures, the beginning of a pass only resets the bins.
 #[test]
-fn bins_are_reset_to_where_they_begin() {
+fn bins_are_reset_to_their_first_addresses() {
     const MESSAGE: u32 = 0x1_4000;
     const BIN_TABLE: u32 = 0x1_0200;
     let mut numbers = SplitMix64::new(33);

@@ -102,7 +102,7 @@ fn compare(
 }
 
 #[test]
-fn pieces_hold_the_words_of_the_native_firmwares_messages() {
+fn code_hands_over_the_words_of_the_native_firmwares_messages() {
     let layouts = [(Shading::Phong, Layout::rendering_control_phong()), (Shading::Gouraud, Layout::slats())];
     for (triangles, spheres) in [(400, 0), (300, 60), (0, 100), (0, 0)] {
         let share = share(triangles, spheres);
@@ -131,7 +131,7 @@ fn pieces_hold_the_words_of_the_native_firmwares_messages() {
 /// The list of pieces has room for 44,236 entries of a bin. A board with 8 MB never has so many entries, but a board
 /// with more memory can.
 #[test]
-fn a_bin_of_more_entries_than_the_list_of_pieces_holds_is_a_fault() {
+fn a_bin_with_too_many_entries_is_a_fault() {
     let triangles: usize = 44_300;
     let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.2, diffuse: 0.8, ..DisplayList::default() };
     list.positions = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|at| at * 0.01 - Vec3::Z * 6.0).to_vec();
@@ -152,7 +152,7 @@ fn a_bin_of_more_entries_than_the_list_of_pieces_holds_is_a_fault() {
 }
 
 #[test]
-fn by_the_published_table_it_is_part_of_a_message() {
+fn the_published_time_of_sending_a_message_includes_the_bin_handoff() {
     let share = share(30, 0);
     let layout = Layout::rendering_control_phong();
     let pass = pass(&share, 0.0, Shading::Phong, layout, RegionBinning::Touched);
@@ -167,7 +167,7 @@ fn by_the_published_table_it_is_part_of_a_message() {
 }
 
 #[test]
-fn without_bins_of_code_nothing_is_handed_over() {
+fn without_bins_in_the_memory_of_the_processor_a_handoff_takes_no_time() {
     let share = share(30, 0);
     let pass = pass(&share, 0.0, Shading::Gouraud, Layout::slats(), RegionBinning::All);
     let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());

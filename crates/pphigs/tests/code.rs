@@ -98,13 +98,13 @@ fn of_code(processor: &Processor, output: &KernelOutput, region: usize, command_
 }
 
 #[test]
-fn the_words_in_memory_are_those_of_the_native_firmware() {
+fn code_writes_the_words_of_the_native_firmware() {
     assert_native_words(list(300));
 }
 
 /// Tests two structures with different matrices. Both structures leave out back faces.
 #[test]
-fn code_leaves_out_what_faces_away() {
+fn code_leaves_out_back_facing_triangles() {
     let mut list = Arc::unwrap_or_clone(list(300));
     list.structures.iter_mut().for_each(|structure| structure.culling = Culling::Back);
     assert_native_words(Arc::new(list));
@@ -135,7 +135,7 @@ fn assert_native_words(list: Arc<DisplayList>) {
 }
 
 #[test]
-fn without_bins_every_command_is_made_in_order() {
+fn without_bins_commands_are_written_in_the_order_of_the_primitives() {
     let list = list(90);
     let view = view();
     let share = Share::new(list, 0, 1);
@@ -156,7 +156,7 @@ fn without_bins_every_command_is_made_in_order() {
 /// All corners are left of the picture, and one of them is also outside the guard band. No triangle is cut, so each
 /// triangle has at most one command.
 #[test]
-fn what_lies_beside_the_picture_is_not_cut_without_bins_either() {
+fn without_bins_triangles_are_not_clipped_at_the_sides_of_the_picture() {
     let mut list = Arc::unwrap_or_clone(list(30));
     for triangle in 0..30 {
         for (corner, x) in [-20.0, -25.0, -5_000.0].into_iter().enumerate() {
@@ -175,7 +175,7 @@ fn what_lies_beside_the_picture_is_not_cut_without_bins_either() {
 
 /// Triangles of both structures reach behind the eye. Their pieces must be in the same bins as the native pieces.
 #[test]
-fn pieces_of_clipped_triangles_are_those_of_the_native_firmware() {
+fn code_clips_triangles_as_the_native_firmware_does() {
     let mut list = Arc::unwrap_or_clone(list(300));
     (0..300).step_by(4).for_each(|triangle| list.positions[3 * triangle].z = 5.0);
     let share = Share::new(Arc::new(list), 1, 3);
@@ -194,7 +194,7 @@ fn pieces_of_clipped_triangles_are_those_of_the_native_firmware() {
 /// If the board runs code, the time of a pass must not depend on any number of the timing table, including the numbers
 /// for spheres.
 #[test]
-fn a_pass_by_code_takes_the_same_time_whatever_the_table_says() {
+fn the_time_of_a_pass_by_code_does_not_depend_on_the_timing_table() {
     let mut list = Arc::unwrap_or_clone(list(30));
     list.spheres = vec![WorldSphere { centre: Vec3::new(0.0, 0.0, -5.0), radius: 0.1, colour: [9; 3] }];
     list.structures[0].spheres = 0..1;
@@ -213,7 +213,7 @@ fn a_pass_by_code_takes_the_same_time_whatever_the_table_says() {
 }
 
 #[test]
-fn a_picture_without_a_kernel_takes_the_time_of_the_table() {
+fn a_picture_without_a_kernel_takes_the_times_of_the_table() {
     let share = Share::new(list(30), 0, 1);
     let grid = pxpl5_wire::RegionGrid { width: 320, height: 240, region_width: 64, region_height: 64 };
     let viewport = Viewport::new(grid, pxpl5_wire::Lines::Frame).expect("a valid picture");
@@ -252,7 +252,7 @@ fn both_contexts(memory: u64) -> (Processor, [Arc<Pass>; 2]) {
 }
 
 #[test]
-fn two_contexts_that_touch_keep_their_words_and_one_byte_less_is_refused() {
+fn adjacent_contexts_keep_their_words_and_overlapping_contexts_are_refused() {
     let (_, passes) = both_contexts(MEMORY);
     let [lower, upper] = [0, 1].map(|eye| output_bytes(&passes[eye], 90, 120));
     let behind_list = (1 << 20) + 90 * 96_u32;
@@ -282,7 +282,7 @@ fn two_contexts_that_touch_keep_their_words_and_one_byte_less_is_refused() {
     assert!(
         (0..20).all(|region| of_code(&processor, &made, region, 30) == native(&passes[0], RegionId(region as u16)))
     );
-    // In the opposite order the lower context is rejected.
+    // If the contexts are placed in the opposite order, the lower context is rejected.
     let (mut processor, passes) = both_contexts(fits - 1);
     passes[1].run_code(&mut processor, 1).expect("it is alone");
     let error = passes[0].run_code(&mut processor, 0).expect_err("they would meet");
@@ -290,7 +290,7 @@ fn two_contexts_that_touch_keep_their_words_and_one_byte_less_is_refused() {
 }
 
 #[test]
-fn a_context_larger_than_the_memory_is_refused_and_does_not_reach_the_code() {
+fn a_context_larger_than_the_memory_is_refused() {
     let (_, passes) = both_contexts(MEMORY);
     let behind_list = u64::from((1 << 20) + 90 * 96_u32);
     for context in [0, 1] {
@@ -306,7 +306,7 @@ fn a_context_larger_than_the_memory_is_refused_and_does_not_reach_the_code() {
 /// With compiled code, one pass for both eyes takes less time than two passes. With scheduled code, one pass can take
 /// more time, because this code does not stay in the cache.
 #[test]
-fn one_pass_for_both_eyes_gives_the_native_words_of_each() {
+fn one_pass_for_both_eyes_writes_the_native_words_of_each_eye() {
     let share = Share::new(list(90), 0, 1);
     let picture = picture(Viewport::field(FieldParity::Odd), Shading::Precomputed, RegionBinning::All);
     for version in [CodeVersion::Compiled, CodeVersion::Scheduled] {
@@ -331,9 +331,8 @@ fn one_pass_for_both_eyes_gives_the_native_words_of_each() {
     }
 }
 
-/// If the left eye cannot draw a structure, the structure must have commands only for the right eye.
 #[test]
-fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
+fn a_structure_that_the_left_eye_cannot_draw_is_drawn_for_the_right_eye() {
     let mut view = view();
     view.eyes[0].head_to_eye.w_axis.x = f32::NAN;
     let share = Share::new(list(30), 0, 1);
@@ -352,7 +351,7 @@ fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
 /// A triangle has only ambient light if its normal points away from the light, and full light if it points to the
 /// light. Other normals give light in between.
 #[test]
-fn precomputed_colours_are_ambient_and_diffuse_light_on_the_side_of_the_normal() {
+fn a_precomputed_colour_has_ambient_light_and_on_the_lit_side_also_diffuse_light() {
     let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.25, diffuse: 0.5, ..DisplayList::default() };
     list.normals = vec![Vec3::Z * 3.0, -Vec3::Z, Vec3::new(0.0, 3f32.sqrt(), 1.0)];
     list.positions = vec![Vec3::ZERO; 3];

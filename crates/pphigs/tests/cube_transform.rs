@@ -1,5 +1,5 @@
 //! Tests of the i860 code for six views around an eye. Each view's words and bins must equal the words and bins of the
-//! native firmware. The number of primitives that are transformed for a view outside which they lie must be small.
+//! native firmware. Few primitives outside a view may be transformed for this view.
 
 mod numbers;
 
@@ -172,7 +172,7 @@ fn each_view_gets_the_words_and_bins_of_the_native_firmware() {
 /// If a view does not contain a primitive, the primitive must not be transformed for this view. Exceptions are
 /// primitives within the margin, large primitives, and back faces.
 #[test]
-fn few_primitives_are_given_to_a_view_that_does_not_see_them() {
+fn few_primitives_are_passed_to_a_view_that_does_not_see_them() {
     let mut numbers = Numbers(SplitMix64::new(52));
     let mut list = Arc::unwrap_or_clone(list(&mut numbers, 2000, 500));
     list.structures.iter_mut().for_each(|structure| structure.culling = Culling::None);
@@ -192,7 +192,7 @@ fn few_primitives_are_given_to_a_view_that_does_not_see_them() {
 }
 
 #[test]
-fn views_without_room_for_all_of_them_are_refused() {
+fn views_that_do_not_fit_in_memory_are_refused() {
     let mut numbers = Numbers(SplitMix64::new(53));
     let share = Share::new(list(&mut numbers, 500, 0), 0, 1);
     let passes = passes(&share, &views(&mut numbers, 1.0), Shading::Phong, face(256));

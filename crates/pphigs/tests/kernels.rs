@@ -80,28 +80,28 @@ const PICTURES: [Viewport; 3] =
     [Viewport::FRAME, Viewport::field(FieldParity::Even), Viewport::field(FieldParity::Odd)];
 
 #[test]
-fn the_straight_kernel_gives_the_native_words_and_bins() {
+fn the_straight_kernel_writes_the_native_words_and_bins() {
     for surface in SURFACES {
         PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Straight, surface, picture));
     }
 }
 
 #[test]
-fn the_compiled_kernel_gives_the_native_words_and_bins() {
+fn the_compiled_kernel_writes_the_native_words_and_bins() {
     for surface in SURFACES {
         PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Compiled, surface, picture));
     }
 }
 
 #[test]
-fn the_dual_kernel_gives_the_native_words_and_bins() {
+fn the_dual_kernel_writes_the_native_words_and_bins() {
     for surface in SURFACES {
         PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Dual, surface, picture));
     }
 }
 
 #[test]
-fn the_kernels_of_strips_give_the_native_words_and_bins() {
+fn the_kernels_of_strips_write_the_native_words_and_bins() {
     for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
         for surface in SURFACES {
             PICTURES.into_iter().for_each(|picture| assert_same_words_of_strips(schedule, surface, picture));
@@ -111,7 +111,7 @@ fn the_kernels_of_strips_give_the_native_words_and_bins() {
 
 /// About half of the triangles are back faces, including some pieces of clipped triangles.
 #[test]
-fn kernels_that_cull_give_the_native_words_and_bins() {
+fn kernels_that_cull_write_the_native_words_and_bins() {
     let input = mixture();
     for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
         for surface in SURFACES {
@@ -176,7 +176,7 @@ fn around_the_eye(seed: u64, mirrored: bool, viewport: Viewport) -> (ViewTransfo
 }
 
 #[test]
-fn the_clipper_gives_the_native_words_and_bins_of_triangles_all_around_the_eye() {
+fn the_clipper_writes_the_native_words_and_bins_of_triangles_all_around_the_eye() {
     let mut flattened = 0;
     for (seed, schedule) in (20..).zip([Schedule::Straight, Schedule::Compiled, Schedule::Dual]) {
         for mirrored in [false, true] {
@@ -223,7 +223,7 @@ fn assert_same_words_for_both_eyes(kernel: Kernel, left: &ViewTransform, viewpor
 /// that touch no region. The native code leaves out such triangles. The test therefore uses only triangles that touch a
 /// region.
 #[test]
-fn the_kernels_of_both_eyes_give_the_native_words_of_each() {
+fn the_kernels_of_both_eyes_write_the_native_words_of_each_eye() {
     for viewport in &PICTURES[1..] {
         for schedule in [Schedule::Compiled, Schedule::Dual] {
             let kernel = Kernel::for_picture(schedule, KernelSurface::Precomputed, viewport, false)
@@ -271,7 +271,7 @@ fn other_frames() -> impl Iterator<Item = Viewport> {
 }
 
 #[test]
-fn the_kernels_of_other_frames_give_the_native_words_and_bins() {
+fn the_kernels_of_other_frame_sizes_write_the_native_words_and_bins() {
     for viewport in other_frames() {
         for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
             for surface in SURFACES {
@@ -284,7 +284,7 @@ fn the_kernels_of_other_frames_give_the_native_words_and_bins() {
 }
 
 #[test]
-fn the_kernels_of_strips_of_other_frames_give_the_native_words_and_bins() {
+fn the_kernels_of_strips_of_other_frame_sizes_write_the_native_words_and_bins() {
     for viewport in other_frames() {
         assert_same_words_of_strips(Schedule::Compiled, KernelSurface::Gouraud, viewport);
         assert_same_words_of_strips(Schedule::Dual, KernelSurface::Phong, viewport);
@@ -292,7 +292,7 @@ fn the_kernels_of_strips_of_other_frames_give_the_native_words_and_bins() {
 }
 
 #[test]
-fn the_clipper_gives_the_native_words_and_bins_of_other_frames() {
+fn the_clipper_writes_the_native_words_and_bins_of_other_frame_sizes() {
     let schedules = [Schedule::Straight, Schedule::Compiled, Schedule::Dual];
     for (n, (viewport, seed)) in other_frames().zip(40..).enumerate() {
         let (view, input) = around_the_eye(seed, n % 2 == 1, viewport);
@@ -311,7 +311,7 @@ fn the_clipper_gives_the_native_words_and_bins_of_other_frames() {
 
 /// Tests fields of other sizes, regions of other sizes, and frames without bins.
 #[test]
-fn pictures_that_no_code_knows_have_no_kernel() {
+fn unsupported_pictures_have_no_kernel() {
     let kernel = |grid, lines, binned| {
         let viewport = Viewport::new(grid, lines).expect("a valid picture");
         Kernel::for_picture(Schedule::Compiled, KernelSurface::Phong, &viewport, binned)
@@ -326,7 +326,7 @@ fn pictures_that_no_code_knows_have_no_kernel() {
 
 /// A triangle must draw nothing if a corner is NaN, or larger than clip coordinates can be.
 #[test]
-fn triangles_that_cannot_be_represented_are_left_out() {
+fn triangles_with_corners_that_cannot_be_represented_draw_nothing() {
     let mut input = triangles(30, 0.12, 1);
     for (n, value) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 2e30, -3e38].into_iter().enumerate() {
         input[3 * n].positions[n % 3].x = value;
@@ -363,7 +363,7 @@ fn the_straight_kernel_is_larger_than_the_instruction_cache() {
 /// Independent triangles of about 30 pixels are streamed from memory, with all tests and bins. The second call is
 /// measured, with warm caches.
 #[test]
-fn the_dual_kernel_takes_800_clocks_a_phong_triangle_at_most() {
+fn the_dual_kernel_takes_at_most_800_clocks_for_a_phong_triangle() {
     let input = triangles(1000, 0.12, 1);
     let kernel = Kernel { surface: KernelSurface::Phong, ..frame(Schedule::Dual) };
     let mut bench = Bench::new(kernel, Viewport::FRAME, Config::cycle(), &input);
@@ -376,7 +376,7 @@ fn the_dual_kernel_takes_800_clocks_a_phong_triangle_at_most() {
 
 /// The triangles of a strip share vertices, so there is about one vertex for each triangle.
 #[test]
-fn the_dual_kernel_takes_500_clocks_a_phong_triangle_of_a_strip_at_most() {
+fn the_dual_kernel_takes_at_most_500_clocks_for_a_phong_triangle_of_a_strip() {
     let input = strips(&[1000], 0.12, 1);
     let kernel = Kernel { surface: KernelSurface::Phong, list: KernelList::Strips, ..frame(Schedule::Dual) };
     let mut bench = Bench::of_strips(kernel, Viewport::FRAME, Config::cycle(), &input);

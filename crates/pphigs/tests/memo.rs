@@ -31,7 +31,7 @@ fn slower(row: &FreezeRow) -> FreezeRules {
 }
 
 #[test]
-fn the_kernels_take_the_same_clocks_whatever_row_is_switched() {
+fn memoised_kernels_take_the_same_clocks_with_any_freeze_row_disabled() {
     for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
         assert_same_kernel(FreezeRules::all(), schedule);
         for row in &FREEZES {

@@ -12,8 +12,8 @@ const RED: [u8; 3] = [200, 0, 0];
 const GREEN: [u8; 3] = [0, 200, 0];
 const BACKGROUND: [u8; 3] = [1, 2, 3];
 
-/// Returns a display list with one unit for each pixel. x increases to the right, and y increases upwards from the
-/// picture's lower border. The eye looks along -z, from depth 0 to 100.
+/// Returns a display list in which a unit of length is one pixel. x increases to the right, and y increases upwards
+/// from the picture's lower border. The eye looks along -z, from depth 0 to 100.
 fn list() -> DisplayList {
     DisplayList {
         structures: vec![DisplayStructure {
@@ -66,7 +66,7 @@ fn drawn(list: &DisplayList) -> IdealPicture {
 }
 
 #[test]
-fn a_square_covers_its_pixels_once_and_no_others() {
+fn a_square_covers_exactly_its_pixels_once() {
     let mut list = list();
     square(&mut list, [10.0, 30.0], [20.0, 45.0], 50.0, RED);
     let picture = drawn(&list);
@@ -92,7 +92,7 @@ fn a_field_is_every_second_line_of_its_frame() {
 }
 
 #[test]
-fn the_nearer_wins_whatever_the_order_and_only_equals_tie() {
+fn the_nearer_square_wins_in_any_drawing_order_without_ties() {
     for order in [[(10.0, RED), (20.0, GREEN)], [(20.0, GREEN), (10.0, RED)]] {
         let mut list = list();
         order.iter().for_each(|(distance, colour)| square(&mut list, [0.0, 8.0], [0.0, 8.0], *distance, *colour));
@@ -103,7 +103,7 @@ fn the_nearer_wins_whatever_the_order_and_only_equals_tie() {
 }
 
 #[test]
-fn a_tie_may_show_either_colour_and_no_other() {
+fn a_pixel_at_equal_depth_shows_one_of_the_two_colours() {
     let mut list = list();
     square(&mut list, [0.0, 8.0], [0.0, 8.0], 10.0, RED);
     square(&mut list, [4.0, 12.0], [0.0, 8.0], 10.0, GREEN);
@@ -123,7 +123,7 @@ fn a_tie_may_show_either_colour_and_no_other() {
 }
 
 #[test]
-fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
+fn a_sphere_hides_a_square_that_cuts_the_sphere_behind_its_front() {
     let mut list = list();
     let centre = [200.3_f32, 100.2];
     list.spheres.push(WorldSphere {
@@ -148,7 +148,7 @@ fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
 /// The light comes from the eye. A surface that faces the eye has full light and a highlight of 96 of 255. A surface at
 /// 60 degrees has half the light, and the 32nd power of the highlight's cosine is 0.
 #[test]
-fn phong_follows_the_cosine() {
+fn phong_shading_follows_the_cosine() {
     for (turn_deg, light, highlight) in [(0.0_f32, 1.0_f32, 96.0), (60.0, 0.5, 0.0)] {
         let mut list = DisplayList { ambient: 0.25, diffuse: 0.5, ..list() };
         // Two-sided light depends on the visible side, so the square is far enough from the origin to show its front.

@@ -125,7 +125,7 @@ fn add(sum: &mut SetupStats, of: SetupStats) {
 }
 
 #[test]
-fn spheres_of_the_code_are_those_of_the_native_firmware_in_words_and_bins() {
+fn code_draws_spheres_with_the_words_and_bins_of_the_native_firmware() {
     let mut numbers = Numbers(SplitMix64::new(41));
     let mut all = SetupStats::default();
     let frame = |width, height| {

@@ -4,7 +4,7 @@ use super::model::{MAX_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
 use slats::CLUMP;
 
-/// Computes TRANSFORM and RENDER of a field, which is divided into clumps (groups) of triangles.
+/// Computes the times of TRANSFORM and RENDER of a field, which is divided into clumps (groups) of triangles.
 ///
 /// Returns two times of the last clump: when the renderers had accepted its messages, and when the graphics processor
 /// had started to send them.
@@ -36,7 +36,7 @@ pub(super) fn render<const N: usize>(
     [chain.accepted, chain.cpu]
 }
 
-/// Costs that do not depend on the number of triangles.
+/// Costs of messages that do not depend on the number of triangles.
 struct MessageCosts<const N: usize> {
     source_channels: usize,
     overhead: Times<N>,
@@ -64,7 +64,6 @@ impl<const N: usize> MessageCosts<N> {
         }
     }
 
-    /// Returns the message with one region's part of a clump (group of triangles).
     #[inline(always)]
     fn commands(&self, head: Costs<N>, triangles: f64, each: PerTriangle) -> Commands<N> {
         Commands::new(&self.fifos, &head, triangles * each.entries / 10.0, &self.command)
@@ -78,9 +77,11 @@ impl<const N: usize> MessageCosts<N> {
 struct Clump<const N: usize> {
     transform: Times<N>,
     message: Commands<N>,
-    /// Time until a renderer's FIFO has [room](Commands::room_behind) after a message of the previous clump.
+    /// Time until a renderer's FIFO has [room](Commands::room_behind) for a message of this clump, if the last message
+    /// belongs to the previous clump.
     behind_last: Times<N>,
-    /// Time until a renderer's FIFO has room after another message of this clump.
+    /// Time until a renderer's FIFO has room for a message of this clump, if the last message also belongs to this
+    /// clump.
     behind_itself: Times<N>,
 }
 
@@ -102,7 +103,6 @@ impl<const N: usize> Clump<N> {
     }
 }
 
-/// Progress of the clumps (groups of triangles) that have been sent so far.
 struct Chain<const N: usize> {
     /// Time at which the graphics processor has finished its latest work.
     cpu: Times<N>,
@@ -117,7 +117,7 @@ impl<const N: usize> Chain<N> {
         Self { cpu, accepted: Times::all(0.0), draining: Times::all(0.0) }
     }
 
-    /// Sends the messages of one clump, on several channels at a time.
+    /// Sends the messages of one clump. Several channels carry messages at the same time.
     #[inline(always)]
     fn send(&mut self, arrays: &mut [Array<N>], sending: &MessageCosts<N>, clump: &Clump<N>) {
         let mut channels = Channels::new(sending.source_channels);
@@ -145,7 +145,7 @@ impl<const N: usize> Chain<N> {
     }
 }
 
-/// Times at which the channels of a port become free, in ascending order.
+/// Times at which the ring channels of a port become free, in ascending order.
 struct Channels<const N: usize> {
     soonest: Times<N>,
     others: [Times<N>; MAX_CHANNELS - 1],
@@ -158,7 +158,8 @@ impl<const N: usize> Channels<N> {
         Self { soonest: free, others: [free; MAX_CHANNELS - 1], number: number - 1 }
     }
 
-    /// Makes the channel with the earliest time busy until `free`, and restores the ascending order.
+    /// Marks the channel that becomes free first as busy until `free`. Then sorts the channels by the time at which
+    /// they become free.
     #[inline(always)]
     fn give_back(&mut self, free: Times<N>) {
         let mut here = free;

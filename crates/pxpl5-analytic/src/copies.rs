@@ -35,10 +35,10 @@ impl Queue {
         self.0 |= (Self::ONE | board) << (Self::BITS * self.len());
     }
 
-    /// Returns the same copies in an order that alternates between left and right.
+    /// Returns the same copies in an order that alternates between the left and the right frame buffer.
     ///
-    /// If `begins_right` is true, the order begins with a right copy if there is one. Otherwise the first copy stays
-    /// the first.
+    /// If `begins_right` is true, the new order begins with a copy to the right frame buffer, if any exists. Otherwise
+    /// the new order begins with the same copy as the old order.
     pub(super) fn alternated(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];
@@ -58,7 +58,7 @@ impl Queue {
     }
 }
 
-/// Times of the first and the last word of a set of copies.
+/// Begin and end of the copies of regions to the frame buffers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CopyTimes {
     /// Time of the first word of the first copy.
@@ -124,7 +124,7 @@ impl<const N: usize> Ports<N> {
         Self { free: [Times::all(f64::MIN); 2], begins: Times::all(f64::INFINITY), ends: Times::all(f64::MIN) }
     }
 
-    /// Makes a copy that starts at `ready`, or later when the port becomes free. Returns the end of the copy.
+    /// Copies a region from the time `ready` on, or later when the port becomes free. Returns the end of the copy.
     #[inline(always)]
     fn copy(&mut self, ready: Times<N>, to_right: bool, region: Times<N>) -> Times<N> {
         let begin = self.free[usize::from(to_right)].later(ready);
@@ -134,14 +134,14 @@ impl<const N: usize> Ports<N> {
         end
     }
 
-    /// Records the times of a copy, which may be earlier than the copies so far.
+    /// Extends the recorded begin and end of all copies by one more copy.
     #[inline(always)]
     fn note(&mut self, begin: Times<N>, end: Times<N>) {
         self.begins = self.begins.sooner(begin);
         self.ends = self.ends.later(end);
     }
 
-    /// Makes the remaining copies, in an order that may differ between machines.
+    /// Copies the remaining regions, in an order that may differ between machines.
     #[inline(always)]
     fn copy_apart(&mut self, arrays: &mut [Array<N>], queues: &[Queue; MAX_RENDERERS], region: Times<N>) {
         let never = [f64::INFINITY; N];
@@ -172,8 +172,8 @@ impl<const N: usize> Ports<N> {
         }
     }
 
-    /// Makes one copy on each machine, to the right frame buffer if the mask is set, otherwise to the left. Returns the
-    /// end times.
+    /// Copies one region on each machine, to the right frame buffer if `to_right` is set, otherwise to the left frame
+    /// buffer. Returns the end times.
     #[inline(always)]
     fn copy_where(&mut self, ready: Times<N>, to_right: Mask<N>, region: Times<N>) -> Times<N> {
         let [left, right] = self.free;
@@ -243,13 +243,13 @@ mod tests {
     }
 
     #[test]
-    fn ten_regions_take_five_when_both_ports_start_at_once() {
+    fn ten_regions_take_five_region_times_when_both_ports_start_together() {
         let [left, right]: [&[bool]; 2] = [&[false, true], &[true, false]];
         assert_eq!(times([left, right, left, right, left], 780.0).end_ns, 5.0 * 780.0);
     }
 
     #[test]
-    fn a_queue_has_its_copies_in_order_and_by_turns() {
+    fn a_queue_of_copies_keeps_the_order_of_each_port_and_alternates_between_the_ports() {
         let mut queue = Queue::default();
         [false, false, true].into_iter().for_each(|right| queue.push(right));
         assert_eq!((queue, queue.len()), (Queue(0b11_01_01), 3));

@@ -1,13 +1,16 @@
-//! The analytic level of the model. This crate computes the times of Slats and of Rendering Control by formulas,
-//! without simulation. Such a *closed form* is a recurrence over clumps (groups of triangles), regions and pictures.
+//! The analytic level of the model.
+//!
+//! This crate computes the times of Slats and of Rendering Control by formulas, without simulation. Such a *closed
+//! form* is a recurrence over clumps (groups of triangles), regions and pictures.
 //!
 //! ```text
 //!   MachineConfig + Load --> SlatsModel::field  --> times of one field   (clumps x regions)
 //!                        --> StereoModel::frames --> times of a frame     (pictures x regions)
 //! ```
 //!
-//! The closed forms have no events, programs or pixels. A configuration takes a few hundred additions and maxima, so a
-//! sweep over many thousand configurations takes seconds. The formulas follow these rules of the boards:
+//! The closed forms have no events, programs or pixels. The times of one configuration need a few hundred additions and
+//! comparisons, so a sweep over many thousand configurations takes seconds. The formulas follow these rules of the
+//! boards:
 //!
 //! - The messages of a clump leave in order. A renderer's full input FIFO delays a message.
 //! - A renderer executes commands in order. While a renderer copies a region, the renderer executes no other command.
@@ -17,7 +20,7 @@
 //! channels (`senders`). The functions return an error for other pipelines, for displays other than NTSC, and for heads
 //! with a tracker.
 //!
-//! Times are nanoseconds in f64. Rounding errors are far below 1 ns, and differences that matter are much larger.
+//! Times are nanoseconds in f64. Rounding errors are far below 1 ns. Only differences of much more than 1 ns matter.
 //!
 //! # Not modelled
 //!
@@ -55,8 +58,8 @@ pub fn add_closed_forms(registry: &mut Registry) {
     registry.closed_form("slats", slats::CLOSED_FORM);
 }
 
-/// Returns the experiment's pipeline. Returns an error if the pipeline is not a `P`, or if a tracker reports the head's
-/// pose.
+/// Returns the experiment's pipeline. Returns an error if the pipeline does not have the type `P`, or if a tracker
+/// reports the head's pose.
 fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, ExperimentError> {
     experiment.config().check()?;
     if experiment.tracked_head().is_some() {
@@ -69,7 +72,7 @@ fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, Experim
 
 /// Smallest and largest number of fields that an estimate computes.
 ///
-/// In this time, a run reaches a steady state and shows several views of a moving head.
+/// In these fields, a run reaches a steady state and shows several views of a moving head.
 const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
 
 /// Estimates the largest number of primitives for which all pictures are in time.
@@ -128,7 +131,6 @@ fn video_of(config: &MachineConfig) -> Result<Video, SettingError> {
     display.video.video()
 }
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -26,7 +26,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// Returns the load of one structure whose triangles touch every region and are never clipped.
+    /// Returns the work for one structure whose triangles touch every region and are never clipped.
     #[must_use]
     pub fn full_screen(triangles: u32, regions: usize) -> Self {
         let triangles = f64::from(triangles);

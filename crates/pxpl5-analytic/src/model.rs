@@ -37,7 +37,6 @@ pub struct SlatsModel {
     pub(super) overhead_ns: f64,
     pub(super) hop_ns: f64,
     pub(super) gp: GpTiming,
-    /// Time before the first triangle of TRANSFORM, for both eyes, in nanoseconds.
     pub(super) begin_ns: f64,
     pub(super) message_ns: f64,
     pub(super) command: Cost,
@@ -78,8 +77,8 @@ pub struct PerTriangle {
 }
 
 impl SlatsModel {
-    /// Returns the parameters for a machine. If the machine runs i860 code, the times of this code are used. All
-    /// triangles form one structure.
+    /// Returns the model for a machine. If the machine runs i860 code, the times of this code are used. All triangles
+    /// form one structure.
     ///
     /// # Errors
     ///
@@ -135,15 +134,15 @@ impl SlatsModel {
         })
     }
 
-    /// Returns the parameters for a scene with several structures.
+    /// Returns the model for a scene with several structures.
     #[must_use]
     pub fn over(self, scene: &Scene) -> Self {
         let sphere_views = scene.structures().iter().filter(|structure| !structure.spheres.is_empty()).count();
         Self { begin_ns: begin_ns(&self.gp, scene.structures().len(), sphere_views), ..self }
     }
 
-    /// Returns the parameters that determine the number and order of messages. Machines that are computed together must
-    /// have equal values.
+    /// Returns the parameters that determine the number and order of messages. Only machines with equal values of these
+    /// parameters can be computed together.
     pub(super) const fn structure(&self) -> (usize, usize, usize, bool) {
         (self.renderers, self.gps, self.source_channels, self.split)
     }
@@ -162,7 +161,7 @@ impl SlatsModel {
         DuePictures::count(begun.map(|field| (PeriodNumber(field), end)), 1, PeriodNumber(fields))
     }
 
-    /// Returns the copies of each renderer, for the regions for which `wanted` returns true.
+    /// Returns the copies that each renderer makes, for the regions for which `wanted` returns true.
     pub(super) fn layout(&self, wanted: impl Fn(usize) -> bool) -> [Queue; MAX_RENDERERS] {
         let mut queues = [Queue::default(); MAX_RENDERERS];
         let per_half = REGIONS / 4;

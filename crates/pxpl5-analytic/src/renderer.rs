@@ -114,8 +114,8 @@ impl<const N: usize> Add for Costs<N> {
     }
 }
 
-/// A message to a renderer: a header of a few commands, then many equal commands. The fields are the times that do not
-/// depend on the arrival of the message.
+/// A message to a renderer: a header of a few commands, then many equal commands. This struct stores the times that do
+/// not depend on the arrival of the message.
 ///
 /// All later times follow from the arrival of the first word by sums and maxima. `max(a, b) + c` equals `max(a + c, b +
 /// c)` exactly, even with rounding. Sums are therefore computed before maxima, which shortens the chain of dependent
@@ -125,8 +125,8 @@ pub(super) struct Commands<const N: usize> {
     /// Time of the header on the ring. The header selects and clears the region.
     head_wire: Times<N>,
     head: Times<N>,
-    /// Time from the last word of the header to the start of the first command after it, if no earlier command is
-    /// running.
+    /// Time from the last word of the header to the start of the first command after the header, if no earlier command
+    /// is running.
     lead: Times<N>,
     count: f64,
     each: Times<N>,
@@ -136,8 +136,8 @@ pub(super) struct Commands<const N: usize> {
     drawing: Times<N>,
     /// Time from the start of the first command after the header until the FIFO has room for the last word.
     ///
-    /// The room comes from an earlier command: when it starts, the words one FIFO depth before the last word leave the
-    /// FIFO. The value is `f64::MIN` if this is a command of the previous message.
+    /// The FIFO gets this room when an earlier command starts and its words leave the FIFO. The value is `f64::MIN` if
+    /// the earlier command belongs to the previous message.
     room_after: Times<N>,
     /// Position of the command whose start makes room for the last word, as a number of commands before the end of the
     /// previous message. The value is infinite if a command of the same message makes the room.
@@ -145,7 +145,6 @@ pub(super) struct Commands<const N: usize> {
 }
 
 impl<const N: usize> Commands<N> {
-    /// Creates a message with the header `head` and `count` commands that each cost `each`.
     #[inline(always)]
     pub(super) fn new(fifos: &Fifos<N>, head: &Costs<N>, count: f64, each: &Costs<N>) -> Self {
         let (word_ns, counts) = (fifos.word_ns, Times::all(count));
@@ -153,7 +152,8 @@ impl<const N: usize> Commands<N> {
         // A command needs at least the time of its words on the channel.
         let first_wire = each.words * word_ns;
         let slowest = each.ns.later(first_wire);
-        // Word that must have left before the last word has room, counted from the first command.
+        // Number of the word that must have left the FIFO before the last word has room, counted from the first
+        // command.
         let before_last = total - Times::all(1.0) - fifos.depth_words - head.words;
         let room_after = Times::each(|i| {
             let command = sooner((before_last.0[i] / each.words.0[i]).floor(), count);
@@ -192,7 +192,7 @@ impl<const N: usize> Commands<N> {
     }
 }
 
-/// A renderer between two messages: the times from which its parts are free.
+/// A renderer between two messages: the times at which its parts become free.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Array<const N: usize> {
     /// Time at which the renderer has executed all commands, or has ended a copy.

@@ -68,7 +68,6 @@ fn mean_ms(frames: &[&StereoTimes], ns: impl Fn(&StereoTimes) -> f64) -> f64 {
     frames.iter().map(|frame| ns(frame)).sum::<f64>() / frames.len().max(1) as f64 * 1e-6
 }
 
-/// Times at which each stage of the pictures so far ended.
 #[derive(Debug, Default)]
 struct History {
     transformed: Vec<f64>,
@@ -94,8 +93,8 @@ struct Renderers {
     /// Times until which the backing store of each renderer holds finished regions.
     stored_until_ns: Vec<Vec<f64>>,
     words: Vec<f64>,
-    /// Number of words before the region, start of the first command, and cost of all commands, for each of the latest
-    /// regions of each renderer.
+    /// Three values for each of the latest regions of each renderer: the number of words before the region, the start
+    /// of its first command, and the cost of its commands.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }
@@ -180,7 +179,8 @@ impl StereoModel {
         self.overhead_ns + ORDER_WORDS * self.word_ns + self.hop_ns * self.slaves / 2.0
     }
 
-    /// Returns the time from one processor to another, including the software on both sides, in nanoseconds.
+    /// Returns the time of a message from one processor to another, including the software on both sides, in
+    /// nanoseconds.
     fn order_ns(&self) -> f64 {
         2.0 * self.message_ns + self.transit_ns()
     }
@@ -192,7 +192,7 @@ impl StereoModel {
         // finishes.
         let application_ns = self.host.application_span(mix(frame as u64)).as_ms() * 1e6;
         let sent_ns = history.edited_ns + self.order_ns() + application_ns + self.host_ns;
-        // EDIT of the first eye also needs earlier pictures to have passed TRANSFORM, RENDER and COPY.
+        // EDIT of the first eye also waits until earlier pictures have passed TRANSFORM, RENDER and COPY.
         let ready =
             [back(&history.transformed, first, 1), back(&history.rendered, first, 2), back(&history.copied, first, 3)];
         let mut begin_ns = ready.into_iter().fold(sent_ns, f64::max) + self.order_ns();
@@ -263,7 +263,6 @@ impl StereoModel {
         TransformCost { passes: 1.0, structures, sphere_views, triangles, spheres, clipped, entries }.ns(&self.gp)
     }
 
-    /// Returns the largest number of primitives on a slave.
     fn largest_share(&self, primitives: f64) -> f64 {
         (primitives / self.slaves).ceil()
     }
@@ -327,7 +326,7 @@ impl StereoModel {
         self.slaves * (2.0 * self.message_ns + self.transit_ns()) + senders * self.message_ns + handed_over_ns
     }
 
-    /// Returns the time at which the renderer has accepted a region's last word, and the time at which it has executed
+    /// Returns two times: when the renderer has accepted the last word of a region, and when the renderer has executed
     /// all commands.
     fn execute(&self, all: &mut Renderers, r: usize, token_ns: f64, arrived_ns: f64, bin: &[f64; 2]) -> (f64, f64) {
         let [triangles, spheres] = *bin;
@@ -351,7 +350,7 @@ impl StereoModel {
 
     /// Returns the time at which the FIFO has room for the last word.
     ///
-    /// This is the start of the command whose words lie one FIFO depth before the last word.
+    /// At this time, the command starts whose words lie one FIFO depth before the last word.
     fn room_ns(&self, all: &mut Renderers, r: usize) -> f64 {
         let word = all.words[r] - 1.0 - self.fifo_words;
         let started = &mut all.started[r];
@@ -444,16 +443,16 @@ impl StereoModel {
         (0..self.eyes).map(|eye| (frame.copy_ns[eye].1 - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// Returns the time from the start of TRANSFORM to the swap, for each eye, in milliseconds.
     fn eye_swap_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
         (0..self.eyes).map(|eye| (frame.shown_ns - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// Counts the frames that are due and shown. A frame is due as often as the pixels of all eyes can be copied.
+    /// Counts the frames that are due and shown. Frames are due at the rate at which the pixels of all eyes can be
+    /// copied.
     fn due(&self, frames: &[StereoTimes], fields: u64) -> Option<DuePictures> {
         let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
         let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);
-        // Frames after the last computed one are unknown.
+        // Frames after the last computed frame are unknown.
         let known = frames.last().map_or(PeriodNumber::FIRST, |last| field_of(last).next()).min(PeriodNumber(fields));
         DuePictures::count(frames.iter().map(|frame| (field_of(frame), PictureResult::Shown)), every, known)
     }

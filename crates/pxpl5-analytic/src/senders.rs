@@ -34,7 +34,6 @@ use std::sync::Arc;
 struct Clump {
     /// Time of TRANSFORM for both eyes, in nanoseconds.
     transform_ns: f64,
-    /// Numbers of triangles and of spheres in each region.
     bins: [[f64; 2]; REGIONS],
 }
 
@@ -45,7 +44,8 @@ pub(super) struct Clumps {
     view_words: f64,
 }
 
-/// Number of words of a message with the view of two eyes: a number, two counts, and three matrices for each eye.
+/// Number of words of a message with the view of two eyes: a number of two words, two counts, and three matrices for
+/// each eye.
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
@@ -98,7 +98,8 @@ impl Clumps {
             let clump = |(n, share): (usize, &Share)| {
                 let passes = [0, 1].map(|eye| share.transform(&view, eye, picture));
                 let work = TransformWork { passes: &passes, context: 0, begins: n == 0 };
-                // Order: all columns of the upper half for one eye and the other, then the same for the lower half.
+                // The order is: the columns of the upper half for one eye, then for the other eye, then the same for
+                // the lower half.
                 let bins = std::array::from_fn(|region| {
                     let (kind, column) = (region / COLUMNS, region % COLUMNS);
                     let counts = passes[kind % 2].counts(RegionId((kind / 2 * COLUMNS + column) as u16));
@@ -135,7 +136,8 @@ pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clump
     [accepted_ns, ring.all_done_ns(&senders)]
 }
 
-/// The words of a command that has left a renderer's FIFO, and so made room for words one FIFO depth later.
+/// The words of a command that has left a renderer's FIFO. Their departure makes room for the words that follow one
+/// FIFO depth later.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
     first_word: f64,
@@ -143,7 +145,6 @@ struct Departure {
     at_ns: f64,
 }
 
-/// A renderer: port, input FIFO and array of pixel processors.
 #[derive(Clone, Debug, Default)]
 struct Renderer {
     free_ns: f64,
@@ -156,13 +157,14 @@ impl Renderer {
     /// Receives a command whose words arrive without gaps from `from_ns` on. Returns the time at which the last word
     /// has entered the FIFO.
     ///
-    /// A word enters the FIFO when the word one FIFO depth before it has left. The words of a command leave when the
-    /// command starts. A command starts when all its words have arrived and the previous command has ended.
+    /// A full FIFO accepts a word when the word has left that entered one FIFO depth earlier in the sequence of words.
+    /// The words of a command leave when the command starts. A command starts when all its words have arrived and the
+    /// previous command has ended.
     fn take(&mut self, from_ns: f64, command: Cost, depth_words: f64, word_ns: f64) -> f64 {
         let first = self.words_in;
         let last = first + command.words - 1.0;
         let mut complete = from_ns + command.words * word_ns;
-        // Departures make room for words one FIFO depth later.
+        // A word that leaves the FIFO makes room for the word that is one FIFO depth later.
         while let Some(room) = self.departures.front() {
             let made_room_for = room.first_word + depth_words;
             if made_room_for > last {
@@ -189,7 +191,6 @@ struct Message {
     runs: [(Cost, f64); 4],
 }
 
-/// A graphics processor that sends the messages of its clumps one after the other.
 #[derive(Debug)]
 struct Sender<'a> {
     gp: usize,
@@ -197,7 +198,7 @@ struct Sender<'a> {
     begun: usize,
     /// Messages of the current clump that still wait for a channel of the ring.
     messages: VecDeque<Message>,
-    /// Time since which the next message waits for a channel.
+    /// Instant, in nanoseconds, at which the next message began to wait for a channel.
     since_ns: f64,
     channels_ns: Vec<f64>,
     cpu_ns: f64,
@@ -214,7 +215,6 @@ impl Sender<'_> {
     }
 }
 
-/// The channels of the ring and the renderers, which all senders share.
 struct Ring<'a> {
     model: &'a SlatsModel,
     renderers: Vec<Renderer>,
@@ -361,7 +361,7 @@ impl<'a> Ring<'a> {
         heads.reduce(|first, head| if head.0 < first.0 { head } else { first }).map(|(_, place)| place)
     }
 
-    /// Sends a sender's next message. The message occupies the port of the renderer and channels until its last word is
+    /// Sends a sender's next message. The message occupies the renderer's port and ring channels until its last word is
     /// in the FIFO.
     fn grant(&mut self, sender: &mut Sender<'_>) {
         let model = self.model;

@@ -64,8 +64,8 @@ fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTri
     fields_at_once(models, triangles, each)
 }
 
-/// Returns the times of a field on `N` machines, which have one graphics processor and equal values of
-/// [`SlatsModel::structure`].
+/// Returns the times of a field on `N` machines. Each machine has one graphics processor, and all machines have equal
+/// values of [`SlatsModel::structure`].
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
     let mut arrays = [Array::idle(); MAX_RENDERERS];
@@ -84,8 +84,8 @@ fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     }
 }
 
-/// Computes the copies of a field. `rendered` is the time at which the renderers have accepted all triangles, and `cpu`
-/// the time at which the first graphics processor is free.
+/// Computes the copies of a field. `rendered` is the time at which the renderers have accepted all triangles. `cpu` is
+/// the time at which the first graphics processor ends its work.
 #[inline(always)]
 fn end<const N: usize>(
     models: &[SlatsModel; N],
@@ -109,7 +109,8 @@ fn end<const N: usize>(
     std::array::from_fn(|i| models[i].times(rendered.0[i], top[i], bottom.map(|times| times[i])))
 }
 
-/// Copies regions to the frame buffers. From `from` on, the renderers receive their copy commands one after the other.
+/// Copies regions to the frame buffers. From the time `from` on, the renderers receive their copy commands one after
+/// the other.
 #[inline(always)]
 fn copy<const N: usize>(
     models: &[SlatsModel; N],
@@ -218,7 +219,7 @@ mod tests {
     /// The scene `mig` has six structures without spheres. The scene `molecules` has one structure with spheres. The
     /// processor is the slowest part of both runs, so the difference is visible.
     #[test]
-    fn a_structure_takes_its_time_for_both_eyes() {
+    fn the_time_of_a_structure_counts_for_both_eyes() {
         let rendered_ns = |scene: &str, gp: GpTiming| {
             let machine = MachineConfig { gp, ..MachineConfig::slats() };
             let model = SlatsModel::new(&machine, Slats::whole()).expect("in range");
@@ -242,7 +243,7 @@ mod tests {
         /// Tests that the model computes the same times, bit for bit, for many machines together and for each machine
         /// alone.
         #[test]
-        fn machines_that_are_computed_together_are_what_they_are_alone(
+        fn machines_computed_together_give_the_same_results_as_machines_computed_one_by_one(
             gps in 1usize..5,
             renderers in 5usize..23,
             all in proptest::collection::vec(numbers(), 1..50),

@@ -8,7 +8,7 @@ use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::PathSettings;
 use serde::Serialize;
 
-/// Variants of a comparison. Each has a name, and the settings in which it differs from the plan of the comparison.
+/// Variants of a comparison. Each variant has a name and the settings that it changes.
 const VARIANTS: [(&str, &[(&str, &str)]); 9] = [
     ("full", &[("policy", "full")]),
     ("objects", &[("policy", "objects"), ("segment", "off")]),
@@ -36,17 +36,17 @@ pub struct ComparedRow {
     pub rates_hz: Vec<f64>,
     /// Number of segments (parts of objects) drawn per second.
     pub draws_per_s: f64,
-    /// Number of triangles drawn per second.
     pub triangles_per_s: f64,
     /// Percentage of draws saved, relative to drawing everything in every frame.
     pub saved_percent: f64,
     /// Distance between the eye and the position from which a memory was drawn, in mm, averaged over memories.
     pub eye_age_mm: f64,
-    /// Widths of the displayed tears (gaps between memories), in texels. Null in JSON if no memories meet in a cut.
+    /// Widths of the displayed tears (gaps between memories), in texels. Null in JSON if no object is cut between two
+    /// memories.
     pub tears: Option<TearWidths>,
     /// Angles by which warping moves vertices, in texels, as percentiles. Null in JSON without warping.
     pub stretch: Option<TearWidths>,
-    /// Number of times that cells (squares of the floor) were assigned to memories anew. With the policy `objects`,
+    /// Number of times that cells (squares of the floor) were assigned to memories anew. With the policy `objects`, the
     /// number of times that an object changed its memory.
     pub changes: u64,
     /// Number of retraces at which an update was incomplete, summed over all memories.
@@ -58,9 +58,7 @@ pub struct ComparedRow {
 pub struct ArpComparison {
     pub schema: &'static str,
     pub scene: String,
-    /// Length of the viewer's walk, in frames.
     pub frames: u64,
-    /// Speed of the viewer's walk, in m/s.
     pub m_per_s: f64,
     /// Results of the variants that succeeded.
     pub rows: Vec<ComparedRow>,

@@ -36,7 +36,6 @@ impl Content {
         self.place(vertex) - self.eye
     }
 
-    /// Draws the memory's segments (parts of objects) into faces.
     pub fn draw(&self, world: &World, view: &CubeView, faces: &mut FaceSet) -> DrawCounts {
         view.draw(self.eye, world.triangles(&self.segments, |vertex| self.place(vertex)), faces)
     }
@@ -48,8 +47,8 @@ impl Content {
     }
 }
 
-/// Returns the warp that closes the gap between `memory` and the memory beyond its outer border, which is updated less
-/// often. `places` are the eye positions from which these two memories were drawn.
+/// Returns the warp that closes the gap at the outer border of `memory`. The memory beyond this border is updated less
+/// often. `places` are the eye positions from which `memory` and the memory beyond the border were drawn.
 pub(crate) fn warp(
     settings: &crate::settings::WalkSettings,
     dealing: &CellAssignment,

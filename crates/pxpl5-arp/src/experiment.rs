@@ -1,4 +1,4 @@
-//! A complete experiment: a viewer's walk through a scene, and the view at its end.
+//! A complete experiment: a viewer's walk through a scene, and the view at the end of the walk.
 
 use crate::hall::{path_of, scaled};
 use crate::look::WalkFaces;
@@ -17,7 +17,7 @@ use tracking::motion::Walk;
 /// A report of a viewer's walk, with the scene and the settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WalkReport {
-    /// Counters of the viewer's walk, and results of the view at its end.
+    /// Counters of the viewer's walk, and results of the view at the end of the walk.
     #[serde(flatten)]
     pub report: ArpReport,
     pub scene: String,
@@ -27,9 +27,8 @@ pub struct WalkReport {
     pub segments: u64,
     /// Length of the viewer's walk, in frames of the most often drawn memory.
     pub frames: u64,
-    /// Speed of the viewer's walk, in m/s.
     pub m_per_s: f64,
-    /// Settings that the user chose, by path.
+    /// Settings that the user chose, by their path, for example `priority.cell_m`.
     pub settings: BTreeMap<String, String>,
 }
 
@@ -38,17 +37,15 @@ pub struct WalkReport {
 pub struct WalkOutcome {
     /// The scene after it was cut at the borders of cells.
     pub world: World,
-    /// Path through the scene.
     pub path: Walk,
     pub settings: WalkSettings,
-    /// Counters of the viewer's walk.
     pub tally: WalkTally,
-    /// Report of the viewer's walk, including a view along the path at its end.
+    /// Report of the viewer's walk. The report includes a view along the path at the end of the walk.
     pub report: WalkReport,
 }
 
 impl WalkOutcome {
-    /// Runs a walk. Calls `finished` with the number of finished frames and the number of all frames.
+    /// Simulates a walk. Calls `finished` with the number of finished frames and the number of all frames.
     ///
     /// # Errors
     ///
@@ -71,7 +68,6 @@ impl WalkOutcome {
         let (_, stats) =
             faces.seen(ahead(&path, plan.walk.m_per_s * (frames - 1) as f64 / settings.numbers.frame_hz))?;
         let looked = ViewStatistics { stats, drawing: faces.drawing };
-        // Collect the report.
         let report = WalkReport {
             report: ArpReport::of(&world, &settings, &tally, Some(&looked)),
             scene: scene.name().to_owned(),

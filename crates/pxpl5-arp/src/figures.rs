@@ -1,4 +1,4 @@
-//! Comparison of the papers' figures with simulated figures.
+//! Comparison of the figures in the papers on priority rendering with simulated figures.
 
 use pxpl5_sim::parameters::SettingError;
 

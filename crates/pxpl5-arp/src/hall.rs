@@ -1,4 +1,4 @@
-//! Scaling of a hall, and routes of the viewer through it.
+//! Scaling of a hall, and routes of the viewer through the hall.
 
 use glam::{DVec3, Vec3};
 use pxpl5_scene::Scene;
@@ -6,7 +6,7 @@ use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use tracking::motion::Walk;
 
-/// A route through a hall.
+/// The path of the viewer through a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Route {
@@ -22,7 +22,6 @@ pub enum Route {
 }
 
 impl Route {
-    /// All routes, each with its name on the command line.
     pub const ALL: [(&str, Self); 4] =
         [("scene", Self::Scene), ("straight", Self::Straight), ("diagonal", Self::Diagonal), ("round", Self::Round)];
 }
@@ -30,12 +29,11 @@ impl Route {
 /// Distance between routes and walls, as a fraction of the hall's side.
 const MARGIN: f64 = 0.015;
 
-/// Returns the path of a route through a scene.
+/// Returns the path of a route through a scene. The scene's own path defines the height of the eye.
 ///
 /// # Errors
 ///
-/// Returns a [`SettingError`] if the scene has no path of its own. The scene's path defines the height of the
-/// eye.
+/// Returns a [`SettingError`] if the scene has no path of its own.
 pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, SettingError> {
     // The scene's own path defines the height of the eye.
     let own: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();
@@ -92,7 +90,7 @@ mod tests {
     /// Tests the built-in gallery at half its size. The original is 40 m wide and 4 m high, and its path begins at
     /// (-16, -15). The heights must not change.
     #[test]
-    fn a_scaled_hall_keeps_its_height_and_its_eyes() {
+    fn a_scaled_hall_keeps_its_height_and_the_height_of_the_eyes() {
         let scene = builtin("gallery").expect("built in");
         let half = scaled(&scene, 0.5).expect("a scene");
         let reach = half.vertices().iter().fold(Vec3::ZERO, |reach, vertex| reach.max(vertex.position));

@@ -11,7 +11,7 @@
 //! - [`WalkPlan`] holds settings by path (`priority.cell_m=5`). The defaults of some settings depend on other settings.
 //! - [`World`] cuts a scene at the borders of cells, once.
 //! - [`Simulation::frame`] calls the policy, which returns the memories that are due for an update. The renderer then
-//!   gets the work.
+//!   draws these memories.
 //! - An ideal renderer draws within the same frame. A renderer of limited speed draws memories in ascending order of
 //!   their indices. The renderer shows complete updates in the next frame and counts incomplete updates.
 //! - A memory holds the data from which it is drawn ([`Content`]). Its faces are drawn only when they are read
@@ -63,7 +63,6 @@ pub use tears::{TearWidths, Tears};
 pub use walk::{MemoryTally, WalkTally, at_frames, walk};
 pub use world::{Object, Segment, SharedVertex, Tint, World};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -47,7 +47,7 @@ impl WalkFaces {
         self.background
     }
 
-    /// Returns the same faces viewed through another lens.
+    /// Returns the same faces viewed through the lens `lens`.
     #[must_use]
     pub fn through(mut self, lens: address_recalculation::Lens) -> Self {
         self.config.lens = lens;
@@ -86,7 +86,7 @@ impl WalkFaces {
     }
 }
 
-/// Returns a picture of `width` pixels across. `pixels` has one value for each pixel in row order. `colour` converts
+/// Returns a picture that is `width` pixels wide. `pixels` has one value for each pixel in row order. `colour` converts
 /// each value to a colour.
 pub(crate) fn picture<T>(width: u32, pixels: &[T], colour: impl Fn(&T) -> u32) -> RgbImage {
     let height = pixels.len() as u32 / width;

@@ -36,7 +36,6 @@ pub enum ArpPicture {
     Drawing(String, String),
 }
 
-/// Number of frames of the viewer's walk that the pictures show.
 const FRAMES: u64 = 1_800;
 
 /// Name of each experiment, the figures of the papers that the experiment redraws, and the names of the project's
@@ -69,8 +68,8 @@ pub fn all(experiments: &Experiments) -> Result<Vec<ArpPicture>, SettingError> {
 /// are omitted if the view is too wide for a plane. All other pictures are drawn without lens distortion, unless the
 /// view is too wide for a plane.
 ///
-/// The chosen frame and direction uncover most of the scene behind the widest tear. If no memories meet in a cut, the
-/// view is along the path at the end of the walk.
+/// The chosen frame and direction uncover most of the scene behind the widest tear. If no object is cut between two
+/// memories, the view is along the path at the end of the walk.
 ///
 /// # Errors
 ///
@@ -173,14 +172,14 @@ const WHITE: u32 = 0x00FF_FFFF;
 
 /// Approximate limit of the number of frames that are examined for the best view of a tear (gap between two memories).
 const TRIED: u64 = 63;
-/// Smallest distance, in frames, between two frames that are examined for the best view of a tear. A longer walk has
-/// larger distances.
+/// Smallest distance, in frames, between two frames that are examined for the best view of a tear. In a long walk, the
+/// distance is larger, so that only about `TRIED` frames are examined.
 const EVERY: u64 = 29;
 
 /// Returns the frame and orientation at which a tear (gap between two memories) shows the largest number of background
 /// pixels.
 ///
-/// Each tried frame is viewed towards its widest tear in an upright surface. Returns `None` if there is no tear.
+/// The view in each tried frame is towards the widest tear in an upright surface. Returns `None` if there is no tear.
 fn best_tear_view(
     world: &World,
     torn: &WalkSettings,
@@ -229,7 +228,7 @@ fn gaps(
     orientation: DQuat,
 ) -> Result<Vec<ArpPicture>, SettingError> {
     let mut both = Vec::new();
-    // Draw the frame torn, warped and uncut.
+    // Draw the frame with tears, with warped segments, and with uncut objects.
     for (falloff, is_segmented) in [(Falloff::None, true), (Falloff::Linear, true), (Falloff::None, false)] {
         let settings = WalkSettings { falloff, has_cascade: falloff != Falloff::None, is_segmented, ..torn.clone() };
         let simulation = shown(world, &settings, 0..frame + 1, eye)?;

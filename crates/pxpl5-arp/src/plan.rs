@@ -19,14 +19,13 @@ pxpl5_sim::parameters::parameter_table! {
     }
 }
 
-/// Settings of a walk by path. Some defaults depend on other settings.
+/// Settings of a walk. Each setting has a path such as `priority.theta_deg`. Some defaults depend on other settings.
 ///
 /// A *cascade* lets an update of a memory also update all more often drawn memories. By default, only walks with warped
 /// cells have a cascade, and only the policy `cells` cuts objects. `priority.threshold` in pixels or texels overrides
 /// `priority.theta_deg`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkPlan {
-    /// Speed and length of the viewer's walk.
     pub walk: WalkNumbers,
     chosen: WalkSettings,
     is_segmented: Option<bool>,
@@ -36,7 +35,8 @@ pub struct WalkPlan {
     given: BTreeMap<String, String>,
 }
 
-/// A threshold in pixels or texels. The threshold becomes an angle when the display's resolution is set.
+/// A threshold of the image error, in pixels or texels. The threshold becomes an angle when the display's resolution is
+/// set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ThresholdChoice {
     /// Threshold in pixels of the display. One pixel is the horizontal angle of view divided by the number of pixels in
@@ -56,7 +56,7 @@ impl ThresholdChoice {
     }
 }
 
-/// Parses a threshold such as `2px` or `2texels`.
+/// Parses a threshold of the image error, such as `2px` or `2texels`.
 fn threshold(text: &str) -> Result<ThresholdChoice, SettingError> {
     let expected = || SettingError::text("pixels of the display as 2px, or texels of a face as 2texels", text);
     let number = |text: &str| text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
@@ -91,7 +91,8 @@ impl PathSettings for WalkPlan {
         "arp_scan": chosen.display.scan,
     }
 
-    /// Records the setting for the report. The policy and the display have the same number of memories.
+    /// Records the setting for the report. Sets the number of memories of both the policy and the display, which must
+    /// be equal.
     fn was_set(&mut self, path: &str, text: &str) {
         let memories = match path {
             "priority.memories" => Some(self.chosen.numbers.memories),
@@ -121,7 +122,7 @@ impl WalkPlan {
         }
     }
 
-    /// Returns the settings that the user gave explicitly, by path.
+    /// Returns the settings that the user gave explicitly, each with its path such as `priority.cell_m`.
     #[must_use]
     pub const fn given(&self) -> &BTreeMap<String, String> {
         &self.given

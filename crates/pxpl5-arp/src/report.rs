@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// Name and version of the layout of the report.
 pub const SCHEMA: &str = "pxpl5-arp/1";
 
-/// Results of a viewer's walk through a scene.
+/// The results of a walk through a scene, as written to JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArpReport {
     pub schema: &'static str,
@@ -29,7 +29,7 @@ pub struct ArpReport {
     pub matrix_loads: Option<u64>,
     /// Number of matrices that were refused because they were not rotations. Null without a tracker.
     pub matrix_refused: Option<u64>,
-    /// Number of pixels whose footprint (its four texels) has a texel on another face. Null if no view was drawn.
+    /// Number of pixels whose footprint (its four texels) extends beyond one face. Null if no view was drawn.
     pub footprints_split: Option<u64>,
     /// Number of pixels whose footprint (its four texels) has two texels in one memory bank. Null if no view was drawn.
     pub bank_conflicts: Option<u64>,
@@ -42,7 +42,7 @@ pub struct ArpReport {
     /// Time from reading the head's orientation to displaying the pixel, in ms, averaged over all pixels. The times of
     /// tracker and host are not included.
     pub rotation_latency_ms: WalkLatency,
-    /// Latency of translation through memory 0, in ms. Null without an update.
+    /// Latency with which display memory 0 shows a translation of the eye, in ms. Null without an update.
     ///
     /// The memory is drawn from the eye position at the start of a frame. The latency lasts from the start of this
     /// frame to the display of a pixel of the memory.
@@ -52,7 +52,7 @@ pub struct ArpReport {
     pub sampling_error_px: Option<f64>,
 }
 
-/// Results of one display memory.
+/// The part of an [`ArpReport`] about one display memory.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WalkMemoryReport {
     /// Number of times per second that the memory shows a new update.
@@ -69,7 +69,7 @@ pub struct WalkMemoryReport {
     pub missed: u64,
     /// Mean distance between the eye and the position from which the memory was drawn, in mm.
     pub eye_age_mm: f64,
-    /// Latency of translation in ms, averaged over frames.
+    /// Latency with which the memory shows a translation of the eye, in ms, averaged over frames.
     ///
     /// The memory is drawn from the eye position at the start of a frame. The latency lasts from the start of this
     /// frame to the display of a pixel of the memory.
@@ -92,7 +92,7 @@ pub struct PriorityReport {
     pub draws_per_s: f64,
     /// Percentage of draws that the policy saves, relative to drawing everything in every frame.
     pub saved_percent: f64,
-    /// Number of times that an object changed to another memory. Null unless the policy is `objects`.
+    /// Number of times that an object moved from one memory to another. Null unless the policy is `objects`.
     pub moved_objects: Option<u64>,
     /// Number of times that cells (squares of the floor) were assigned to memories anew. Null without cells.
     pub redeals: Option<u64>,
@@ -123,7 +123,7 @@ pub struct WalkLatency {
 /// Counts for a view at the end of the viewer's walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewStatistics {
-    /// Counts of the texels that each pixel of the view reads.
+    /// Counts of extra memory accesses for the pixels of the view, beyond one access per pixel and memory.
     pub stats: LookStats,
     /// Counts of the triangles drawn into the cube faces for the view.
     pub drawing: DrawCounts,
@@ -163,13 +163,14 @@ fn latch(display: &ArpConfig) -> &'static str {
     Latch::ALL.iter().find(|(_, latch)| *latch == display.latch).map_or("field", |(name, _)| name)
 }
 
-/// Returns the latency of rotation: all pipeline stages, then the scan from reading the orientation to the pixel.
+/// Returns the latency of a head rotation: all pipeline stages, then the scan from reading the orientation to the
+/// pixel.
 fn rotation(display: &ArpConfig) -> WalkLatency {
     WalkLatency::of(vec![("pipeline", Some(ms(display.timing.depth()))), ("scan", scan_ms(display, display.latch))])
 }
 
-/// Returns the latency of translation in three parts. The parts are the drawing of an update, the time for which the
-/// update has already been shown, and the scan until the pixel is displayed.
+/// Returns the latency of an eye's translation in three parts. The parts are the drawing of an update, the time for
+/// which the update has already been shown, and the scan until the pixel is displayed.
 fn translation(memory: Option<&MemoryTally>, settings: &WalkSettings) -> WalkLatency {
     let memory = memory.filter(|memory| memory.shown_frames > 0);
     let mean_ms = |frames: fn(&MemoryTally) -> u64| {
@@ -187,8 +188,8 @@ fn ms(span: Span) -> f64 {
     span.0 as f64 / 1e9
 }
 
-/// Returns the mean time from reading the orientation to displaying a pixel, over both fields, in ms. Returns `None` if
-/// the scan is invalid.
+/// Returns the mean time from reading the orientation to displaying a pixel, without the stages of the pixel pipeline,
+/// in ms. The mean is over the pixels of an even and an odd field. Returns `None` if the scan is invalid.
 fn scan_ms(display: &ArpConfig, from: Latch) -> Option<f64> {
     let scan = display.scan().ok()?;
     let mut sum = 0.0;

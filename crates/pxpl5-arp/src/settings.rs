@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub enum PolicyKind {
     /// One memory, in which everything is drawn in every frame.
     Full,
-    /// Each object is in the least often updated memory that keeps its image error below the threshold.
+    /// Each object is in the least often updated memory that keeps the object's image error below the threshold.
     Objects,
     /// The floor is divided into square cells. Each cell is assigned to a memory by its distance from the viewer's
     /// cell.
@@ -23,7 +23,6 @@ pub enum PolicyKind {
 pxpl5_sim::parameters::named!(PolicyKind, "policy", PolicyKind::ALL);
 
 impl PolicyKind {
-    /// All policies, each with its name on the command line.
     pub const ALL: [(&str, Self); 3] = [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells)];
 
     #[must_use]
@@ -50,11 +49,11 @@ pub enum SourceKind {
     },
 }
 
-/// Distance of the near plane along a face's axis, in metres. Assumed. Walls are at least 1 m away from the gallery's
-/// path. Along the axis of a face, the distance is at least 1 m / sqrt(3) = 0.58 m.
+/// Distance of the near plane along a face's axis, in metres. The value is assumed. Walls are at least 1 m away from
+/// the gallery's path. Along the axis of a face, the distance is at least 1 m / sqrt(3) = 0.58 m.
 const NEAR_M: f64 = 0.1;
-/// Distance of the far plane along a face's axis, in metres. Assumed to exceed the size of the hall. At 20 m, the
-/// 24-bit depths then have steps of 0.24 mm.
+/// Distance of the far plane along a face's axis, in metres. The value is assumed and exceeds the size of the hall. At
+/// 20 m, the 24-bit depths then have steps of 0.24 mm.
 const FAR_M: f64 = 100.0;
 
 /// Settings of an experiment, without the scene and the viewer's walk.
@@ -63,12 +62,11 @@ pub struct WalkSettings {
     pub policy: PolicyKind,
     /// True if objects are cut into segments at the borders of cells.
     pub is_segmented: bool,
-    /// Rule by which the displacement by warping decreases with the distance from the border to a less often drawn
-    /// memory. [`Falloff::None`] disables warping, so gaps appear at cuts.
+    /// Rule by which warping moves vertices near the border to a less often drawn memory. The displacement decreases
+    /// with the distance from the border. [`Falloff::None`] disables warping, so gaps appear at cuts.
     pub falloff: Falloff,
     /// True if an update of a memory makes all more often drawn memories due for an update.
     pub has_cascade: bool,
-    /// Parameters of the policies.
     pub numbers: PriorityTiming,
     pub display: ArpConfig,
     pub source: SourceKind,
@@ -99,11 +97,11 @@ impl WalkSettings {
         ..Self::CELLS
     };
 
-    /// Settings with uncut objects. Each object is in the least often updated memory that keeps its image error below
-    /// the threshold.
+    /// Settings with uncut objects. Each object is in the least often updated memory that keeps the object's image
+    /// error below the threshold.
     pub const OBJECTS: Self = Self { policy: PolicyKind::Objects, is_segmented: false, ..Self::CELLS };
 
-    /// Returns the settings with another number of memories, for both the policy and the display.
+    /// Returns the settings with `memories` display memories, for both the policy and the display.
     #[must_use]
     pub const fn with_memories(mut self, memories: u64) -> Self {
         self.numbers.memories = memories;
@@ -111,7 +109,7 @@ impl WalkSettings {
         self
     }
 
-    /// Returns the settings with another side of a cell, in metres.
+    /// Returns the settings with `side_m` as the side of a cell, in metres.
     #[must_use]
     pub const fn with_cells(mut self, side_m: f64) -> Self {
         self.numbers.cell_m = side_m;
@@ -134,7 +132,6 @@ impl WalkSettings {
         Ok(())
     }
 
-    /// Returns the number of memories in use.
     #[must_use]
     pub const fn memories(&self) -> usize {
         match self.policy {

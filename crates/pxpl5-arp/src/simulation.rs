@@ -1,5 +1,4 @@
-//! Simulation of a viewer's walk, frame by frame: which memories are due for an update, their drawing, and their
-//! display.
+//! Simulation of a viewer's walk, frame by frame: the updates that are due, and the drawing and display of memories.
 
 use crate::content::{Content, warp};
 use crate::settings::{PolicyKind, SourceKind, WalkSettings};
@@ -18,7 +17,7 @@ struct Unit {
 }
 
 impl Unit {
-    /// Returns the distance, size and speed of the unit relative to an eye that moves at `speed` m/s.
+    /// Returns the distance, size and speed of this object or segment relative to an eye that moves at `speed` m/s.
     fn seen(&self, eye: DVec3, speed: f64) -> ObjectView {
         let distance_m = self.centre.distance(eye);
         ObjectView { distance_m, radius_m: self.radius, speed, turn: 0.0, animation_s: f64::INFINITY }
@@ -30,7 +29,6 @@ impl Unit {
     }
 }
 
-/// A policy for updating memories, with its state.
 #[derive(Clone, Debug)]
 enum Policy {
     Full,
@@ -41,7 +39,6 @@ enum Policy {
 /// Memories that became due, were updated or missed the retrace in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameOutcome {
-    /// Position of the eye.
     pub eye: DVec3,
     /// Flag of each memory: true if it became due for an update.
     pub due: Vec<bool>,
@@ -120,7 +117,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the number of times that an object changed to another memory. Returns `None` unless the policy is
+    /// Returns the number of times that an object moved from one memory to another. Returns `None` unless the policy is
     /// `objects`.
     #[must_use]
     pub const fn moved_objects(&self) -> Option<u64> {
@@ -168,7 +165,7 @@ impl<'a> Simulation<'a> {
         triangles_per_s: f64,
         outcome: &mut FrameOutcome,
     ) {
-        // Queue the new updates, then draw for one frame.
+        // Queue the new updates.
         for (memory, content) in contents {
             let work_s = content.triangles(self.world) as f64 / triangles_per_s;
             let together = if update.together[memory] { update.together_bits() } else { 0 };
@@ -203,7 +200,6 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the new contents of the memories that are due for an update.
     fn contents(&self, update: &Update, eye: DVec3) -> Result<Vec<(usize, Content)>, SettingError> {
         let mut segments = vec![Vec::new(); update.due.len()];
         for (number, unit) in self.units.iter().enumerate() {
@@ -229,7 +225,6 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the index of the memory to which a unit (an object or a segment) currently belongs.
     fn memory(&self, unit: usize) -> usize {
         match &self.policy {
             Policy::Full => 0,

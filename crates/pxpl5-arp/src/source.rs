@@ -3,7 +3,6 @@
 
 use crate::content::Content;
 
-/// An update that is being drawn into a memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Job {
     pub(crate) content: Content,
@@ -15,7 +14,6 @@ pub(crate) struct Job {
     pub(crate) together: u8,
 }
 
-/// Updates that are being drawn, and updates that wait until these updates are finished.
 #[derive(Clone, Debug)]
 pub(crate) struct Queue {
     running: Vec<Option<Job>>,
@@ -56,7 +54,7 @@ impl Queue {
             Some(if may_swap { Ok(job.content.clone()) } else { Err(()) })
         });
         let outcomes: Vec<Option<Result<Content, ()>>> = outcomes.collect();
-        // The next waiting update takes the place of a shown one.
+        // The next waiting update takes the place of a shown update.
         for (memory, outcome) in outcomes.iter().enumerate() {
             if matches!(outcome, Some(Ok(_))) {
                 self.running[memory] = self.waiting[memory].take();

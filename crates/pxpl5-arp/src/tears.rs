@@ -31,7 +31,6 @@ fn holders(world: &World, shown: &[Option<Content>]) -> Vec<Option<usize>> {
 }
 
 impl Tears {
-    /// Measures the tears between the contents of all memories.
     #[must_use]
     pub fn of(world: &World, shown: &[Option<Content>]) -> Self {
         let holders = holders(world, shown);
@@ -66,9 +65,7 @@ impl Tears {
 /// Percentiles of angles, in texels (90 degrees divided by the texels of a face's edge).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TearWidths {
-    /// Median.
     pub p50: f64,
-    /// 95th percentile.
     pub p95: f64,
     pub max: f64,
 }

@@ -8,7 +8,7 @@ use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
-/// Counters of one memory.
+/// Counts of the updates of one display memory during a walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MemoryTally {
     /// Number of updates that were shown.
@@ -28,33 +28,31 @@ pub struct MemoryTally {
     /// Age of the eye position from which the shown update was drawn, in frames. The ages are summed over all frames in
     /// which the memory showed an update.
     pub age_frames: u64,
-    /// Part of `age_frames` that passed before each update was first shown.
+    /// Part of `age_frames` that passed while the renderer drew the updates.
     pub drawing_frames: u64,
     /// Number of frames in which the renderer drew the shown update.
     drawn_in: u64,
 }
 
-/// Counters of a viewer's walk.
+/// The results of a walk: counts of each display memory, and the tears between memories.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkTally {
     pub frames: u64,
-    /// Counters of each memory.
     pub memories: Vec<MemoryTally>,
     /// Number of times that cells (squares of the floor) were assigned to memories anew.
     pub redeals: u64,
-    /// Number of times that an object changed to another memory, or `None` unless the policy is `objects`.
+    /// Number of times that an object moved from one memory to another, or `None` unless the policy is `objects`.
     pub moved_objects: Option<u64>,
     /// Angles of the tears (gaps between memories) at shared vertices, over all frames.
     pub tears: Tears,
     /// Width in radians of the widest tear (gap between two memories) that each frame shows, and the index of the
-    /// tear's vertex. `None` if no memories meet.
+    /// tear's vertex. `None` for a frame in which no memories share a vertex.
     pub widest: Vec<Option<(f64, u32)>>,
     /// Memories that were due, showed an update, or missed the retrace, for each frame.
     pub outcomes: Vec<FrameOutcome>,
 }
 
 impl WalkTally {
-    /// Returns the number of updates per second for each memory.
     #[must_use]
     pub fn rates_hz(&self, frame_hz: f64) -> Vec<f64> {
         self.memories.iter().map(|memory| memory.updates as f64 * frame_hz / self.frames as f64).collect()
@@ -73,7 +71,7 @@ impl WalkTally {
         for (memory, tally) in self.memories.iter_mut().enumerate() {
             tally.missed += u64::from(outcome.missed[memory]);
             let Some(content) = &simulation.shown()[memory] else { continue };
-            // Contents and age of what the memory shows.
+            // Count the contents of the memory and the age of its eye position.
             let segments = content.segments.len() as u64;
             tally.segment_frames += segments;
             tally.age_m += content.eye.distance(outcome.eye);
@@ -113,7 +111,6 @@ pub fn walk(
     Ok(walked(world, settings, frames, eye)?.1)
 }
 
-/// Walks through a world, and returns the final state of the simulation together with the counters.
 pub(crate) fn walked<'a>(
     world: &'a World,
     settings: &WalkSettings,

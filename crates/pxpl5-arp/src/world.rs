@@ -13,13 +13,12 @@ use std::ops::Range;
 pub struct Segment {
     /// Index of the object from which the segment was cut.
     pub object: usize,
-    /// Cell that contains the segment.
     pub cell: Cell,
     /// Triangles as indices into [`World::vertices`].
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// An object of the scene.
+/// A part of the world that keeps its name when it is cut into segments.
 #[derive(Clone, Debug)]
 pub struct Object {
     pub name: String,
@@ -42,9 +41,7 @@ pub enum Tint {
     /// The shaded colours of the scene.
     #[default]
     Shaded,
-    /// One colour per object.
     Objects,
-    /// One colour per cell.
     Cells,
 }
 
@@ -57,13 +54,11 @@ pub struct World {
     pub colours: Vec<u32>,
     /// All segments, in the order of objects.
     pub segments: Vec<Segment>,
-    /// The objects of the scene.
     pub objects: Vec<Object>,
     /// Vertices that several segments of an object share.
     pub shared: Vec<SharedVertex>,
     /// Background colour, 0x00RRGGBB.
     pub background: u32,
-    /// Meaning of the colours of drawn triangles.
     pub tint: Tint,
 }
 
@@ -72,8 +67,8 @@ impl World {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the scene has spheres, moving objects or objects fixed to the head, or if it
-    /// cannot be cut.
+    /// Returns a [`SettingError`] if the scene has spheres, moving objects or objects fixed to the head, or if the
+    /// scene cannot be cut.
     pub fn new(scene: &Scene, side_m: f64) -> Result<Self, SettingError> {
         check_is_static(scene)?;
         let mut world = Self {
@@ -119,13 +114,13 @@ impl World {
         Ok(())
     }
 
-    /// Returns the cells that contain segments (parts of objects). A cell is repeated for each of its segments.
+    /// Returns the cells that contain segments (parts of objects). A cell is returned once for each of its segments.
     pub fn cells(&self) -> impl Iterator<Item = Cell> {
         self.segments.iter().map(|segment| segment.cell)
     }
 
-    /// Returns the triangles of some segments (parts of objects). `place` returns the position at which a vertex is
-    /// drawn.
+    /// Returns the triangles of the segments (parts of objects) with these indices. `place` returns the position at
+    /// which a vertex is drawn.
     pub fn triangles<'a>(
         &'a self,
         segments: &'a [usize],
@@ -150,8 +145,8 @@ impl World {
         }
     }
 
-    /// Returns the centre of the bounding box of some segments (parts of objects), and the distance to their farthest
-    /// vertex in metres.
+    /// Returns the centre of the bounding box of a range of segments (parts of objects), and the distance to their
+    /// farthest vertex in metres.
     #[must_use]
     pub fn bounding_sphere(&self, segments: Range<usize>) -> (DVec3, f64) {
         let corners = self.segments[segments].iter().flat_map(|segment| segment.triangles.iter().flatten());

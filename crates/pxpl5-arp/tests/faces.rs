@@ -87,7 +87,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
     #[test]
-    fn every_texel_shows_what_its_ray_meets_first(
+    fn every_texel_shows_the_first_triangle_on_its_ray(
         places in prop::collection::vec([place(6.0), place(6.0), place(6.0)], 1..6),
         colours in prop::collection::vec([0_u32..0x100_0000, 0_u32..0x100_0000, 0_u32..0x100_0000], 6),
         eye in place(3.0), guard in 0_u32..3,
@@ -119,14 +119,14 @@ proptest! {
 }
 
 #[test]
-fn corners_behind_the_eye_are_no_case_of_their_own() {
+fn corners_behind_the_eye_are_drawn_correctly() {
     let floor = triangle([[-50.0, -1.7, 60.0], [70.0, -1.7, 40.0], [0.0, -1.7, -90.0]], 0x00AB_CDEF);
     let through = triangle([[-1.0, 0.05, 0.1], [1.0, 0.05, 0.2], [0.0, -0.3, -2.0]], 0x0012_3456);
     agrees(&view(64, 1), DVec3::ZERO, &[floor, through]);
 }
 
 #[test]
-fn what_is_nearer_than_near_or_farther_than_far_is_not_there() {
+fn triangles_outside_the_near_and_far_limits_are_not_drawn() {
     let at = |z: f64| triangle([[-300.0, -300.0, z], [300.0, -300.0, z], [0.0, 600.0, z]], 1);
     let middle = TexelAddress { face: CubeFace::NegZ, column: 32, row: 32 };
     for (z, is_there) in [(-0.0999, false), (-0.1001, true), (-99.9, true), (-100.1, false)] {
@@ -136,7 +136,7 @@ fn what_is_nearer_than_near_or_farther_than_far_is_not_there() {
 }
 
 #[test]
-fn on_ties_the_first_one_stays() {
+fn at_equal_depth_the_first_triangle_stays() {
     let red = triangle([[-9.0, -9.0, -5.0], [9.0, -9.0, -5.0], [0.0, 9.0, -5.0]], 0x00FF_0000);
     let blue = red.map(|corner| Corner { colour: 0xFF, ..corner });
     let middle = TexelAddress { face: CubeFace::NegZ, column: 32, row: 32 };
@@ -146,13 +146,14 @@ fn on_ties_the_first_one_stays() {
 }
 
 #[test]
-fn guard_texels_show_what_the_neighbour_shows_in_their_direction() {
+fn a_guard_texel_shows_the_surface_of_the_neighbouring_face() {
     // Each side of the hall has one colour. The guard column to the right of NegZ shows the side of PosX.
     let wall = |x: f64, colour: u32| vec![triangle([[x, -90.0, -90.0], [x, 90.0, -90.0], [x, 0.0, 90.0]], colour)];
     let (faces, _) = drawn(&view(64, 1), DVec3::ZERO, &wall(5.0, 0x77));
     let guard = TexelAddress { face: CubeFace::NegZ, column: 63, row: 32 };
     let inner = TexelAddress { face: CubeFace::NegZ, column: 62, row: 32 };
-    // u = 63/62 meets x = 5 at z = -4.92, and u = 61/62 meets it at -5.08. Both lie on the same plane.
+    // The ray at u = 63/62 meets the plane x = 5 at z = -4.92, and the ray at u = 61/62 meets it at -5.08. Both points
+    // lie on the same plane.
     assert_eq!([guard, inner].map(|texel| faces.texel(texel).map(|texel| texel.0)), [Some(0x77); 2]);
     let distances = [guard, inner].map(|texel| faces.texel(texel).map(|texel| view(64, 1).depth.distance_m(texel.1)));
     assert!((distances[0].expect("drawn") - 5.0 * 62.0 / 63.0).abs() < 1e-4, "{distances:?}");
@@ -160,7 +161,7 @@ fn guard_texels_show_what_the_neighbour_shows_in_their_direction() {
 }
 
 #[test]
-fn coordinates_that_are_none_draw_nothing() {
+fn invalid_coordinates_draw_nothing() {
     for wrong in [f64::NAN, f64::INFINITY, 1e308] {
         let (faces, drawing) = drawn(
             &view(32, 1),
@@ -174,7 +175,7 @@ fn coordinates_that_are_none_draw_nothing() {
 }
 
 #[test]
-fn ranges_that_are_none_are_refused() {
+fn invalid_ranges_are_refused() {
     for (near, far) in [(0.0, 1.0), (-1.0, 1.0), (1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.1, f64::INFINITY)] {
         let error = DepthRange::new(near, far).expect_err("no range").to_string();
         assert!(error.contains("expected 0 < near < far"), "{error}");

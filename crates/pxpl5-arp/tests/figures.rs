@@ -21,7 +21,7 @@ fn the_side_of_a_cell_is_fitted_to_memory_1_and_the_threshold_to_the_width_of_te
 }
 
 #[test]
-fn table_1_checked_rates_fall_from_memory_to_memory_and_memory_0_is_drawn_in_every_frame() {
+fn table_1_rates_never_rise_with_the_number_of_the_memory_and_memory_0_has_60_hz() {
     let tried = FIGURES.0.interpretations.ranked.iter().flat_map(|ranked| &ranked.tried);
     let all =
         tried.map(|tried| tried.best.rates_hz.to_vec()).chain(FIGURES.0.fits.iter().map(|fit| fit.rates_hz.clone()));
@@ -38,7 +38,7 @@ fn table_1_checked_rates_fall_from_memory_to_memory_and_memory_0_is_drawn_in_eve
 /// doubling rings, and distances to the border of a block of cells, its errors were 4.7 to 6.4 % in all halls. With
 /// equal rings and such distances they were 11 to 13 %.
 #[test]
-fn rings_that_double_explain_table_1_better_than_equal_rings() {
+fn doubling_rings_explain_table_1_better_than_equal_rings() {
     let ranked = &FIGURES.0.interpretations.ranked;
     let of = |rules: Rules| ranked.iter().find(|ranked| ranked.rules == rules).expect("all are run");
     let equal = of(Rules { ring_growth: 1, ..Rules::USUAL });
@@ -58,7 +58,7 @@ fn rings_that_double_explain_table_1_better_than_equal_rings() {
 
 /// Checks that memory 1 is drawn as often as memory 0 if memory 0 holds only the user's cell.
 #[test]
-fn table_1_without_inner_rings_is_out_by_a_quarter_at_least() {
+fn table_1_without_inner_rings_has_an_error_above_25_percent() {
     let ranked = &FIGURES.0.interpretations.ranked;
     let outside = ranked.iter().filter(|ranked| ranked.rules.inner_rings == 0);
     assert!(outside.clone().count() == 4 && outside.clone().all(|ranked| ranked.mean_error_percent > 25.0));
@@ -67,7 +67,7 @@ fn table_1_without_inner_rings_is_out_by_a_quarter_at_least() {
 /// Checks predictions of three update rates. Each rate is left out once, and the rules are then chosen by the other two
 /// rates.
 #[test]
-fn rates_that_are_left_out_are_predicted_by_the_others() {
+fn each_omitted_rate_is_predicted_by_the_rules_that_fit_the_other_two_rates_best() {
     let left_out = &FIGURES.0.interpretations.left_out;
     assert_eq!(left_out.iter().map(|one| one.memory).collect::<Vec<_>>(), [1, 2, 3]);
     for one in left_out {
@@ -83,7 +83,7 @@ fn rates_that_are_left_out_are_predicted_by_the_others() {
 /// The nearest border is one cell side away. If the update of a memory is late by a frame of 16.7 mm, its tears grow by
 /// the angle of this distance.
 #[test]
-fn a_threshold_in_pixels_tells_the_side_of_a_cell() {
+fn a_threshold_in_pixels_gives_the_side_of_a_cell() {
     let rows = &FIGURES.0.thresholds;
     let row = |name: &str| rows.iter().find(|row| row.threshold == name).expect("listed");
     assert!((row("2 texels").at_once_px - 3.75).abs() < 1e-9 && (row("1 texel").at_once_px - 1.875).abs() < 1e-9);
@@ -100,7 +100,7 @@ fn a_threshold_in_pixels_tells_the_side_of_a_cell() {
 /// The default rule measures the eye's movement by its chord. This rule makes the diameters smaller by a fraction of
 /// theta.
 #[test]
-fn a8_lies_between_limits_that_depend_on_what_is_measured() {
+fn a8_the_published_limit_lies_between_the_limits_of_two_definitions() {
     let expected = [0.5_f64, 1.0, 2.0].map(|tangent| {
         let sine = tangent.atan().sin();
         [2.0 * sine, 2.0 * sine / (1.0 - sine)]
@@ -114,16 +114,16 @@ fn a8_lies_between_limits_that_depend_on_what_is_measured() {
 }
 
 #[test]
-fn table_2_cutting_moves_segments_outwards_and_saves() {
+fn table_2_cutting_moves_segments_outwards_and_saves_draws() {
     let [cut, uncut] =
         [rows("A13"), rows("A14")].map(|rows| rows.iter().map(|row| row.simulated).collect::<Vec<f64>>());
     assert!(cut[0] < uncut[0] && cut[3] > uncut[3], "{cut:?} {uncut:?}");
     assert!((cut.iter().sum::<f64>() - uncut.iter().sum::<f64>()).abs() < 1e-6, "nothing is lost");
 }
 
-/// Checks that the definitions D1 to D5 equal the values that the specification computed by hand.
+/// Checks that the definitions D1 to D5 equal the values that were computed by hand.
 #[test]
-fn definitions_are_the_derived_numbers_and_no_rows() {
+fn definitions_are_derived_numbers_and_not_rows_of_results() {
     let all = definitions();
     let values = |id: &str| all.iter().filter(|one| one.id == id).map(|one| one.value).collect::<Vec<f64>>();
     let near = |id: &str, expected: &[f64]| {
@@ -141,7 +141,7 @@ fn definitions_are_the_derived_numbers_and_no_rows() {
 }
 
 #[test]
-fn point_objects_are_drawn_6_and_13_times_less_often_as_computed_by_hand() {
+fn point_objects_are_drawn_6_and_13_times_less_often() {
     // The factor is 1 / (p0 + p1 / 2 + p2 / 4 + p3 / 8). p follows from the squares of 10.8650, 21.7300 and 43.4599 m
     // over 100 m.
     let borders = [10.8650_f64, 21.7300, 43.4599].map(|metres| (metres / 100.0).powi(2));
@@ -152,7 +152,7 @@ fn point_objects_are_drawn_6_and_13_times_less_often_as_computed_by_hand() {
 }
 
 #[test]
-fn size_decides_with_the_sphere_from_1_41_on_and_never_with_the_disc() {
+fn the_size_of_a_sphere_limits_the_period_beyond_1_41_distances_and_the_size_of_a_disc_never_does() {
     for row in &FIGURES.0.sizes {
         assert!(row.size_s[0] > row.translation_s, "{row:?}");
         assert_eq!(row.size_s[1] < row.translation_s, row.size_over_distance > 1.411, "{row:?}");
@@ -166,14 +166,14 @@ fn a_straight_edge_bends_on_the_screen_and_is_straight_through_the_lens() {
 }
 
 #[test]
-fn slow_memories_miss_first() {
+fn slower_memories_miss_at_least_as_many_retraces_as_faster_memories() {
     for slowed in &FIGURES.0.slowed {
         assert!(slowed.missed.windows(2).all(|pair| pair[0] <= pair[1]), "{slowed:?}");
     }
 }
 
 #[test]
-fn there_is_a_row_of_every_experiment_and_every_picture_of_the_papers_figures() {
+fn every_experiment_has_a_row_and_every_listed_picture_is_drawn() {
     let experiments: BTreeSet<&str> = FIGURES.1.iter().map(|row| row.experiment).collect();
     assert_eq!(experiments.into_iter().collect::<Vec<_>>(), ["E1", "E2", "E3", "E4", "E5", "E6", "E7", "E8", "E9"]);
     let pictures = all_pictures(&FIGURES.0).expect("drawn");
@@ -189,7 +189,7 @@ fn there_is_a_row_of_every_experiment_and_every_picture_of_the_papers_figures() 
 }
 
 #[test]
-fn pictures_that_must_be_the_same_are_the_same_in_every_bit() {
+fn pictures_of_equal_content_are_equal_bit_for_bit() {
     assert_eq!((FIGURES.0.composite_differs, FIGURES.0.turned_differ), (0, 0));
 }
 

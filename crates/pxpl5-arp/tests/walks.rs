@@ -55,7 +55,7 @@ fn the_gallery_has_150_to_250_segments_with_cells_of_5_m() {
 }
 
 #[test]
-fn memories_drawn_from_one_place_are_the_drawing_of_one_memory_bit_for_bit() {
+fn memories_drawn_from_one_position_equal_one_memory_bit_for_bit() {
     let eye = PATH.place(12.3);
     let mut cells = simulated(&small(CELLS));
     cells.frame(eye).expect("drawn");
@@ -81,7 +81,7 @@ fn memories_drawn_from_one_place_are_the_drawing_of_one_memory_bit_for_bit() {
 }
 
 #[test]
-fn with_the_eye_still_nothing_is_due_whatever_the_head_does() {
+fn no_memory_is_due_while_the_eye_stays_in_place_and_the_head_turns() {
     for settings in [CELLS, WARPED] {
         let mut simulation = simulated(&settings);
         let eye = PATH.place(3.0);
@@ -93,8 +93,8 @@ fn with_the_eye_still_nothing_is_due_whatever_the_head_does() {
 }
 
 #[test]
-fn with_the_eye_still_objects_around_it_alone_are_due() {
-    // From inside a bounding sphere an image is wrong immediately (3.6), even if nothing moves. Floor, ceiling and
+fn with_a_still_eye_only_memory_0_is_due() {
+    // If the eye is inside a bounding sphere, an image is wrong immediately, even if nothing moves. Floor, ceiling and
     // walls of the gallery are such objects.
     let mut simulation = simulated(&OBJECTS);
     let eye = PATH.place(3.0);
@@ -105,7 +105,7 @@ fn with_the_eye_still_objects_around_it_alone_are_due() {
 }
 
 #[test]
-fn the_picture_after_a_turn_is_a_redraw_for_that_orientation_whatever_the_renderer() {
+fn the_picture_after_a_rotation_equals_a_redraw_with_any_renderer() {
     // After a much too slow renderer has drawn all memories once, the eye stays in place and the head rotates.
     let eye = PATH.place(30.0);
     let ideal = small(CELLS);
@@ -125,7 +125,7 @@ fn the_picture_after_a_turn_is_a_redraw_for_that_orientation_whatever_the_render
 }
 
 #[test]
-fn no_vertex_of_any_memory_is_ever_off_by_more_than_theta() {
+fn no_vertex_ever_has_an_angular_error_above_theta() {
     // With the chord rule, a point at distance d is off by at most asin(2 sin(theta / 2)). This exceeds theta by a
     // factor of 1 + 1.2e-6.
     let theta = CELLS.numbers.theta_deg.to_radians();
@@ -148,7 +148,7 @@ fn no_vertex_of_any_memory_is_ever_off_by_more_than_theta() {
 }
 
 #[test]
-fn each_segment_is_in_one_memory_in_every_frame_also_when_cells_are_dealt_anew() {
+fn each_segment_is_in_exactly_one_memory_even_when_cells_are_reassigned() {
     for settings in [CELLS, WARPED, WalkSettings { is_segmented: false, ..CELLS }, OBJECTS] {
         let mut simulation = simulated(&settings);
         let eye = at_frames(&PATH, 3.0, 60.0);
@@ -163,7 +163,7 @@ fn each_segment_is_in_one_memory_in_every_frame_also_when_cells_are_dealt_anew()
 }
 
 #[test]
-fn warped_with_cascade_no_cut_gapes_and_without_it_some_do() {
+fn warping_with_a_cascade_closes_all_cuts_and_without_it_some_stay_open() {
     let eye = at_frames(&PATH, 1.0, 60.0);
     for falloff in [Falloff::Linear, Falloff::Smoothstep, Falloff::Step] {
         let warped = WalkSettings { falloff, ..WARPED };
@@ -183,7 +183,7 @@ fn warped_with_cascade_no_cut_gapes_and_without_it_some_do() {
 }
 
 #[test]
-fn uncut_nothing_tears_and_the_fastest_memory_draws_more() {
+fn without_cutting_there_is_no_tear_and_the_fastest_memory_draws_more() {
     let eye = at_frames(&PATH, 1.0, 60.0);
     let uncut = walk(&WORLD, &WalkSettings { is_segmented: false, ..CELLS }, 600, &eye).expect("walked");
     let cut = walk(&WORLD, &CELLS, 600, &eye).expect("walked");
@@ -193,7 +193,7 @@ fn uncut_nothing_tears_and_the_fastest_memory_draws_more() {
 }
 
 #[test]
-fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
+fn a_jump_of_a_kilometre_assigns_objects_once_and_leaves_no_tear() {
     let mut simulation = simulated(&WARPED);
     simulation.frame(PATH.place(0.0)).expect("drawn");
     let far = DVec3::new(1_000.0, 1.7, 0.0);
@@ -203,14 +203,14 @@ fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
 }
 
 #[test]
-fn forty_millimetres_to_and_fro_across_a_border_deal_at_most_once() {
+fn moving_40_mm_to_and_fro_across_a_border_assigns_objects_at_most_once() {
     let eye = |frame: u64| DVec3::new(5.0 + if frame.is_multiple_of(2) { -0.02 } else { 0.02 }, 1.7, 2.0);
     let tally = walk(&WORLD, &CELLS, 600, eye).expect("walked");
     assert!(tally.redeals <= 1, "{}", tally.redeals);
 }
 
 #[test]
-fn odd_places_of_the_eye_are_places_like_others() {
+fn unusual_eye_positions_are_handled() {
     let mut simulation = simulated(&small(WARPED));
     let places = [
         DVec3::new(5.0, 1.7, 5.0),      // a corner of cells
@@ -228,7 +228,7 @@ fn odd_places_of_the_eye_are_places_like_others() {
 }
 
 #[test]
-fn a_tiny_threshold_draws_everything_always_and_a_huge_one_nothing_again() {
+fn a_tiny_threshold_always_draws_everything_and_a_huge_one_draws_only_once() {
     let rates = |theta_deg: f64| {
         let mut settings = CELLS;
         settings.numbers.theta_deg = theta_deg;
@@ -246,7 +246,7 @@ fn a_tiny_threshold_draws_everything_always_and_a_huge_one_nothing_again() {
 }
 
 #[test]
-fn one_memory_draws_all_and_eight_draw_less_than_four() {
+fn one_memory_draws_all_segments_and_more_memories_need_fewer_draws() {
     let draws = |memories: u64| {
         // With doubling rings, the gallery is too small for eight memories.
         let mut settings = CELLS.with_memories(memories);
@@ -258,7 +258,7 @@ fn one_memory_draws_all_and_eight_draw_less_than_four() {
 }
 
 #[test]
-fn a_renderer_that_is_slowed_down_misses_slow_memories_first_and_shows_nothing_half_drawn() {
+fn with_a_slow_renderer_slow_memories_miss_retraces_first_and_incomplete_memories_stay_hidden() {
     let missed = |triangles_per_s: f64| {
         let settings = WalkSettings { source: SourceKind::Timed { triangles_per_s }, ..CELLS };
         let tally = walk(&WORLD, &settings, 900, at_frames(&PATH, 1.0, 60.0)).expect("walked");
@@ -276,7 +276,7 @@ fn a_renderer_that_is_slowed_down_misses_slow_memories_first_and_shows_nothing_h
 }
 
 #[test]
-fn what_faces_cannot_show_is_refused_by_name() {
+fn scenes_and_settings_that_cube_faces_cannot_show_are_refused_by_name() {
     let refused = |name: &str| World::new(&builtin(name).expect("built in"), 5.0).expect_err("refused").to_string();
     assert!(refused("molecules").contains("triangles alone"));
     assert!(refused("mig").contains("structures that do not move"));
@@ -330,7 +330,7 @@ fn the_report_has_every_key_of_the_schema_and_null_for_missing_results() {
     ] {
         assert!(report["priority"].get(key).is_some(), "{key}");
     }
-    // 26 stages of 25 ns; both buffers of 6 x 512 x 512 texels of 6 bytes.
+    // The display has 26 stages of 25 ns, and both buffers have 6 x 512 x 512 texels of 6 bytes.
     assert_eq!(
         (report["pipeline_ns"].as_f64(), report["memories"][0]["bytes"].as_u64()),
         (Some(650.0), Some(18_874_368))
@@ -366,7 +366,7 @@ fn a_walk_has_the_latencies_of_its_display() {
 /// Checks that a memory drawn every n frames is on average (n - 1) / 2 frames old. A renderer of limited speed adds one
 /// frame.
 #[test]
-fn the_age_of_what_is_shown_is_a_part_of_the_latency_of_a_step() {
+fn the_age_of_the_displayed_memory_is_part_of_the_latency_of_a_step() {
     let eye = at_frames(&PATH, 1.0, 60.0);
     let fast = WalkSettings { source: SourceKind::Timed { triangles_per_s: 1e9 }, ..CELLS };
     let reports = [CELLS, fast].map(|settings| {
@@ -386,7 +386,7 @@ fn the_age_of_what_is_shown_is_a_part_of_the_latency_of_a_step() {
 
 /// Checks that the faces do not depend on the lens, and that views wider than 170 degrees have no flat picture.
 #[test]
-fn pictures_are_seen_through_the_lens_that_was_chosen() {
+fn pictures_are_drawn_through_the_chosen_lens() {
     let names_of = |display: &dyn Fn(&mut WalkSettings)| {
         let mut settings = small(CELLS);
         settings.display.scan.visible_pixels = 64;

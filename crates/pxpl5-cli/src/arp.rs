@@ -1,4 +1,4 @@
-//! The command `pxpl5 arp`: experiments on address recalculation, with a walk through a scene.
+//! The command `pxpl5 arp`, with experiments on address recalculation in which a viewer walks through a scene.
 
 mod compare;
 mod figures;

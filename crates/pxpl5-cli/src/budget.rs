@@ -19,53 +19,47 @@ pub(crate) struct BudgetArgs {
     max_seconds: u64,
 }
 
-/// The default limits, also used by commands without options for memory and time.
+/// The limits of commands without options for memory and time.
 impl Default for BudgetArgs {
     fn default() -> Self {
         Self { max_memory: MOST_MEGABYTES, max_seconds: MOST_SECONDS }
     }
 }
 
-/// Default memory limit in MB. Assumed: the memory of a workstation.
+/// Limit in MB. Assumed: the memory of a workstation.
 const MOST_MEGABYTES: u64 = 16_000;
-/// Default time limit in seconds. Assumed: one day.
+/// Limit in seconds. Assumed: one day.
 const MOST_SECONDS: u64 = 86_400;
 
-/// Numbers of simulated fields after which the cost of a run is compared with its limits. After the last of these
-/// fields, the cost is compared at each report of progress.
+/// Numbers of simulated fields after which the cost of a run is compared with the limits. After 32 fields, each report
+/// of progress compares the cost.
 pub(crate) const EARLY_CHECK_FIELDS: [u64; 6] = [1, 2, 4, 8, 16, 32];
 
 /// Seconds that a run must have taken before its total time is extrapolated. The first seconds are not typical, because
 /// pipelines fill and caches are cold.
 const MIN_EXTRAPOLATED_SECONDS: f64 = 0.5;
 
-/// Bytes that a run must have allocated before its total memory is extrapolated.
 const MIN_EXTRAPOLATED_BYTES: f64 = 50e6;
 
-/// A monitor of the time and memory that one run uses.
 #[derive(Clone, Debug)]
 pub(crate) struct Watch {
     budget: BudgetArgs,
     fields: u64,
     begun: Instant,
     bytes_before: Option<f64>,
-    /// State at the first check: number of fields simulated, and the time and memory used. Work before a run, such as a
-    /// dry run or the tuning of a predictor, occurs once and must not be extrapolated per field.
+    /// Number of fields, time and memory at the first check. A dry run or the tuning of a predictor happens once before
+    /// the run. This work must not be extrapolated per field.
     first: OnceCell<(u64, Taken)>,
 }
 
 impl BudgetArgs {
-    /// Returns a budget with the limits `max_memory` (MB) and `max_seconds`. `None` means no limit.
+    /// Returns a budget with a limit on the memory in MB and on the time in seconds. `None` means no limit.
     pub(crate) fn of(max_memory: Option<u64>, max_seconds: Option<u64>) -> Self {
         Self { max_memory: max_memory.unwrap_or(u64::MAX), max_seconds: max_seconds.unwrap_or(u64::MAX) }
     }
 
-    /// Returns an error if the estimated memory or time of a run exceeds the budget. The check takes place before the
-    /// run starts.
-    ///
-    /// # Errors
-    ///
-    /// Returns the estimate and advice on how to reduce the work.
+    /// Returns an error if the estimated memory or time of a run exceeds the budget. The error contains the estimate
+    /// and advice to reduce the work.
     pub(crate) fn admit(&self, work: &RunWork) -> Result<(), CliError> {
         self.admit_estimate(work.estimate(), "simulate fewer fields")
     }
@@ -73,32 +67,18 @@ impl BudgetArgs {
     /// Returns an error if the estimate of a set of runs exceeds the budget, before the first run starts. The estimated
     /// time is the sum of the times of all runs divided by `threads`. The estimated memory is the memory of the largest
     /// run times `threads`.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`BudgetArgs::admit`].
     pub(crate) fn admit_all(&self, runs: impl IntoIterator<Item = RunWork>, threads: usize) -> Result<(), CliError> {
         let whole = Estimate::of_all(runs.into_iter().map(|work| work.estimate()), threads);
         self.admit_estimate(whole, "simulate fewer fields")
     }
 
-    /// Returns an error if a fixed set of experiments would exceed the budget. The check takes place before the first
-    /// experiment. `advice` is a text for the user: how to reduce the work.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`BudgetArgs::admit`].
+    /// Returns an error if a fixed set of experiments would exceed the budget. `advice` is a text about ways to reduce
+    /// the work.
     pub(crate) fn admit_study(&self, study: Study, advice: &str) -> Result<(), CliError> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         self.admit_estimate(study.estimate(threads), advice)
     }
 
-    /// Returns an error if the estimate of a command exceeds the budget. `advice` is a text for the user: how to reduce
-    /// the work.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`BudgetArgs::admit`].
     pub(crate) fn admit_estimate(&self, estimate: Estimate, advice: &str) -> Result<(), CliError> {
         let Estimate { bytes, seconds } = estimate;
         match self.excess(bytes / 1e6, seconds, advice) {
@@ -109,18 +89,14 @@ impl BudgetArgs {
         }
     }
 
-    /// Starts to monitor the time and memory of a run of `fields` display fields.
     pub(crate) fn watch(self, fields: u64) -> Watch {
         Watch { budget: self, fields, begun: Instant::now(), bytes_before: resident_bytes(), first: OnceCell::new() }
     }
 }
 
 impl Watch {
-    /// Extrapolates the cost of the whole run from the first `done` fields.
-    ///
-    /// # Errors
-    ///
-    /// Returns the estimate and advice on how to reduce the work if the run would exceed the budget.
+    /// Returns an error if the whole run would exceed the budget. The cost of the run is extrapolated from the first
+    /// `done` fields.
     pub(crate) fn check(&self, done: u64) -> Result<(), String> {
         // The cost until the first check is a constant; the cost since then is extrapolated over the rest of the
         // fields.
@@ -141,7 +117,6 @@ impl Watch {
     }
 }
 
-/// Seconds and bytes of memory that a run has used so far.
 #[derive(Clone, Copy, Debug, Default)]
 struct Taken {
     seconds: f64,
@@ -155,9 +130,9 @@ impl Taken {
 }
 
 impl BudgetArgs {
-    /// Returns the reason to stop a run, if any. `before` is the cost before the extrapolated part of the run. `taken`
-    /// is the cost of the finished fraction of this part, and `part` is this fraction (0 to 1). Each remaining field is
-    /// assumed to cost as much as a finished field.
+    /// Returns the reason to stop a run, if any. `before` is the cost up to the first check of the budget. This cost is
+    /// not extrapolated. `taken` is the cost since this check. In this time, the fraction `part` (0 to 1) of all fields
+    /// was simulated.
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
         // The costs of short and small runs are too inaccurate to extrapolate.
         let megabytes = if taken.bytes > MIN_EXTRAPOLATED_BYTES { taken.bytes / part / 1e6 } else { 0.0 };
@@ -165,8 +140,6 @@ impl BudgetArgs {
         self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds, "simulate fewer fields")
     }
 
-    /// Returns an error message if `megabytes` of memory or `seconds` exceed their limits. The message contains
-    /// `advice`.
     fn excess(&self, megabytes: f64, seconds: f64, advice: &str) -> Option<String> {
         let most = self.max_memory;
         if megabytes > most as f64 {
@@ -198,7 +171,7 @@ mod tests {
     const BUDGET: BudgetArgs = BudgetArgs { max_memory: 1_000, max_seconds: 100 };
 
     #[test]
-    fn a_run_goes_on_as_it_began_and_is_refused_with_what_it_would_take() {
+    fn a_run_that_would_take_too_long_is_refused_with_its_estimate() {
         let refusal = |seconds: f64, bytes: f64| BUDGET.refusal(Taken::default(), Taken { seconds, bytes }, 0.1);
         assert_eq!((refusal(10.0, 100e6), refusal(0.4, 49e6)), (None, None));
         assert!(refusal(10.1, 0.0).is_some_and(|reason| reason.contains("take 101 s, more than 100")));
@@ -206,14 +179,14 @@ mod tests {
     }
 
     #[test]
-    fn what_was_too_short_to_tell_is_no_reason() {
+    fn a_run_is_not_refused_because_of_a_measurement_that_is_too_short() {
         let refusal = |seconds: f64, bytes: f64| BUDGET.refusal(Taken::default(), Taken { seconds, bytes }, 1e-6);
         assert_eq!(refusal(0.4, 49e6), None);
         assert!(refusal(0.6, 0.0).is_some());
     }
 
     #[test]
-    fn what_comes_before_a_run_counts_once_and_not_for_each_field() {
+    fn the_time_before_a_run_counts_once_and_not_for_each_field() {
         let refusal = |before: f64, seconds: f64| {
             BUDGET.refusal(Taken { seconds: before, bytes: 0.0 }, Taken { seconds, bytes: 0.0 }, 0.1)
         };
@@ -227,7 +200,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn memory_of_this_process_is_known() {
+    fn the_memory_of_this_process_can_be_measured() {
         let before = resident_bytes().expect("Linux tells");
         // `black_box` keeps the optimizer from removing the allocation, which no code reads.
         let held = std::hint::black_box(vec![1u8; 64 << 20]);

@@ -40,12 +40,11 @@ pub(crate) fn run(args: CheckArgs) -> Result<(), CliError> {
     ))
 }
 
-/// Maximum number of points of a sweep that are checked. Assumed, because checking this number of points takes some
-/// seconds.
+/// Maximum number of points of a sweep that are checked. Assumed: checking so many points takes some seconds.
 const MOST_CHECKED: u64 = 1_000;
 
-/// Returns the first valid point of a sweep, and comment lines about the sweep. Returns an error for every sweep that
-/// `pxpl5 sweep` refuses.
+/// Returns the plan of the first valid point of a sweep, and comment lines about the sweep. Returns an error for each
+/// sweep that `pxpl5 sweep` refuses.
 fn of_sweep(file: ExperimentFile) -> Result<(Plan, String), CliError> {
     let sweep = Sweep::new(file)?;
     sweep.header()?;
@@ -63,7 +62,7 @@ fn of_sweep(file: ExperimentFile) -> Result<(Plan, String), CliError> {
             }
         }
     }
-    // `Sweep::header` found a valid point, which may lie behind the points checked here.
+    // `Sweep::header` found a valid point, which may come after the points checked here.
     let (point, plan) = match first {
         Some(first) => first,
         None => (0, sweep.plan(0)?),

@@ -60,7 +60,6 @@ fn text() -> String {
     text
 }
 
-/// Returns the citation of a work on one line.
 fn citation(work: &Work) -> String {
     let number = work.number.map(|number| format!(", {number}")).unwrap_or_default();
     let pages = work.pages.map(|[first, last]| format!(", pages {first} to {last}")).unwrap_or_default();
@@ -82,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_joined_by_commas_and_a_last_and() {
+    fn names_are_joined_by_commas_and_a_final_and() {
         assert_eq!(names(&[("A.", "B")]), "A. B");
         assert_eq!(names(&[("A.", "B"), ("C.", "D")]), "A. B and C. D");
         assert_eq!(names(&[("A.", "B"), ("C.", "D"), ("E.", "F")]), "A. B, C. D and E. F");
@@ -100,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn the_text_names_each_paper_and_its_systems() {
+    fn the_text_of_citations_names_the_systems_and_the_doi_of_a_paper() {
         let text = text();
         assert!(text.contains("Version 0.1.0") && text.contains("https://github.com/pxpl5/pxpl5"), "{text}");
         for system in ["Rendering Control", "Slats", "Just-in-time pixels", "Priority rendering", "SpatialGL"] {

@@ -100,11 +100,10 @@ pub(crate) struct CompareArgs {
     quiet: bool,
 }
 
-/// Default settings of a comparison, as keys and values of an experiment file.
 const DEFAULTS: [(&str, &str); 4] =
     [("scene", "room"), ("machine.preset", "small-hmd"), ("head.motion", "synthetic"), ("head.tracker", "optical")];
 
-/// Maximum speed of the head's rotation (pan) for the pictures of a vertical edge, in degrees per second.
+/// Maximum speed in the option `--edge-pan`, in degrees per second.
 const FASTEST: f64 = 10_000.0;
 
 fn pan(text: &str) -> Result<f64, String> {
@@ -112,11 +111,6 @@ fn pan(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|rate: &f64| rate.abs() <= FASTEST).ok_or(expected)
 }
 
-/// Runs the command `pxpl5 compare`.
-///
-/// # Errors
-///
-/// Fails when an option is invalid or a file cannot be written.
 pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     // Create the folder and resolve every setting first, so that mistakes are reported before hours of runs.
     let mut folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "compare")).transpose()?;
@@ -169,7 +163,6 @@ fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), Cl
     budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-/// Returns the settings that all rows of the comparison share. Keys that are not set get the defaults of a comparison.
 fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {
     if let Some(place) = file.place_of("pipeline") {
         return Err(CliError::usage(format!(
@@ -184,8 +177,8 @@ fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {
     Ok(file)
 }
 
-/// Sets the length of the runs. Prints a warning if a recording of the head's motion is shorter than the settings
-/// require.
+/// Sets the length of the runs. Prints a warning if a recording of the head's motion is shorter than the required
+/// length.
 fn set_length(query: &mut CompareQuery, quiet: bool) -> Result<(), CliError> {
     if let Some(RecordedLength { fields, asked: Some(asked) }) = query.set_length()? {
         let [asked, fields] = [asked, fields].map(|fields| count_of(fields, "field"));
@@ -208,8 +201,8 @@ fn edges(query: &CompareQuery, deg_per_s: f64, folder: &mut OutputFolder) -> Res
     Ok(())
 }
 
-/// Returns the machine for the pictures of a vertical edge: the machine of the comparison, configured for the pipeline
-/// `jitp-field`.
+/// Returns the machine of the comparison, configured for the pipeline `jitp-field`. This machine draws the pictures of
+/// a vertical edge.
 fn machine(query: &CompareQuery) -> Result<MachineConfig, CliError> {
     let mut file = query.shared.clone();
     file.set("pipeline", "jitp-field", "compare")?;

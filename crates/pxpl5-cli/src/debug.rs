@@ -63,7 +63,7 @@ pub(crate) fn run(args: DebugArgs) -> Result<(), CliError> {
     }
 }
 
-/// Returns the debugger commands of `--do` or `--do-file`. Returns `None` for an interactive session.
+/// Returns the debugger commands in `--do` or `--do-file`, or `None` for an interactive session.
 fn script(commands: Option<String>, file: Option<PathBuf>) -> Result<Option<Vec<String>>, CliError> {
     let text = match file {
         None => commands,
@@ -76,7 +76,7 @@ fn script(commands: Option<String>, file: Option<PathBuf>) -> Result<Option<Vec<
     Ok(text.map(|text| split(&text)))
 }
 
-/// Executes debugger commands in order, and stops at the first error.
+/// Executes debugger commands in order. Stops at the first error.
 fn scripted(mut session: Session, commands: &[String]) -> Result<(), CliError> {
     for command in commands {
         print(&format!("> {command}\n"))?;

@@ -38,8 +38,8 @@ impl Default for DemoArgs {
     }
 }
 
-/// Experiments of the demo: three published measurements that take little time to simulate, with the settings of
-/// experiments/figure-*.toml. TR94's trivial scene comes last, because its pictures show only a rectangle.
+/// Three published measurements that take little time to simulate, with the settings of experiments/figure-*.toml.
+/// TR94's trivial scene comes last, because its pictures show only a rectangle.
 const EXPERIMENTS: [(&str, &str); 3] = [
     (
         "rendering-control-mig",

@@ -9,7 +9,6 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Name of the report in a folder of `pxpl5 run --out`.
 const REPORT_FILE: &str = "report.json";
 
 /// Compare two results: settings, numbers and pictures.
@@ -37,7 +36,6 @@ pub(crate) struct DiffArgs {
 #[derive(Debug)]
 struct PictureDifference {
     name: String,
-    /// Width and height in pixels of the first and the second picture.
     sizes: [[u32; 2]; 2],
     /// Number of pixels that differ. `None` if the pictures have different sizes.
     differing: Option<u64>,
@@ -45,11 +43,6 @@ struct PictureDifference {
     largest: Option<u8>,
 }
 
-/// Runs the command `pxpl5 diff`.
-///
-/// # Errors
-///
-/// Fails when a result cannot be read.
 pub(crate) fn run(args: DiffArgs) -> Result<(), CliError> {
     let mut found = diff(&report(&args.a)?, &report(&args.b)?);
     found.results.retain(|changed| changed.percent().is_none_or(|percent| percent.abs() >= args.least));
@@ -64,8 +57,7 @@ pub(crate) fn run(args: DiffArgs) -> Result<(), CliError> {
     print(&text(&found, &pictures))
 }
 
-/// Reads the report of a result. A result is either a report file, or a folder whose manifest (list of files) contains
-/// the report.
+/// Reads the report of a result, which is a report file or a folder of `pxpl5 run --out`.
 fn report(path: &Path) -> Result<Value, CliError> {
     let file = if path.is_dir() { path.join(REPORT_FILE) } else { path.to_owned() };
     let name = file.display();
@@ -87,8 +79,8 @@ fn report(path: &Path) -> Result<Value, CliError> {
     }
 }
 
-/// Compares the pictures of two folders. The manifest (list of files) of each folder contains the names of its
-/// pictures. A result that is a single file has no pictures.
+/// Compares the pictures of two folders. The manifest (list of files) of each folder names the pictures. A result that
+/// is a single file has no pictures.
 fn pictures(a: &Path, b: &Path) -> Result<Vec<PictureDifference>, CliError> {
     if !(a.is_dir() && b.is_dir()) {
         return Ok(Vec::new());
@@ -169,7 +161,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_number_is_told_with_its_change_and_a_missing_one_as_a_dash() {
+    fn a_difference_shows_the_relative_change_and_a_dash_for_a_missing_number() {
         let changed =
             Changed { key: "latency_ms.mean".to_owned(), a: Some(Value::from(20.0)), b: Some(Value::from(25.0)) };
         assert!(line(&changed).ends_with("20.0000          25.0000  +25.0 %\n"), "{}", line(&changed));

@@ -8,11 +8,10 @@ const USAGE: u8 = 2;
 /// Exit code of a valid command that could not finish its work.
 const FAILURE: u8 = 1;
 
-/// Exit code when another process is writing into the folder. The same command may succeed later (`EX_TEMPFAIL` of
-/// sysexits.h).
+/// Exit code if another process is writing into the folder (`EX_TEMPFAIL` of sysexits.h). The same command may succeed
+/// later.
 pub(crate) const BUSY: u8 = 75;
 
-/// An error message for the user, with the exit code of the command.
 #[derive(Debug)]
 pub(crate) struct CliError {
     code: u8,
@@ -37,7 +36,6 @@ impl CliError {
     }
 }
 
-/// An error of a command, with the message that the command prints.
 #[derive(Debug)]
 pub struct CommandError(CliError);
 
@@ -84,16 +82,15 @@ impl From<FileError> for CliError {
     }
 }
 
-/// Returns the message of an error that a resume avoids, with the option of the command.
+/// Returns the message of an error, with the option that resumes the work.
 fn with_resume(error: &impl Display) -> String {
     format!("{error} (--resume)")
 }
 
-/// Returns the exit code for a file that cannot be used.
 const fn code_of(kind: FileErrorKind) -> u8 {
     match kind {
         FileErrorKind::Locked => BUSY,
-        // The user can choose another folder.
+        // These errors count as wrong usage, because the user can choose another folder.
         FileErrorKind::Occupied | FileErrorKind::Unfinished => USAGE,
         _ => FAILURE,
     }
@@ -120,7 +117,6 @@ impl From<ExperimentError> for CliError {
     }
 }
 
-/// Returns advice to the user about a run that ended with an error.
 fn advice(error: &ExperimentError) -> &'static str {
     let text = error.to_string();
     if text.contains("bytes") {

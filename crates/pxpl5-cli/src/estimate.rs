@@ -2,20 +2,26 @@
 //! estimate volumes and walks. A volume is a scene drawn as slices for the spinning volumetric display. A walk is a
 //! sequence of frames along a path of the viewer.
 //!
-//! A volume needs `BASE + slices width height / 2 + SAMPLE drawn + targets width height TARGET samples + PRIMITIVE
-//! primitives` bytes:
+//! The formulas use these quantities. Each constant in capital letters is defined and explained below.
 //!
-//! - `drawn = ROWS slices width + AREAS width height` is the number of pixels that triangles and spheres touch.
+//! - `area = width * height` is the number of pixels of a slice.
+//! - `drawn = ROWS * slices * width + AREAS * area` is the number of pixels that triangles and spheres touch.
 //! - `targets` is the number of slices that all threads together draw at a time.
-//! - The bits of all slices count in full, although the operating system may allocate only pages that are written.
+//! - `samples` is the number of samples for each pixel, as set by the user.
+//! - `texels = 6 * face_texels * face_texels` is the number of texels of six cube faces.
 //!
-//! A volume needs `samples (SLICE_S slices primitives + DRAWN_S drawn) + WORD_S slices width height / 8` seconds.
+//! | estimate | formula |
+//! |---|---|
+//! | bytes of a volume, part 1 | `BASE + slices * area / 2 + SAMPLE * drawn` |
+//! | bytes of a volume, part 2 | `targets * area * TARGET * samples + PRIMITIVE * primitives` |
+//! | seconds to draw a volume | `samples * (SLICE_S * slices * primitives + DRAWN_S * drawn)` |
+//! | seconds to pack a volume | `WORD_S * slices * area / 8` |
+//! | bytes of a walk | `BASE + TEXEL * texels + FRAME * frames + WALKED * primitives` |
+//! | seconds of a walk | `FACE_S * texels + FRAME_S * frames * primitives` |
 //!
-//! If simulated renderers of Pixel-Planes 5 draw the volume, the volume takes `PLANES` times as long and `PLANES_BYTES`
-//! more memory.
-//!
-//! A walk needs `BASE + TEXEL 6 face_texels^2 + FRAME frames + WALKED primitives` bytes and `FACE_S 6 face_texels^2 +
-//! FRAME_S frames primitives` seconds.
+//! The memory of a volume includes all bits of all slices, although the operating system may allocate only pages with
+//! data. If simulated renderers of Pixel-Planes 5 draw the volume, drawing takes `PLANES` times as long, and the memory
+//! grows by `PLANES_BYTES`. The estimate multiplies all times by `BUSY`.
 //!
 //! The constants come from measured runs, which the tests below repeat: peak memory and processor time, rounded up.
 
@@ -25,7 +31,6 @@ pub(crate) use pxpl5::lab::estimate::{Estimate, RunWork, Study};
 use pxpl5::scene::Scene;
 use pxpl5::volume::{RendererKind, VolumeSettings};
 
-/// Quantities that determine the memory and time to compute a volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct VolumeWork {
     pub(crate) slices: u64,
@@ -35,11 +40,9 @@ pub(crate) struct VolumeWork {
     pub(crate) samples: u64,
     pub(crate) primitives: u64,
     pub(crate) threads: u64,
-    /// True if simulated renderers of Pixel-Planes 5 draw the volume.
     pub(crate) is_pixel_planes: bool,
 }
 
-/// Quantities that determine the memory and time to compute a walk of a viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WalkWork {
     pub(crate) frames: u64,
@@ -48,20 +51,18 @@ pub(crate) struct WalkWork {
     pub(crate) face_texels: u64,
 }
 
-/// Memory in bytes of the process without any work.
+/// Memory in bytes of the process before any work.
 const BASE: f64 = 15e6;
-/// Memory in bytes of a primitive, including its entries in all lists.
+/// Bytes for one primitive, including its entries in all lists.
 const PRIMITIVE: f64 = 200.0;
-/// Memory in bytes for each pixel in the buffer of a slice while the slice is drawn: three colour channels and one
-/// stencil bit.
+/// Bytes for each pixel in the buffer of a slice while the slice is drawn: three colour channels and one stencil bit.
 const TARGET: f64 = 3.125;
-/// Memory in bytes of a pixel that a triangle or sphere covers, including the unused capacity of the list that stores
-/// covered pixels.
+/// Bytes for one pixel that a triangle or sphere covers, including unused capacity of the list of covered pixels.
 const SAMPLE: f64 = 12.0;
 /// Estimated number of pixels that triangles and spheres touch in each column of a slice.
 const ROWS: f64 = 2.0;
-/// Estimated number of additional pixels that triangles and spheres touch, over all slices together, in multiples of
-/// the pixels of one slice.
+/// Estimated number of touched pixels in addition to `ROWS`, over all slices together, in multiples of the pixels of
+/// one slice.
 const AREAS: f64 = 2.0;
 /// Seconds to process one primitive for one slice.
 const SLICE_S: f64 = 30e-9;
@@ -75,28 +76,27 @@ const PLANES: f64 = 15.0;
 /// Memory in bytes of the simulated pixel arrays of Pixel-Planes 5.
 const PLANES_BYTES: f64 = 60e6;
 
-/// Memory in bytes of a texel of a cube face.
+/// Bytes for one texel of a cube face.
 const TEXEL: f64 = 10.0;
-/// Memory in bytes of one frame of a walk.
+/// Bytes for one frame of a walk.
 const FRAME: f64 = 3e3;
-/// Memory in bytes of a primitive of the scene of a walk.
+/// Bytes for one primitive of the scene of a walk.
 const WALKED: f64 = 2e3;
 /// Seconds to process one texel of a cube face.
 const FACE_S: f64 = 15e-9;
 /// Seconds to process one primitive for one frame of a walk.
 const FRAME_S: f64 = 65e-9;
 
-/// Slowdown factor on a computer that is busy with other work. Assumed, as for simulation runs.
+/// Factor on all times for a computer that is busy with other work. Assumed, as for simulation runs.
 const BUSY: f64 = 2.5;
 
-/// Returns the number of primitives of a scene: triangles and spheres.
 pub(crate) fn primitives(scene: &Scene) -> u64 {
     (scene.triangles().len() + scene.spheres().len()) as u64
 }
 
 impl VolumeWork {
-    /// Returns the quantities that determine the cost of a volume. The settings must be valid, and `threads` threads
-    /// draw the volume.
+    /// Returns the quantities that determine the cost of a volume, which `threads` threads draw. The settings must be
+    /// valid.
     pub(crate) fn of(settings: &VolumeSettings, scene: &Scene, threads: usize) -> Self {
         Self {
             slices: settings.display.slices,
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn time_of_volumes_and_walks_is_estimated_to_a_factor_of_five() {
+    fn the_time_of_volumes_and_walks_is_estimated_within_a_factor_of_five() {
         let volumes = VOLUMES.iter().map(|(work, _, seconds)| (format!("{work:?}"), work.estimate().seconds, *seconds));
         let walks = WALKS.iter().map(|(work, _, seconds)| (format!("{work:?}"), work.estimate().seconds, *seconds));
         for (work, estimated, seconds) in volumes.chain(walks) {
@@ -219,7 +219,7 @@ mod tests {
     /// does not use it. An estimate of time may be up to 12 times too high, because programs of the profile
     /// `dist` are faster.
     #[test]
-    fn estimates_hold_for_volumes_to_which_nothing_was_fitted() {
+    fn estimates_hold_for_volumes_outside_the_calibration() {
         for (work, megabytes, seconds) in HELD_OUT {
             let Estimate { bytes, seconds: estimated } = work.estimate();
             let bits = (work.slices * work.width * work.height) as f64 / 2e6;

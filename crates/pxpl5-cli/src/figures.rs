@@ -61,7 +61,6 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     args.budget.admit_study(Study::Figures, "measure some of them with --only")?;
     let file = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let chart_file = args.chart.as_deref().map(|path| OutputFile::open(path, "--chart")).transpose()?;
-    // Only the document and JSON have the figures under other assumptions.
     let is_document = args.json || args.write.is_some() || args.check.is_some();
     let bench = Bench::new(Level::Transaction);
     // The plain table leaves out the intervals, because a reader waits for it.
@@ -72,6 +71,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     bar.finish_and_clear();
     let figures = figures?;
     chart_file.map(|file| file.write(chart(&figures.rows).svg().as_bytes())).transpose()?;
+    // Only the document and the JSON output have the figures under other assumptions.
     if is_document {
         let bar = progress(0, "figures under other assumptions", false);
         let alternatives = alternatives_with(&bench, |done, of| advance(&bar, done, of)).map_err(CliError::failure);
@@ -92,11 +92,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
 const WITHOUT_INTERVALS: &str =
     "\nThe intervals of the figures are in ACCURACY.md. Option --intervals computes them.\n";
 
-/// Measures and prints the figures `numbers` of the main table of ACCURACY.md, one after the other.
-///
-/// # Errors
-///
-/// Fails if no figure has the number, or if an experiment fails.
+/// Measures and prints the figures with these numbers in the main table of ACCURACY.md.
 fn chosen(numbers: &[String]) -> Result<(), CliError> {
     let all = FIGURES.map(|figure| figure.id).join(", ");
     let find = |number: &String| {
@@ -114,11 +110,7 @@ fn chosen(numbers: &[String]) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Checks that a generated document on disk equals the text that `subcommand` would write now.
-///
-/// # Errors
-///
-/// Fails when the document cannot be read or differs.
+/// Returns an error if the document on disk differs from the text that `subcommand` would write now.
 pub(crate) fn fresh(path: &Path, document: &str, subcommand: &str) -> Result<(), CliError> {
     let kept = fs::read_to_string(path).map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
     if kept == document {
@@ -156,14 +148,14 @@ fn text(figures: &Figures) -> String {
 const HEADER: &str =
     "#           published    simulated  unit             error  interval               provenance what\n";
 
-/// Formats rows as a table, and counts the rows whose published value the simulation misses.
+/// Formats rows as a table, and counts the rows whose simulated value misses the published value.
 pub(crate) fn rows_text(rows: &[FigureRow]) -> String {
     let missed = rows.iter().filter(|row| !row.is_met).count();
     let lines: String = rows.iter().map(row_text).collect();
     format!("{HEADER}{lines}{} rows, {missed} missed\n", rows.len())
 }
 
-/// Formats a row of a table of figures. Rows without a published number show "-".
+/// Formats one row of a table of figures. The cell of a missing published number is "-".
 fn row_text(row: &FigureRow) -> String {
     let published = if row.published.is_nan() { "-".to_owned() } else { significant(row.published, DIGITS) };
     let error = row.error_percent.map_or_else(String::new, |error| format!("{error:+.1}%"));
@@ -182,7 +174,6 @@ fn row_text(row: &FigureRow) -> String {
     )
 }
 
-/// Returns the name of a row's provenance in one word.
 const fn provenance(basis: Basis) -> &'static str {
     match basis {
         Basis::Interpretation => "interval",
@@ -191,14 +182,11 @@ const fn provenance(basis: Basis) -> &'static str {
     }
 }
 
-/// Number of significant digits of values in a table of figures.
 const DIGITS: i32 = 6;
 
-/// Width of the chart in millimetres, which is the width of the text on a page.
 const CHART_MM: f64 = 165.0;
 
-/// Returns a chart of the errors of all rows, in percent of the published values. The intervals are also in percent of
-/// the published values.
+/// Returns a chart of the errors of all rows and of their intervals, in percent of the published values.
 fn chart(rows: &[FigureRow]) -> Chart {
     let series = |name: &str, is_free: bool| {
         // Each row keeps the position of its number, so that the two series share the axis.
@@ -223,7 +211,7 @@ fn chart(rows: &[FigureRow]) -> Chart {
     }
 }
 
-/// Returns the ends of an interval relative to a published value, in percent.
+/// Returns the ends of an interval as differences from a published value, in percent of this value.
 fn relative([low, high]: [f64; 2], published: f64) -> (f64, f64) {
     let percent = |value: f64| 100.0 * (value - published) / published;
     (percent(low), percent(high))

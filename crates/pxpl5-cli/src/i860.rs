@@ -110,11 +110,6 @@ impl Warnings {
     }
 }
 
-/// Runs the command `pxpl5 i860`.
-///
-/// # Errors
-///
-/// Returns the message that the command prints before it ends with an exit code above 0.
 pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     match args.command {
         Command::Asm { file, base, output, warnings } => asm(&file, base, output.as_deref(), &warnings),
@@ -136,7 +131,7 @@ pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     }
 }
 
-/// Parses a memory size of at most 1 GiB. The size is limited because a run keeps a second copy of the memory.
+/// Parses the size of a memory: at most 1 GiB, because a run keeps a second copy of the memory.
 fn memory(text: &str) -> Result<u32, String> {
     let most = 1 << 30;
     Some(address(text)?)
@@ -153,8 +148,7 @@ fn text_of(file: &Path, bytes: Vec<u8>) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
-/// Assembles a file. Returns the assembled program and the source text. Comments in the source text may have any text
-/// encoding.
+/// Assembles a file. Returns the program and the source text. Comments in the source text may have any text encoding.
 fn assembled(file: &Path, base: u32) -> Result<(Program, String), String> {
     let source = String::from_utf8_lossy(&read(file)?).into_owned();
     let program = assemble(&file.display().to_string(), base, &source).map_err(|e| e.to_string())?;
@@ -208,11 +202,8 @@ fn check_vectors(file: &Path, json: bool, show: usize) -> Result<(String, usize)
 /// limit guards against gzip bombs.
 const MOST_VECTOR_BYTES: u64 = 256 << 20;
 
-/// Returns the contents of a file, unpacked if the first two bytes are the gzip signature.
-///
-/// # Errors
-///
-/// Fails if the unpacked data exceed `most` bytes.
+/// Returns the contents of a file, unpacked if the first two bytes are the gzip signature. Fails if the unpacked data
+/// exceed `most` bytes.
 fn unpacked(file: &Path, bytes: Vec<u8>, most: u64) -> Result<Vec<u8>, String> {
     if !bytes.starts_with(&[0x1F, 0x8B]) {
         return Ok(bytes);
@@ -281,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn vectors_that_fail_are_counted_and_shown_with_both_values() {
+    fn failed_vectors_are_counted_and_shown_with_the_expected_and_found_values() {
         let path = file("two.jsonl", &format!("{}\n\n{}\n", vector("00000005"), vector("00000006")));
         let (report, failed) = check_vectors(&path, false, 10).expect("well-formed");
         assert_eq!(failed, 1);
@@ -335,7 +326,7 @@ mod tests {
     const STORE: &str = "start: mov 7, r5\nmov table, r6\nst.l r5, 4(r6)\nend: nop\ntable: .long 1, 2, 3";
 
     #[test]
-    fn a_run_tells_registers_and_the_memory_that_it_changed_by_its_labels() {
+    fn a_run_prints_registers_and_changed_memory_by_label() {
         let program = load(&file("store.s", STORE), 0x1000).expect("correct");
         let table = program.symbol("table").expect("a label");
         let (text, result) = execute(&program, &options()).expect("fits");
@@ -363,7 +354,7 @@ mod tests {
 
     /// Tests the example program of the guide, which computes 1 + 4 + 9 + 16 = 30.
     #[test]
-    fn the_program_of_the_guide_runs_and_gives_what_it_says() {
+    fn the_program_of_the_guide_gives_the_results_in_the_guide() {
         let page = include_str!("../../../docs/guide/assembler.md");
         let source = page.split_once("```i860\n").and_then(|(_, rest)| rest.split_once("```")).expect("a program").0;
         let program = load(&file("guide.s", source), 0x1000).expect("correct");
@@ -375,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_label_is_refused_with_those_that_there_are() {
+    fn an_unknown_label_is_refused_with_the_known_labels() {
         let program = load(&file("labels.s", STORE), 0x1000).expect("correct");
         let wrong = RunOptions { stop: Some("ende".to_owned()), ..options() };
         let error = execute(&program, &wrong).expect_err("no label");
@@ -387,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn an_address_that_is_none_is_refused() {
+    fn an_invalid_address_is_refused() {
         assert_eq!(address("0x1F"), Ok(31));
         assert!(address("end").is_err() && address("0x1_0000_0000").is_err());
     }

@@ -1,4 +1,4 @@
-//! The command `pxpl5 levels`, which compares the speed and accuracy of the levels of modelling.
+//! The command `pxpl5 levels`, which compares the speed and accuracy of the analytic, transaction and cycle level.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -50,7 +50,6 @@ pub(crate) struct LevelsArgs {
     budget: BudgetArgs,
 }
 
-/// The recorded measurement of the levels of modelling, as JSON.
 const RECORD: &str = include_str!("levels.json");
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
@@ -81,7 +80,6 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&record)? } else { text(&record) })
 }
 
-/// Measures all levels of modelling now, and adds today's date and a description of this computer.
 fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
     let study = Study::Levels { experiments: args.experiments, measures_speeds: !args.errors_only };
     args.budget.admit_study(study, "take fewer --experiments")?;
@@ -182,7 +180,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_record_can_be_read_and_printed() {
+    fn the_record_of_levels_is_read_and_its_text_has_the_advice_for_each_level() {
         let record = LevelRecord::read(RECORD).expect("the recorded levels");
         assert!(record.experiments >= 200 && record.levels.len() == 5);
         let text = text(&record);
@@ -190,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn days_are_counted_from_1970() {
+    fn the_date_of_a_day_number_counts_from_1970() {
         let days = [0, 59, 11_016, 11_017, 19_782, 20_783];
         let expected = ["1970-01-01", "1970-03-01", "2000-02-29", "2000-03-01", "2024-02-29", "2026-11-26"];
         assert_eq!(days.map(date_of), expected);

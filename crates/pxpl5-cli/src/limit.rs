@@ -99,7 +99,6 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
 
-/// Searches for the values of one setting that reach a goal, and prints the result.
 fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
     let (query, plan) = args.over_query(key)?;
     let bar = progress(USUAL_VALUES, "values", args.quiet);
@@ -137,13 +136,12 @@ impl LimitArgs {
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
     }
 
-    /// Returns the setting that is varied, or `None` for triangles.
+    /// Returns the setting that the search varies, or `None` if the search varies the number of triangles.
     fn key(&self) -> Option<&str> {
         self.over.as_deref().filter(|key| *key != "triangles")
     }
 
-    /// Returns the search over the values of a setting, and the checked experiment at the greatest value of the
-    /// setting.
+    /// Returns the search over the values of the setting `key`, and the plan of the experiment at the greatest value.
     fn over_query(&self, key: &str) -> Result<(OverQuery, Plan), CliError> {
         let mut file = self.file()?;
         if let Some(scene) = self.test_scene() {
@@ -170,13 +168,13 @@ impl LimitArgs {
         Ok((OverQuery { file, key: key.to_owned(), values, goal, stop: StopFlag::default() }, plan))
     }
 
-    /// Returns the papers' test scene that `--scene` names. `None` if the option names no test scene.
+    /// Returns the papers' test scene with the name in `--scene`, or `None` if `--scene` names another scene.
     fn test_scene(&self) -> Option<TestScene> {
         TestScene::ALL.into_iter().find(|scene| self.scene.as_deref() == Some(scene.name()))
     }
 
-    /// Returns the settings shared by all scene sizes. The scene in these settings is a placeholder with one triangle,
-    /// unless `--scene` names a model.
+    /// Returns the settings that all scene sizes share. Without a model in `--scene`, these settings have a placeholder
+    /// scene of one triangle.
     fn file(&self) -> Result<ExperimentFile, CliError> {
         let mut file = ExperimentFile::with(registry());
         // A search over triangles starts with the pipeline whose limit was published.
@@ -296,7 +294,6 @@ fn json_text(query: &LimitQuery, limit: Limit) -> String {
     format!("{object:#}\n")
 }
 
-/// Returns the name of the scene that the search draws with different numbers of triangles.
 fn scene(query: &LimitQuery) -> String {
     query.model.as_ref().map_or_else(|| query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned())
 }
@@ -334,7 +331,6 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
     )
 }
 
-/// Returns the pipeline's keys and their effective values.
 fn settings(query: &LimitQuery) -> serde_json::Value {
     query.pipeline.settings().into_iter().map(|(key, value)| (key, value.to_string())).collect()
 }

@@ -1,4 +1,4 @@
-//! The command `pxpl5 merge`, which merges the shards of a sweep (parts computed by separate processes).
+//! The command `pxpl5 merge`, which merges the shards of a sweep. A shard is a part that a separate process computes.
 
 use crate::error::CliError;
 use crate::numbers::{are, count_of, were};

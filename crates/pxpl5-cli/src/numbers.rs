@@ -1,6 +1,5 @@
 //! Parsers and formatters of whole numbers. An error message states the range that was expected.
 
-/// Returns a parser of whole numbers from `low` to `high`.
 pub(crate) fn whole<T: TryFrom<u64>>(low: u64, high: u64) -> impl Fn(&str) -> Result<T, String> + Clone {
     move |text| {
         let number = text.parse().ok().filter(|number: &u64| (low..=high).contains(number));
@@ -9,7 +8,7 @@ pub(crate) fn whole<T: TryFrom<u64>>(low: u64, high: u64) -> impl Fn(&str) -> Re
     }
 }
 
-/// Parses a whole number of an experiment file. The experiment file checks the range of each key.
+/// Parses a whole number. The experiment file checks the range of each key.
 pub(crate) fn signed(text: &str) -> Result<i64, String> {
     text.parse().map_err(|_| format!("expected a whole number of at most {}, found {text}", i64::MAX))
 }
@@ -30,13 +29,11 @@ pub(crate) fn were(count: u64, name: &str) -> String {
     format!("{} {}", count_of(count, name), if count == 1 { "was" } else { "were" })
 }
 
-/// Parses a confidence: a number between 0 and 1.
 pub(crate) fn confidence(text: &str) -> Result<f64, String> {
     let found = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share < 1.0);
     found.ok_or_else(|| format!("expected a number between 0 and 1, such as 0.95, found {text}"))
 }
 
-/// Formats a TOML value in the syntax of `--set`.
 pub(crate) fn plain(value: &toml::Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

@@ -4,24 +4,21 @@ use clap::{Arg, ArgMatches, Command};
 use pxpl5::{KeyValues, Registry};
 use std::sync::{Arc, OnceLock};
 
-/// The pipelines and displays of this process. [`crate::main`] sets them before clap builds the options.
+/// The pipelines and displays of this process, which [`crate::main`] sets before clap builds the options.
 static REGISTRY: OnceLock<Arc<Registry>> = OnceLock::new();
 
-/// Sets the pipelines and displays that the options of this process accept.
 pub(crate) fn know(registry: Arc<Registry>) {
     // Only a second call of `main` would set the registry again. The options of the first call are kept.
     let _ = REGISTRY.set(registry);
 }
 
-/// Returns the pipelines and displays of this process, by default the built-in pipelines and displays.
+/// Returns the pipelines and displays of this process, which are the built-in pipelines and displays by default.
 pub(crate) fn registry() -> Arc<Registry> {
     Arc::clone(REGISTRY.get_or_init(pxpl5::registry))
 }
 
-/// The name of the pipeline and its keys, as given on the command line.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PipelineOptions {
-    /// Keys of the experiment file, each with the text given on the command line.
     pub(crate) given: Vec<(&'static str, String)>,
 }
 

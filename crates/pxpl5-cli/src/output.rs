@@ -1,4 +1,4 @@
-//! Output files that appear all together and complete, or not at all.
+//! Output files, of which either all appear under their final names, or none.
 
 mod batch;
 mod target;
@@ -17,64 +17,52 @@ use std::io;
 use std::path::{Path, PathBuf};
 use target::{Place, Target};
 
-/// A writable folder, and the files that [`OutputFolder::commit`] will place in this folder.
 #[derive(Debug)]
 pub(crate) struct OutputFolder {
     path: PathBuf,
     place: Place,
-    /// Folders that were created for this output: the folder itself and its missing parents, outermost first.
+    /// Folders that were created for this output: the output folder and its missing parents, outermost first.
     made: Vec<PathBuf>,
     batch: Batch,
     listing: Listing,
 }
 
-/// Maximum number of attempts to create a folder, while other processes keep removing it.
+/// Maximum number of attempts to create a folder, because other processes may remove the folder again.
 const MOST_TRIES: u32 = 100;
 
-/// The relation of the written files to the manifest (the list of a run's files) in the folder.
+/// The relation of the written files to the manifest in the folder. A manifest is the list of a run's files.
 #[derive(Debug)]
 enum Listing {
-    /// The manifest does not list the written files, because these files do not belong to the manifest's run.
+    /// The written files do not belong to the run of the manifest, so that the manifest does not list these files.
     None,
-    /// The written files are all files of one run. These files replace the files of the previous run in the folder.
+    /// The written files are all files of one run, and replace all files of the previous run in the folder.
     Own(Manifest),
-    /// The written files derive from the results in the folder. If the folder has a manifest, the written files are
-    /// added to the manifest.
+    /// The written files derive from the results in the folder, and are added to the manifest if the folder has one.
     Added(Manifest),
 }
 
 impl OutputFolder {
     /// Returns an output folder for all files of one run. These files replace all files of the previous run.
     ///
-    /// # Errors
-    ///
-    /// Fails when the path is not a folder, or cannot be created or written. Fails when the folder holds a sweep,
-    /// because a new run would delete rows that may have taken hours to compute.
+    /// Fails if the folder holds a sweep, because a new run would delete rows that may have taken hours to compute.
     pub(crate) fn of_run(path: &Path, command: &str) -> Result<Self, CliError> {
         before(path)?;
         Self::begin(path, Place::folder("--out"), Listing::Own(Manifest::new(command)))
     }
 
-    /// Returns an output folder for files that do not enter the manifest (list of a run's files).
-    ///
-    /// # Errors
-    ///
-    /// Fails when the path is not a folder, or cannot be created or written.
+    /// Returns an output folder for files that do not enter the manifest.
     pub(crate) fn open(path: &Path, option: &'static str) -> Result<Self, CliError> {
         Self::begin(path, Place::folder(option), Listing::None)
     }
 
-    /// Returns an output folder for files that derive from the folder `results`. Both folders may be the same.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`Self::open`].
+    /// Returns an output folder for files that derive from the results in the folder `results`. Both folders may be the
+    /// same.
     pub(crate) fn beside(path: &Path, option: &'static str, results: &Path) -> Result<Self, CliError> {
         Self::begin(path, Place::folder(option), added_to(path, results))
     }
 
-    /// Checks that the folder is writable before the simulation begins, because a simulation may take hours. After the
-    /// check, folders that were created for it are removed, so that an interrupted run leaves no empty folder.
+    /// Checks that the folder is writable before the simulation begins, because a simulation may take hours. Folders
+    /// that were created for the check are removed again, so that an interrupted run leaves no empty folder.
     fn begin(path: &Path, place: Place, listing: Listing) -> Result<Self, CliError> {
         let batch = Batch::new(place.clone());
         let mut folder = Self { path: path.to_path_buf(), place, made: Vec::new(), batch, listing };
@@ -88,7 +76,8 @@ impl OutputFolder {
         Ok(folder)
     }
 
-    /// Executes `what` on the output files, while a lock prevents other processes from removing or changing the folder.
+    /// Executes `what` on the output files while the folder is locked. The lock prevents other processes from removing
+    /// or changing the folder.
     fn in_folder(&mut self, mut what: impl FnMut(&mut Batch) -> io::Result<()>) -> Result<(), CliError> {
         // Another process may remove the folder between its creation and the write.
         let mut tries = 0;
@@ -119,27 +108,22 @@ impl OutputFolder {
         fs::create_dir_all(&self.path).map_err(|error| self.place.refused(&self.path, &error))
     }
 
-    /// Removes the folders that this output created and that are still empty.
     fn unmake(&mut self) {
         for folder in self.made.drain(..).rev() {
             let _ = fs::remove_dir(folder);
         }
     }
 
-    /// Locks the folder against other processes. Returns `None` on a file system that has no locks. The command then
-    /// writes its results without this protection.
+    /// Locks the folder against other processes. Returns `None` on a file system without locks, so that results are
+    /// written without this protection.
     fn lock(&self) -> Option<File> {
         let folder = File::open(&self.path).ok()?;
         folder.lock().ok()?;
         Some(folder)
     }
 
-    /// Writes a file under a temporary name. If `name` is a device, a pipe or a link to one of these, nothing is
-    /// written until [`OutputFolder::commit`] writes into it.
-    ///
-    /// # Errors
-    ///
-    /// Fails when the file cannot be written, or is a folder.
+    /// Writes a file under a temporary name. If `name` is a device, a pipe or a link to one of these, only
+    /// [`OutputFolder::commit`] writes the bytes. Fails if `name` is a folder.
     pub(crate) fn put(&mut self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
         let target = Target::of(&self.path.join(name), &self.place)?;
         if let (Listing::Own(manifest) | Listing::Added(manifest), Target::File(_)) = (&mut self.listing, &target) {
@@ -152,11 +136,8 @@ impl OutputFolder {
         self.in_folder(|batch| batch.put(target, bytes))
     }
 
-    /// Renames all files to their final names, or no file. Processes that commit to the same folder take turns.
-    ///
-    /// # Errors
-    ///
-    /// Fails when an existing file cannot be replaced. Every file then has its previous contents.
+    /// Renames all files to their final names. Processes that commit to the same folder take turns. After an error,
+    /// each file has its previous contents.
     pub(crate) fn commit(mut self) -> Result<(), CliError> {
         self.make()?;
         let _lock = self.lock();
@@ -166,8 +147,8 @@ impl OutputFolder {
         Ok(())
     }
 
-    /// Adds the manifest (list of the run's files) as the first file to be renamed. After a crash between two renames,
-    /// the hashes in the manifest show which files belong to the new run.
+    /// Adds the manifest as the first file to be renamed. After a crash between two renames, the hashes in the manifest
+    /// show which files belong to the new run.
     fn put_manifest(&mut self) -> Result<(), CliError> {
         // A new run replaces the previous manifest; derived files extend it.
         let manifest = match &mut self.listing {
@@ -194,11 +175,8 @@ impl OutputFolder {
     }
 }
 
-/// Returns the manifest (list of files) of the run that will be replaced, or `None` if the folder has no manifest.
-///
-/// # Errors
-///
-/// Fails if the folder holds a sweep.
+/// Returns the manifest of the run that will be replaced, or `None` if the folder has no manifest. Fails if the folder
+/// holds a sweep.
 fn before(folder: &Path) -> Result<Option<Manifest>, CliError> {
     let before = Manifest::read(folder)?;
     if before.as_ref().is_some_and(|before| before.command() == Manifest::SWEEP) || folder.join(ROWS_FILE).exists() {
@@ -208,9 +186,7 @@ fn before(folder: &Path) -> Result<Option<Manifest>, CliError> {
     Ok(before)
 }
 
-/// Returns the relation to the manifest for files that are derived from a results folder, such as a report page. These
-/// files are added to the folder's manifest (list of a run's files) only if they are written into the folder `results`
-/// itself.
+/// Returns [`Listing::Added`] if files are written into the folder `results` itself, otherwise [`Listing::None`].
 fn added_to(folder: &Path, results: &Path) -> Listing {
     let whole = |path: &Path| path.canonicalize().ok();
     match (whole(folder), whole(results)) {
@@ -219,7 +195,7 @@ fn added_to(folder: &Path, results: &Path) -> Listing {
     }
 }
 
-/// Removes the temporary files if nothing was committed, and all empty folders that were created for these files.
+/// Without a commit, removes the temporary files and all empty folders that were created for these files.
 impl Drop for OutputFolder {
     fn drop(&mut self) {
         self.batch.discard();
@@ -227,32 +203,26 @@ impl Drop for OutputFolder {
     }
 }
 
-/// A single output file, written completely or not at all. A device or pipe is never replaced: the bytes are written
-/// into the device or pipe.
+/// A single output file, written completely or not at all. The bytes for a device or pipe are written into the device
+/// or pipe, which is never replaced.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     target: Target,
-    /// Data for a target that exists and is not a regular file, such as a device or a pipe.
+    /// Bytes for a target that exists and is not a regular file, such as a device or a pipe.
     batch: Batch,
-    /// Folder of the output file. `None` if the target is not a regular file, such as a pipe.
+    /// Folder of the output file. `None` if the target is not a regular file.
     folder: Option<OutputFolder>,
 }
 
 impl OutputFile {
-    /// Resolves the path given by an option. Checks that the path is writable, unless the path is a device or a pipe.
-    ///
-    /// # Errors
-    ///
-    /// Fails when the path is a folder, does not end in a name, or its folder cannot be created or written.
+    /// Resolves the path of an option. Fails if the path is a folder or is not writable. Devices and pipes are not
+    /// checked.
     pub(crate) fn open(path: &Path, option: &'static str) -> Result<Self, CliError> {
         Self::begin(path, option, None)
     }
 
-    /// Resolves the path of an output file that derives from the folder `results`. The file may be inside that folder.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`Self::open`].
+    /// Resolves the path of an output file that derives from the results in the folder `results`. The file may be in
+    /// this folder.
     pub(crate) fn of_results(path: &Path, option: &'static str, results: &Path) -> Result<Self, CliError> {
         Self::begin(path, option, Some(results))
     }
@@ -275,16 +245,13 @@ impl OutputFile {
         Ok(Self { target, batch: Batch::new(place), folder })
     }
 
-    /// Returns true if the output goes to standard output. The command must then print nothing else.
+    /// Returns true if the output goes to standard output, so that the command must print nothing else.
     pub(crate) fn is_standard_output(&self) -> bool {
         self.target == Target::StandardOutput
     }
 
-    /// Writes the file and gives it its final name once its contents are complete.
-    ///
-    /// # Errors
-    ///
-    /// Fails when the output cannot be written. A regular file then keeps its previous contents.
+    /// Writes the file and then renames the file to its final name. After an error, a regular file has its previous
+    /// contents.
     pub(crate) fn write(mut self, bytes: &[u8]) -> Result<(), CliError> {
         let Some(mut folder) = self.folder.take() else {
             // A stream is written by `commit`.
@@ -299,18 +266,18 @@ impl OutputFile {
     }
 }
 
-/// Returns the folder of a file. A name without a folder refers to the current folder.
+/// Returns the folder of a file. A name without a folder means the current folder.
 fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Returns a timeline as SVG. An XML comment states the origin of the run: the settings that reproduce it.
+/// Returns the timeline of a run as SVG. An XML comment states the settings that reproduce the run.
 pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
     let svg = pxpl5::views::timeline::svg(outcome, &TimelineOptions::default());
     let origin: String = origin_lines(report, "").chars().filter(|c| *c == '\n' || !is_forbidden(*c)).collect();
     // XML comments must not contain two hyphens in a row.
     let comment = format!("<!--\n{}-->\n", origin.replace("--", "- -"));
-    // The comment goes behind the XML declaration, which must be the first line.
+    // The comment follows the XML declaration, which must be the first line.
     let at = if svg.starts_with("<?xml") { svg.find('\n').map_or(0, |end| end + 1) } else { 0 };
     format!("{}{comment}{}", &svg[..at], &svg[at..])
 }
@@ -320,11 +287,8 @@ fn is_forbidden(c: char) -> bool {
     c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
 }
 
-/// Returns a picture as PNG. Text chunks state the run's origin, and whether the picture is complete.
-///
-/// # Errors
-///
-/// Fails when the encoder fails.
+/// Returns a picture as PNG. Text chunks state the settings that reproduce the run, and whether the picture is
+/// complete.
 pub(crate) fn png(picture: &RgbImage, report: &Report) -> Result<Vec<u8>, CliError> {
     let mut chunks = origin(report);
     chunks.push(("complete", report.ends_complete.to_string()));
@@ -340,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_committed_leaves_no_trace() {
+    fn an_uncommitted_output_leaves_no_file() {
         let path = place("dropped").join("inner");
         let mut folder = OutputFolder::open(&path, "--out").expect("the temporary directory can be written");
         folder.put("a.txt", b"half").expect("written");
@@ -349,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_committed_is_there_alone() {
+    fn a_committed_output_leaves_only_its_own_files() {
         let path = place("kept");
         let mut folder = OutputFolder::open(&path, "--out").expect("the temporary directory can be written");
         folder.put("a.txt", b"whole").expect("written");

@@ -102,7 +102,6 @@ impl ScaleName {
     }
 }
 
-/// Minimum and maximum width of a figure in millimetres.
 const WIDTHS_MM: (f64, f64) = (40.0, 400.0);
 
 fn width(text: &str) -> Result<f64, String> {
@@ -116,11 +115,6 @@ fn pair(text: &str) -> Result<(String, String), String> {
     Ok((name.to_owned(), value.to_owned()))
 }
 
-/// Runs the command `pxpl5 plot`.
-///
-/// # Errors
-///
-/// Fails when there are no rows, no row has a named column, nothing could be drawn, or a file cannot be written.
 pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     let format = Format::of(&args.out)?;
     let folder = rows::folder_of(&args.results);
@@ -153,7 +147,6 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     print(&format!("{} drawn in {}; the numbers are beside it.\n", are(places as u64, "place"), args.out.display()))
 }
 
-/// Replaces old column names of comparisons by their current names, and prints a warning for each old name.
 fn with_new_names(mut question: Question, results: &ResultRows, quiet: bool) -> Question {
     if results.kind != RowsKind::Comparison {
         return question;
@@ -195,7 +188,6 @@ impl PlotArgs {
     }
 }
 
-/// Writes all three files of a plot, or no file.
 fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) -> Result<(), CliError> {
     // The three files differ only in their extension.
     let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -224,7 +216,6 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
     folder.commit()
 }
 
-/// Returns the confidence and the method of the intervals in words.
 fn interval(args: &PlotArgs, kind: RowsKind) -> String {
     match kind {
         RowsKind::Sweep => {
@@ -234,7 +225,8 @@ fn interval(args: &PlotArgs, kind: RowsKind) -> String {
     }
 }
 
-/// Returns the groups of rows as CSV: columns with names first, then numbers. A missing number is an empty cell.
+/// Returns the groups of rows as CSV, with columns of names before columns of numbers. The cell of a missing number is
+/// empty.
 fn csv(question: &Question, groups: &[Group]) -> String {
     let columns = ["mean", "sd", "n", "low", "high", "missing", "due", "not_shown", "samples"].map(str::to_owned);
     let names = question.by.iter().cloned().chain([question.x.clone()]).chain(columns);

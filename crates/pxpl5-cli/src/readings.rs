@@ -46,11 +46,6 @@ pub(crate) struct ReadingsArgs {
     budget: BudgetArgs,
 }
 
-/// Runs the command `pxpl5 readings`.
-///
-/// # Errors
-///
-/// Fails if a figure cannot be simulated.
 pub(crate) fn run(args: ReadingsArgs) -> Result<(), CliError> {
     let study = Study::Readings { seeds: args.seeds, frames: args.frames, best: args.best };
     args.budget.admit_study(study, "take fewer --seeds, --frames or --best")?;

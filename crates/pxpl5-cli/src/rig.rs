@@ -1,5 +1,5 @@
-//! The command `pxpl5 rig`. A simulated pendulum measures the latency of a system from outside, as in I3D95. The
-//! command compares this latency with the time stamps inside the system.
+//! The command `pxpl5 rig`. A simulated pendulum measures the latency of a system from outside, as in the paper I3D95.
+//! The command compares this latency with the latency from time stamps inside the system.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -47,21 +47,18 @@ pub(crate) struct RigArgs {
     json: bool,
 }
 
-/// Maximum number of display fields between two passes of the pendulum through its lowest point: one second.
+/// Greatest number of display fields between two passes of the pendulum through its lowest point: one second.
 const FIELDS_OF_PASS: u64 = 60;
 
-/// Settings that the rig determines itself. The user must not set them.
+/// Keys with values from the command itself, which the user must not set.
 const KEYS_SET_BY_RIG: [&str; 9] =
     ["scene", "triangles", "head.motion", "head.place", "head.predict", "head.aim", "head.raster", "fields", "pixels"];
 
-/// Keys of the motion in front of the scene, which the rig does not have.
+/// Keys of motions along a path in front of a scene. The rig has no such motion.
 const KEYS_OF_PATH: [&str; 4] = ["head.path", "head.sway", "head.distance", "head.deg_per_s"];
 
-/// Runs the command `pxpl5 rig`.
-///
-/// # Errors
-///
-/// Fails when an option is invalid, nothing can be measured, or the outside and inside measurements disagree.
+/// Runs the command `pxpl5 rig`. Fails if nothing can be measured, or if the latency from outside differs from the
+/// latency by time stamps.
 pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     let plan = plan(args.settings.gather()?)?;
     let tracker = plan.head.as_ref().map(|head| head.head().tracker().config().clone());
@@ -77,8 +74,8 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     if measured.agrees() { Ok(()) } else { Err(CliError::failure(verdict(&measured))) }
 }
 
-/// Returns the checked experiment of the measurement. The user chooses pipeline, machine, tracker and seed. The command
-/// sets scene and motion.
+/// Returns the experiment of the measurement. The user chooses pipeline, machine, tracker and seed. The command sets
+/// scene and motion.
 fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     if let Some(key) = file.keys().find(|key| KEYS_SET_BY_RIG.contains(key) || KEYS_OF_PATH.contains(key)) {
         return Err(CliError::usage(format!(
@@ -90,7 +87,6 @@ fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     Ok(file.resolve()?)
 }
 
-/// Name of a latency, with the function that reads it from the measurement from outside or inside.
 type Column = (&'static str, fn(&Side) -> &Statistics);
 
 fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
@@ -106,7 +102,7 @@ fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
         "outside",
         "inside"
     );
-    // The same latencies as seen from outside and from inside.
+    // The table compares the latencies that were measured from outside and from inside.
     let rows: [Column; 3] = [
         ("tracking latency", |side| &side.tracking),
         ("rendering latency", |side| &side.rendering),

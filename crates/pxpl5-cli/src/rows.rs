@@ -16,8 +16,8 @@ pub(crate) type Row = Vec<(String, Value)>;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RowsKind {
     Sweep,
-    /// Results of a comparison, with one row for each pipeline. Each value of a row is named by its path in the JSON of
-    /// the comparison. Lists of plain numbers are left out.
+    /// Rows of a comparison, one for each pipeline. The name of a value is its path in the JSON of the comparison.
+    /// Lists of plain numbers are left out.
     Comparison,
 }
 
@@ -29,11 +29,7 @@ pub(crate) struct ResultRows {
     pub(crate) rows: Vec<Row>,
 }
 
-/// Reads the rows of a folder. Returns `None` if the folder holds neither a sweep nor a comparison.
-///
-/// # Errors
-///
-/// Fails when the results file cannot be read or has another format.
+/// Reads the rows in a folder. Returns `None` if the folder holds neither a sweep nor a comparison.
 pub(crate) fn of(folder: &Path) -> Result<Option<ResultRows>, CliError> {
     type Reader = fn(&str) -> Result<ResultRows, String>;
     let readers: [(&str, Reader); 2] = [(ROWS_FILE, sweep), (COMPARISON_FILE, comparison)];
@@ -85,7 +81,7 @@ fn expect_schema(object: &Map<String, Value>, expected: &str) -> Result<(), Stri
     if is_expected { Ok(()) } else { Err(format!("schema: expected {expected}, found {found}")) }
 }
 
-/// Returns the header and rows of a sweep. An incomplete last line of an interrupted sweep is left out.
+/// Returns the header and rows of a sweep. Drops an incomplete last line, which an interrupted sweep leaves.
 fn sweep(text: &str) -> Result<ResultRows, String> {
     let mut lines = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
     let about = parsed(lines.next().unwrap_or_default(), "line 1")?;
@@ -95,7 +91,7 @@ fn sweep(text: &str) -> Result<ResultRows, String> {
     Ok(ResultRows { kind: RowsKind::Sweep, about, rows })
 }
 
-/// Returns a row with the index of the point, its parameters, the measured values, and the error if the point failed.
+/// Returns a row with the index of the point, its parameters, the measured values, and an error if the point failed.
 fn of_point(mut point: Map<String, Value>) -> Row {
     let mut row = Row::new();
     for key in ["point", "status", "parameters", "measured", "error"] {
@@ -108,7 +104,7 @@ fn of_point(mut point: Map<String, Value>) -> Row {
     row
 }
 
-/// Returns the header and the rows of an unfinished comparison. An incomplete last line is left out.
+/// Returns the header and rows of an unfinished comparison. Drops an incomplete last line.
 fn stored_comparison(text: &str) -> Result<ResultRows, String> {
     let mut lines = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
     let about = parsed(lines.next().unwrap_or_default(), "line 1")?;
@@ -138,11 +134,11 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
     Ok(ResultRows { kind: RowsKind::Comparison, rows: rows.collect(), about })
 }
 
-/// Adds all numbers, texts and other plain values within `value` to a row. The name of each value is its JSON path. In
-/// this path, an object in a list is named by its member `cause` or `kind`.
+/// Adds all plain values within `value` to a row. The name of each plain value is its JSON path. In this path, an
+/// object in a list appears by the value of its member `cause` or `kind`.
 fn flatten(path: &str, value: Value, row: &mut Row) {
     match value {
-        // A row without a bootstrap keeps the column of rows.csv.
+        // Without a bootstrap the column stays, because rows.csv has it for every row.
         Value::Null if path == "error.bootstrap" => row.push((format!("{path}.block_fields"), Value::Null)),
         Value::Object(inner) => {
             for (key, value) in inner {
@@ -159,8 +155,8 @@ fn flatten(path: &str, value: Value, row: &mut Row) {
     }
 }
 
-/// Returns the name of an object in a list, which is the value of the member `cause` or `kind`. The name is
-/// `interaction` if `cause` is null, because the object then has the interaction of all causes.
+/// Returns the name of an object in a list: the value of its member `cause` or `kind`. If `cause` is null, the object
+/// holds the interaction of all causes, and the name is `interaction`.
 fn name_of(value: &Value) -> Option<String> {
     let object = value.as_object()?;
     match object.get("cause").or_else(|| object.get("kind"))? {
@@ -170,7 +166,7 @@ fn name_of(value: &Value) -> Option<String> {
     }
 }
 
-/// Returns the current name of a comparison column that has been renamed. Returns `None` for all other names.
+/// Returns the current name of a renamed comparison column, or `None` for all other names.
 pub(crate) fn renamed(old: &str) -> Option<String> {
     let new = match old {
         "updates_hz" => "updates_hz.mean",

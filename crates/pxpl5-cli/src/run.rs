@@ -41,7 +41,7 @@ pub(crate) struct RunArgs {
     threads: Option<u64>,
     /// Disable an optimization of the simulator to measure its effect: idle-boards, transfers, empty-regions or
     /// repeated-code; may be repeated.
-    #[arg(long, value_name = "SAVING")]
+    #[arg(long, value_name = "OPTIMIZATION")]
     without: Vec<Optimization>,
     /// Write report.json, results.csv, pictures.csv, experiment.toml, timeline.svg and the last pictures into this
     /// folder.
@@ -94,8 +94,8 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// Returns the latency and the update rate of the experiment with 10 % more of a resource, for each resource of the
-/// machine.
+/// Returns the latency and update rate of the experiment with 10 % more of each resource of the machine, one resource
+/// at a time.
 fn more(plan: &Plan) -> Result<Vec<WhatIf>, CliError> {
     let experiment = plan.experiment(crate::scenes::load(plan, false)?);
     what_if(&plan.registry, &experiment).map_err(CliError::from)
@@ -117,7 +117,6 @@ fn more_text(more: &[WhatIf]) -> String {
     text
 }
 
-/// Returns the report as text, followed by the effects of 10 % more of each resource if the user asked for them.
 fn with_more(report: &Report, more: Option<&[WhatIf]>) -> Result<String, CliError> {
     let Some(more) = more else { return json(report) };
     let mut value = serde_json::to_value(report).map_err(CliError::failure)?;
@@ -125,7 +124,7 @@ fn with_more(report: &Report, more: Option<&[WhatIf]>) -> Result<String, CliErro
     serde_json::to_string_pretty(&value).map_err(CliError::failure)
 }
 
-/// Returns the error for a run in which every picture came after its deadline. A longer run would not help.
+/// Returns the error for a run in which every picture missed its deadline. A longer run would not help.
 fn nothing_shown(report: &Report) -> CliError {
     let advice = report.too_heavy.as_ref().map_or("draw fewer primitives (--triangles)", |heavy| &heavy.advice);
     CliError::failure(format!(
@@ -191,12 +190,12 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
     text
 }
 
-/// Formats a number, or returns "-" for NaN.
+/// Formats a number. The result for NaN is "-".
 fn known(value: f64, digits: usize) -> String {
     if value.is_nan() { "-".to_owned() } else { format!("{value:.digits$}") }
 }
 
-/// Returns the checked experiment of a file. Returns an error for sweeps and for the analytic level.
+/// Returns the plan of an experiment file. Fails for sweeps and for the analytic level.
 fn plan(file: ExperimentFile) -> Result<Plan, CliError> {
     if file.is_sweep() {
         return Err(CliError::usage("this file describes a sweep: use `pxpl5 sweep FILE --out DIR`"));
@@ -254,10 +253,9 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
     Ok(path)
 }
 
-/// Suffix of the file name for a picture that was not complete in time.
 pub(crate) const INCOMPLETE: &str = "-incomplete";
 
-/// Writes the last picture that each surface displayed. Each file name starts with `prefix`.
+/// Writes the last displayed picture of each surface. Each file name starts with `prefix`.
 pub(crate) fn pictures(
     folder: &mut OutputFolder,
     prefix: &str,

@@ -16,18 +16,13 @@ pub(crate) struct ScenesArgs {
     json: bool,
 }
 
-/// Loads the scene of an experiment. Prints warnings about parts of the scene's file that the importer changed.
-///
-/// # Errors
-///
-/// Fails when the scene does not exist or its file cannot be read.
+/// Loads the scene of an experiment. Prints a warning for each part of the scene's file that the importer changed.
 pub(crate) fn load(plan: &Plan, quiet: bool) -> Result<Arc<Scene>, CliError> {
     let scene = plan.load_scene()?;
     print_warnings(&scene, quiet);
     Ok(scene)
 }
 
-/// Prints warnings about parts of a scene's file that the importer has changed.
 pub(crate) fn print_warnings(scene: &Scene, quiet: bool) {
     let named: Vec<String> = scene.warnings().iter().map(|warning| format!("{}: {warning}", scene.name())).collect();
     warn(&named, quiet);

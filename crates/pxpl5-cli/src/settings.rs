@@ -1,4 +1,4 @@
-//! Options that describe an experiment. Each option sets a key of an experiment file.
+//! Options that describe an experiment. Each option sets one key of an experiment file.
 
 use crate::error::CliError;
 use crate::numbers::signed;
@@ -96,11 +96,7 @@ pub(crate) struct SettingArgs {
 }
 
 impl SettingArgs {
-    /// Returns the experiment file with all options applied. `--set` is applied last.
-    ///
-    /// # Errors
-    ///
-    /// Fails when the file cannot be used or a key is unknown.
+    /// Returns the experiment file after all options. `--set` is applied last, so that its values replace all others.
     pub(crate) fn gather(self) -> Result<ExperimentFile, CliError> {
         let file = ExperimentFile::with(registry());
         let mut file = match self.experiment.as_ref().or(self.file.as_ref()) {
@@ -159,8 +155,8 @@ impl SettingArgs {
     }
 }
 
-/// Returns the key that `--display NAME` sets. A name of a raster (correction of pictures during the scan) sets the key
-/// of the raster, as in earlier versions.
+/// Returns the key that `--display NAME` sets. The name of a raster (a correction of pictures during the scan) sets the
+/// key of the raster, as in earlier versions.
 fn display_key(name: Option<&str>) -> &'static str {
     if Raster::ALL.iter().any(|(raster, _)| Some(*raster) == name) { "head.raster" } else { "display" }
 }

@@ -21,62 +21,54 @@ use crate::version::LONG_VERSION;
 use pxpl5::sweep::Sweep;
 use std::path::{Path, PathBuf};
 
-/// Inputs and outputs of a sweep, and its division into tasks.
+/// A sweep's inputs, outputs and division into tasks of Slurm.
 #[derive(Clone, Debug)]
 pub(crate) struct Jobs<'a> {
     pub(crate) file: &'a Path,
     /// Settings shared by all points of the sweep, as `path=value`.
     pub(crate) sets: &'a [String],
-    /// Folder for the merged rows of all tasks.
     pub(crate) out: &'a Path,
-    /// Number of tasks in the Slurm array. `None` computes the number from an estimate of the work.
+    /// Number of tasks in the Slurm array. `None` computes the number from the estimated work.
     pub(crate) tasks: Option<u64>,
-    /// Number of points that a task simulates in parallel.
     pub(crate) threads: u64,
 }
 
-/// Seconds of work in one task. Longer tasks would delay the end of the sweep. Shorter tasks would not be worth the
-/// time to start a task.
+/// Seconds of work in one task. Longer tasks would delay the end of the sweep. Shorter tasks would waste time on their
+/// start.
 const TASK_S: f64 = 900.0;
 /// Maximum number of tasks in an array: Slurm's default (`MaxArraySize` 1001).
 const MOST_TASKS: u64 = 1_000;
-/// Number of points of the sweep whose cost is estimated.
 const SAMPLE: u64 = 300;
 /// Seconds to start a task and load its scenes. Assumed.
 const START_S: f64 = 60.0;
-/// Safety factor on the estimated time of a task, because Slurm kills a task at its time limit. The points of one
-/// pipeline together took at most three times their estimate (docs/sweeps.md, "What a point costs").
+/// Factor on the estimated time of a task, because Slurm kills a task at its time limit. The points of one pipeline
+/// together took at most three times their estimate (docs/guide/sweep-times.md, "What a point costs").
 const TIME_MARGIN: f64 = 5.0;
-/// Safety factor on the estimated memory: the maximum measured ratio of used to estimated memory (docs/hardening.md).
+/// Factor on the estimated memory: the maximum measured ratio of used to estimated memory (docs/hardening.md).
 const MEMORY_MARGIN: f64 = 2.0;
-/// Seconds to merge one row, rounded up (docs/sweeps.md, "A million points").
+/// Seconds to merge one row, rounded up (docs/guide/sweep-times.md, "A million points").
 const MERGE_ROW_S: f64 = 40e-6;
-/// Memory in bytes held for one row while rows are merged, rounded up (docs/sweeps.md, "A million points").
+/// Bytes held for one row during a merge, rounded up (docs/guide/sweep-times.md, "A million points").
 const MERGE_ROW_BYTES: f64 = 16.0;
-/// Memory in bytes held for the files of one task while rows are merged, rounded up.
+/// Bytes held for the files of one task during a merge, rounded up.
 const MERGE_TASK_BYTES: f64 = 32e3;
-/// Memory in bytes of the merging process without rows, rounded up.
+/// Memory in bytes of the merging process before the first row, rounded up.
 const MERGE_BYTES: f64 = 50e6;
 
-/// Estimated cost of a sweep, from a sample of its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sample {
-    /// Number of points of the whole sweep.
     points: u64,
     /// Mean time to simulate a point, in seconds on one core.
     mean_s: f64,
-    /// Maximum time to simulate a point, in seconds on one core.
     most_s: f64,
-    /// Largest memory that a point needs, in bytes.
     most_bytes: f64,
 }
 
-/// Time and memory requested from Slurm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Resources {
     tasks: u64,
     threads: u64,
-    /// Time limit of one task in minutes. Members with the prefix `merge` are for the job that merges the rows.
+    /// Time limit of one task in minutes. Members with the prefix `merge` belong to the job that merges the rows.
     minutes: u64,
     megabytes: u64,
     merge_minutes: u64,
@@ -84,7 +76,6 @@ struct Resources {
 }
 
 impl Sample {
-    /// Estimates the cost of points that are spread evenly over the parameter space.
     fn of(sweep: &Sweep) -> Self {
         let points = sweep.space().points();
         let chosen: Vec<u64> = spread(points, SAMPLE).collect();
@@ -105,9 +96,9 @@ impl Sample {
     }
 }
 
-/// Returns at most `most` distinct indices of points that are spread evenly over every axis. The step between indices
-/// is 0.618 times the number of points (golden section). The step is increased until it has no common factor with the
-/// number of points, so that no index occurs twice.
+/// Returns at most `most` distinct indices of points, spread evenly over every axis of the sweep. The step between
+/// indices is 0.618 times the number of points (golden section). The step is increased until it has no common factor
+/// with the number of points, so that no index occurs twice.
 fn spread(points: u64, most: u64) -> impl Iterator<Item = u64> {
     let golden = (points as f64 * 0.618_033_988_75) as u64;
     let step = (golden..).find(|step| common_factor(*step, points) == 1).unwrap_or(1);
@@ -118,7 +109,6 @@ const fn common_factor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { common_factor(b, a % b) }
 }
 
-/// Estimates the cost of a whole sweep on a number of threads from a sample of its points.
 pub(crate) fn estimate(sweep: &Sweep, threads: usize) -> Estimate {
     Sample::of(sweep).whole(threads)
 }
@@ -151,8 +141,8 @@ impl Resources {
     }
 }
 
-/// Returns the smallest number of tasks, at least `wanted`, that has no common factor with the number of points.
-/// Returns a smaller number if the array would exceed [`MOST_TASKS`].
+/// Returns the smallest number of tasks, at least `wanted`, without a common factor with the number of points. Returns
+/// a smaller number if the array would exceed [`MOST_TASKS`].
 fn even_tasks(wanted: u64, points: u64) -> u64 {
     let most = MOST_TASKS.min(points).max(1);
     let wanted = wanted.clamp(1, most);
@@ -160,7 +150,6 @@ fn even_tasks(wanted: u64, points: u64) -> u64 {
     (wanted..=most).find(is_even).or_else(|| (1..wanted).rev().find(is_even)).unwrap_or(wanted)
 }
 
-/// Resources that the scripts request, and the path of the script that submits the jobs.
 #[derive(Debug)]
 pub(crate) struct Written {
     resources: Resources,
@@ -168,7 +157,6 @@ pub(crate) struct Written {
 }
 
 impl Written {
-    /// Returns a message for the user: which jobs were written and how to submit them.
     pub(crate) fn text(&self) -> String {
         let Resources { tasks, threads, minutes, megabytes, .. } = self.resources;
         format!(
@@ -180,11 +168,6 @@ impl Written {
     }
 }
 
-/// Writes the three scripts into a folder.
-///
-/// # Errors
-///
-/// Fails when the folder cannot be written.
 pub(crate) fn write(sweep: &Sweep, jobs: &Jobs, folder: &Path) -> Result<Written, CliError> {
     let sample = Sample::of(sweep);
     let resources = Resources::of(sample, jobs.tasks, jobs.threads);
@@ -298,24 +281,26 @@ mod tests {
     /// Tests the resources of a job array. 20,000 points of 0.9 s take 18,000 s, which is 20 tasks of 900 s on one
     /// thread. The number of tasks must have no common factor with 20,000 = 2^5 5^4, so the next number is 21.
     #[test]
-    fn resources_follow_the_formulas() {
+    fn the_resources_of_a_job_array_follow_the_formulas() {
         let one = Resources::of(SAMPLED, None, 1);
-        // 60 + 5 (18,000 / 21 + 3) = 4,361 s; 2 x 40 MB; 60 + 40e-6 x 20,000 = 60.8 s; 50 + 0.32 + 0.67 MB.
+        // Time 60 + 5 (18,000 / 21 + 3) = 4,361 s; memory 2 x 40 MB. To merge: time 60 + 40e-6 x 20,000 = 60.8 s;
+        // memory 50 + 0.32 + 0.67 MB.
         let expected =
             Resources { tasks: 21, threads: 1, minutes: 73, megabytes: 80, merge_minutes: 2, merge_megabytes: 51 };
         assert_eq!(one, expected);
-        // Four threads: 4,500 s of work are 5 tasks, and 7 is the next number; 60 + 5 (4,500 / 7 + 3) = 3,289 s.
+        // On four threads, 4,500 s of work are 5 tasks. The next allowed number is 7, which gives 60 + 5 (4,500 / 7 +
+        // 3) = 3,289 s.
         let four = Resources::of(SAMPLED, None, 4);
         assert_eq!((four.tasks, four.minutes, four.megabytes), (7, 55, 320));
         let said = Resources::of(SAMPLED, Some(10), 1);
-        // 60 + 5 (1,800 + 3) = 9,075 s.
+        // Ten tasks take 60 + 5 (1,800 + 3) = 9,075 s.
         assert_eq!((said.tasks, said.minutes), (10, 152));
     }
 
     #[test]
-    fn an_array_is_no_longer_than_slurm_takes_and_no_task_is_empty() {
+    fn an_array_fits_the_limit_of_slurm_and_no_task_is_empty() {
         let million = Sample { points: 1_000_000, mean_s: 10.0, ..SAMPLED };
-        // 11,112 tasks were wanted; 999 is the greatest number below 1,000 without the factors 2 and 5.
+        // The formula gives 11,112 tasks. The greatest number below 1,000 without the factors 2 and 5 is 999.
         assert_eq!(Resources::of(million, None, 1).tasks, 999);
         assert_eq!(Resources::of(Sample { points: 3, mean_s: 1e4, ..SAMPLED }, None, 1).tasks, 2);
         assert_eq!(Resources::of(Sample { points: 3, ..SAMPLED }, Some(9), 1).tasks, 3);
@@ -323,13 +308,13 @@ mod tests {
     }
 
     #[test]
-    fn sampled_points_are_each_once_and_meet_every_value_of_every_axis_evenly() {
+    fn sampled_points_are_distinct_and_cover_every_axis_evenly() {
         for points in [1, 2, 7, 300, 301, 4_096, 1_000_000, 9_999_991] {
             let chosen: BTreeSet<u64> = spread(points, SAMPLE).collect();
             assert_eq!(chosen.len() as u64, points.min(SAMPLE), "{points}");
             assert!(chosen.iter().all(|point| *point < points));
         }
-        // Axes of 10, the last of which changes fastest.
+        // All axes have 10 values, and the last axis changes fastest.
         for place in [1, 10, 100, 1_000] {
             for value in 0..10 {
                 let met = spread(10_000, SAMPLE).filter(|point| point / place % 10 == value).count();
@@ -339,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn words_go_through_a_shell_as_they_are() {
+    fn arguments_pass_through_a_shell_unchanged() {
         assert_eq!(quoted("a/b-1.toml"), "a/b-1.toml");
         assert_eq!(quoted("it's $HOME"), "'it'\\''s $HOME'");
         assert_eq!(quoted(""), "''");

@@ -1,4 +1,4 @@
-//! Executes an experiment within its budget, and saves and restores checkpoints.
+//! Runs an experiment within its budget, and saves and restores checkpoints.
 
 use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
@@ -34,17 +34,13 @@ pub(crate) struct SnapshotArgs {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct How<'a> {
-    /// Number of worker threads for pixels. `None` means one for each core.
     pub(crate) threads: Option<u64>,
-    /// Optimizations of the simulator that are disabled.
     pub(crate) without: &'a [Optimization],
-    /// Observations that are kept in the outcome.
     pub(crate) keep: Keep,
     pub(crate) budget: BudgetArgs,
     pub(crate) quiet: bool,
 }
 
-/// Outcome of a run, and an error if the run was too short for statistics.
 #[derive(Debug)]
 pub(crate) struct Simulated {
     pub(crate) outcome: Outcome,
@@ -52,7 +48,6 @@ pub(crate) struct Simulated {
 }
 
 impl Simulated {
-    /// Converts the result of a run. A run that is too short for statistics still has an outcome.
     pub(crate) fn of(run: Result<Outcome, ExperimentError>) -> Result<Self, CliError> {
         match run {
             Ok(outcome) => Ok(Self { outcome, too_short: None }),
@@ -68,26 +63,19 @@ impl Simulated {
         }
     }
 
-    /// Returns the outcome of the run, if it was long enough for statistics.
-    ///
-    /// # Errors
-    ///
-    /// Returns the stored error if the run was too short.
+    /// Returns the outcome of the run. Fails if the run was too short for statistics.
     pub(crate) fn long_enough(self) -> Result<Outcome, CliError> {
         self.too_short.map_or(Ok(self.outcome), Err)
     }
 }
 
-/// Prefixes of the keys that a command may set when it restores a checkpoint. The checkpoint determines all other keys.
+/// Keys, or prefixes of keys, that the user may set together with `--restore`. The checkpoint determines all other
+/// keys.
 const KEYS_BESIDE_SNAPSHOT: [&str; 4] = ["fields", "pixels", "measure", "output."];
 
 impl SnapshotArgs {
-    /// Returns the experiment of the checkpoint, changed by the settings in `given`. Returns `given` if no checkpoint
-    /// is restored.
-    ///
-    /// # Errors
-    ///
-    /// Fails when the checkpoint cannot be used, or a setting contradicts the checkpoint.
+    /// Returns the experiment of the checkpoint, changed by the settings in `given`. Without a checkpoint, returns
+    /// `given`. Fails if a setting contradicts the checkpoint.
     pub(crate) fn experiment(&self, given: ExperimentFile) -> Result<ExperimentFile, CliError> {
         let Some(path) = &self.restore else { return Ok(given) };
         // Most settings are part of the checkpoint, and changing them would change the run.
@@ -111,12 +99,8 @@ impl SnapshotArgs {
         Ok(Snapshot::read(text, &name)?)
     }
 
-    /// Simulates the experiment `plan`. If an option requests a checkpoint, the checkpoint is saved or restored at the
-    /// field that the option or the checkpoint states.
-    ///
-    /// # Errors
-    ///
-    /// Fails when the run fails, differs from the checkpoint, or the checkpoint cannot be written.
+    /// Simulates an experiment. Depending on the options, saves a checkpoint at a field, or continues from a restored
+    /// checkpoint. Fails if the restored run differs from its checkpoint.
     pub(crate) fn simulate(&self, plan: &Plan, how: How<'_>) -> Result<Simulated, CliError> {
         let saving = self.saving(plan)?;
         // The text is written after the run, so that an interrupted run leaves no file.
@@ -161,7 +145,7 @@ impl SnapshotArgs {
         Ok(simulated)
     }
 
-    /// Opens the file of `--save`, and checks that the field of `--save-at` lies within the run.
+    /// Opens the file of `--save`. Fails if the field of `--save-at` lies outside the run.
     fn saving(&self, plan: &Plan) -> Result<Option<OutputFile>, CliError> {
         let (Some(field), Some(path)) = (self.save_at, &self.save) else { return Ok(None) };
         if !(1..plan.fields).contains(&field) {
@@ -171,8 +155,8 @@ impl SnapshotArgs {
         OutputFile::open(path, "--save").map(Some)
     }
 
-    /// Returns the checkpoint that `--restore` names, with its file name. Checks that the field of the checkpoint lies
-    /// within the run.
+    /// Returns the checkpoint in the file of `--restore`, with the file name. Fails if the field of the checkpoint lies
+    /// outside the run.
     fn restored(&self, plan: &Plan) -> Result<Option<(Snapshot, String)>, CliError> {
         let Some(path) = &self.restore else { return Ok(None) };
         let snapshot = self.read(path)?;

@@ -98,22 +98,18 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
 /// Words and numbers that differ between the commands `pxpl5 sweep` and `pxpl5 volume sweep`.
 #[derive(Debug)]
 pub(crate) struct SweepCommand {
-    /// Name of the command after `pxpl5`.
     pub(crate) name: &'static str,
-    /// Participle for the work at a point, such as "simulated".
+    /// Participle for the work at a point, for example "simulated".
     pub(crate) verb: &'static str,
-    /// Number of points in parallel.
     pub(crate) parallel: usize,
     pub(crate) threads: Option<u64>,
 }
 
 impl SweepFolderArgs {
-    /// Runs the points of a sweep that have no stored row yet, and stores their rows. Ctrl-C ends the sweep, and prints
-    /// the command that continues it.
+    /// Runs the points without a stored row, and stores their rows. Ctrl-C ends the sweep, and prints the command that
+    /// resumes it.
     ///
-    /// # Errors
-    ///
-    /// Fails if the folder cannot be used, and if no point can be simulated.
+    /// Fails if no point can be simulated.
     pub(crate) fn run(&self, sweep: &impl Swept, header: Header, command: &SweepCommand) -> Result<(), CliError> {
         // The store keeps finished rows, so that Ctrl-C loses only the points in progress.
         let mut store = Store::open(&self.out, header, self.resume)?;
@@ -149,8 +145,6 @@ impl SweepFolderArgs {
 }
 
 impl SweepArgs {
-    /// Returns an error if the estimated time or memory of a sweep exceeds the limits of the options. The check takes
-    /// place before the sweep starts.
     fn admit(&self, sweep: &Sweep, threads: usize) -> Result<(), CliError> {
         // The estimate of hundreds of points takes seconds, so a sweep without limits skips the estimate.
         if self.max_memory.is_none() && self.max_seconds.is_none() {
@@ -163,7 +157,6 @@ impl SweepArgs {
     }
 }
 
-/// Checks that the sweep is valid, and writes the scripts of `--slurm`.
 fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliError> {
     sweep.header()?;
     let threads = args.threads.unwrap_or(1);
@@ -173,7 +166,7 @@ fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliE
     if args.folder.quiet { Ok(()) } else { print(&written.text()) }
 }
 
-/// Returns the warnings about unsupported settings in the experiments at the first and the last point of the sweep.
+/// Returns the warnings about unsupported settings at the first and the last point of the sweep.
 fn supposed(sweep: &Sweep) -> Vec<String> {
     let ends = [0, sweep.space().points() - 1].map(|point| sweep.plan(point).map(|plan| plan.warnings()));
     let mut all: Vec<String> = ends.into_iter().flatten().flatten().collect();
@@ -184,8 +177,8 @@ fn supposed(sweep: &Sweep) -> Vec<String> {
 /// Exit code of a sweep that was ended by Ctrl-C: 128 plus the number of the signal, as in shells.
 const INTERRUPTED: i32 = 130;
 
-/// Installs a handler that ends the sweep on Ctrl-C and prints the command to resume it. Rows of finished points are
-/// already in the file.
+/// Installs a handler that ends the sweep on Ctrl-C and prints the command in `again`, which resumes the sweep. Rows of
+/// finished points are already in the file.
 fn install_interrupt_handler(again: String) -> Result<(), CliError> {
     let listening = ctrlc::set_handler(move || end_interrupted(&again));
     listening.map_err(|error| CliError::failure(format!("Ctrl-C cannot be handled: {error}")))

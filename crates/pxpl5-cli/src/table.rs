@@ -3,16 +3,12 @@
 use crate::numbers::count_of;
 use pxpl5::{DuePictures, Report, Statistics};
 
-/// A published value, and the simulated value of the same quantity.
 #[derive(Clone, Debug)]
 pub(crate) struct Comparison {
     /// Name of the quantity, with its unit.
     pub(crate) quantity: String,
-    /// Value printed in the paper.
     pub(crate) published: f64,
-    /// Simulated value of the run.
     pub(crate) simulated: f64,
-    /// Name of the paper, or name of the paper and number of the figure.
     pub(crate) source: String,
 }
 
@@ -22,7 +18,6 @@ impl Comparison {
     }
 }
 
-/// Name of a table row, with the function that formats the row's cell for a run.
 type TableRow = (&'static str, fn(&Report) -> String);
 
 const ROWS: [TableRow; 13] = [
@@ -60,7 +55,7 @@ fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, V
     ]
 }
 
-/// Returns a table cell for each run. The cell is empty for a run without a published value.
+/// Returns one cell for each run. The cell is empty if the run has no published value.
 fn comparison_cells(runs: &[(&Report, Option<&Comparison>)], cell: impl Fn(&Comparison) -> String) -> Vec<String> {
     runs.iter().map(|(_, comparison)| comparison.map_or_else(String::new, &cell)).collect()
 }
@@ -74,13 +69,12 @@ fn ends(report: &Report) -> String {
     of_due(report, |due| format!("{}, {}, {}", due.late, due.incomplete, due.missed))
 }
 
-/// Formats the range of display periods over which all results are computed.
 fn window(report: &Report) -> String {
     report.window.map_or_else(|| "-".to_owned(), |window| format!("{} to {}", window.first_period, window.last_period))
 }
 
-/// Formats the table cell about due pictures. A picture is due at the retrace at which the pipeline must show the
-/// picture. The cell is "-" for a pipeline whose pictures have no deadlines.
+/// Formats the cell about due pictures. A picture is due at the retrace at which the pipeline must show the picture.
+/// The cell is "-" if the pipeline's pictures have no deadlines.
 fn of_due(report: &Report, cell: impl Fn(&DuePictures) -> String) -> String {
     report.due.as_ref().map_or_else(|| "-".to_owned(), cell)
 }
@@ -93,7 +87,8 @@ fn primitives(report: &Report) -> String {
     }
 }
 
-/// Formats mean, standard deviation and number of values. The mean of no values and the deviation of one value are "-".
+/// Formats mean, standard deviation and number of values. The mean of no values is "-", and so is the standard
+/// deviation of one value.
 fn mean_and_sd(s: &Statistics, digits: usize) -> String {
     if s.mean.is_nan() {
         return "-".to_owned();

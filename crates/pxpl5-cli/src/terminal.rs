@@ -1,23 +1,14 @@
-//! Prints results to standard output, and messages to standard error.
+//! Printer of results to standard output and of messages to standard error.
 
 use crate::error::CliError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
 
-/// Prints a result to standard output. A closed pipe (`| head`) is not an error.
-///
-/// # Errors
-///
-/// Fails when standard output cannot be written for another reason, such as a full disk.
+/// Prints a result to standard output. Returns no error if the pipe is closed (`| head`).
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
     print_bytes(text.as_bytes())
 }
 
-/// Prints bytes to standard output, as [`print`] does for text.
-///
-/// # Errors
-///
-/// Fails in the same cases as [`print`].
 pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
@@ -33,21 +24,18 @@ pub(crate) fn print_error(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Prints warnings to standard error unless `quiet` is true.
 pub(crate) fn warn(warnings: &[String], quiet: bool) {
     if !quiet {
         warnings.iter().for_each(|warning| print_error(&format!("pxpl5: warning: {warning}\n")));
     }
 }
 
-/// Updates a progress bar: `done` of `of` steps are finished.
 pub(crate) fn advance(bar: &ProgressBar, done: u64, of: u64) {
     bar.set_length(of);
     bar.set_position(done);
 }
 
-/// Returns a progress bar that shows the remaining time. The bar appears on standard error, and only if this is a
-/// terminal.
+/// Returns a progress bar with the remaining time. The bar appears on standard error, and only on a terminal.
 pub(crate) fn progress(total: u64, what: &str, quiet: bool) -> ProgressBar {
     let shown = !quiet && std::io::stderr().is_terminal();
     let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };

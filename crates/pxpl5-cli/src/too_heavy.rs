@@ -1,4 +1,4 @@
-//! Warning before a run whose scene is too heavy: no picture will be shown in time.
+//! Warning before a run whose scene is so large that no picture will be shown in time.
 
 use crate::estimate::RunWork;
 use crate::numbers::count_of;
@@ -6,13 +6,13 @@ use pxpl5::Plan;
 use pxpl5::scene::Scene;
 use std::sync::Arc;
 
-/// Length of a short run in display fields: one second. No warning is given if a pipeline can show a picture within
-/// this number of fields, even if the run itself has fewer fields.
+/// Length of a short run in display fields: one second. A pipeline that can show a picture within this time causes no
+/// warning, even if the run itself is shorter.
 const SHORT_RUN: u64 = 60;
 
 /// Returns a warning if a run of `fields` display fields is expected to show no picture after the warm-up. The
-/// prediction comes from the closed form of the pipeline. Without a closed form, the function warns if the processors
-/// cannot transform all primitives once within the run.
+/// expectation comes from the closed form of the pipeline. For a pipeline without a closed form, the function warns if
+/// the processors cannot transform all primitives once within the run.
 pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<String> {
     let work = RunWork::of(plan, scene, false);
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;

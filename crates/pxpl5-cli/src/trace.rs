@@ -47,11 +47,7 @@ enum Format {
 }
 
 impl Format {
-    /// Returns the trace format for a file's extension. Pipes and devices get Perfetto's format.
-    ///
-    /// # Errors
-    ///
-    /// Fails for any other extension.
+    /// Returns the trace format for the extension of a file name. Pipes and devices get the format of Perfetto.
     fn of(path: &Path) -> Result<Self, CliError> {
         let end = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         match end.as_str() {

@@ -80,7 +80,7 @@ fn run_prints_one_json_object_and_writes_the_same_with_all_pictures() {
 }
 
 #[test]
-fn run_prints_a_table_and_nothing_when_quiet() {
+fn run_prints_a_table_and_with_quiet_prints_nothing() {
     let folder = Folder::new("arp-text");
     let text = out(&folder.run(&arp("run", &["--policy", "objects"])));
     for part in ["policy objects", "updates/s", "objects that changed memory", "new assignments of cells      -"] {
@@ -100,7 +100,7 @@ fn a_warped_walk_has_no_tear_and_a_slow_renderer_misses_retraces() {
 }
 
 #[test]
-fn settings_come_from_a_file_then_from_options_then_from_set() {
+fn options_override_the_file_and_set_overrides_options() {
     let folder = Folder::new("arp-file");
     folder.file(
         "walk.toml",
@@ -131,7 +131,7 @@ fn compare_lists_every_policy_and_warp_and_writes_its_files() {
 }
 
 #[test]
-fn what_is_wrong_is_named_with_what_was_expected_and_found() {
+fn errors_name_the_setting_and_the_expected_and_found_values() {
     let folder = Folder::new("arp-wrong");
     folder.file("bad.toml", "polcy = \"cells\"\n");
     for (arguments, code, parts) in [
@@ -168,7 +168,7 @@ fn what_is_wrong_is_named_with_what_was_expected_and_found() {
 }
 
 #[test]
-fn a_lens_that_is_too_wide_for_a_plane_has_pictures_too() {
+fn a_lens_too_wide_for_a_plane_still_has_pictures() {
     let folder = Folder::new("arp-wide");
     let wide = ["--lens", "equidistant", "--set", "arp.horizontal_deg=200", "--json"];
     let alone = json(&folder.run(&arp("run", &wide)));
@@ -180,7 +180,7 @@ fn a_lens_that_is_too_wide_for_a_plane_has_pictures_too() {
 
 /// Tests the default lens, which is flat. The views through the lens and without a lens must be equal.
 #[test]
-fn the_eye_sees_through_no_lens_unless_one_is_given() {
+fn the_default_lens_shows_the_same_picture_as_no_lens() {
     let folder = Folder::new("arp-flat");
     json(&folder.run(&arp("run", &["--json", "--out", "o"])));
     assert!(picture(&folder, "o/eye.png") == picture(&folder, "o/eye-flat.png"));

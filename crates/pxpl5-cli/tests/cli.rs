@@ -13,7 +13,7 @@ fn with<'a>(first: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
     [first, more].concat()
 }
 
-/// Asserts that a command is refused with this exit code, and that standard error contains all given texts.
+/// Asserts that a command is refused with the exit code `code`, and that standard error contains all texts in `says`.
 fn refused(args: &[&str], code: i32, says: &[&str]) {
     let folder = Folder::new(&format!(
         "refused-{:x}",
@@ -73,7 +73,7 @@ fn a_run_prints_one_object_with_units_in_its_names() {
 }
 
 #[test]
-fn a_run_that_shows_nothing_says_so_and_fails() {
+fn a_run_that_shows_nothing_fails_with_a_message() {
     // A frame of 20,000 triangles takes at least 70 fields, and the first four frames are discarded.
     too_short(&with(&FULL, &["--fields", "200"]), "simulate more fields: the next one is shown after about");
     // Slats shows every field, and none of these fields is complete in time.
@@ -93,7 +93,7 @@ fn a_run_that_shows_nothing_says_so_and_fails() {
 }
 
 #[test]
-fn a_run_that_is_too_short_prints_what_it_has() {
+fn a_run_that_is_too_short_prints_its_partial_results() {
     let folder = Folder::new("too-short");
     let short = with(&FULL, &["--fields", "60"]);
     let output = folder.run(&with(&short, &["--json"]));
@@ -118,7 +118,7 @@ fn json_of(output: &std::process::Output) -> serde_json::Value {
 }
 
 #[test]
-fn one_picture_of_many_that_are_due_has_no_deviation() {
+fn the_latency_of_a_single_shown_picture_has_no_deviation() {
     let folder = Folder::new("one-picture");
     let report = json(&folder.run(&with(&FULL, &["--fields", "400", "--json"])));
     assert_eq!((&report["pictures"], &report["latency_ms"]["sd"]), (&1.into(), &serde_json::Value::Null));
@@ -133,7 +133,7 @@ fn read(folder: &Path, name: &str) -> Vec<u8> {
 }
 
 #[test]
-fn result_files_open_with_preset_configuration_version_level_and_seed_and_tables_with_names() {
+fn result_files_state_their_origin_and_tables_begin_with_column_names() {
     let folder = Folder::new("files");
     let report = json(&folder.run(&with(&SLATS, &["--json", "--out", "a/b", "--set", "gp.triangle_ns=31000"])));
     // With the feature `parquet` there is also a Parquet file.
@@ -185,7 +185,7 @@ fn trace_hash_with(folder: &Folder, more: &[&str]) -> serde_json::Value {
 }
 
 #[test]
-fn pixels_threads_and_repetition_leave_the_trace_alone() {
+fn pixels_and_threads_do_not_change_the_trace_of_a_repeated_run() {
     let folder = Folder::new("trace");
     let expected = trace_hash_with(&folder, &[]);
     for more in
@@ -196,7 +196,7 @@ fn pixels_threads_and_repetition_leave_the_trace_alone() {
 }
 
 #[test]
-fn a_table_goes_to_standard_output_and_quiet_says_nothing() {
+fn run_prints_a_table_to_standard_output_and_with_quiet_prints_nothing() {
     let folder = Folder::new("table");
     let output = folder.run(&SLATS);
     assert!(output.status.success() && err(&output).is_empty());
@@ -210,7 +210,7 @@ fn a_table_goes_to_standard_output_and_quiet_says_nothing() {
 }
 
 #[test]
-fn lists_name_what_is_built_in() {
+fn lists_name_all_built_in_items() {
     let folder = Folder::new("lists");
     let scenes = json(&folder.run(&["scenes", "--json"]));
     let known: Vec<_> = scenes["scenes"].as_array().expect("a list").iter().map(|scene| &scene["name"]).collect();
@@ -229,7 +229,7 @@ fn lists_name_what_is_built_in() {
 }
 
 #[test]
-fn a_flag_of_the_other_pipeline_is_refused() {
+fn a_flag_of_another_pipeline_is_refused() {
     refused(&with(&SLATS, &["--mono"]), 2, &["--mono", "does not apply to the pipeline slats"]);
     for (flag, value) in [("--copy", "whole"), ("--code", "1994"), ("--binning", "all")] {
         refused(&with(&RC, &[flag, value]), 2, &[flag, "does not apply to the pipeline rendering-control"]);
@@ -239,7 +239,7 @@ fn a_flag_of_the_other_pipeline_is_refused() {
 }
 
 #[test]
-fn unknown_names_are_refused_with_the_nearest() {
+fn unknown_names_are_refused_and_the_error_suggests_the_nearest_name() {
     refused(&with(&SLATS, &["--machine", "slat"]), 2, &["--machine", "`slat`", "`slats`"]);
     refused(&with(&SLATS, &["--set", "gp.triangel_ns=1"]), 2, &["--set", "`gp.triangle_ns`"]);
     refused(&with(&SLATS, &["--copy", "splitt"]), 2, &["--copy", "whole, split", "did you mean `split`?"]);
@@ -271,7 +271,7 @@ fn impossible_numbers_are_refused() {
 }
 
 #[test]
-fn a_million_triangles_do_not_fit_and_the_message_says_what_to_do() {
+fn a_million_triangles_do_not_fit_and_the_error_names_options_that_help() {
     let args = ["run", "--pipeline", "slats", "--scene", "full-screen:1000000", "--pixels", "off"];
     refused(&args, 1, &["GP 0", "bytes", "--gps", "--triangles"]);
 }
@@ -360,7 +360,7 @@ fn an_experiment_file_reaches_every_setting_and_its_errors_name_the_line() {
 }
 
 #[test]
-fn what_check_prints_is_a_file_that_says_the_same() {
+fn check_prints_an_equivalent_file() {
     let folder = Folder::new("check");
     let args = ["--pipeline", "rendering-control", "--scene", "mig", "--mono", "--set", "ring.hop_ns=100"];
     let once = out(&folder.run(&with(&["check"], &args)));
@@ -372,7 +372,7 @@ fn what_check_prints_is_a_file_that_says_the_same() {
 
 #[cfg(unix)]
 #[test]
-fn a_reader_that_goes_away_is_no_fault_and_a_full_disk_is() {
+fn a_closed_pipe_is_no_error_and_a_full_disk_is_an_error() {
     for args in [&["machines"][..], &["scenes"], &["--help"], &["completions", "bash"]] {
         let mut child =
             command(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
@@ -388,7 +388,7 @@ fn a_reader_that_goes_away_is_no_fault_and_a_full_disk_is() {
 }
 
 #[test]
-fn help_shows_examples_and_completions_know_the_options() {
+fn help_shows_examples_and_completions_have_the_options() {
     let folder = Folder::new("help");
     for args in
         [&["--help"][..], &["run", "--help"], &["check", "--help"], &["demo", "--help"], &["machines", "--help"]]
@@ -402,7 +402,7 @@ fn help_shows_examples_and_completions_know_the_options() {
 }
 
 #[test]
-fn without_arguments_both_pipelines_run_and_leave_pictures() {
+fn without_arguments_the_command_runs_both_pipelines_and_writes_pictures() {
     let folder = Folder::new("demo");
     let output = folder.run(&[]);
     assert!(output.status.success(), "{}", err(&output));
@@ -513,7 +513,7 @@ fn experiments() -> Vec<(String, String)> {
 }
 
 #[test]
-fn every_experiment_file_is_valid_and_every_figure_that_a_run_can_show_has_one() {
+fn every_experiment_file_is_valid_and_every_reproducible_figure_has_an_experiment_file() {
     let mut figures = std::collections::BTreeSet::new();
     for (name, text) in experiments() {
         let file = pxpl5::ExperimentFile::parse(&text, &name).expect("valid");
@@ -555,7 +555,7 @@ fn assert_agrees_with_accuracy(published: &serde_json::Value) {
 const DIFFERS: &str = "# Not the number of ACCURACY.md: ";
 
 #[test]
-fn the_files_of_figures_agree_with_accuracy_md_or_say_why_not() {
+fn the_files_of_figures_agree_with_accuracy_md_or_state_the_reason() {
     for (name, text) in experiments() {
         let file = pxpl5::ExperimentFile::parse(&text, &name).expect("valid");
         if file.is_sweep() || text.contains(DIFFERS) {
@@ -591,7 +591,7 @@ fn the_files_of_figures_1_2_9_10_and_11_reproduce_them() {
     }
 }
 
-/// Returns the first cell behind the name of a row, in the table that the command prints to the terminal.
+/// Returns the first cell after the name of a row, in the table that the command prints to the terminal.
 fn cell(text: &str, name: &str) -> String {
     let line = text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("no {name}: {text}"));
     line[name.len()..].trim().to_owned()
@@ -600,7 +600,7 @@ fn cell(text: &str, name: &str) -> String {
 /// Tests light and heavy runs of all kinds. The table on the terminal must show the rounded values of the JSON report,
 /// and `-` for null.
 #[test]
-fn the_terminal_says_what_json_says() {
+fn the_terminal_and_json_show_the_same_values() {
     let folder = Folder::new("terminal");
     let pipelines =
         ["slats", "rendering-control", "jitp-field", "jitp-dual-screen-racing", "frameless", "arp-priority"];
@@ -637,7 +637,7 @@ fn the_terminal_says_what_json_says() {
 
 /// Tests a scene that needs only one update: a still ball in front of a still head, on a display that turns cube faces.
 #[test]
-fn a_scene_that_is_drawn_once_has_no_rate_and_no_limit_by_rate_and_is_shown() {
+fn a_scene_that_is_drawn_once_counts_as_shown_and_has_no_update_rate() {
     let folder = Folder::new("drawn-once");
     let still = ["--scene", "sphere:1000", "--set", "head.path=still", "--set", "head.sway=0"];
     for pipeline in ["arp-priority", "arp-cells"] {

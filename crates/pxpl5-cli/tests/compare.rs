@@ -59,9 +59,9 @@ fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up
     }
 }
 
-/// Causes and predictors cost time, so a comparison leaves them out unless it is asked. They change no other number.
+/// Causes and predictors take time, so a comparison computes them only on request. They change no other number.
 #[test]
-fn causes_and_predictors_are_added_on_demand_and_change_nothing_else() {
+fn computing_causes_and_predictors_changes_no_other_number_of_a_comparison() {
     let shared =
         ["--scene", "full-screen:2", "--fields", "30", "--seeds", "2", "--only", "slats,vdrt,jitp-field,ideal"];
     let given = |more: &[&str]| {
@@ -96,7 +96,7 @@ fn causes_and_predictors_are_added_on_demand_and_change_nothing_else() {
 }
 
 #[test]
-fn boards_triangles_seeds_and_any_setting_are_those_of_the_command_line() {
+fn a_comparison_uses_the_boards_triangles_seeds_and_settings_of_the_command_line() {
     let json = json(&compare(&[
         "--gps",
         "17",
@@ -127,7 +127,7 @@ fn boards_triangles_seeds_and_any_setting_are_those_of_the_command_line() {
 }
 
 #[test]
-fn what_is_too_heavy_for_a_pipeline_says_so_and_what_it_could_draw_as_limit_does() {
+fn a_scene_too_heavy_for_a_pipeline_is_reported_with_the_limit_of_the_pipeline() {
     let settings = ["--machine", "small-hmd", "--set", "fields=24"];
     let only = ["--only", "slats,jitp-scanline-racing"];
     let json = json(&compare(
@@ -147,7 +147,7 @@ fn what_is_too_heavy_for_a_pipeline_says_so_and_what_it_could_draw_as_limit_does
 }
 
 #[test]
-fn a_folder_gets_the_tables_the_drawings_of_the_run_and_the_four_pictures() {
+fn a_comparison_writes_its_tables_drawings_and_four_pictures_into_the_folder() {
     let out = folder("files");
     let path = out.to_str().expect("a plain path");
     let shown = ["rendering-control", "slats", "vdrt", "frameless", "jitp-field", "jitp-scanline-racing"];
@@ -186,7 +186,7 @@ fn a_folder_gets_the_tables_the_drawings_of_the_run_and_the_four_pictures() {
 }
 
 #[test]
-fn what_is_wrong_with_an_option_is_said_and_the_exit_code_is_2() {
+fn an_invalid_option_is_reported_with_exit_code_2() {
     for (arguments, expected) in [
         (["--head", "pan:fast"], "such as pan:200"),
         (["--head", "dance"], "expected still, pan:DEG_PER_S"),
@@ -206,7 +206,7 @@ fn what_is_wrong_with_an_option_is_said_and_the_exit_code_is_2() {
 }
 
 #[test]
-fn what_was_not_shown_or_is_never_due_is_null_in_json_and_empty_in_the_table() {
+fn values_that_were_not_measured_are_null_in_json_and_empty_in_the_table() {
     let out = folder("null");
     let path = out.to_str().expect("a plain path");
     let only = ["--only", "slats,ideal,frameless,jitp-dual-screen"];

@@ -35,7 +35,7 @@ fn comparison(folder: &Folder, out: &str) -> Value {
     all
 }
 
-/// Leaves the folder as a kill leaves it: one whole row, half of another, and no results.
+/// Leaves the folder in the state after a kill: one complete row, half of a second row, and no results.
 fn interrupt(folder: &Folder, out: &str) -> String {
     let rows = read(folder, &format!("{out}/rows/rows.jsonl"));
     let lines: Vec<&str> = rows.split_inclusive('\n').collect();
@@ -47,14 +47,14 @@ fn interrupt(folder: &Folder, out: &str) -> String {
 }
 
 #[test]
-fn an_interrupted_comparison_goes_on_and_gives_the_same_files() {
+fn an_interrupted_comparison_resumes_and_writes_the_same_files() {
     let folder = Folder::new("compare-resume");
     let whole = folder.run(&with(&["--out", "whole"]));
     assert!(whole.status.success(), "{}", err(&whole));
     assert!(err(&whole).contains("row 3 of 3, ") && err(&whole).contains(" s to go"), "{}", err(&whole));
     assert!(folder.run(&with(&["--out", "o"])).status.success());
     let kept = interrupt(&folder, "o");
-    // Without --resume nothing is lost.
+    // Without --resume, the command is refused and the finished rows stay.
     let refused = folder.run(&with(&["--out", "o"]));
     assert_eq!(refused.status.code(), Some(2));
     assert!(
@@ -77,7 +77,7 @@ fn an_interrupted_comparison_goes_on_and_gives_the_same_files() {
 }
 
 #[test]
-fn rows_of_other_settings_are_refused_and_the_key_is_named() {
+fn resuming_a_comparison_with_other_settings_is_refused_with_the_changed_key() {
     let folder = Folder::new("compare-foreign");
     assert!(folder.run(&with(&["--out", "o"])).status.success());
     interrupt(&folder, "o");
@@ -119,7 +119,7 @@ fn recording(folder: &Folder, name: &str, hundredths: u32) {
 ///
 /// Two seconds are too short for an interval, and thirty seconds are more than ten blocks of the swinging head.
 #[test]
-fn a_recording_sets_the_length_and_has_an_interval_over_time() {
+fn a_recording_determines_the_number_of_fields_and_a_long_recording_gives_an_interval() {
     let folder = Folder::new("compare-recording");
     recording(&folder, "head.csv", 200);
     recording(&folder, "long.csv", 3_000);

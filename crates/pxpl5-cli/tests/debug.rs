@@ -45,7 +45,7 @@ fn made_anew(text: &str) -> (String, usize) {
 }
 
 #[test]
-fn the_sessions_of_the_guide_are_what_the_debugger_prints() {
+fn the_debugger_prints_the_sessions_of_the_guide() {
     let text = std::fs::read_to_string(page()).expect("the page");
     let (made, sessions) = made_anew(&text);
     assert!(sessions >= 2, "{sessions}");
@@ -95,7 +95,7 @@ fn debugger_commands_do_not_change_the_trace_of_the_run() {
 }
 
 #[test]
-fn a_wrong_command_says_what_was_expected_and_found() {
+fn a_wrong_command_is_reported_with_expected_and_found() {
     for (commands, said) in [
         ("jump", "expected a command (run, next, step,"),
         ("run to field 3; run to 10ms", "expected an instant not before now, 50.050000 ms, found 10.000000 ms"),
@@ -114,14 +114,14 @@ fn a_wrong_command_says_what_was_expected_and_found() {
 }
 
 #[test]
-fn without_a_terminal_it_says_how_to_go_on_without() {
+fn without_a_terminal_the_debugger_asks_for_commands_as_an_option() {
     let output = command(&SLATS).output().expect("it starts");
     assert_eq!(output.status.code(), Some(2));
     assert!(err(&output).contains("expected --do COMMANDS or --do-file FILE"), "{}", err(&output));
 }
 
 #[test]
-fn pictures_are_written_and_a_script_may_be_a_file() {
+fn the_debugger_executes_a_script_file_and_writes_pictures() {
     let folder = Folder::new("debug");
     folder.file("session.txt", "run to field 6   # the first pictures\nseen left left.png\nideal left ideal.png\n");
     let output = folder.run(&[&SLATS[..], &["--do-file", "session.txt"]].concat());
@@ -133,7 +133,7 @@ fn pictures_are_written_and_a_script_may_be_a_file() {
 }
 
 #[test]
-fn a_fault_of_the_machine_is_a_state_and_not_the_end_of_the_session() {
+fn a_fault_of_the_machine_does_not_end_the_session() {
     let args = ["debug", "--pipeline", "slats", "--scene", "full-screen:200000", "--fields", "8", "--pixels", "off"];
     let output =
         command(&[&args[..], &["--do", "run; show time; show waits; step"]].concat()).output().expect("it starts");

@@ -10,7 +10,7 @@ const MODEL: &[u8] =
     b"# Gr\xf6\xdfe\nusemtl M\xe9tall\nv 0 0 0\nv 1 0 \\\n0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
 #[test]
-fn what_a_reader_makes_of_a_model_is_told() {
+fn reading_a_model_prints_a_summary() {
     let folder = Folder::new("foreign-model");
     folder.file("model.obj", MODEL);
     let run = folder.run(&["check", "--pipeline", "slats", "--scene", "model.obj"]);
@@ -25,7 +25,7 @@ fn what_a_reader_makes_of_a_model_is_told() {
 }
 
 #[test]
-fn a_model_in_a_format_that_cannot_be_read_is_refused_with_those_that_can() {
+fn a_model_in_an_unknown_format_is_refused_with_the_known_formats() {
     let folder = Folder::new("foreign-format");
     for name in ["model.fbx", "./model.fbx", "model.FBX", "model.3ds"] {
         folder.file(name, "solid");
@@ -53,7 +53,8 @@ fn a_model_in_a_format_that_cannot_be_read_is_refused_with_those_that_can() {
     assert!(!run.status.success() && err(&run).contains("point.obj: expected at least one triangle with an area"));
 }
 
-/// A build without the reader of glTF says how to get it. A build with the reader reads the file.
+/// The error of a build without the reader of glTF states how to get the reader. A build with the reader reads the
+/// file.
 #[test]
 fn a_gltf_file_is_read_or_the_feature_that_reads_it_is_named() {
     let folder = Folder::new("foreign-gltf");
@@ -69,7 +70,7 @@ fn a_gltf_file_is_read_or_the_feature_that_reads_it_is_named() {
 }
 
 #[test]
-fn an_stl_file_is_a_scene() {
+fn an_stl_file_can_be_run_as_a_scene() {
     let folder = Folder::new("foreign-stl");
     let corners = ["0 0 0", "1 0 0", "0 1 0"].map(|corner| format!("vertex {corner}\n")).concat();
     folder.file("model.stl", format!("solid\nfacet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\nendsolid\n"));
@@ -88,7 +89,7 @@ fn recording() -> String {
 }
 
 #[test]
-fn recordings_with_repeated_times_and_gaps_are_told_and_a_run_that_needs_a_gap_is_refused() {
+fn recordings_with_repeated_times_or_gaps_are_reported_and_a_run_in_a_gap_is_refused() {
     let folder = Folder::new("foreign-recording");
     folder.file("head.tum", recording());
     let run = |more: &[&str]| {

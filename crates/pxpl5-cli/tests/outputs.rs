@@ -46,7 +46,7 @@ fn null_device(path: &Path) -> bool {
 }
 
 #[test]
-fn a_device_stays_a_device() {
+fn writing_to_a_device_does_not_replace_the_device_by_a_file() {
     let folder = folder("device");
     let device = folder.0.join("nul");
     let made = null_device(&device);
@@ -63,7 +63,7 @@ fn a_device_stays_a_device() {
 }
 
 #[test]
-fn a_pipe_gets_what_a_file_would() {
+fn a_pipe_gets_the_same_bytes_as_a_file() {
     let folder = folder("pipe");
     let pipe = folder.0.join("pipe");
     assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo is there").success());
@@ -78,7 +78,7 @@ fn a_pipe_gets_what_a_file_would() {
 }
 
 #[test]
-fn a_link_is_followed_whether_its_file_is_there_or_not() {
+fn writing_through_a_link_keeps_the_link_even_if_its_target_is_missing() {
     let folder = folder("links");
     fs::create_dir(folder.0.join("else")).expect("ours");
     symlink("else/where", folder.0.join("one")).expect("ours");
@@ -100,7 +100,7 @@ fn a_link_is_followed_whether_its_file_is_there_or_not() {
 }
 
 #[test]
-fn standard_output_by_another_name_gets_the_file_and_nothing_else() {
+fn writing_to_dev_stdout_puts_only_the_bytes_of_the_file_there() {
     let folder = folder("stdout");
     for args in COMMANDS {
         succeeds(&folder, args, "file");
@@ -114,7 +114,7 @@ fn standard_output_by_another_name_gets_the_file_and_nothing_else() {
 }
 
 #[test]
-fn a_full_device_is_told() {
+fn writing_to_a_full_device_is_reported_as_an_error() {
     let folder = folder("full");
     for args in COMMANDS {
         let output = folder.run(&[args, &["/dev/full"]].concat());
@@ -145,7 +145,7 @@ fn a_replaced_file_keeps_its_permissions() {
 const RUN: [&str; 9] = ["run", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "12", "--out", "r"];
 
 #[test]
-fn where_one_file_cannot_be_written_none_is() {
+fn if_one_file_cannot_be_written_none_is_written() {
     let folder = folder("one-of-many");
     fs::create_dir_all(folder.0.join("r/left.png/inner")).expect("ours");
     folder.file("r/report.json", "old");
@@ -159,7 +159,7 @@ fn where_one_file_cannot_be_written_none_is() {
 /// Tests a device that accepts no data. It must be written last, after all files have their new names. After the
 /// failure the files must have their old contents again.
 #[test]
-fn what_was_given_its_name_gets_its_old_contents_back() {
+fn a_file_that_was_already_replaced_gets_its_old_content_back() {
     let folder = folder("back");
     fs::create_dir(folder.0.join("r")).expect("ours");
     folder.file("r/report.json", "old");
@@ -171,7 +171,7 @@ fn what_was_given_its_name_gets_its_old_contents_back() {
 }
 
 #[test]
-fn of_runs_that_write_into_one_folder_at_once_one_is_there_whole() {
+fn concurrent_runs_into_one_folder_leave_one_whole_run() {
     let folder = folder("together");
     for round in 0..4 {
         let start = |seed: u32| {
@@ -197,7 +197,7 @@ fn of_runs_that_write_into_one_folder_at_once_one_is_there_whole() {
 
 /// Tests that an experiment file written by a command still finds the model file, whatever the current folder is.
 #[test]
-fn what_was_written_runs_again_from_anywhere() {
+fn a_written_experiment_runs_again_from_any_folder() {
     let folder = folder("again");
     fs::create_dir(folder.0.join("elsewhere")).expect("ours");
     folder.file("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -208,9 +208,8 @@ fn what_was_written_runs_again_from_anywhere() {
     assert_eq!((&first["trace_hash"], &first["config_hash"]), (&second["trace_hash"], &second["config_hash"]));
 }
 
-/// Tests that a long computation does not start if its output file cannot be written.
 #[test]
-fn a_path_that_cannot_be_written_is_told_before_the_work() {
+fn a_path_that_cannot_be_written_is_reported_before_the_run() {
     let folder = folder("early");
     for args in [["levels", "--chart"], ["levels", "--scaling"], ["figures", "--write"]] {
         let output = folder.run(&[&args[..], &["p.s/below"]].concat());
@@ -221,7 +220,7 @@ fn a_path_that_cannot_be_written_is_told_before_the_work() {
 
 /// Tests two runs into the same folder. Only the files of the second run must remain.
 #[test]
-fn a_run_takes_the_place_of_the_run_before_as_a_whole() {
+fn a_run_replaces_the_previous_run_as_a_whole() {
     let folder = folder("replaced");
     let run = |pipeline: &str, more: &[&str]| {
         let args = ["run", "--pipeline", pipeline, "--scene", "full-screen:2", "--fields", "20", "--quiet"];
@@ -269,7 +268,6 @@ fn rows_of_a_sweep_are_not_replaced_and_a_sweep_replaces_no_run() {
     assert!(err(&output).contains("files of `pxpl5 run`"), "{}", err(&output));
 }
 
-/// Tests that the manifest of another program is not replaced.
 #[test]
 fn a_manifest_of_another_program_is_left_alone() {
     let folder = folder("foreign");
@@ -283,7 +281,7 @@ fn a_manifest_of_another_program_is_left_alone() {
 
 /// Tests that temporary files of a process that has ended are removed, and those of a running process are kept.
 #[test]
-fn the_next_run_removes_what_dead_processes_have_left() {
+fn the_next_run_removes_leftovers_of_dead_processes() {
     let folder = folder("left-over");
     fs::create_dir(folder.0.join("r")).expect("ours");
     for name in [".pxpl5-999999-0.tmp", ".pxpl5-999999-12.old", ".pxpl5-1-0.tmp", ".pxpl5-notes.tmp", ".pxpl5-1.tmp"] {
@@ -322,7 +320,6 @@ fn a_run_that_is_interrupted_leaves_no_folder() {
     }
 }
 
-/// Tests that an error message names the user's file, and an option that the command has.
 #[test]
 fn an_error_names_the_file_and_the_option_that_were_given() {
     let folder = folder("named");

@@ -35,7 +35,7 @@ fn piece(name: &str) -> String {
 }
 
 #[test]
-fn every_piece_of_the_guide_is_cut_from_the_example() {
+fn every_code_block_of_the_guide_equals_its_part_of_the_example() {
     for name in ["imports", "pipeline", "firmware", "implementation", "entry", "main"] {
         let shown = format!("<!-- {name} -->\n```rust,ignore\n{}```\n", piece(name));
         assert!(PAGE.contains(&shown), "{name}: run scripts/guide-code");
@@ -61,12 +61,12 @@ fn the_example_needs_one_dependency() {
 }
 
 #[test]
-fn the_binary_of_ones_own_is_at_most_ten_lines() {
+fn a_binary_with_a_pipeline_of_its_own_has_at_most_ten_lines() {
     assert!(piece("main").lines().count() <= 10);
 }
 
 #[test]
-fn it_runs_and_its_latency_is_that_of_its_stages() {
+fn the_latency_of_the_pipeline_is_the_sum_of_its_stages() {
     let folder = Folder::new("own-run");
     let args = ["run", "--pipeline", "one-at-a-time", "--scene", "mig", "--fields", "60", "--json", "--out", "out"];
     let report: serde_json::Value = serde_json::from_str(&succeeded(&run(&folder, &args))).expect("JSON");
@@ -82,7 +82,7 @@ fn it_runs_and_its_latency_is_that_of_its_stages() {
 }
 
 #[test]
-fn its_key_is_an_option_and_others_are_refused() {
+fn the_key_of_the_pipeline_is_an_option_and_other_keys_are_refused() {
     let folder = Folder::new("own-keys");
     let own = ["run", "--pipeline", "one-at-a-time", "--scene", "full-screen:4", "--fields", "40", "--json"];
     let gouraud = succeeded(&run(&folder, &[&own[..], &["--shading", "gouraud"]].concat()));
@@ -94,7 +94,7 @@ fn its_key_is_an_option_and_others_are_refused() {
 }
 
 #[test]
-fn it_is_swept_compared_and_limited() {
+fn sweep_compare_and_limit_accept_the_pipeline() {
     let folder = Folder::new("own-all");
     let sweep = PAGE.split("```toml\n").nth(2).and_then(|rest| rest.split("```").next()).expect("the guide's sweep");
     folder.file("sweep.toml", sweep);

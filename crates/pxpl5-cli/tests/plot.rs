@@ -29,7 +29,7 @@ fn sweep(folder: &Folder, measured: impl Fn(&str, u64, u64) -> Value) {
 /// degrees of freedom the 97.5th percentile of Student's t is 4.302653 (any table). Half of the interval is therefore
 /// 4.302653 / sqrt(3) = 2.484138.
 #[test]
-fn means_deviations_and_intervals_are_those_of_the_seeds() {
+fn a_plot_computes_means_deviations_and_intervals_over_the_seeds() {
     let folder = Folder::new("plot-means");
     sweep(&folder, |copy, n, seed| json!(10 * n + seed + if copy == "split" { 100 } else { 0 }));
     let run = folder.run(&["plot", ".", "--x", "n", "--y", "latency", "--by", "copy", "--out", "fig.svg"]);
@@ -50,7 +50,8 @@ fn means_deviations_and_intervals_are_those_of_the_seeds() {
         let cells: Vec<&str> = line.split(',').collect();
         assert_eq!((cells[0], cells[1], cells[4], cells[7]), (copy, n, "3", "0"), "{line}");
         let number = |i: usize| cells[i].parse::<f64>().expect("a number");
-        // Positive values have the interval of their logarithm: the mean over and times exp(half / mean).
+        // Positive values have the interval of their logarithm: from mean / exp(half / mean) to mean x exp(half /
+        // mean).
         let factor = (2.484_138f64 / mean).exp();
         let expected = [mean, 1.0, mean / factor, mean * factor];
         for (found, expected) in [2, 3, 5, 6].map(number).into_iter().zip(expected) {
@@ -91,7 +92,7 @@ fn a_result_that_was_not_evaluated_is_not_zero() {
 /// Tests the size of figures. 84 mm are 992 dots of 1/300 inch, and 238.11 points of 1/72 inch.
 #[cfg(feature = "print")]
 #[test]
-fn figures_have_their_width_in_every_format() {
+fn a_figure_has_the_stated_width_in_every_format() {
     let folder = Folder::new("plot-formats");
     sweep(&folder, |_, n, seed| json!(n * seed));
     for name in ["fig.png", "fig.pdf"] {
@@ -122,7 +123,7 @@ fn pdf_without_its_feature_is_refused_with_the_command_that_builds_it() {
 }
 
 #[test]
-fn what_is_asked_wrongly_is_said_and_nothing_is_written() {
+fn an_invalid_request_is_reported_and_nothing_is_written() {
     let folder = Folder::new("plot-wrong");
     sweep(&folder, |_, n, _| json!(n));
     for (arguments, says) in [
@@ -151,7 +152,7 @@ fn what_is_asked_wrongly_is_said_and_nothing_is_written() {
 
 /// Tests a plot of a comparison. Each of its rows is a mean over seeds with an interval.
 #[test]
-fn a_comparison_is_a_point_for_each_pipeline() {
+fn a_plot_of_a_comparison_has_one_point_for_each_pipeline() {
     let folder = Folder::new("plot-comparison");
     let row = |name: &str, ms: f64, px: f64| json!({"pipeline": name, "head_to_light_ms": {"mean": ms}, "error": {"mean_px": {"mean": px, "low": px - 1.0, "high": px + 1.0, "n": 5}}});
     let comparison = json!({"schema": "pxpl5-comparison/2", "scene": "mig", "pipelines": [row("slats", 50.0, 8.0), row("jitp-field", 40.0, 7.0)]});
@@ -167,13 +168,13 @@ fn a_comparison_is_a_point_for_each_pipeline() {
     );
 }
 
-/// Returns the outlines of hollow and of filled circles in a figure.
+/// Returns the number of hollow circles (if `is_hollow` is true) or of filled circles in a figure.
 fn circles(svg: &str, is_hollow: bool) -> usize {
     svg.lines().filter(|line| line.contains("<circle") && line.contains("fill=\"none\"") == is_hollow).count()
 }
 
 #[test]
-fn a_point_of_a_sweep_with_pictures_not_shown_is_hollow_and_its_counts_are_in_the_table() {
+fn a_plotted_point_with_pictures_not_shown_is_hollow_and_the_table_has_its_counts() {
     let folder = Folder::new("plot-counts");
     let axes = json!([{"paths": ["n"], "steps": [[1], [2]]}, {"paths": ["seed"], "steps": [[1], [2]]}]);
     let mut text = json!({"schema": "pxpl5-sweep/1", "points": 4, "title": "t", "axes": axes}).to_string() + "\n";

@@ -111,7 +111,7 @@ fn try_all(files: &[(String, Vec<u8>)], rounds: u64, mut read: impl FnMut(&str, 
         let mut numbers = Numbers(round << 8);
         let (extension, file) = &files[numbers.below(files.len())];
         let bytes = damaged(file, files, &mut numbers);
-        // The panic hook prints the last input of the thread.
+        // If the reader panics, the drop of this guard prints the input.
         let _told = Told(round, &bytes);
         accepted += u64::from(read(extension, &bytes));
     }
@@ -131,7 +131,7 @@ impl Drop for Told<'_> {
 }
 
 #[test]
-fn models() {
+fn damaged_models_are_refused_or_give_a_valid_scene() {
     try_all(&corpus("tests/corpus/models", None), 20_000, |extension, bytes| {
         let format = Format::of_extension(extension).expect("of the corpus");
         let Ok(scene) = from_bytes(bytes, format, "damaged") else { return false };
@@ -151,14 +151,14 @@ fn experiment(bytes: &[u8]) -> bool {
 }
 
 #[test]
-fn experiments() {
+fn damaged_experiments_are_refused_or_can_be_read() {
     let mut files = corpus("tests/corpus/experiments", None);
     files.extend(corpus("../../experiments", Some("toml")));
     try_all(&files, 4_000, |_, bytes| experiment(bytes));
 }
 
 #[test]
-fn sweeps() {
+fn damaged_sweeps_are_refused_or_give_valid_points() {
     let mut files = corpus("tests/corpus/sweeps", None);
     files.extend(
         corpus("../../experiments", Some("toml"))
@@ -179,7 +179,7 @@ fn sweeps() {
 }
 
 #[test]
-fn recordings() {
+fn damaged_recordings_are_refused_or_give_finite_poses() {
     try_all(&corpus("tests/corpus/recordings", None), 20_000, |_, bytes| {
         let Ok(recording) = Recording::read(bytes) else { return false };
         let (first, last) = recording.span_ps();
@@ -193,7 +193,7 @@ fn recordings() {
 }
 
 #[test]
-fn snapshots() {
+fn damaged_snapshots_are_refused_or_are_read_back() {
     let text = "pipeline = \"slats\"\nscene = \"full-screen:4\"\nfields = 8\n";
     let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("an experiment");
     let scene = plan.load_scene().expect("built in");
@@ -215,7 +215,7 @@ fn snapshots() {
 }
 
 #[test]
-fn sources() {
+fn damaged_assembler_sources_are_refused_or_give_a_program() {
     try_all(&corpus("tests/corpus/assembler", None), 1_000, |_, bytes| {
         let Ok(program) = i860::assemble("damaged.s", 0x1000, &String::from_utf8_lossy(bytes)) else { return false };
         // A word that is not an instruction disassembles as data, so that any program can be written and read again.
@@ -226,7 +226,7 @@ fn sources() {
 }
 
 #[test]
-fn conformance_vectors() {
+fn damaged_conformance_vectors_are_refused_or_counted() {
     try_all(&corpus("tests/corpus/vectors", None), 4_000, |_, bytes| {
         let Ok(list) = vectors::parse(&String::from_utf8_lossy(bytes)) else { return false };
         let summary = vectors::run(&list, i860::Config::cycle());

@@ -12,7 +12,7 @@ fn results(folder: &Folder) {
 }
 
 #[test]
-fn a_report_page_holds_everything_of_its_folder_and_asks_for_nothing_else() {
+fn a_report_page_contains_all_files_of_its_folder_and_loads_nothing_else() {
     let folder = Folder::new("report-page");
     results(&folder);
     let output = folder.run(&["report", "results"]);
@@ -55,7 +55,7 @@ fn a_folder_without_a_report_is_refused_with_what_was_expected() {
 }
 
 #[test]
-fn traces_come_in_both_formats() {
+fn traces_are_written_in_both_formats() {
     let folder = Folder::new("trace");
     let run = ["trace", "--pipeline", "slats", "--scene", "mig", "--triangles", "30", "--fields", "12", "--out"];
     let output = folder.run(&[&run[..], &["a.pftrace"]].concat());
@@ -82,7 +82,7 @@ fn traces_come_in_both_formats() {
 }
 
 #[test]
-fn a_film_has_the_fields_that_were_asked_for() {
+fn a_film_has_the_requested_fields() {
     let folder = Folder::new("film");
     let run = ["film", "--pipeline", "slats", "--scene", "mig", "--triangles", "30", "--length", "3", "--out", "f.png"];
     let output = folder.run(&run);
@@ -93,7 +93,7 @@ fn a_film_has_the_fields_that_were_asked_for() {
 }
 
 #[test]
-fn nothing_is_written_where_a_file_cannot_be() {
+fn if_a_file_cannot_be_written_nothing_is_written() {
     let folder = Folder::new("trace-nowhere");
     folder.file("file", "");
     let output = folder.run(&["trace", "--pipeline", "slats", "--scene", "mig", "--out", "file/a.pftrace"]);
@@ -104,7 +104,7 @@ fn nothing_is_written_where_a_file_cannot_be() {
 }
 
 #[test]
-fn a_report_of_a_sweep_is_its_rows() {
+fn a_report_of_a_sweep_shows_its_complete_rows() {
     let folder = Folder::new("report-sweep");
     folder.file(
         "s.toml",
@@ -145,7 +145,6 @@ fn a_report_of_a_comparison_has_a_row_for_each_pipeline_and_its_pictures() {
     assert!(page.contains("<h2>Comparison</h2>") && page.contains("pipeline</th>"));
 }
 
-/// Tests that files which the manifest does not list, or which have changed, do not appear on a report page.
 #[test]
 fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
     let folder = Folder::new("report-manifest");
@@ -174,7 +173,7 @@ fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
 
 /// Tests a run of three pictures. It has a trace, a film and files, although no latency is known after the warm-up.
 #[test]
-fn runs_of_few_pictures_write_all_that_was_computed() {
+fn runs_with_few_pictures_write_all_results() {
     let folder = Folder::new("few-pictures");
     let few = ["--pipeline", "rendering-control", "--scene", "full-screen:4", "--fields"];
     let output = folder.run(&[&["run"], &few[..], &["10", "--out", "o"]].concat());
@@ -212,7 +211,7 @@ fn runs_of_few_pictures_write_all_that_was_computed() {
 
 /// Tests a pipeline without a closed-form formula. It estimates the necessary length of a run from its own pictures.
 #[test]
-fn fields_that_a_run_needs_are_told_of_every_pipeline() {
+fn every_pipeline_reports_how_many_fields_a_run_needs() {
     let folder = Folder::new("fields-needed");
     for pipeline in ["jitp-field", "frameless", "arp-full", "slats"] {
         let run = |fields: &str| {
@@ -233,7 +232,7 @@ fn fields_that_a_run_needs_are_told_of_every_pipeline() {
 /// Tests that `diff` compares only pictures that the manifests of both folders list, and keeps the numbers of both
 /// runs.
 #[test]
-fn a_difference_is_of_two_runs_and_not_of_what_lies_beside_them() {
+fn diff_compares_two_runs_and_ignores_files_beside_them() {
     let folder = Folder::new("diff-manifest");
     results(&folder);
     let other = ["run", "--pipeline", "slats", "--scene", "mig", "--triangles", "60", "--fields", "20", "--set"];

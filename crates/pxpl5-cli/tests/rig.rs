@@ -5,7 +5,7 @@ mod support;
 use support::Folder;
 
 #[test]
-fn outside_stands_beside_inside_with_number_and_spread() {
+fn external_and_internal_latencies_are_printed_with_count_and_spread() {
     let folder = Folder::new("rig");
     let output = folder.run(&["rig", "--pipeline", "slats", "--tracker", "fastrak", "--passes", "3", "--json"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -23,7 +23,7 @@ fn outside_stands_beside_inside_with_number_and_spread() {
 }
 
 #[test]
-fn what_the_rig_itself_brings_is_refused() {
+fn settings_that_the_rig_defines_are_refused() {
     let folder = Folder::new("rig-refused");
     for option in [["--scene", "mig"], ["--head", "pan:200"], ["--fields", "60"], ["--aim", "retrace"]] {
         let output = folder.run(&["rig", "--pipeline", "slats", option[0], option[1]]);
@@ -34,7 +34,7 @@ fn what_the_rig_itself_brings_is_refused() {
 }
 
 #[test]
-fn displays_that_turn_with_the_head_are_refused_with_the_reason() {
+fn head_mounted_displays_are_refused_with_the_reason() {
     let folder = Folder::new("rig-turning");
     for pipeline in ["arp-full-line", "frameless"] {
         let output = folder.run(&["rig", "--pipeline", pipeline, "--tracker", "ideal", "--passes", "2"]);

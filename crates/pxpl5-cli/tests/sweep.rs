@@ -49,7 +49,7 @@ fn point_of(line: &str) -> u64 {
 }
 
 #[test]
-fn the_rows_are_the_same_bytes_whatever_threads_and_shards() {
+fn the_bytes_of_the_rows_do_not_depend_on_threads_or_shards() {
     let folder = folder("same");
     succeeds(&sweep(&folder, &["--out", "one", "--threads", "1"]));
     succeeds(&sweep(&folder, &["--out", "four", "--threads", "4"]));
@@ -80,7 +80,7 @@ fn killed_after(mut child: Child, time: Duration) -> bool {
 }
 
 #[test]
-fn a_sweep_killed_again_and_again_loses_no_finished_point_and_repeats_none() {
+fn a_sweep_killed_repeatedly_loses_and_repeats_no_finished_point() {
     let folder = folder("kill");
     let rows = folder.0.join("killed/rows.jsonl");
     let mut kills = 0;
@@ -103,7 +103,7 @@ fn a_sweep_killed_again_and_again_loses_no_finished_point_and_repeats_none() {
     succeeds(&sweep(&folder, &["--out", "killed", "--resume"]));
     succeeds(&sweep(&folder, &["--out", "whole"]));
     assert!(read(&folder, "killed/rows.jsonl") == read(&folder, "whole/rows.jsonl"));
-    // Every computed point adds a line of time. A kill between a row and its time may lose one line.
+    // Every computed point adds a line to times.jsonl. A kill between a row and its time may lose one line.
     let times = points(&folder.0.join("killed/times.jsonl"));
     assert_eq!(times.iter().collect::<BTreeSet<_>>().len(), times.len(), "no point was computed twice");
     assert!(times.len() + kills >= POINTS);
@@ -169,7 +169,7 @@ fn merge_finds_missing_duplicate_and_contradicting_points() {
 }
 
 #[test]
-fn a_point_that_fails_is_recorded_told_and_no_reason_to_stop() {
+fn a_point_that_fails_is_recorded_and_reported_and_the_sweep_continues() {
     let folder = Folder::new("fails");
     folder.file(
         "s.toml",
@@ -184,7 +184,7 @@ fn a_point_that_fails_is_recorded_told_and_no_reason_to_stop() {
 }
 
 #[test]
-fn wrong_use_is_refused() {
+fn wrong_uses_of_the_command_sweep_are_refused() {
     let folder = folder("wrong");
     folder.file("run.toml", "pipeline = \"slats\"\nscene = \"mig\"\n");
     for (args, says) in [
@@ -205,7 +205,7 @@ fn wrong_use_is_refused() {
     assert!(err(&output).contains("file"), "{}", err(&output));
 }
 
-/// Runs the script from docs/sweeps.md that the repository contains.
+/// Runs the script from docs/guide/clusters.md that the repository contains.
 fn script(folder: &Folder, args: &[&str], task: Option<&str>) -> std::process::Output {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments/sweep-shards.sh");
     let mut command = Command::new("sh");
@@ -219,7 +219,7 @@ fn script(folder: &Folder, args: &[&str], task: Option<&str>) -> std::process::O
 
 #[cfg(unix)]
 #[test]
-fn the_script_spreads_a_sweep_over_processes_or_array_tasks_and_joins_it() {
+fn the_script_divides_a_sweep_into_processes_or_array_tasks_and_merges_it() {
     let folder = folder("script");
     succeeds(&sweep(&folder, &["--out", "whole"]));
     succeeds(&script(&folder, &["s.toml", "all", "3"], None));
@@ -233,7 +233,7 @@ fn the_script_spreads_a_sweep_over_processes_or_array_tasks_and_joins_it() {
 }
 
 #[test]
-fn the_published_sweep_has_some_hundred_points() {
+fn the_published_sweep_has_a_few_hundred_points() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments/sweep-slats.toml");
     let sweep = pxpl5::sweep::Sweep::load(path).expect("a sweep");
     assert!((200..=900).contains(&sweep.space().points()), "{}", sweep.space().points());
@@ -243,7 +243,7 @@ fn the_published_sweep_has_some_hundred_points() {
 /// Tests that a relative path of a scene refers to the folder of the sweep's file, for any current folder and also in
 /// axes.
 #[test]
-fn scenes_of_a_sweep_lie_beside_its_file_and_what_fails_altogether_fails() {
+fn scenes_are_found_beside_the_sweep_file_and_a_sweep_without_a_finished_point_fails() {
     let folder = Folder::new("beside");
     fs::create_dir(folder.0.join("inner")).expect("ours");
     folder.file("inner/m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -259,7 +259,7 @@ fn scenes_of_a_sweep_lie_beside_its_file_and_what_fails_altogether_fails() {
 }
 
 #[test]
-fn an_edited_model_is_not_mixed_with_what_was_made_of_it_before() {
+fn rows_of_an_edited_model_are_not_mixed_with_earlier_rows() {
     let folder = Folder::new("edited");
     let model = |x: i32| folder.file("m.obj", format!("v 0 0 0\nv {x} 0 0\nv 0 1 0\nf 1 2 3\n"));
     folder.file("s.toml", "pipeline = \"slats\"\nscene = \"m.obj\"\nfields = 10\n[sweep]\nseeds = 2\n");
@@ -287,7 +287,7 @@ fi
 
 #[cfg(unix)]
 #[test]
-fn the_jobs_of_slurm_find_the_rows_of_the_whole_sweep() {
+fn slurm_jobs_write_the_rows_of_the_whole_sweep() {
     let folder = folder("slurm");
     succeeds(&sweep(&folder, &["--out", "whole", "--set", "title=it's one"]));
     let written =
@@ -329,7 +329,7 @@ fn the_jobs_of_slurm_find_the_rows_of_the_whole_sweep() {
 }
 
 #[test]
-fn a_folder_in_use_is_told_from_what_cannot_succeed_later() {
+fn a_folder_in_use_is_distinguished_from_permanent_errors() {
     let folder = folder("busy");
     fs::create_dir(folder.0.join("a")).expect("ours");
     let lock = fs::File::create(folder.0.join("a/.lock")).expect("ours");
@@ -342,7 +342,7 @@ fn a_folder_in_use_is_told_from_what_cannot_succeed_later() {
 }
 
 #[test]
-fn a_header_of_more_points_than_a_sweep_can_have_is_damage() {
+fn a_header_with_too_many_points_is_reported_as_damage() {
     let folder = folder("vast");
     succeeds(&sweep(&folder, &["--out", "a"]));
     let rows = read(&folder, "a/rows.jsonl").replacen("\"points\":64", "\"points\":9000000000000000000", 1);
@@ -354,7 +354,7 @@ fn a_header_of_more_points_than_a_sweep_can_have_is_damage() {
 
 /// Two fields of Slats need 5 renderers; the analytic level and a run without a head evaluate no pixel.
 #[test]
-fn every_row_carries_the_pictures_due_and_not_shown_and_the_evaluated_pixels() {
+fn every_row_of_a_sweep_counts_due_pictures_missed_pictures_and_evaluated_pixels() {
     let folder = folder("counts");
     folder.file(
         "s.toml",

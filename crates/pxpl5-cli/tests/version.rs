@@ -46,7 +46,7 @@ fn every_file_of_a_run_states_the_same_commit() {
         return assert!(manifest["commit"].is_null(), "{manifest}");
     };
     assert!(manifest["commit"].as_str().is_some_and(|commit| commit.starts_with(&expected)), "{manifest}");
-    // Tables have no origin of their own: the manifest of their folder has it.
+    // Tables do not state their origin, because the manifest of their folder states it.
     for name in ["experiment.toml", "timeline.svg", "left.png"] {
         let has_commit = read(name).windows(expected.len()).any(|part| part == expected.as_bytes());
         assert!(has_commit, "{name}");

@@ -18,7 +18,7 @@ fn picture(folder: &Folder, name: &str) -> RgbImage {
 }
 
 #[test]
-fn run_prints_one_json_object_and_writes_the_same() {
+fn run_prints_one_json_object_and_writes_the_same_object() {
     let folder = Folder::new("volume-run");
     let arguments = ["--scene", "mig", "--clip", "hyperbolic:1", "--seed", "7", "--json", "--out", "a/b"];
     let report = json(&folder.run(&volume("run", &arguments)));
@@ -43,7 +43,7 @@ fn run_prints_one_json_object_and_writes_the_same() {
 }
 
 #[test]
-fn run_prints_a_table_and_what_is_beyond_the_paper() {
+fn run_prints_a_table_and_marks_results_beyond_the_paper() {
     let folder = Folder::new("volume-text");
     let text = out(&folder.run(&volume("run", &["--strobes", "mirror"])));
     for part in ["mig (417 primitives)", "18 in 1 passes", "Beyond the paper: mirrored strobes.", "volumes per second"]
@@ -54,7 +54,7 @@ fn run_prints_a_table_and_what_is_beyond_the_paper() {
 }
 
 #[test]
-fn a_slice_a_sheet_a_view_and_a_film_are_pictures_with_their_origin() {
+fn slices_sheets_views_and_films_state_their_origin() {
     let folder = Folder::new("volume-pictures");
     for (arguments, size) in [
         (volume("slice", &["7", "--out", "o.png"]), (256, 96)),
@@ -80,9 +80,8 @@ fn a_slice_a_sheet_a_view_and_a_film_are_pictures_with_their_origin() {
     }
 }
 
-/// Tests that a cutaway removes light, and that another eye position changes the picture.
 #[test]
-fn a_cutaway_is_darker_and_a_turn_has_other_pictures() {
+fn a_cutaway_is_darker_and_a_turned_model_gives_other_pictures() {
     let folder = Folder::new("volume-cut");
     let view = |name: &str, more: &[&str]| {
         let arguments = [more, &["--size", "64", "--exposure", "20", "--out", name]].concat();
@@ -114,7 +113,7 @@ fn compare_lists_every_variant_and_writes_its_files() {
 }
 
 #[test]
-fn model_files_are_drawn_and_bad_ones_say_what_is_wrong() {
+fn model_files_are_drawn_and_bad_files_are_refused_with_the_reason() {
     let folder = Folder::new("volume-model");
     folder.file("m.obj", "v -1 -1 -5\nv 1 -1 -5\nv 0 1 -5\nf 1 2 3\n");
     let report = json(&folder.run(&volume("run", &["--scene", "m.obj", "--json"])));
@@ -129,7 +128,7 @@ fn model_files_are_drawn_and_bad_ones_say_what_is_wrong() {
 }
 
 #[test]
-fn what_is_wrong_with_an_option_is_said_before_anything_is_drawn_and_the_exit_code_is_2() {
+fn an_invalid_option_is_reported_before_drawing_with_exit_code_2() {
     let folder = Folder::new("volume-refused");
     for (arguments, parts) in [
         (&["run", "--set", "display.slices=397"][..], &["display.slices", "even", "397"][..]),
@@ -163,7 +162,7 @@ fn what_is_wrong_with_an_option_is_said_before_anything_is_drawn_and_the_exit_co
 /// Tests a sweep of three clips (ways to cut a scene) and two tile sizes. After an interruption at two points, the
 /// final file must be the same as without an interruption.
 #[test]
-fn a_sweep_is_the_same_file_after_an_interruption() {
+fn an_interrupted_sweep_of_volumes_ends_with_the_same_file_as_an_uninterrupted_sweep() {
     let folder = Folder::new("volume-sweep");
     folder.file(
         "s.toml",
@@ -191,7 +190,7 @@ fn a_sweep_is_the_same_file_after_an_interruption() {
 }
 
 #[test]
-fn a_sweep_that_makes_no_sense_is_refused_before_anything_is_drawn() {
+fn an_invalid_sweep_is_refused_before_drawing() {
     let folder = Folder::new("volume-sweep-refused");
     for (text, part) in [
         ("scene = \"mig\"\n", "sweep.grid"),
@@ -212,7 +211,7 @@ fn a_sweep_that_makes_no_sense_is_refused_before_anything_is_drawn() {
 }
 
 #[test]
-fn a_head_before_the_volume_has_a_report_a_figure_and_a_film() {
+fn a_run_of_a_head_in_front_of_a_volume_writes_a_report_a_figure_and_a_film() {
     let folder = Folder::new("volume-head");
     let arguments =
         ["--head", "slide:0.2", "--latency", "50", "--seconds", "0.5", "--frames", "3", "--size", "32", "--out", "h"];
@@ -242,7 +241,7 @@ fn a_head_before_the_volume_has_a_report_a_figure_and_a_film() {
 }
 
 #[test]
-fn numbers_that_no_source_allows_are_warned_of() {
+fn values_outside_the_range_of_their_source_cause_warnings() {
     let folder = Folder::new("volume-warning");
     let output = folder.run(&volume("run", &["--set", "display.spin_rpm=3000"]));
     assert!(

@@ -22,10 +22,9 @@ pub struct FrameBuffer {
     fields_kept: usize,
     buffers: [Buffer; 2],
     displayed: u8,
-    /// Field that is being scanned, or `None` before the first retrace.
+    /// Field that is being scanned. `None` before the first retrace.
     scanning: Option<PeriodNumber>,
-    /// Swap requests that have not taken effect. Each entry has the arrival time of a request and the number of the
-    /// requested buffer.
+    /// Swap requests that have not taken effect: the arrival time, and the number of the requested buffer.
     swaps: Vec<(Time, u8)>,
     seen: VecDeque<ScannedField>,
     stats: FrameBufferStats,
@@ -68,13 +67,13 @@ impl FrameBuffer {
         }
     }
 
-    /// Returns the board's port on the ring.
+    /// Returns the ring port of the board.
     #[must_use]
     pub const fn node(&self) -> NodeId {
         self.node
     }
 
-    /// Returns the video signal, which gives the position of the beam at any time.
+    /// Returns the video signal, which gives the place of the beam at any time.
     #[must_use]
     pub const fn video(&self) -> &Video {
         &self.video
@@ -99,14 +98,14 @@ impl FrameBuffer {
         self.seen.iter().find(|seen| seen.field == field).cloned()
     }
 
-    /// Returns the field that was scanned last, or `None` before the end of the first field.
+    /// Returns the last completely scanned field, or `None` before the end of the first field.
     #[must_use]
     pub fn last_seen(&self) -> Option<ScannedField> {
         self.seen.back().cloned()
     }
 
-    /// Returns the current field as it was scanned up to `now`. Pixels that arrive after `now` are not included.
-    /// Returns `None` before the first retrace.
+    /// Returns the current field as it was scanned up to `now`, or `None` before the first retrace. Pixels that arrive
+    /// after `now` are not included.
     #[must_use]
     pub fn current_scan(&self, now: Time) -> Option<ScannedField> {
         let buffer = self.displayed;
@@ -120,7 +119,7 @@ impl FrameBuffer {
         BufferContents { video: self.video, regions: self.buffers[usize::from(self.displayed)].regions() }
     }
 
-    /// Returns the contents of buffer 0 or 1, with all pixels that have arrived so far. Returns `None` for other
+    /// Returns the contents of buffer 0 or 1, with all pixels that have arrived so far. Returns `None` for all other
     /// numbers.
     #[must_use]
     pub fn buffer(&self, buffer: u8) -> Option<BufferContents> {
@@ -128,7 +127,7 @@ impl FrameBuffer {
         Some(BufferContents { video: self.video, regions })
     }
 
-    /// Returns the board's counts of fields, messages, regions and swaps.
+    /// Returns the counts of fields, messages, regions and swaps.
     #[must_use]
     pub const fn stats(&self) -> &FrameBufferStats {
         &self.stats
@@ -148,7 +147,7 @@ impl FrameBuffer {
         }
         let found = target.buffer;
         let buffer = self.buffers.get_mut(usize::from(found)).ok_or(FrameBufferFault::NoSuchBuffer { found })?;
-        // Record the arrival in the region. The first message of a region adds the region to the buffer.
+        // Record the arrival in the region. The first message of a region also adds the region to the buffer.
         let place = arriving(buffer, pixels, &self.video)?;
         buffer.region_mut(place).arrive(pixels.part, context.now());
         self.stats.messages += 1;
@@ -177,7 +176,6 @@ impl FrameBuffer {
     }
 
     fn retrace(&mut self, field: PeriodNumber, context: &mut Out) -> Result<(), FrameBufferFault> {
-        // Keep the field that ends now.
         let now = context.now();
         if let Some(scanned) = self.scanning {
             self.remember(scanned, now);
@@ -198,7 +196,7 @@ impl FrameBuffer {
     }
 
     fn remember(&mut self, field: PeriodNumber, ends_at: Time) {
-        // Discard the oldest field if the greatest number of fields is kept.
+        // Discard the oldest field if the board keeps the greatest number of fields.
         if self.seen.len() == self.fields_kept {
             self.seen.pop_front();
         }
@@ -225,8 +223,8 @@ impl FrameBuffer {
     }
 }
 
-/// Returns the index, within `buffer`, of the region to which a message belongs. The first message of a region adds the
-/// region to `buffer`.
+/// Returns the index of the region in `buffer` to which a message belongs. The first message of a region adds the
+/// region.
 fn arriving(buffer: &mut Buffer, pixels: &RegionPixels, video: &Video) -> Result<usize, FrameBufferFault> {
     let Some(place) = buffer.arriving(&pixels.target) else {
         let region = RegionWrite::new(pixels, video)?;
@@ -241,7 +239,7 @@ fn arriving(buffer: &mut Buffer, pixels: &RegionPixels, video: &Video) -> Result
     Err(unexpected_part(pixels))
 }
 
-/// Returns the fault for a message whose number does not exist in the region, or whose number has already arrived.
+/// Returns the fault for a message that does not exist in its region, or that has already arrived.
 const fn unexpected_part(pixels: &RegionPixels) -> FrameBufferFault {
     FrameBufferFault::Part { target: pixels.target, found: pixels.part, parts: pixels.parts }
 }

@@ -1,4 +1,4 @@
-//! One of the two pixel buffers of a board. A buffer keeps the data of a region as long as a pixel of the region can be
+//! One of the two pixel buffers of a board. A buffer keeps the data of a region while a pixel of the region can be
 //! seen.
 
 use crate::region::RegionWrite;
@@ -9,26 +9,26 @@ use pxpl5_wire::{CopyTarget, Lines, PeriodNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// List of the regions in a buffer, oldest region first. [`ScannedField`](crate::ScannedField) and
-/// [`BufferContents`](crate::BufferContents) share such a list.
+/// List of the regions in a buffer, the oldest first. Pictures ([`ScannedField`](crate::ScannedField),
+/// [`BufferContents`](crate::BufferContents)) share it.
 pub(crate) type Regions = Arc<[Arc<RegionWrite>]>;
 
-/// Number of kept regions above which the buffer searches for regions that newer regions cover completely. The search
+/// Number of stored regions above which the buffer searches for regions that newer regions cover completely. The search
 /// compares single pixels, so a search at every retrace would take too long.
 const FEW: usize = 128;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Buffer {
     held: Vec<StoredRegion>,
-    /// The regions in `held` as a list that pictures can share. `None` from a change of `held` until a picture needs
+    /// The regions in `held` as a list that pictures can share. `None` after a change of `held`, until a picture needs
     /// the list.
     shared: Option<Regions>,
     search_above: usize,
     /// Indices in `held` of the regions that are still arriving. The list is short, because a port receives one region
     /// at a time.
     arriving: Vec<usize>,
-    /// Index of the newest complete region that fills exactly a set of pixels, for each set. The key comes from the
-    /// function [`cut`]. The newest region hides all older regions with the same key.
+    /// For each set of pixels, the index of the newest complete region that fills exactly this set. The region hides
+    /// all older regions of the set. [`cut`] returns the key for a set.
     newest: BTreeMap<[u32; 6], usize>,
     scans: Scans,
 }
@@ -51,8 +51,7 @@ impl Buffer {
         }
     }
 
-    /// Returns the index of the incomplete region for `target`. Returns `None` if no region for this target is still
-    /// arriving.
+    /// Returns the index of the region for `target` that is still arriving.
     pub(crate) fn arriving(&mut self, target: &CopyTarget) -> Option<usize> {
         self.arriving.iter().rev().copied().find(|place| self.held[*place].region.target == *target)
     }
@@ -67,42 +66,39 @@ impl Buffer {
         &self.held[place].region
     }
 
-    /// Returns the region with index `place` for modification. Pictures that were taken from the buffer earlier keep an
-    /// unmodified copy.
+    /// Returns the region with index `place` for modification. Earlier pictures of the buffer keep an unmodified copy.
     pub(crate) fn region_mut(&mut self, place: usize) -> &mut RegionWrite {
         self.shared = None;
         Arc::make_mut(&mut self.held[place].region)
     }
 
-    /// Records that field `field` shows this buffer.
     pub(crate) fn scan(&mut self, field: PeriodNumber) {
         self.scans.begin(field);
     }
 
-    /// Records that the region with index `place` is complete. The region hides an older complete region that fills
-    /// exactly the same pixels. Returns the index of the hidden region, or `None` if there is no such region.
+    /// Records that the region with index `place` is complete, so that it hides an older complete region in exactly the
+    /// same pixels. Returns the index of the hidden region.
     pub(crate) fn hide_below(&mut self, place: usize) -> Option<usize> {
         self.arriving.retain(|other| *other != place);
         let newest = self.newest.entry(cut(&self.held[place].region.target)).or_insert(place);
         if *newest == place {
             return None;
         }
-        // The region with the higher index is the newer region, even if the older region completes later.
+        // The region with the higher index is newer, even if the older region completes later.
         let older = place.min(*newest);
         self.held[older].hidden = true;
         *newest = place.max(*newest);
         (older != place).then_some(older)
     }
 
-    /// Returns the number of lines of the region with index `older` that were never shown completely. The region with
-    /// index `newer` fills the same pixels. Region `newer` overwrote these lines before the beam had shown all of their
-    /// pixels.
+    /// Returns the number of lines that the beam had not shown completely when a newer region overwrote them. `older`
+    /// and `newer` are the indices of the overwritten region and of the newer region, which fill the same pixels.
     pub(crate) fn lines_never_shown(&self, older: usize, newer: usize, video: &Video, word: Span) -> u64 {
         let [older, newer] = [older, newer].map(|place| self.region(place));
         self.scans.lines_never_shown(&Overwritten { older, newer, video, word })
     }
 
-    /// Recomputes the lists of indices `arriving` and `newest` after the removal of regions.
+    /// Recomputes the lists `arriving` and `newest` after the removal of regions.
     fn index(&mut self) {
         self.arriving.clear();
         self.newest.clear();
@@ -115,7 +111,7 @@ impl Buffer {
         }
     }
 
-    /// Returns all regions, oldest first. The list is reused until the buffer changes.
+    /// Returns all regions, the oldest first. The list is reused until the buffer changes.
     pub(crate) fn share(&mut self) -> Regions {
         let held = &self.held;
         Arc::clone(self.shared.get_or_insert_with(|| regions_of(held)))
@@ -125,27 +121,27 @@ impl Buffer {
         self.shared.clone().unwrap_or_else(|| regions_of(&self.held))
     }
 
-    /// Removes regions whose pixels no later scan can show. `width` and `height` are the size of the frame in pixels.
+    /// Removes regions that no later scan can show. `width` and `height` are the size of the frame in pixels.
     pub(crate) fn prune(&mut self, width: u32, height: u32) {
         if self.held.iter().any(|held| held.hidden) {
             self.held.retain(|held| !held.hidden);
             self.shared = None;
             self.index();
         }
-        // The search by pixels is slow, so the buffer searches only after the arrival of many regions.
+        // The search by pixels is slow, so run it only after the arrival of many regions.
         if self.held.len() > self.search_above {
             self.forget_covered(width, height);
             self.search_above = FEW.max(2 * self.held.len());
         }
     }
 
-    /// Removes regions whose pixels are all covered by newer regions. Regions with different borders can cover each
-    /// other in part, so the search compares single pixels.
+    /// Removes regions whose pixels are all covered by newer regions. The function compares single pixels, because
+    /// several regions with different borders can together cover a region.
     ///
-    /// A port receives one region at a time. A region that is still arriving is therefore the newest region, and no
-    /// other region covers it.
+    /// A port receives one region at a time. A region that is still arriving is therefore the newest, and no region
+    /// covers it.
     fn forget_covered(&mut self, width: u32, height: u32) {
-        // Go from the newest region to the oldest and mark the pixels of each region.
+        // Mark the pixels of each region, from the newest region to the oldest.
         let mut covered = vec![false; (width * height) as usize];
         for held in self.held.iter_mut().rev() {
             held.hidden = true;
@@ -167,8 +163,8 @@ fn regions_of(held: &[StoredRegion]) -> Regions {
     held.iter().map(|held| Arc::clone(&held.region)).collect()
 }
 
-/// Returns a key that is equal for two regions if they fill exactly the same pixels of the frame. The key consists of
-/// the lines, the number and the grid of the region.
+/// Returns a key that is equal for two regions exactly if they fill the same pixels of the frame. It consists of the
+/// lines, the number and the grid of the region.
 fn cut(target: &CopyTarget) -> [u32; 6] {
     let lines = match target.lines {
         Lines::Frame => 2,
@@ -232,7 +228,7 @@ mod tests {
     /// Tests that the buffer discards exactly those regions whose pixels later regions have all overwritten. The number
     /// of regions in the buffer must stay limited.
     #[test]
-    fn discarded_regions_are_exactly_those_that_later_regions_cover() {
+    fn exactly_the_regions_covered_by_later_regions_are_discarded() {
         let video = crate::FrameBufferConfig::NTSC.video.video().expect("valid");
         let mut buffer = Buffer::new();
         let mut frame = vec![0; (SIZE[0] * SIZE[1]) as usize];

@@ -1,5 +1,5 @@
-//! The frame buffers of Pixel-Planes 5: NTSC video, or a panel described by parameters. Each frame buffer has two pixel
-//! buffers.
+//! The frame buffers of Pixel-Planes 5, each with two pixel buffers. The display is NTSC video, or a panel that is
+//! described by parameters.
 //!
 //! ```text
 //!   ring --Pixels--> port --+--> buffer 0 (even and odd field) --+
@@ -10,20 +10,20 @@
 //!
 //! # Behaviour
 //!
-//! 1. A region arrives as messages of 1,024 pixels (the last may be shorter), row by row. The port accepts every word
-//!    immediately. The words of a message arrive one word time apart. The last word arrives at the time of the event
-//!    [`FrameBufferEvent::Pixels`]. The last message of a region causes [`FrameBufferOutput::RegionArrived`].
+//! 1. A region arrives row by row, in messages of 1,024 pixels (the last message can be shorter). The port accepts
+//!    every word immediately. The words of a message arrive one word time apart. The last word arrives at the time of
+//!    the event [`FrameBufferEvent::Pixels`]. The last message of a region causes [`FrameBufferOutput::RegionArrived`].
 //! 2. The target of a message ([`CopyTarget`](pxpl5_wire::CopyTarget)) states the buffer, the region and the lines. The
 //!    rows of a [`Lines::Frame`](pxpl5_wire::Lines) picture are lines of the frame. Row `r` of a field picture is line
 //!    `2 r` (even) or `2 r + 1` (odd).
-//! 3. At every retrace, and at no other time, the buffer requested last is displayed ([`FrameBufferOutput::Swapped`]).
-//!    A request that arrives at the instant of a retrace waits for the next retrace.
-//! 4. Field `n` scans the even lines of the displayed buffer if `n` is even, else the odd lines. A pixel shows the
-//!    contents of the buffer when the beam reaches the pixel. A word that arrives at this instant is shown, and a later
-//!    word is not. If a region arrives too late, the viewer sees old words in a part of the region, and new words in
-//!    the other part. [`ScannedField::late_regions`] lists such regions.
+//! 3. A retrace displays the buffer that software has requested last ([`FrameBufferOutput::Swapped`]). A request that
+//!    arrives at the instant of a retrace waits for the next retrace.
+//! 4. Field `n` scans the even lines of the displayed buffer if `n` is even, else the odd lines. A pixel shows the word
+//!    that is in the buffer when the beam reaches the pixel, including a word that arrives at this instant. If a region
+//!    arrives too late, the viewer sees old pixels in a part of the region, and new pixels in the rest.
+//!    [`ScannedField::late_regions`] lists such regions.
 //! 5. [`FrameBufferStats::lines_never_shown`] counts lines that a newer region overwrites before the beam has shown all
-//!    of their pixels. Only regions that fill exactly the same pixels are compared.
+//!    of their pixels. Only regions that fill exactly the same pixels are compared with each other.
 //! 6. Two boards scan in lock-step because both receive the same retraces.
 //! 7. An impossible event (pixels for another board, a region outside the frame, a repeated message) is a counted fault
 //!    without effect: [`FrameBuffer::faults`].
@@ -45,9 +45,8 @@
 //! | first visible line of an odd field | 22.5 lines after its retrace |
 //! | pixel `x` of a line | (140 + `x`) pixel periods of 11/135 us after its start |
 //!
-//! Odd fields begin in the middle of a line, which interlaces the two fields on a screen. The first line of an odd
-//! field is scanned half a line time later in its field than the first line of an even field. This line therefore
-//! appears half a line pitch lower.
+//! Odd fields begin in the middle of a line, which interlaces the two fields on a screen. In an odd field, the first
+//! line is scanned half a line time later than in an even field. It therefore appears half a line pitch lower.
 //!
 //! **Not modelled:**
 //!
@@ -88,7 +87,6 @@ pub use seen::{BufferContents, ScannedField, ScannedLateRegion};
 pub use stats::FrameBufferStats;
 pub use timing::{PortTiming, VideoTiming};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -8,9 +8,10 @@ use pxpl5_wire::display::{Counter, Display, DisplayConfig, DisplayContext, Displ
 use pxpl5_wire::{Body, Eye, FieldParity, NodeId, PeriodNumber, read_swap_request};
 use std::ops::Range;
 
-/// Frame buffers that share a sync generator: one for a single picture, or two for the eyes of a stereo pair.
+/// Frame buffers that share a sync generator: one board for a single picture, or two boards for the eyes of a stereo
+/// pair.
 ///
-/// The display's clock ticks at every retrace, so its periods are fields. Each surface is the picture of one eye.
+/// The periods of the display are fields. Each surface is the picture of one eye.
 #[derive(Debug)]
 pub struct NtscDisplay {
     video: Video,
@@ -21,7 +22,7 @@ pub struct NtscDisplay {
 }
 
 impl NtscDisplay {
-    /// Returns the video signal of the boards, which gives the position of the beam at any time.
+    /// Returns the video signal of the boards, which gives the place of the beam at any time.
     #[must_use]
     pub const fn video(&self) -> &Video {
         &self.video
@@ -45,7 +46,6 @@ impl NtscDisplay {
     }
 }
 
-/// Converts an output of board `board` to an output of the display.
 const fn passed_on(board: usize, output: FrameBufferOutput) -> DisplayOutput {
     match output {
         FrameBufferOutput::RegionArrived { target, first_part_at, last_part_at } => {
@@ -55,8 +55,8 @@ const fn passed_on(board: usize, output: FrameBufferOutput) -> DisplayOutput {
     }
 }
 
-/// Converts a ring message to an event of a frame buffer. An invalid message becomes a request for a buffer number that
-/// does not exist, which the board counts as a fault.
+/// Converts a ring message to an event of a frame buffer. An invalid message becomes a request for a buffer that does
+/// not exist, which the board counts as a fault.
 fn received(body: Body) -> FrameBufferEvent {
     match body {
         Body::Pixels(pixels) => FrameBufferEvent::Pixels(pixels),
@@ -109,7 +109,7 @@ impl Display for NtscDisplay {
     fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage> {
         let board = self.boards.get(surface)?;
         let now = board.seen(period)?;
-        // The picture has the lines of this field and of the field before.
+        // The picture has the lines of this field and of the previous field.
         let before = period.before(1).and_then(|field| board.seen(field));
         Some(now.interlaced_with(before.as_ref().unwrap_or(&now)))
     }
@@ -158,12 +158,12 @@ impl Display for NtscDisplay {
     }
 }
 
-/// Returns the screen as a viewer sees it at `time`. `fields` should contain the field that is scanned at `time` and
-/// the two fields before this field. The lines of a missing field are black.
+/// Returns the screen as a viewer sees it at `time`. `fields` should contain the field that is scanned at `time`, and
+/// the two fields before it. Lines of a missing field are black.
 ///
-/// The screen shows the current field above the beam. Below the beam, the screen still shows the lines that were
-/// scanned two fields earlier. Every second line, between these lines, belongs to the previous field. The model's
-/// phosphor does not fade, so each line stays until the beam returns.
+/// Half of the lines belong to the previous field. Of the other lines, those above the beam belong to the current
+/// field, and those below the beam belong to the field two fields earlier. The model's phosphor does not fade, so each
+/// line stays until the beam returns.
 #[must_use]
 pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
     let now = video.field_at(time);
@@ -183,7 +183,7 @@ pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
             copy(1, 0..row_bytes);
             continue;
         }
-        // The beam moves from left to right, so the pixels that the beam has passed are at the start of the line.
+        // The beam moves from left to right, so the pixels that it has passed are at the start of the line.
         let has_been = |x: u32| video.when(x, y, now).is_some_and(|scanned_at| scanned_at <= time);
         let scanned = first_without(video.width(), has_been) as usize * 3;
         copy(0, 0..scanned);
@@ -193,7 +193,7 @@ pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
 }
 
 /// Returns the lowest number below `count` for which `has` is false, or `count` if there is no such number. `has` must
-/// be true for all lower numbers and false for all higher numbers. The display uses the function to find the first
+/// be true for all lower numbers and false for all higher numbers. With this function, the display finds the first
 /// pixel that the beam has not reached.
 fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
     let (mut low, mut high) = (0, count);
@@ -204,12 +204,11 @@ fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
     low
 }
 
-/// Returns the picture of field `wanted`, with its scanned lines only, if the field is among `fields`.
+/// Returns the picture of field `wanted`, with only its scanned lines, if `fields` contains this field.
 fn picture_of(fields: &[ScannedField], wanted: Option<PeriodNumber>) -> Option<RgbImage> {
     fields.iter().find(|field| Some(field.field()) == wanted).map(ScannedField::picture)
 }
 
-/// Name of the display on the command line.
 const NAME: &str = "ntsc";
 
 impl DisplayConfig for FrameBufferConfig {

@@ -9,14 +9,13 @@ use std::sync::Arc;
 /// Bits that mark a pixel of a canvas as painted: the upper 8 bits of a word 0x00RRGGBB, which no colour uses.
 const PUT: Word = 0xff00_0000;
 
-/// A picture of words 0x00RRGGBB, row by row. A painted pixel is never painted again, because the newest region is
-/// painted first.
+/// A picture of words 0x00RRGGBB, row by row. The newest region is painted first, so a painted pixel is never painted
+/// again.
 pub(crate) struct Canvas {
     width: u32,
     words: Vec<Word>,
 }
 
-/// Successive pixels in one row of a canvas.
 pub(crate) struct CanvasRow<'a>(&'a mut [Word]);
 
 impl Canvas {
@@ -25,7 +24,7 @@ impl Canvas {
         Self { width, words }
     }
 
-    /// Returns `length` pixels of a row. The first pixel is at [x, y]. All pixels must lie in the canvas.
+    /// Returns `length` pixels of a row, beginning with the pixel at [x, y]. All of them must be in the canvas.
     pub(crate) fn row(&mut self, [x, y]: [u32; 2], length: u32) -> CanvasRow<'_> {
         let begin = (y * self.width + x) as usize;
         CanvasRow(&mut self.words[begin..begin + length as usize])
@@ -43,8 +42,7 @@ impl Canvas {
 }
 
 impl CanvasRow<'_> {
-    /// Paints the pixels of a segment that are not painted yet. The words of `image` are computed only if the function
-    /// paints at least one pixel.
+    /// Paints the unpainted pixels of a segment. The words of `image` are computed only if there is such a pixel.
     pub(crate) fn put(self, image: &impl Deref<Target = Arc<[Word]>>, segment: &Segment) {
         // If the image is too short, the remaining pixels stay black.
         for (word, pixel) in self.missing(image, segment) {
@@ -53,7 +51,7 @@ impl CanvasRow<'_> {
     }
 
     /// Paints the unpainted pixels of a segment for which `chosen` returns true. The argument of `chosen` is the index
-    /// of the pixel within the segment.
+    /// of the pixel in the segment.
     pub(crate) fn put_chosen(
         self,
         image: &impl Deref<Target = Arc<[Word]>>,
@@ -67,8 +65,8 @@ impl CanvasRow<'_> {
         }
     }
 
-    /// Returns the pixels of this row, each with the word of `image` for this pixel. Returns nothing if all pixels of
-    /// the row are already painted, so that the words of `image` are not computed.
+    /// Returns the pixels of this row, each with its word of `image`. Returns nothing if the row is completely painted,
+    /// so that the words of `image` are not computed.
     fn missing<'a, I: Deref<Target = Arc<[Word]>>>(
         self,
         image: &'a I,

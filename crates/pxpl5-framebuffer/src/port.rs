@@ -7,16 +7,15 @@ use thiserror::Error;
 /// An event of a frame buffer.
 #[derive(Clone, Debug)]
 pub enum FrameBufferEvent {
-    /// The last word of a message of pixels has arrived. The event belongs to phase `Arrive` of the event queue.
+    /// The last word of a message of pixels has arrived. The event belongs to phase `Arrive`.
     Pixels(RegionPixels),
-    /// Software requests that buffer 0 or 1 be displayed from the next retrace on. The event belongs to phase `Arrive`
-    /// of the event queue.
+    /// Software requests that buffer 0 or 1 be displayed from the next retrace on. The event belongs to phase `Arrive`.
     SwapRequested {
         /// Requested buffer, 0 or 1.
         buffer: u8,
     },
     /// The sync generator starts a field, exactly at [`Video::retrace`](crate::Video::retrace). The event belongs to
-    /// phase `Arrive` of the event queue.
+    /// phase `Arrive`.
     ///
     /// The last swap request that arrived before this instant takes effect. A request at this instant waits for the
     /// next retrace.
@@ -26,12 +25,12 @@ pub enum FrameBufferEvent {
     },
 }
 
-/// An output of a frame buffer. The output occurs one word time after the event that caused it.
+/// An output of a frame buffer, one word time after the event that caused it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameBufferOutput {
-    /// All messages of a region's pixels have arrived.
+    /// All pixels of a region have arrived.
     RegionArrived {
-        /// Destination of the region's pixels: the frame buffer, the region and the picture.
+        /// Destination of the pixels: the frame buffer, the region and the picture.
         target: CopyTarget,
         /// Arrival time of the region's first message.
         first_part_at: Time,
@@ -47,25 +46,25 @@ pub enum FrameBufferOutput {
     },
 }
 
-/// An event that a frame buffer cannot handle. A fault is counted and recorded, and has no other effect.
+/// An event that a frame buffer cannot handle. A fault is counted, and has no other effect.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum FrameBufferFault {
-    /// The pixels were meant for another board.
+    /// The pixels are for another board.
     #[error("pixels for node {} came to the frame buffer at node {}", found.0, expected.0)]
     WrongBoard {
         /// Ring port of this frame buffer.
         expected: NodeId,
-        /// Ring port of the frame buffer that the sender has stated in the message.
+        /// Ring port of the frame buffer for which the sender meant the pixels.
         found: NodeId,
     },
-    /// A swap request asks for a buffer that is neither 0 nor 1.
+    /// A swap request contains the number of a buffer that does not exist (neither 0 nor 1).
     #[error("expected buffer 0 or 1, found {found}")]
     NoSuchBuffer {
         /// Number of the requested buffer.
         found: u8,
     },
-    /// The region does not lie in the frame, or is larger than a renderer's array.
+    /// The region is not in the frame, or is larger than a renderer's array.
     #[error(
         "region {} of {:?}, {:?}, does not lie in the frame of {} x {} or exceeds 128 x 128",
         target.region.0, target.grid, target.lines, frame[0], frame[1]
@@ -76,22 +75,22 @@ pub enum FrameBufferFault {
         /// Width and height of the frame in pixels.
         frame: [u32; 2],
     },
-    /// The sender of the message states a number of messages that does not match the number of pixels in the region.
+    /// The sender's number of messages does not fit the number of pixels in the region.
     #[error("region {} needs {expected} messages of pixels, found {found}", target.region.0)]
     Parts {
         /// Frame buffer, region and picture of the pixels according to the sender.
         target: CopyTarget,
         /// Number of messages that a region of this size needs.
         expected: u32,
-        /// Number of messages according to the sender.
+        /// Number of messages of the region according to the sender.
         found: u32,
     },
-    /// The number of the message does not exist in its region, or the same message has already arrived.
+    /// The message does not exist in its region, or has already arrived.
     #[error("message {found} of {parts} of region {} does not exist or has arrived already", target.region.0)]
     Part {
         /// Frame buffer, region and picture of the pixels according to the sender.
         target: CopyTarget,
-        /// Number of the message within its region, counted from 0.
+        /// Number of the message in its region, counted from 0.
         found: u32,
         /// Number of messages of which the region consists.
         parts: u32,

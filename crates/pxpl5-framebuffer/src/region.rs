@@ -10,7 +10,6 @@ use std::sync::Arc;
 const MAX_PARTS: usize = (REGION_SIZE * REGION_SIZE).div_ceil(MAX_MESSAGE_WORDS) as usize;
 const NEVER: Time = Time(u64::MAX);
 
-/// A region of pixels with the arrival time of each of its messages.
 #[derive(Clone, Debug)]
 pub(crate) struct RegionWrite {
     pub(crate) target: CopyTarget,
@@ -27,17 +26,17 @@ pub(crate) struct Segment {
     pub(crate) y: u32,
     pub(crate) x: u32,
     pub(crate) length: u32,
-    /// Index of the segment's first pixel in the region's image.
+    /// Index of the segment's first pixel in the image of the region.
     pub(crate) index: u32,
-    /// Arrival time of the word with the first pixel.
+    /// Arrival time of the word of the segment's first pixel.
     first_at: Time,
     /// Arrival time of the last word of the segment's message.
     pub(crate) message_at: Time,
 }
 
 impl Segment {
-    /// Returns the arrival time of the word with pixel `i` of the segment. `word` is the time in which the port
-    /// receives one word.
+    /// Returns the arrival time of the word of pixel `i` of the segment. `word` is the time in which the port receives
+    /// one word.
     pub(crate) fn arrival(&self, i: u32, word: Span) -> Time {
         self.first_at + word * u64::from(i)
     }
@@ -94,15 +93,15 @@ impl RegionWrite {
         self.is_complete().then(|| arrived.iter().copied().max())?
     }
 
-    /// Iterates over the pixels that have arrived, line by line. A line that arrives in two messages is split into two
-    /// segments. `word` is the time in which the port receives one word.
+    /// Iterates over the pixels that have arrived, line by line. A line that arrives in two messages has two segments.
+    /// `word` is the time in which the port receives one word.
     pub(crate) fn segments(&self, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, _, height] = self.rectangle;
         (0..height).flat_map(move |row| self.row(row, word)).filter(|segment| segment.message_at != NEVER)
     }
 
-    /// Iterates over the segments of one row of the region. Segments that have not arrived are included. `word` is the
-    /// time in which the port receives one word.
+    /// Iterates over the segments of one row, including segments that have not arrived. `word` is the time in which the
+    /// port receives one word.
     pub(crate) fn row(&self, row: u32, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, width, _] = self.rectangle;
         let begin = row * width;

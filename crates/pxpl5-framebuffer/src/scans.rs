@@ -1,4 +1,4 @@
-//! A record of the fields that showed a buffer. The board uses this record to count lines that were overwritten before
+//! A record of the fields that showed a buffer. With this record, the board counts lines that were overwritten before
 //! the beam had shown them.
 
 use crate::region::RegionWrite;
@@ -7,12 +7,11 @@ use pxpl5_wire::Video;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber};
 use std::collections::VecDeque;
 
-/// Number of recorded fields. While a buffer is displayed without a swap, these are the newest two fields of each
-/// parity. One field of each parity is not enough, because the beam may not have reached a line in the current field
-/// yet.
+/// Number of recorded fields: the newest two fields of each parity, while a buffer is displayed without a swap. One
+/// field of each parity is not enough, because the beam may not have reached a line of the current field yet.
 const REMEMBERED: usize = 4;
 
-/// Numbers of the last fields that were scanned from a buffer, the newest field first.
+/// Numbers of the last fields that were scanned from a buffer, the newest first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scans(VecDeque<PeriodNumber>);
 
@@ -30,8 +29,8 @@ impl Scans {
         self.0.push_front(field);
     }
 
-    /// Returns the number of lines of the older region that were never shown completely. The newer region overwrote
-    /// these lines before the beam had shown all of their pixels.
+    /// Returns the number of lines of the older region that the beam had not shown completely when the newer region
+    /// overwrote them.
     pub(crate) fn lines_never_shown(&self, pair: &Overwritten<'_>) -> u64 {
         if self.shows_all(pair) {
             return 0;
@@ -39,11 +38,11 @@ impl Scans {
         pair.older.rows().filter(|row| !self.shows_row(*row, pair)).count() as u64
     }
 
-    /// Returns true if a fast test proves that the older region was shown completely. The test treats the even rows and
-    /// the odd rows of the region as two groups.
+    /// Returns true if a fast test proves that the beam has shown the older region completely. The test treats the even
+    /// rows and the odd rows of the region as two groups.
     ///
     /// For each group, a field must show the first and the last pixel between the write of the older region and the
-    /// write of the newer region. The beam then also shows all other pixels of the group between these two writes.
+    /// write of the newer region. The beam then also shows the other pixels of the group between these writes.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
         // The older region must be complete before a field shows it.
         let Some(written) = pair.older.last_at() else { return false };
@@ -51,7 +50,7 @@ impl Scans {
         let overwritten =
             Time(pair.newer.first_at().0.saturating_sub((pair.word * u64::from(MAX_MESSAGE_WORDS - 1)).0));
         let rows = pair.older.rows();
-        // In a region of a frame, every second row belongs to the other field.
+        // In a region of a frame, every second row belongs to the same field.
         rows.clone().take(2).all(|first| {
             let last = rows.clone().skip(first as usize).step_by(2).next_back().unwrap_or(first);
             let shows = |(at, field)| scan(at, field, pair).is_some_and(|scan| written <= scan && scan < overwritten);
@@ -60,7 +59,7 @@ impl Scans {
     }
 
     fn shows_row(&self, row: u32, pair: &Overwritten<'_>) -> bool {
-        // A pixel shows the new value if the word arrives at the instant of the beam.
+        // If the new word arrives at the instant of the beam, the pixel shows the new word.
         let shows = |field| {
             let beam = |at| scan(at, field, pair);
             let stood = ends(pair.older, row, pair.word).all(|(at, came)| beam(at).is_some_and(|scan| came <= scan));
@@ -70,7 +69,7 @@ impl Scans {
     }
 }
 
-/// Returns the time at which the beam passes a pixel in a field, or `None` if the field does not scan the pixel.
+/// Returns the time at which the beam passes a pixel in `field`, or `None` if this field does not scan the pixel.
 fn scan([x, y]: [u32; 2], field: PeriodNumber, pair: &Overwritten<'_>) -> Option<Time> {
     pair.video.when(x, y, field)
 }
@@ -83,10 +82,10 @@ fn corners(region: &RegionWrite, [first, last]: [u32; 2]) -> impl Iterator<Item 
 }
 
 /// Iterates over the first and the last pixel of each part of a row that arrived in one message. Each item has the
-/// position of the pixel and the arrival time of its word. The region must be complete.
+/// pixel and the arrival time of its word. The region must be complete.
 ///
-/// If the beam passes these two pixels in time, it also passes the pixels between them in time. The reason is that the
-/// beam and the words of a message advance at constant rates.
+/// The beam and the words of a message advance at constant rates. If the beam passes these two pixels in time, it
+/// therefore also passes the pixels between them in time.
 fn ends(region: &RegionWrite, row: u32, word: Span) -> impl Iterator<Item = ([u32; 2], Time)> + '_ {
     region.row(row, word).flat_map(move |segment| {
         [0, segment.length - 1].map(|i| ([segment.x + i, segment.y], segment.arrival(i, word)))

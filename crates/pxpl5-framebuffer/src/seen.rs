@@ -9,8 +9,8 @@ use pxpl5_wire::Video;
 use pxpl5_wire::{CopyTarget, FieldParity, PeriodNumber};
 use std::cell::LazyCell;
 
-/// One field as it was scanned. The pixels are computed when they are read. A clone is cheap, and later events do not
-/// change the field.
+/// One field as it was scanned. Its pixels are computed when they are read. Later events do not change the field, and a
+/// clone is cheap.
 #[derive(Clone, Debug)]
 pub struct ScannedField {
     pub(crate) field: PeriodNumber,
@@ -21,26 +21,25 @@ pub struct ScannedField {
     pub(crate) regions: Regions,
 }
 
-/// A region that arrived too late. Some pixels were scanned before they had arrived, so the viewer sees older pixels
-/// instead. The board does not determine the field for which the region was drawn. A reader can find this field by the
-/// number of the picture in `target.picture`.
+/// A region that arrived too late for a field. The beam passed some pixels before they had arrived, so the viewer sees
+/// older pixels instead. `target.picture` gives the picture for which the region was drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScannedLateRegion {
-    /// Frame buffer and region of the pixels, and number of the picture to which the region belongs.
+    /// Frame buffer and region of the pixels, and number of the picture to which they belong.
     pub target: CopyTarget,
-    /// Arrival time of the region's last message, or `None` if that message arrived after the end of the field.
+    /// Arrival time of the region's last message, or `None` if it arrived after the end of the field.
     pub arrived_at: Option<Time>,
     /// First line of the frame in which the viewer sees an older pixel.
     pub first_line: u32,
     /// Number of lines of this field in which the viewer sees an older pixel.
     pub lines: u32,
-    /// Longest time from the scan of a pixel to the arrival of the pixel. For a message that did not end in this field,
-    /// the end of the field replaces the arrival.
+    /// Longest time from the scan of a pixel to its arrival. For a message that arrived after the end of the field, the
+    /// end of the field counts.
     pub lateness: Span,
 }
 
 impl ScannedField {
-    /// Returns the number of the field.
+    /// Returns the number of the scanned field.
     #[must_use]
     pub const fn field(&self) -> PeriodNumber {
         self.field
@@ -52,7 +51,7 @@ impl ScannedField {
         self.buffer
     }
 
-    /// Returns the parity of the scanned lines: even or odd lines of the frame.
+    /// Returns the parity of the scanned lines: the even or the odd lines of the frame.
     #[must_use]
     pub const fn parity(&self) -> FieldParity {
         FieldParity::of_field(self.field)
@@ -67,8 +66,8 @@ impl ScannedField {
         canvas.into_image()
     }
 
-    /// Returns the picture of two fields interlaced, as on a screen: 640 x 480 pixels for NTSC. If both fields have the
-    /// same parity, the later field is shown on a black frame.
+    /// Returns the picture of two interlaced fields, as on a screen: 640 x 480 pixels for NTSC. If both fields have the
+    /// same parity, the picture shows the later field, with black lines between.
     #[must_use]
     pub fn interlaced_with(&self, other: &Self) -> RgbImage {
         let (earlier, later) = if self.field < other.field { (self, other) } else { (other, self) };
@@ -92,8 +91,8 @@ impl ScannedField {
         begun && region.last_at().is_none_or(|last| last > self.video.retrace(self.field))
     }
 
-    /// Paints the regions into `canvas`, the newest region first, so that the pixels of hidden regions are never
-    /// computed. `row_of` returns the row of the canvas for a line of the frame.
+    /// Paints the regions into `canvas`, the newest first, so that the pixels of hidden regions are never computed.
+    /// `row_of` returns the row of the canvas for a line of the frame.
     fn paint(&self, canvas: &mut Canvas, row_of: impl Fn(u32) -> u32) {
         for region in self.regions.iter().rev() {
             let pixels = LazyCell::new(|| region.image.pixels());
@@ -117,8 +116,8 @@ impl ScannedField {
         self.lateness(segment, i) == Some(Span::ZERO)
     }
 
-    /// Returns the time from the scan of a segment's pixel `i` to the arrival of the pixel, or zero if the pixel
-    /// arrived in time. Returns `None` if the field does not scan the pixel.
+    /// Returns the time from the scan of pixel `i` of a segment to its arrival, or zero if the pixel arrived in time.
+    /// Returns `None` if the field does not scan the pixel.
     ///
     /// The board gets an event only at the end of a message. If a message has not ended at the end of the field, all
     /// its words therefore count as missing. On the published ring, which is faster than the beam, none of these words
@@ -160,8 +159,8 @@ impl ScannedLateRegion {
     }
 }
 
-/// The contents of one of the two pixel buffers of a board, with both fields. The pixels are computed when they are
-/// read, and a clone is cheap.
+/// The contents of one of the two pixel buffers of a board, with the lines of both fields. Pixels are computed when
+/// they are read. A clone is cheap.
 #[derive(Clone, Debug)]
 pub struct BufferContents {
     pub(crate) video: Video,

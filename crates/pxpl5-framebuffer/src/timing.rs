@@ -38,14 +38,12 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 impl VideoTiming {
-    /// Checks that a picture can be scanned with these parameters. Each parameter must lie within its limits. The
-    /// visible pixels and their blanking must fit into a line. The visible lines and their blanking must fit into a
-    /// field.
+    /// Checks that a picture can be scanned with these parameters. Each parameter must be in its range. The visible
+    /// pixels and their blanking must fit in a line. The visible lines and their blanking must fit in a field.
     ///
     /// # Errors
     ///
-    /// Returns [`SettingError`] with the name of the parameter, the expected range and the found
-    /// value.
+    /// Returns [`SettingError`] with the name of the parameter, the expected range and the found value.
     pub fn check(&self) -> Result<(), SettingError> {
         self.check_numbers().map_err(|error| error.at("frame buffer"))
     }
@@ -61,11 +59,11 @@ impl VideoTiming {
         check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines))
     }
 
-    /// Returns the video signal that this table describes.
+    /// Returns the video signal with these parameters.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`VideoTiming::check`]. Also returns an error if the period of a field does not fit into a
+    /// Returns the errors of [`VideoTiming::check`]. Also returns an error if the period of a field does not fit in a
     /// 64-bit time.
     pub fn video(&self) -> Result<Video, SettingError> {
         self.check()?;

@@ -53,7 +53,7 @@ fn a_swap_takes_effect_at_the_next_retrace_only() {
 }
 
 #[test]
-fn a_swap_asked_for_at_the_instant_of_a_retrace_waits_for_the_next() {
+fn a_swap_requested_at_the_instant_of_a_retrace_waits_for_the_next_retrace() {
     for seed in 0..20 {
         let mut board = Board::new();
         board.bench.queue().shuffle_ties(seed);
@@ -66,7 +66,7 @@ fn a_swap_asked_for_at_the_instant_of_a_retrace_waits_for_the_next() {
 }
 
 #[test]
-fn the_last_of_several_requests_counts() {
+fn of_several_swap_requests_the_last_request_takes_effect() {
     let mut board = Board::new();
     board.retraces(0..=2);
     board.swap(Time(10), 1);
@@ -78,7 +78,7 @@ fn the_last_of_several_requests_counts() {
 }
 
 #[test]
-fn a_region_has_arrived_with_its_last_message() {
+fn a_region_has_arrived_when_its_last_message_arrives() {
     let mut board = Board::new();
     let top_left = field_target(1, FieldParity::Even, 0, 9);
     let last_part_at = Time(5_000_000_000);
@@ -128,7 +128,7 @@ fn two_fields_make_an_interlaced_frame_in_either_order() {
 /// The last pixel of a message arrives at the time of the message. Message 0 of a field region ends with pixel 127 of
 /// row 7.
 #[test]
-fn a_word_that_arrives_with_the_beam_is_seen_and_one_a_picosecond_later_is_not() {
+fn a_word_is_shown_if_it_arrives_with_the_beam_but_not_a_picosecond_later() {
     for (late, expected) in [(0, GREEN), (1, RED)] {
         let mut board = painted();
         board.retraces(0..=3);
@@ -165,7 +165,7 @@ fn a_region_is_late_from_a_picosecond_after_its_first_pixel_was_scanned() {
 }
 
 #[test]
-fn a_region_that_misses_its_field_shows_the_old_picture_on_all_its_lines() {
+fn all_lines_of_a_late_region_show_the_old_picture() {
     let mut board = painted();
     board.retraces(0..=3);
     let end = board.device.video().retrace(PeriodNumber(3));
@@ -175,8 +175,8 @@ fn a_region_that_misses_its_field_shows_the_old_picture_on_all_its_lines() {
     let seen = board.device.seen(PeriodNumber(2)).expect("kept");
     let listed = seen.late_regions();
     assert_eq!((listed[0].lines, listed[0].arrived_at), (120, None));
-    // Message 0 arrived 13 messages before the end of the field, and its first word 1,023 words earlier. This word has
-    // the greatest lateness, because words arrive faster than the beam moves.
+    // Message 0 arrived 13 message times before the end of the field, and its first word 1,023 word times earlier. This
+    // word has the greatest lateness, because words arrive faster than the beam moves.
     let first_scan = board.device.video().reaches(&top, PeriodNumber(2)).expect("scanned");
     assert_eq!(listed[0].lateness, end - first_scan - MESSAGE * 13 - WORD * 1_023);
     assert!((0..120).all(|y| word(&seen.picture(), 64, y) == RED));
@@ -202,7 +202,7 @@ fn two_boards_with_the_same_retraces_scan_in_lock_step() {
 }
 
 #[test]
-fn retraces_of_a_million_fields_are_where_the_board_expects_them() {
+fn retraces_do_not_drift_over_a_million_fields() {
     let mut board = Board::new();
     for field in 0..1_000_000 {
         // The exact time is n x 1001/60000 s, rounded down.
@@ -221,7 +221,7 @@ fn retraces_of_a_million_fields_are_where_the_board_expects_them() {
 }
 
 #[test]
-fn pixels_are_computed_when_a_picture_is_read_and_hidden_pixels_never() {
+fn pixels_are_computed_when_a_picture_is_read_and_hidden_pixels_are_never_computed() {
     let mut board = Board::new();
     let hidden = source(RED, 0, 128 * 120);
     let shown = source(GREEN, 0, 128 * 120);
@@ -251,7 +251,7 @@ fn regions_that_cannot_be_seen_are_discarded() {
             let parity = FieldParity::of_field(PeriodNumber(field / 2));
             board.region(at, field_target((field % 2) as u8, parity, region, field), &image);
         }
-        // A region that never becomes complete.
+        // Send a region that never becomes complete.
         board.part(begin + MESSAGE * 200, target(0, Lines::Frame, RegionGrid::FRAME, 3, field), &colour(GREEN), 2);
         board.run();
     }
@@ -282,7 +282,7 @@ fn regions_of_other_grids_are_discarded_when_newer_regions_cover_them() {
 }
 
 #[test]
-fn a_region_of_the_same_picture_may_come_again_when_it_is_complete() {
+fn a_complete_region_can_be_sent_again_for_the_same_picture() {
     let mut board = Board::new();
     let target = target(0, Lines::Frame, RegionGrid::FRAME, 3, 7);
     board.region(Time(1_000_000_000), target, &colour(RED));
@@ -293,7 +293,7 @@ fn a_region_of_the_same_picture_may_come_again_when_it_is_complete() {
 }
 
 #[test]
-fn what_cannot_be_done_is_a_counted_fault_that_says_what() {
+fn an_invalid_message_is_counted_as_a_fault_with_its_reason() {
     let frame = |region| target(0, Lines::Frame, RegionGrid::FRAME, region, 0);
     let huge = RegionGrid { width: u32::MAX, height: u32::MAX, region_width: 1, region_height: 1 };
     let empty = RegionGrid { width: 640, height: 480, region_width: 0, region_height: 0 };
@@ -331,7 +331,7 @@ fn what_cannot_be_done_is_a_counted_fault_that_says_what() {
 }
 
 #[test]
-fn a_source_with_too_few_pixels_leaves_black() {
+fn a_region_whose_source_has_too_few_pixels_stays_black() {
     let mut board = Board::new();
     board.region(Time(2_000_000_000), target(0, Lines::Frame, RegionGrid::FRAME, 0, 0), &source(RED, 0, 100));
     board.run();
@@ -341,7 +341,7 @@ fn a_source_with_too_few_pixels_leaves_black() {
 }
 
 #[test]
-fn a_board_that_cannot_be_built_says_why() {
+fn a_board_that_cannot_be_built_is_refused_with_the_reason() {
     let config = FrameBufferConfig { fields_kept: 0, ..FrameBufferConfig::NTSC };
     let error = FrameBuffer::new(config, NODE).expect_err("nothing kept");
     assert_eq!(error.to_string(), "frame buffer: fields_kept must be 1 to 1000, found 0");
@@ -361,7 +361,7 @@ fn never_shown(parity: FieldParity, at: &[Time]) -> u64 {
 }
 
 #[test]
-fn lines_that_are_overwritten_before_their_scan_are_counted_one_by_one() {
+fn lines_overwritten_before_their_scan_are_counted() {
     let board = Board::new();
     let video = board.device.video();
     let beam = |row: u32, field| video.when(0, 2 * row, PeriodNumber(field)).expect("scanned");

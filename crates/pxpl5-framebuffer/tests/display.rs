@@ -131,7 +131,7 @@ fn assert_same(found: Option<RgbImage>, expected: &RgbImage, what: &str) {
 }
 
 #[test]
-fn it_has_two_eyes_and_the_clock_of_the_retraces() {
+fn the_display_has_a_surface_for_each_eye_and_the_periods_of_the_retraces() {
     let display = Rig::new().display;
     assert_eq!((display.name(), FrameBufferConfig::NTSC.name()), ("ntsc", "ntsc"));
     assert_eq!(display.nodes(), NODES);
@@ -195,7 +195,7 @@ fn lines_that_were_never_shown_are_counted_for_both_eyes() {
 }
 
 #[test]
-fn what_a_port_cannot_do_is_counted_and_the_first_is_told() {
+fn faults_of_a_port_are_counted_and_the_first_is_reported() {
     let mut rig = Rig::new();
     let commands = CommandList { runs: Vec::new(), context: 0, copies: Vec::new(), content: None };
     rig.deliver(Time(7), 1, Body::Words([0xdead_beef].into()));
@@ -208,7 +208,7 @@ fn what_a_port_cannot_do_is_counted_and_the_first_is_told() {
 }
 
 #[test]
-fn a_viewer_sees_each_line_as_the_beam_drew_it_last() {
+fn a_viewer_sees_each_line_as_last_scanned() {
     let rig = coloured(4);
     let end_of = |field: u64| Time(rig.display.tick(PeriodNumber(field + 1)).0 - 1);
     assert_eq!(rig.display.last_seen(), Some(PeriodNumber(3)));
@@ -232,7 +232,7 @@ fn a_viewer_sees_each_line_as_the_beam_drew_it_last() {
 }
 
 #[test]
-fn a_viewer_sees_the_present_field_as_far_as_it_has_come() {
+fn a_viewer_sees_the_current_field_up_to_the_beam() {
     let mut rig = coloured(3);
     for (x, y) in [(0, 1), (320, 241), (639, 479)] {
         let now = video().when(x, y, PeriodNumber(3)).expect("an odd field has the odd lines");
@@ -245,7 +245,7 @@ fn a_viewer_sees_the_present_field_as_far_as_it_has_come() {
 }
 
 #[test]
-fn it_has_a_port_for_each_picture_and_two_at_most() {
+fn the_display_has_one_port_for_each_eye() {
     assert_eq!([0, 1, 2, 3].map(|pictures| FrameBufferConfig::NTSC.ports(pictures)), [1, 1, 2, 2]);
     let mut config = FrameBufferConfig::NTSC;
     let names: Vec<_> = DisplayConfig::tables(&config).iter().map(|(name, _)| *name).collect();

@@ -1,5 +1,6 @@
 //! Compares the number of lines that were overwritten before the beam had shown them with a model. The model checks
-//! every pixel: when the beam scans the pixel, the old word must have arrived and the new word must not.
+//! every pixel. A pixel of the old picture is shown if the beam scans it after the old word and before the new word
+//! arrives.
 
 mod support;
 
@@ -8,10 +9,10 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber, RegionGrid};
 use support::{Board, MESSAGE, colour, n_parts, target};
 
-/// Number of fields of a test.
 const FIELDS: u64 = 8;
 
-/// The arrival time of a region, given by one word of the region. `later` is the time from the beam to this word.
+/// The arrival of a region relative to the beam, given for one word of the region. `later` is the time from the beam to
+/// this word.
 #[derive(Clone, Copy, Debug)]
 struct Met {
     field: u64,
@@ -105,7 +106,7 @@ proptest! {
     #![proptest_config(ProptestConfig { max_global_rejects: 1 << 16, ..ProptestConfig::default() })]
 
     #[test]
-    fn lines_never_shown_are_those_of_which_no_field_shows_every_pixel(
+    fn a_line_is_never_shown_if_no_field_shows_all_its_pixels(
         place in places(), older in met(1..4), newer in met(1..6),
     ) {
         let mut board = Board::slow(place.1);

@@ -16,7 +16,6 @@ const SIZE: [u32; 2] = [1280, 1024];
 const GRID: RegionGrid = RegionGrid { width: 1280, height: 1024, region_width: 128, region_height: 128 };
 /// Time of a word on the ring.
 const WORD: Span = Span::from_ns(50);
-/// Number of picoseconds in a second.
 const SECOND: u128 = 1_000_000_000_000;
 
 /// A pixel source whose colours encode region and row.
@@ -83,7 +82,7 @@ fn painted(regions: &[u16]) -> RgbImage {
 }
 
 #[test]
-fn its_clock_is_72_hz_and_its_scan_fills_each_period() {
+fn the_panel_has_a_clock_of_72_hz_and_a_scan_that_fills_each_period() {
     let display = Rig::new().display;
     for scan in [0_u64, 1, 2, 71, 72, 1_000_003] {
         let tick = display.tick(PeriodNumber(scan));
@@ -104,7 +103,7 @@ fn its_clock_is_72_hz_and_its_scan_fills_each_period() {
 }
 
 #[test]
-fn it_says_what_it_is() {
+fn the_description_of_the_panel_has_its_size_name_and_surfaces() {
     let config = HiResConfig::PAPERS;
     let display = Rig::new().display;
     assert_eq!((display.name(), DisplayConfig::name(&config)), ("hires", "hires"));
@@ -122,7 +121,7 @@ fn it_says_what_it_is() {
 }
 
 #[test]
-fn a_picture_is_shown_from_the_scan_after_it_was_asked_for() {
+fn a_picture_is_shown_from_the_scan_after_its_swap_request() {
     let mut rig = Rig::new();
     let first = rig.tick(0);
     let target = rig.region(first + Span::from_us(1), 1, 1, 37);
@@ -153,7 +152,7 @@ fn a_picture_is_shown_from_the_scan_after_it_was_asked_for() {
 }
 
 #[test]
-fn what_a_port_cannot_use_is_counted() {
+fn invalid_messages_of_a_port_are_counted() {
     let mut rig = Rig::new();
     rig.deliver(Time(1), 0, Body::Words(swap_request(2)));
     rig.deliver(Time(2), 1, Body::Words([7].into()));
@@ -173,7 +172,7 @@ fn a_board_with_two_ports_takes_regions_at_both() {
     assert_eq!(error, "hires.ports: expected a multiple of 2 nodes, found 3");
 }
 
-/// A panel of 100 x 50 at 100 Hz, whose lines light in the first 8 of 10 ms.
+/// A panel of 100 x 50 pixels at 100 Hz, whose lines light in the first 8 ms of each period of 10 ms.
 fn small() -> PanelConfig {
     PanelConfig { width: 100, height: 50, refresh_hz: 100, active_permille: 800, ..PanelConfig::PAPERS }
 }
@@ -193,7 +192,7 @@ fn lit_us(config: PanelConfig, pixels: &[(u32, u32)]) -> Vec<Option<u64>> {
 /// 5,000 pixels light in 8,000 us, 1.6 us for each pixel. A line of 100 pixels takes 160 us, and a column of 50 pixels
 /// takes 80 us.
 #[test]
-fn a_scan_goes_the_way_that_its_direction_says_and_a_global_one_lights_at_its_end() {
+fn a_scan_follows_its_direction_and_a_global_scan_lights_at_its_end() {
     let corners = [(0, 0), (1, 0), (0, 1), (99, 49)];
     let expected: [(u64, u64, [u64; 4]); 5] = [
         (0, 0, [0, 2, 160, 7_999]),
@@ -251,7 +250,7 @@ fn an_interlaced_panel_lights_every_second_line_and_keeps_the_others() {
 }
 
 #[test]
-fn colours_keep_their_highest_bits() {
+fn panels_keep_the_highest_bits_of_colours() {
     let mut display = built(PanelConfig { width: 128, height: 128, bits: 6, ..small() });
     let grid = RegionGrid { width: 128, height: 128, region_width: 128, region_height: 128 };
     let mut bench = TestBench::new();
@@ -269,12 +268,12 @@ fn colours_keep_their_highest_bits() {
     }
     bench.run(|event, context| display.handle(event, context));
     let shown = display.shown(0).expect("a surface");
-    // Two bits of each primary: 200 is 11001000, 127 is 01111111.
+    // The panel shows two bits of each primary colour: 200 is 11001000, and 127 is 01111111.
     assert_eq!(*shown.get_pixel(5, 127), Rgb([0, 0b1100_0000, 0b0100_0000]));
 }
 
 #[test]
-fn numbers_that_no_panel_can_have_are_refused_with_what_was_expected() {
+fn invalid_panel_numbers_are_refused_with_the_expected_range() {
     let wide = PanelConfig { width: 1440, height: 1600, ..PanelConfig::PAPERS };
     let long = PanelConfig { refresh_hz: 90, persistence_us: 20_000, ..PanelConfig::PAPERS };
     let odd = PanelConfig { interlace: 1, height: 481, ..PanelConfig::PAPERS };
@@ -293,7 +292,7 @@ fn numbers_that_no_panel_can_have_are_refused_with_what_was_expected() {
     ] {
         assert_eq!(DisplayConfig::check(&config).expect_err("refused").to_string(), expected);
     }
-    // The rules that relate several numbers also apply to numbers without a table.
+    // `PanelNumbers` were not checked against the table of parameters, so their own rules must refuse a zero.
     for (zero, name) in [
         (PanelConfig { width: 0, ..PanelConfig::PAPERS }, "width"),
         (PanelConfig { height: 0, ..PanelConfig::PAPERS }, "height"),
@@ -311,7 +310,7 @@ fn numbers_that_no_panel_can_have_are_refused_with_what_was_expected() {
 
 /// The centre of a light of 2 ms with a time constant of 0.1 ms is 1.1 ms after its start.
 #[test]
-fn presets_are_lit_as_their_sources_say() {
+fn the_panels_of_the_presets_have_the_published_scan_and_light_times() {
     let light = OledConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();
     assert_eq!((light.scan, light.centre()), (ScanOrder::Down, Span::from_us(1_100)));
     let light = LcdConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();

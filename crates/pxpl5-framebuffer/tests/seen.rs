@@ -143,7 +143,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn every_pixel_shows_the_youngest_word_that_had_arrived_and_every_late_region_is_listed(
+    fn every_pixel_shows_the_newest_arrived_word_and_every_late_region_is_listed(
         copies in copies(),
         shuffle in any::<u64>(),
     ) {
@@ -158,7 +158,7 @@ proptest! {
 
 /// A message at the instant of a retrace gives the same result in any order of the events.
 #[test]
-fn simultaneous_events_commute() {
+fn the_order_of_simultaneous_events_does_not_change_the_picture() {
     let image = source(1, 1, 128 * 128);
     let target = target(0, Lines::Frame, RegionGrid::FRAME, 0, 0);
     let results: Vec<_> = (0..32)
@@ -203,7 +203,7 @@ const RED: u32 = 0x00_00_ff;
 const GREEN: u32 = 0x00_ff_00;
 
 #[test]
-fn two_fields_of_a_frame_lie_between_each_other_whichever_is_named_first() {
+fn two_fields_of_a_frame_interleave_in_either_order() {
     let board = two_fields();
     let seen = |field| board.device.seen(PeriodNumber(field)).expect("remembered");
     let even = seen(4).picture();
@@ -220,7 +220,7 @@ fn two_fields_of_a_frame_lie_between_each_other_whichever_is_named_first() {
 
 /// If both fields have the same parity, the later one is shown on a black frame.
 #[test]
-fn two_fields_of_the_same_lines_give_the_later_one() {
+fn two_fields_of_the_same_lines_give_the_later_field() {
     let mut board = remembering();
     board.retraces(0..=6);
     let early = support::field_target(0, FieldParity::Even, 0, 0);
@@ -239,7 +239,7 @@ fn two_fields_of_the_same_lines_give_the_later_one() {
 }
 
 #[test]
-fn a_field_knows_which_buffer_was_scanned_and_the_last_one_is_the_last_scanned() {
+fn a_field_records_the_scanned_buffer() {
     let mut board = remembering();
     assert_eq!(board.device.scanning(), None);
     assert!(board.device.last_seen().is_none() && board.device.displayed() == 0);
@@ -257,9 +257,9 @@ fn a_field_knows_which_buffer_was_scanned_and_the_last_one_is_the_last_scanned()
 
 /// A region is late only if it arrives while the field is scanned.
 #[test]
-fn late_is_what_came_while_its_field_was_scanned() {
-    // The first of the region's 16 messages arrives 15 messages before the last. At the end of the field, either event
-    // can come first.
+fn a_region_that_arrives_during_the_scan_of_its_field_is_late() {
+    // The first of the region's 16 messages arrives 15 messages before the last, at the end of the field. Either of the
+    // two simultaneous events can come first.
     let begins_at_the_end = ENDS + MESSAGE.0 * 15;
     let cases = [(BEGINS, false), (BEGINS + MESSAGE.0 * 60, true), (begins_at_the_end, false)];
     for ((last, is_late), shuffle) in cases.into_iter().flat_map(|case| (0..8).map(move |shuffle| (case, shuffle))) {
@@ -277,7 +277,7 @@ fn late_is_what_came_while_its_field_was_scanned() {
 /// The second message of a region arrives exactly at the end of the field. In either order of events, its words count
 /// as missing.
 #[test]
-fn a_message_that_comes_with_the_end_of_a_field_has_not_come() {
+fn a_message_that_arrives_at_the_end_of_a_field_is_not_in_that_field() {
     let grid = RegionGrid { region_height: 16, ..RegionGrid::FIELD };
     let image = source(1, 1, 128 * 16);
     for shuffle in 0..16 {
@@ -301,7 +301,7 @@ fn a_message_that_comes_with_the_end_of_a_field_has_not_come() {
 
 /// A region that begins at the end of a field is not late in that field, in either order of events.
 #[test]
-fn a_region_that_begins_with_the_end_of_a_field_is_not_late_for_it() {
+fn a_region_that_begins_at_the_end_of_a_field_is_not_late_for_that_field() {
     let grid = RegionGrid { region_height: 16, ..RegionGrid::FIELD };
     let image = source(1, 1, 128 * 16);
     for shuffle in 0..16 {

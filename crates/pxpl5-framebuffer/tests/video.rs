@@ -37,7 +37,7 @@ fn retraces_do_not_drift_in_a_million_fields() {
 }
 
 #[test]
-fn a_field_begins_at_its_retrace_and_not_a_picosecond_before() {
+fn a_field_begins_at_the_picosecond_of_its_retrace() {
     let video = ntsc();
     for n in [1, 2, 3, 60, 1_000_000, 1_000_001] {
         let begin = video.retrace(PeriodNumber(n));
@@ -57,7 +57,8 @@ fn an_even_field_begins_on_a_line_and_an_odd_one_in_the_middle_of_a_line() {
         assert_eq!(even.0, beam_ps(525 * frame + 22, 0));
         let odd = video.line_start(1, odd_field).expect("odd");
         assert_eq!(odd.0, beam_ps(525 * frame + 262 + 23, 0));
-        // 22 lines and 22.5 lines of 4004/63 us. Each instant is rounded down to a picosecond.
+        // The blanking takes 22 lines in one field and 22.5 lines in the other, with 4004/63 us for each line. Each
+        // instant is rounded down to a picosecond.
         let blank_even = even - video.retrace(even_field);
         let blank_odd = odd - video.retrace(odd_field);
         assert!(blank_even.0.abs_diff(22 * 4_004_000_000 / 63) <= 1, "{blank_even}");
@@ -78,7 +79,7 @@ fn the_visible_pixels_of_a_line_take_the_published_52_15_us() {
 }
 
 #[test]
-fn a_field_scans_the_lines_of_its_parity_only() {
+fn a_field_scans_only_the_lines_of_its_parity() {
     let video = ntsc();
     for (y, even, odd) in
         [(0, true, false), (1, false, true), (478, true, false), (479, false, true), (480, false, false)]
@@ -90,7 +91,7 @@ fn a_field_scans_the_lines_of_its_parity_only() {
 }
 
 #[test]
-fn a_region_is_reached_at_its_first_pixel_of_the_field() {
+fn the_beam_reaches_a_region_at_the_first_pixel_of_the_region_in_that_field() {
     let video = ntsc();
     let bottom = field_target(0, FieldParity::Odd, 7, 0);
     assert_eq!(video.reaches(&bottom, PeriodNumber(3)), video.when(256, 241, PeriodNumber(3)));
@@ -104,7 +105,7 @@ fn every_preset_lies_in_its_range() {
 }
 
 #[test]
-fn numbers_that_cannot_be_scanned_are_refused_by_name() {
+fn video_timings_that_cannot_be_scanned_are_refused_by_name() {
     for (name, value) in [
         ("pixel_ps", 0),
         ("pixel_divisor", 0),
@@ -125,7 +126,7 @@ fn numbers_that_cannot_be_scanned_are_refused_by_name() {
 
 proptest! {
     #[test]
-    fn the_beam_is_where_exact_arithmetic_says(x in 0u32..640, row in 0u32..240, field in (0u64..1_100_000_000).prop_map(PeriodNumber)) {
+    fn the_position_of_the_beam_equals_exact_arithmetic(x in 0u32..640, row in 0u32..240, field in (0u64..1_100_000_000).prop_map(PeriodNumber)) {
         let video = ntsc();
         let y = 2 * row + FieldParity::of_field(field).first_line();
         let half_lines = field.0 * 525;
@@ -137,7 +138,7 @@ proptest! {
     }
 
     #[test]
-    fn no_number_makes_it_panic(x in any::<u32>(), y in any::<u32>(), field in any::<u64>().prop_map(PeriodNumber), values in any::<[u64; 8]>()) {
+    fn no_number_causes_a_panic(x in any::<u32>(), y in any::<u32>(), field in any::<u64>().prop_map(PeriodNumber), values in any::<[u64; 8]>()) {
         let _ = ntsc().when(x, y, field);
         let mut timing = VideoTiming::PAPERS;
         for (info, value) in VideoTiming::INFOS.iter().zip(values) {

@@ -1,21 +1,24 @@
-// Regions of a command: bins, boxes, or all regions.
+// Code for the regions that a command touches, in three variants: bins of regions, boxes of commands, or all regions.
 
 .if DUAL & BINNED & !FIELD
 .if GRID
-// As bins_scheduled.s for frames of any size: each edge's greatest value over a region from that over the one before. Multiplications are
-// left for the place of the first region and for regions that are cut off.
+// For frames of any size: computes each edge's greatest value over a region from the value over the previous region.
+// Multiplications remain only for the first region and for regions that are cut off.
 .else
-// As bins.s for frames, without a multiplication: each edge's greatest value over a region from that over the one before.
+// For frames of 640 x 480, without a multiplication: computes each edge's greatest value over a region from the value
+// over the previous region.
 .endif
 //
-// In: low and high x, low and high y in r24 to r27; edges in the command at r18; table of bins r19.
+// In: r24 to r27 lowest x, highest x, lowest y and highest y of the triangle, r18 command with the edges, r19 table of
+// bins.
 .if GRID
-// Out: number of regions r22. Changes r4 to r15, r23 to r31, f8 to f13.
+// Out: r22 number of regions. Changes r4 to r15, r23 to r31, f8 to f13.
 .else
-// Out: number of regions r22. Changes r4 to r15, r23 to r31.
+// Out: r22 number of regions. Changes r4 to r15, r23 to r31.
 .endif
 
-// a and b times 128, and the greatest value over region 0, 0: its right side where a > 0, its last line where b > 0
+// Multiplies a and b of an edge by 128. Adds to c the greatest value over region (0, 0): the value at the right side if
+// a > 0, and on the last line if b > 0.
         .macro  greatest k, a, b, c
         edgeword \k, 0, \a
         edgeword \k, 1, \b
@@ -35,9 +38,9 @@
         .endm
 
 .if GRID
-// a region has r28 columns or lines less
+// Corrects c for a region that has r28 columns or lines less.
 .else
-// the last row of regions has 32 lines less
+// Corrects c for the last row of regions, which has 32 lines less.
 .endif
         .macro  shorter b, c
         shra    31, \b, r23
@@ -55,7 +58,7 @@
 .if GRID
         .endm
 
-// r28 = what the last of the regions lacks, the last subpixel being in r28
+// r28 = number of columns or lines that the last region lacks. In: r28 last subpixel of the picture.
         .macro  lacking
         shr     4, r28, r28
         and     127, r28, r28
@@ -63,7 +66,8 @@
 .endif
         .endm
 
-// first pixel whose centre is not before a low side, last one before a high side
+// Computes the first pixel whose centre is not before a low side, and the last pixel whose centre is before a high
+// side.
         .macro  firstpixel r
         adds    7, \r, \r
         shra    4, \r, \r
@@ -105,7 +109,7 @@ bins:   firstpixel r24
         subs    r27, r26, r28
         or      r23, r28, r23
         subs    r23, r0, r0
-        bc      nowhere                     // 0 > the difference: no pixel
+        bc      nowhere                     // no pixel, because the difference is negative
         shr     7, r24, r24
         shr     7, r25, r25
         shr     7, r26, r26
@@ -113,14 +117,14 @@ bins:   firstpixel r24
         greatest 0, r5, r8, r11
         greatest 1, r6, r9, r12
         greatest 2, r7, r10, r13
-        bte     r0, r24, column             // to the first column
+        bte     r0, r24, column             // go to the first column
         mov     r24, r29
 left:   adds    -1, r29, r29
         adds    r5, r11, r11
         adds    r6, r12, r12
         adds    r7, r13, r13
         btne    r0, r29, left
-column: bte     r0, r26, row                // to the first row
+column: bte     r0, r26, row                // go to the first row
         mov     r26, r29
 above:  adds    -1, r29, r29
         adds    r8, r11, r11
@@ -172,13 +176,13 @@ columns: or     r14, r15, r23
         or      r4, r23, r23
         adds    1, r29, r28
         subs    r23, r0, r0
-        bc      beside                      // 0 > a value
+        bc      beside                      // a value is negative
         ld.l    0(r30), r23
         adds    1, r22, r22
         st.l    r18, 0(r23)
         adds    4, r23, r23
         st.l    r23, 0(r30)
-beside: bte     r25, r29, below             // the last column
+beside: bte     r25, r29, below             // after the last column
         mov     r28, r29
         adds    r5, r14, r14
         adds    r6, r15, r15
@@ -196,21 +200,21 @@ below:  adds    r8, r11, r11
 .else
         adds    20, r31, r31
 .endif
-        bte     r27, r26, nowhere           // the last row
+        bte     r27, r26, nowhere           // after the last row
         br      rows
         adds    1, r26, r26
 nowhere: bri    r1
         nop
 .elseif BINNED
-// Puts the command at r18 into the bin of every region that a triangle touches, 128 pixels wide. A
-// region is touched when its pixels meet the pixels of the bounding box, and every edge has a point of the region on
-// its inner side.
+// Puts the command at r18 into the bin of every region (128 pixels wide) that a triangle touches. A triangle touches a
+// region under two conditions: its bounding box contains pixels of the region, and each edge has a point of the region
+// on its inner side.
 //
-// In: low x, high x, low y, high y at BOX(r2); table of bins r19;
-// macro edgeword k, n, to loads coefficient n (a, b, c) of edge k.
-// Out: number of regions r22. Changes r5 to r15, r23 to r31, f8 to f13.
+// In: lowest x, highest x, lowest y, highest y at BOX(r2); r19 table of bins. The macro `edgeword k, n, to` loads
+// coefficient n (a, b, c) of edge k.
+// Out: r22 number of regions. Changes r5 to r15, r23 to r31, f8 to f13.
 
-// f12 low word = product modulo 2^32
+// The low word of f12 becomes the product modulo 2^32.
         .macro  times a, b, to
         ixfr    \a, f8
         ixfr    \b, f10
@@ -218,7 +222,7 @@ nowhere: bri    r1
         fxfr    f12, \to
         .endm
 
-// to `outside` unless the greatest value of edge k over the region is not negative
+// Jumps to `outside` if the greatest value of edge k over the region is negative.
         .macro  test k
         edgeword \k, 0, r28
         edgeword \k, 1, r29
@@ -236,7 +240,7 @@ y\@:    times   r28, r30, r28
         adds    r28, r29, r28
         adds    r28, r30, r28
         subs    r28, r0, r0
-        bc      outside                     // 0 > the value
+        bc      outside                     // the value is negative
         .endm
 
         .align  32
@@ -250,7 +254,7 @@ bins:   mov     r0, r22
         subs    r0, r11, r0                 // at least 0
         bc      ba
         mov     r0, r11
-ba:     adds    -9, r25, r12                // last pixel whose centre is left of its right side
+ba:     adds    -9, r25, r12                // last pixel whose centre is left of the box's right side
         shra    4, r12, r12
         lastcolumn r12
         adds    7, r26, r13
@@ -278,7 +282,7 @@ bc1:    adds    -9, r27, r14
         call    rowbox
         nop
         mov     r15, r1
-        shl     4, r7, r28                  // wholly inside the pixel centres of one region?
+        shl     4, r7, r28                  // inside the pixel centres of one region?
         adds    8, r28, r28
         subs    r24, r28, r0
         bc      many
@@ -308,7 +312,7 @@ rowbox: toprow  r13, r9
         bri     r1
         nop
 
-// every region of the box against the three edges
+// Test every region of the box against the three edges.
 many:   mov     r1, r15
         ixfr    r0, f9
         ixfr    r0, f11
@@ -331,7 +335,8 @@ outside: adds   1, r23, r23
         bri     r15
         nop
 .elseif BOXES
-// For a pipeline that sends every triangle to what it finds out later: there are no bins; the box of each command goes to r19.
+// For a pipeline that finds the windows of triangles later: there are no bins. The box of each command is stored at
+// r19.
 
 bins:   ld.l    BOX(r2), r24
         ld.l    BOX+4(r2), r25

@@ -3,7 +3,8 @@
         .macro  turnsaway
         .endm
 .else
-// How far the normal of the vertex at r5 turns away from the eye, to the structure at r6; where it is from the eye in f16 f17 f18.
+// Stores in the structure at r6 how far the normal of the vertex at r5 turns away from the eye. f16, f17 and f18 have
+// the vertex's position relative to the eye.
 
         .macro  turnsaway
         fld.l   NORMAL(r5), f24             // how far the normal turns away
@@ -43,7 +44,7 @@ axis:   alongaxis
         btne    r0, r4, normal
         .endm
 .else
-// The clipper interpolates the colours of the corners, 0 to 255 * 256: lit colours, or the precomputed ones.
+// The clipper interpolates the colours of the corners, 0 to 255 * 256. The colours are lit or precomputed.
 
         .macro  extras
         st.l    r20, SIDE(r2)
@@ -59,7 +60,7 @@ colour: ld.l    COLOUR(r5), r8
         mov     -8, r7
         adds    V_EXTRA, r6, r10
         fld.l   P_TWO23(r20), f8
-byte:   shr     r9, r8, r11                 // 256 times 8 bits of the colour, by way of 2^23
+byte:   shr     r9, r8, r11                 // 256 times 8 bits of the colour, by an addition to 2^23
         and     255, r11, r11
         shl     8, r11, r11
         orh     0x4B00, r11, r11
@@ -71,7 +72,7 @@ byte:   shr     r9, r8, r11                 // 256 times 8 bits of the colour, b
         fmul.ss f17, f16, f17
 .endif
         fst.l   f17, -4(r10)
-        btne    r9, r7, byte                // r7 is the shift behind the last one
+        btne    r9, r7, byte                // r7 is the shift after the last component
         adds    -1, r4, r4
         adds    VERTEX_BYTES, r5, r5
         adds    V_BYTES, r6, r6
@@ -79,35 +80,37 @@ byte:   shr     r9, r8, r11                 // 256 times 8 bits of the colour, b
         .endm
 .endif
 
-// Triangles that are not wholly inside the guard band: the tests of the native code, what six planes leave of them, and each piece of
-// that to a command and to bins. One routine for all kernels, which find its address in the parameter block; it is written by the rules
-// of the compiled kernel, and its arithmetic and order are those of the native clipper.
+// Code for triangles that are not completely inside the guard band. It applies the tests of the native code, clips the
+// triangle at six planes, and makes a command and bin entries for each piece. All kernels share this routine and find
+// its address in the parameter block. The rules of the compiled kernel apply. The arithmetic and its order are the same
+// as in the native clipper.
 //
-// In: r16 triangle, r18 where command words go. Out: r18 behind the last command; r22 is 0 if the triangle is wholly inside after all,
-// and nothing is done then. Keeps r2 to r5, r16, r17, r19 to r21 and nothing else.
+// In: r16 triangle, r18 address for command words. Out: r18 address after the last command. r22 is 0 if the triangle is
+// completely inside the guard band after all; the routine has then done nothing. Keeps r2 to r5, r16, r17, r19 to r21
+// and no other register.
 
-// ---- stack frame, further up as in setup_scalar.s: nine corners
+// ---- stack frame with nine corners; the upper part is as in scalar.s
 SAVE     = 0        // return address
 SAVED_3  = 528      // the caller's r3 to r5
 SAVED_4  = 532
 SAVED_5  = 536
 NEXT     = 540      // second corner of the next piece
 LEFT     = 544      // pieces left
-SIDE     = 548      // P_SIDES or the place behind it
-VERTICES = 560      // of each of three:
+SIDE     = 548      // address of P_SIDES, or of its second side
+VERTICES = 560      // three vertices, each with:
 V_CLIP   = 0        // x y z w, single
 V_EXTRA  = 16       // the surface's three numbers, single
 V_AWAY   = 28       // how far the normal turns away from the eye, single
 V_BYTES  = 32
 DISTANCES = 656     // of nine corners from a plane, double
-POLYGON  = 736      // of each of nine corners:
+POLYGON  = 736      // nine corners, each with:
 G_CLIP   = 0        // x y z w, double
 G_EXTRA  = 32       // the surface's three numbers, double
-G_CUT    = 56       // whether it is a cut and not a vertex
+G_CUT    = 56       // not 0 if the corner is a cut and not a vertex
 G_BYTES  = 64
-OTHER    = 1312     // the same once more
+OTHER    = 1312     // a second polygon of the same format
 FRAME    = 1888
-C_FITS   = 40       // of a corner in setup_scalar.s: whether it can be drawn
+C_FITS   = 40       // in a corner of scalar.s: not 0 if the corner can be drawn
 
         .macro  firstcorner to
         adds    CORNERS, r2, \to
@@ -119,7 +122,7 @@ C_FITS   = 40       // of a corner in setup_scalar.s: whether it can be drawn
         adds    C_SURFACE+8*\k, r0, r10
         .endm
 
-// to `flat` if a slope in f22 or f24 is greater than 2^36
+// Jumps to `flat` if the absolute value of a slope in f22 or f24 is greater than 2^36.
         .macro  steep
         orh     0x4230, r0, r12
         ixfr    r0, f30
@@ -135,7 +138,7 @@ C_FITS   = 40       // of a corner in setup_scalar.s: whether it can be drawn
         bc      flat
         .endm
 
-// r7 gets `bit` if a > b
+// Sets `bit` in r7 if a > b.
         .macro  outcode bit, a, b
         pfgt.ss \a, \b, f0
         bnc     in\@
@@ -143,7 +146,7 @@ C_FITS   = 40       // of a corner in setup_scalar.s: whether it can be drawn
 in\@:
         .endm
 
-// nothing is drawn unless |coordinate k| is at most the greatest, r9
+// Draws nothing if the bits of |coordinate k| exceed the limit in r9.
         .macro  representable k
         ld.l    V_CLIP+4*\k(r6), r8
         andnoth 0x8000, r8, r8
@@ -151,7 +154,8 @@ in\@:
         bc      nothing
         .endm
 
-// the polygon by one plane: distances are the factor at `k` of the parameter block times w, less or plus a coordinate
+// Clips the polygon at one plane. The distance of a corner is w times the factor at `k` of the parameter block, plus or
+// minus a coordinate.
         .macro  cutby k, op, at
         fld.l   \k(r20), f8
         adds    DISTANCES, r2, r6
@@ -187,7 +191,7 @@ clipper: adds   -FRAME, r2, r2
         mov     r16, r5
         adds    VERTICES, r2, r6
         mov     3, r4
-        mov     r0, r24                     // how many are inside the guard band
+        mov     r0, r24                     // number of corners inside the guard band
 vertex: projected
         fst.l   f20, V_CLIP(r6)
         fst.l   f21, V_CLIP+4(r6)
@@ -202,7 +206,7 @@ beyond: adds    -1, r4, r4
         btne    r0, r4, vertex
         mov     3, r7
         bte     r7, r24, whole
-        // what all corners are beyond, of the sides of what is seen
+        // Find the sides of the visible volume beyond which all corners lie.
         ld.l    P_MOST_W(r20), r9
         mov     3, r4
         mov     -1, r25
@@ -228,9 +232,9 @@ sides:  fld.l   V_CLIP(r6), f20
         adds    -1, r4, r4
         adds    V_BYTES, r6, r6
         btne    r0, r4, sides
-        btne    r0, r25, nothing            // all beyond the same side
+        btne    r0, r25, nothing            // all corners are beyond the same side
         extras
-        // the triangle as a polygon
+        // Make a polygon from the triangle.
         adds    VERTICES, r2, r6
         adds    POLYGON, r2, r26
         adds    OTHER, r2, r25
@@ -264,14 +268,14 @@ number: fld.l   0(r6), f8
         mov     r26, r5
         adds    CORNERS, r2, r6
         mov     r27, r4
-        // corners to the screen
+        // Compute the screen positions of the corners.
 each:   call    snapped
         nop
         adds    -1, r4, r4
         adds    G_BYTES, r5, r5
         adds    C_BYTES, r6, r6
         btne    r0, r4, each
-        // pieces: a fan around the first corner
+        // Draw the pieces, which form a fan around the first corner.
         adds    CORNERS+C_BYTES, r2, r8
         st.l    r8, NEXT(r2)
 piece:  ld.l    CORNERS+C_FITS(r2), r9
@@ -298,14 +302,15 @@ leave:  ld.l    SAVE(r2), r1
 whole:  br      leave
         mov     r0, r22
 
-// ---- what a plane leaves of the polygon of r27 corners at r26, whose distances are there: in the other place, r25, and both change
+// ---- clips the polygon of r27 corners at r26, whose distances from a plane are stored. The new polygon is at r25; r25
+// and r26 are then exchanged.
 cut:    mov     r26, r5
         adds    DISTANCES, r2, r6
         mov     r27, r4
         mov     r25, r9
         mov     r0, r28
         fld.d   0(r6), f16
-ends:   adds    G_BYTES, r5, r7             // the next corner, and its distance
+ends:   adds    G_BYTES, r5, r7             // the next corner and its distance
         adds    8, r6, r8
         btne    1, r4, along
         mov     r26, r7
@@ -313,7 +318,7 @@ ends:   adds    G_BYTES, r5, r7             // the next corner, and its distance
 along:  fld.d   0(r8), f18
         pfgt.dd f0, f16, f0
         bc      without
-        bte     9, r28, full                // no more than a convex polygon can have
+        bte     9, r28, full                // the polygon has the greatest number of corners
         fld.q   0(r5), f8
         fld.q   16(r5), f12
         fld.q   32(r5), f20
@@ -331,7 +336,7 @@ full:   pfgt.dd f0, f18, f0
 without: pfgt.dd f0, f18, f0
         bc      on
 crossed: bte    9, r28, on
-        mov     r5, r10                     // from the lesser end to the other, by the order of their coordinates
+        mov     r5, r10                     // begin at the end that comes first in the order of the coordinates
         mov     r7, r11
         fmov.dd f16, f20
         fmov.dd f18, f22
@@ -355,7 +360,7 @@ order:  ld.l    4(r12), r29
         xor     r31, r29, r29
         xor     r31, r30, r30
         subu    r30, r29, r0
-        bnc     greater                     // r29 > r30 without signs
+        bnc     greater                     // r29 > r30 as unsigned numbers
         btne    r29, r30, lesser
         adds    -1, r14, r14
         adds    8, r13, r13
@@ -368,7 +373,7 @@ greater: mov    r7, r10
         fmov.dd f16, f22
 lesser: fsub.dd f20, f22, f8
         reciprocal
-        fmul.dd f20, f12, f24               // the part of the way
+        fmul.dd f20, f12, f24               // fraction of the edge up to the cut
         mov     7, r12
 between: fld.d  0(r10), f8
         fld.d   0(r11), f12
@@ -396,7 +401,7 @@ on:     adds    G_BYTES, r5, r5
         bri     r1
         mov     r28, r27
 
-// ---- corner of the polygon at r5 to the screen, in the structure at r6
+// ---- computes the screen position of the polygon's corner at r5 in the structure at r6
 
 // coordinate k in subpixels
         .macro  scaled k, to
@@ -456,7 +461,7 @@ snapped: fld.l  P_GUARD+8(r20), f10
         fmul.dd f22, f12, f22
         fmov.sd f8, f10
         fmul.dd f22, f10, f12
-        pfgt.dd f12, f0, f0                 // 0 to far
+        pfgt.dd f12, f0, f0                 // limit the depth to the range from 0 to far
         bc      farther
         fmov.dd f0, f12
 farther: fld.d  P_DEPTH(r20), f14
@@ -468,7 +473,7 @@ nearer: fld.d   P_DEPTH_BIAS(r20), f14
         fld.d   P_ROUND(r20), f10
         br      deep
         fadd.dd f12, f14, f12
-uncut:  fld.d   G_CLIP(r5), f8              // as the vertices of triangles that are not clipped
+uncut:  fld.d   G_CLIP(r5), f8              // same computation as for vertices of triangles that are not clipped
         fld.d   G_CLIP+8(r5), f10
         fmov.ds f8, f20
         fld.d   G_CLIP+16(r5), f12
@@ -491,7 +496,8 @@ deep:   fsub.dd f12, f10, f12
 placedend: bri  r1
         nop
 
-// ---- a plane too steep to be held, of the values at r10 of the corners r7, r8 and r9, to the words at r11: the mean everywhere
+// ---- replaces a plane that is too steep for its format: the words at r11 get the mean everywhere. In: values at r10
+// of the corners r7, r8 and r9.
 flat:   adds    r10, r7, r12
         fld.d   0(r12), f16
         adds    r10, r8, r12

@@ -3,7 +3,7 @@
 .if PHONG
 // Normals at the corners of the compiled kernel.
 
-// on the whole turned away? P_SIDES or the place behind it in r8
+// r8 = address for P_SIDES, or 24 bytes more if the normals of the three corners together turn away from the eye.
         .macro  surfaces
         sided   CORNERS+C_AWAY, C_BYTES
         mov     r16, r5
@@ -15,7 +15,8 @@ normals: call   normal
         btne    r0, r4, normals
         .endm
 
-// ---- normal: vertex at r5 to the values of the structure at r6, and r6 to the next; the side at r8
+// ---- normal: stores the normal of the vertex at r5 in the structure at r6, and advances r6 to the next structure. r8
+// selects the side.
 normal: fld.l   NORMAL(r5), f20
         fld.l   NORMAL+4(r5), f21
         fld.l   NORMAL+8(r5), f22
@@ -48,7 +49,7 @@ colours: call   colour
         btne    r0, r4, colours
         .endm
 
-// ---- colour: vertex at r5 to the values of the structure at r6, and r6 to the next
+// ---- colour: stores the colour of the vertex at r5 in the structure at r6, and advances r6 to the next structure
 colour: ld.l    COLOUR(r5), r8
         mov     16, r9
         mov     -8, r7
@@ -56,7 +57,7 @@ colour: ld.l    COLOUR(r5), r8
         orh     0x4330, r0, r11             // high word of 2^52
         ixfr    r11, f17
         fld.d   P_SURFACE(r20), f12
-component: shr  r9, r8, r11                 // 8 bits of the colour in units of 1/4096, and half a unit
+component: shr  r9, r8, r11                 // 8 bits of the colour in units of 1/4096, plus half a unit
         and     255, r11, r11
         shl     12, r11, r11
         or      2048, r11, r11
@@ -66,7 +67,7 @@ component: shr  r9, r8, r11                 // 8 bits of the colour in units of 
         fsub.dd f16, f12, f18
         fst.d   f18, 0(r10)
         adds    8, r10, r10
-        btne    r9, r7, component           // r7 is the shift behind the last one
+        btne    r9, r7, component           // r7 is the shift after the last component
         adds    C_BYTES, r6, r6
         bri     r1
         nop
@@ -83,7 +84,7 @@ lights: call    light
         btne    r0, r4, lights
         .endm
 
-// ---- light: vertex at r5 to the values of the structure at r6, and r6 to the next
+// ---- light: stores the lit colour of the vertex at r5 in the structure at r6, and advances r6 to the next structure
 light:  intensity C_AWAY
         mov     16, r9
         mov     -8, r7
@@ -92,7 +93,7 @@ light:  intensity C_AWAY
         fld.l   P_ROUND_S(r20), f9
         fld.l   P_SIDES+8(r20), f10
         fld.d   P_SIDES+16(r20), f12
-component: shr  r9, r8, r11                 // 256 times 8 bits of the colour, by way of 2^23
+component: shr  r9, r8, r11                 // 256 times 8 bits of the colour, by an addition to 2^23
         and     255, r11, r11
         shl     8, r11, r11
         orh     0x4B00, r11, r11
@@ -106,40 +107,42 @@ component: shr  r9, r8, r11                 // 256 times 8 bits of the colour, b
         fadd.dd f18, f12, f18
         fst.d   f18, 0(r10)
         adds    8, r10, r10
-        btne    r9, r7, component           // r7 is the shift behind the last one
+        btne    r9, r7, component           // r7 is the shift after the last component
         adds    C_BYTES, r6, r6
         bri     r1
         nop
 .endif
 
-// One triangle after another, as a good compiler of about 1990 would give a plain program in C: functions that are called, loops that
-// stay loops, locals in registers, scalar floating point with loads in its shadow. The rules were written down before the code
-// (compiled_rules.md).
+// Computes one triangle after another, like the output of a good compiler of about 1990 for a plain program in C: with
+// calls of functions, with loops, with local variables in registers, and with scalar floating point with loads in its
+// shadow. The rules were written before the code (compiled_rules.md).
 //
-// The arithmetic and its order are those of the native transform and set-up.
+// The arithmetic and its order are the same as in the native transform and set-up.
 
-// ---- stack frame, further up as in setup_scalar.s
+// ---- stack frame; the upper part is as in scalar.s
 SAVE   = 0        // return address
 
         .macro  secondcorner to
         adds    C_BYTES, r7, \to
         .endm
 
-// Planes of triangles that are not clipped are taken as they come.
+// Planes of triangles that are not clipped are not tested for steep slopes.
         .macro  steep
         .endm
 
 .if BOTH_EYES
 // The main loop for both eyes (slats_rules.md).
 //
-// Registers on entry besides those of parameters.s: r19 where command words of the right eye go, r21 its parameter block; r18 and r20 are
-// those of the left eye. On return: r18 and r19 behind the last command of either eye.
+// Registers on entry in addition to parameters.s: r19 address for command words of the right eye, r21 parameter block
+// of the right eye. r18 and r20 belong to the left eye. On return: r18 and r19 are the addresses after the last command
+// of each eye.
 
-// ---- stack frame: the structures of the right eye's corners lie behind those of the left eye, which have the surface of both
-BEYOND  = 4       // 2 where a corner is outside of the left eye's guard band, and 1 of the right eye's
-EYE     = 144     // from the structures of one eye to those of the other
-PLACES  = 384     // the structures of an eye
-SURFACES = 388    // where the surface is, counted from them
+// ---- stack frame: the right eye's structures follow the left eye's structures, which also have the surface for both
+// eyes
+BEYOND  = 4       // 2 if a corner is outside the left eye's guard band, plus 1 for the right eye's guard band
+EYE     = 144     // bytes from the structures of the left eye to the structures of the right eye
+PLACES  = 384     // address of the structures of an eye
+SURFACES = 388    // offset of the surfaces from these structures
 
         .macro  firstcorner to
         ld.l    PLACES(r2), \to
@@ -151,7 +154,7 @@ SURFACES = 388    // where the surface is, counted from them
         adds    8*\k, r10, r10
         .endm
 
-// the other eye's commands and parameter block
+// Exchange the commands and the parameter blocks of the eyes.
         .macro  othereye
         mov     r18, r7
         mov     r19, r18
@@ -196,8 +199,8 @@ done:   othereye
         adds    LIST_STEP, r16, r16
         nextorclip
 
-// ---- corner: vertex at r5 to the structures of both eyes, of which that of the left one is at r6, and r6 to the next; r23 gets the eyes
-// of whose guard band it is outside
+// ---- corner: stores the vertex at r5 in the structures of both eyes. The left eye's structure is at r6, which
+// advances to the next structure. r23 gets the eyes whose guard band does not contain the vertex.
 corner: fld.l   0(r5), f4
         fld.l   4(r5), f5
         fld.l   8(r5), f6
@@ -229,7 +232,7 @@ turn:   mov     r20, r7
 beyond: br      turn
         or      r3, r23, r23
 .else
-// The corners of a triangle are those of one eye.
+// The corners of a triangle are computed for one eye.
 
         .macro  firstcorner to
         adds    CORNERS, r2, \to
@@ -239,12 +242,14 @@ beyond: br      turn
         .endm
 
 .if BETWEEN
-// Triangles between two views: their commands for a strip, which are kept with their boxes (pphigs's kernels/between_rules.md).
+// Triangles between two views: makes the commands of a strip, and keeps them with their boxes (kernels/between_rules.md
+// of pphigs).
 //
-// In: as a kernel that keeps boxes; r21 records of the triangles, r22 and r23 the least and the greatest y of what is near the strip, 1/16 px
-// of the frame; r24 not 0 where they are interpolated in the view; r25 and r26 the part of the way as a double.
+// In: registers as for a kernel that keeps boxes. In addition: r21 records of the triangles, r22 and r23 least and
+// greatest y near the strip in 1/16 px of the frame, r24 not 0 if triangles are interpolated in the view, r25 and r26
+// fraction of the way between the views as a double.
 
-// ---- stack frame, behind the corners
+// ---- stack frame, after the corners
 NEAR_TOP = 240
 NEAR_BOTTOM = 244
 PART    = 248
@@ -260,7 +265,7 @@ start:  st.l    r1, SAVE(r2)
 next:   ld.l    E_INSIDE(r21), r5
         ld.l    E_TOP(r21), r6
         mov     3, r4
-        bte     r0, r5, whole               // not on the screen in both
+        bte     r0, r5, whole               // not on the screen in both views
         ld.l    NEAR_BOTTOM(r2), r7
         ld.l    E_BOTTOM(r21), r8
         subs    r7, r6, r0
@@ -268,7 +273,7 @@ next:   ld.l    E_INSIDE(r21), r5
         ld.l    NEAR_TOP(r2), r7
         ld.l    IN_VIEW(r2), r5
         subs    r8, r7, r0
-        bc      done                        // above it
+        bc      done                        // above the strip
         btne    r0, r5, whole
         mov     r16, r5
         adds    CORNERS, r2, r6
@@ -293,7 +298,8 @@ done:   adds    -1, r17, r17
         adds    E_BYTES, r21, r21
         nextorclip
 
-// f18 = the whole number nearest to the part f30 of the way from f12 to f14, up between two; 1.5 * 2^52 in f26, 1/2 in f28
+// f18 = the integer nearest to f12 + f30 (f14 - f12), rounded up between two integers. In: 1.5 * 2^52 in f26, 1/2 in
+// f28.
         .macro  nearest
         fsub.dd f14, f12, f14
         fmul.dd f14, f30, f14
@@ -308,7 +314,7 @@ done:   adds    -1, r17, r17
 floor\@:
         .endm
 
-// coordinate `at` of the corner at r10 to `to` of the structure at r6
+// Interpolates coordinate `at` of the corner at r10, and stores it at `to` of the structure at r6.
         .macro  coordinate at, to
         fld.l   \at(r10), f8
         fld.l   E_VIEW+\at(r10), f9
@@ -319,7 +325,7 @@ floor\@:
         fst.l   f8, \to(r6)
         .endm
 
-// ---- between: vertex at r5 and its places at r10 to the structure at r6, and r6 and r10 to the next ones
+// ---- between: stores the vertex at r5 and its positions at r10 in the structure at r6, and advances r6 and r10
 between: fld.l  0(r5), f16
         fld.l   P_ORIGIN(r20), f8
         fld.l   4(r5), f17
@@ -384,7 +390,8 @@ done:   adds    -1, r17, r17
 .endif
 
 .if PRECOMPUTED & !BETWEEN
-// ---- corner: vertex at r5 to the structure at r6, without a normal, and r6 to the next; r7 is 0 if it is outside of the guard band
+// ---- corner: stores the vertex at r5 in the structure at r6, without a normal, and advances r6. r7 is 0 if the vertex
+// is outside the guard band.
 
 corner: projected
         guarded
@@ -397,7 +404,8 @@ corner: projected
 beyond: bri    r1
         mov     r0, r7
 .else
-// ---- corner: vertex at r5 to the structure at r6, and r6 to the next; r7 is 0 if it is outside of the guard band
+// ---- corner: stores the vertex at r5 in the structure at r6, and advances r6. r7 is 0 if the vertex is outside the
+// guard band.
 
 corner: projected
         guarded

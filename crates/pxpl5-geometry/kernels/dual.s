@@ -8,14 +8,15 @@ COMMAND_BYTES = 120
 .endif
 
 .if BOTH_EYES
-// A batch is done when both loops have been gone through for the left eye and then for the right one (slats_rules.md).
+// Both loops run over a batch for the left eye, and then for the right eye (slats_rules.md).
 //
-// Registers on entry besides those of parameters.s: r19 where command words of the right eye go, r21 its parameter block; r18 and r20 are
-// those of the left eye. On return: r18 and r19 behind the last command of either eye.
+// Registers on entry in addition to parameters.s: r19 address for command words of the right eye, r21 parameter block
+// of the right eye. r18 and r20 belong to the left eye. On return: r18 and r19 are the addresses after the last command
+// of each eye.
 
 // ---- stack frame
-BATCH   = 464       // triangles of the batch
-TURN    = 468       // 0 while the left eye's commands are made, 1 while the right eye's are
+BATCH   = 464       // number of triangles in the batch
+TURN    = 468       // 0 while the left eye's commands are made, 1 for the right eye
 
         .macro  lefteye
         st.l    r0, TURN(r2)
@@ -37,7 +38,7 @@ TURN    = 468       // 0 while the left eye's commands are made, 1 while the rig
         btne    r0, r8, righteye
         .endm
 .else
-// A batch is done when both loops have been gone through once, for one eye.
+// Both loops run over a batch once, for one eye.
 
         .macro  lefteye
         .endm
@@ -47,16 +48,18 @@ TURN    = 468       // 0 while the left eye's commands are made, 1 while the rig
         .endm
 .endif
 
-// Triangles in dual-instruction mode, in batches: a first loop takes their corners to records, a second one takes the
-// records to the words of a command and to the bin of the region. Each loop fits the 4 KB instruction cache, the records of a batch fit the data
-// cache. Both are linear code (i860::linear) without a branch: what depends on the triangle is chosen by masks and by places in tables.
-// Triangles in doubt (near the planes of the clipper, without area, in more than one region) leave the loop.
+// Computes triangles in dual-instruction mode, in batches. A first loop makes records of the corners. A second loop
+// makes the words of a command and a bin entry from the records. Each loop fits the instruction cache of 4 KB, and the
+// records of a batch fit the data cache. Both loops are linear code (i860::linear) without a branch: masks and
+// positions in tables select the parts that depend on the triangle. Triangles in doubt (near the planes of the clipper,
+// without area, or in more than one region) leave the loop.
 //
-// Arithmetic and its order are those of the native transform and set-up; 1 / area is formed by Newton steps in double precision.
+// The arithmetic and its order are the same as in the native transform and set-up. 1 / area is computed by Newton steps
+// in double precision.
 
 // ---- stack frame
 SAVE    = 0         // return address
-LEFT    = 4         // triangles left in the batch, while others use its register
+LEFT    = 4         // triangles left in the batch, while their register has another use
 BOX     = 40        // low x, high x, low y, high y
 SCRATCH = 64        // 16 bytes for each corner
 RECORDS = 512
@@ -73,7 +76,7 @@ start:  st.l    r1, SAVE(r2)
         lefteye
 batch:  mov     BATCH_TRIANGLES, r31
         subs    r17, r31, r0
-        bnc     begun                       // a batch at least
+        bnc     begun                       // at least one batch
         mov     r17, r31
 begun:  batchnoted
         turns
@@ -83,12 +86,14 @@ begun:  batchnoted
         d.fnop
             nop
 corners:
-// Three corners at r29 to the records at r6: relative to the eye, w and its reciprocal by seed and two Newton steps in single precision,
-// the other coordinates, snapped and turned round, depth, whether it may lie outside of the depths, and the surface.
+// Makes the records at r6 of the three corners at r29. The steps are: position relative to the eye; w, and its
+// reciprocal by a seed and two Newton steps in single precision; the other coordinates, rounded to subpixels and also
+// subtracted from 8; the depth, and a test of its range; the surface.
 //
-// A record: x and y, snapped, as singles of 1.5 * 2^23 and more; 8 - x and 8 - y in the same way; depth as a double of
-// 1.5 * 2^52 and more; of the first corner alone the place of the triangle's side in the table of sides, and a word that is
-// negative where the exact tests must decide; the three words of the surface, as singles of 1.5 * 2^23 and more; the colour.
+// A record has x and y in subpixels, as singles biased by 1.5 * 2^23; 8 - x and 8 - y in the same format; the depth as
+// a double biased by 1.5 * 2^52. Only the first corner has the position of the triangle's side in the table of sides,
+// and a word that is negative if the exact tests must decide. Then follow the three words of the surface, as singles
+// biased by 1.5 * 2^23, and the colour.
 R_SNAPPED = 0
 R_TURNED  = 8
 R_DEPTH   = 16
@@ -96,4 +101,4 @@ R_SIDE    = 24
 R_DOUBT   = 28
 R_SURFACE = 32
 R_COLOUR  = 44
-R_BEGINS  = 48      // in strips alone: not 0 where the vertex makes no triangle with the two before
+R_BEGINS  = 48      // only in strips: not 0 if the vertex makes no triangle with the two vertices before it

@@ -1,6 +1,7 @@
 // Dual-instruction code: triangles in doubt, and the start of the right eye.
 
-// inside after all: no depth beyond the far plane, and once more through the set-up
+// The triangle is inside the guard band after all. Limits a depth to the far plane; the triangle then passes the set-up
+// again.
         .macro  nofarther r
         ld.l    R_DEPTH(\r), r7
         subs    r7, r0, r0
@@ -29,13 +30,14 @@ more:   d.fnop
             br      again
         d.fnop
             nop
-        fnop                                // never reached: what follows is single
+        fnop                                // never executed: single instructions follow
             nop
         fnop
             nop
 
 .if BOTH_EYES
-// ---- the same batch for the right eye: its corners to the places and depths of the records, whose colours stay
+// ---- the same batch for the right eye: writes positions and depths of the corners into the records, which keep their
+// colours
         .pool   r1 r7 r8 r9 r10 r11 r12 r13 r14 r15 r22 r23 r26 r27 r28
 
 righteye: shl   5, r31, r7

@@ -1,6 +1,7 @@
-// Where the corners of triangles are on the screen in one of two views (pphigs's kernels/between_rules.md, rule 1).
+// Computes the screen positions of triangles' corners in one of two views (kernels/between_rules.md of pphigs, rule 1).
 //
-// In: r16 first triangle, r17 how many (at least 1), r18 their records, r20 parameter block, r21 0 in the first view, 48 in the second.
+// In: r16 first triangle, r17 number of triangles (at least 1), r18 records of the triangles, r20 parameter block, r21
+// 0 for the first view or 48 for the second view.
 
         .align  32
 keepends: mov   r16, r5
@@ -23,7 +24,7 @@ each:   projected
         ftrunc.sd f21, f18
         fxfr    f18, r10
         subs    r10, r11, r0
-        bnc     low                         // unless the least > it
+        bnc     low                         // unless the least number is greater
         mov     r10, r11
 low:    subs    r12, r10, r0
         bnc     high
@@ -44,10 +45,10 @@ noted:  st.l    r3, E_INSIDE(r18)
 beyond: br      noted
         mov     r0, r3
 
-// Matrices between two views, element by element (pphigs's kernels/between_rules.md, rule 2).
+// Interpolates matrices between two views, element by element (kernels/between_rules.md of pphigs, rule 2).
 //
-// In: r16 those of the first view, r17 those of the second, r18 where they go, r19 how many elements (at least 1), r20 and r21 the part of
-// the way as a double.
+// In: r16 matrices of the first view, r17 matrices of the second view, r18 destination, r19 number of elements (at
+// least 1), r20 and r21 fraction of the way between the views as a double.
 
         .align  32
 blend:  ixfr    r20, f16

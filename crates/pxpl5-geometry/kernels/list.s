@@ -1,6 +1,7 @@
-// Display list: macros and constants for triangles with corners of their own, or for strips.
+// Macros and constants for two kinds of display lists: triangles with separate corners, and strips.
 
-// The end of a loop over triangles: the next triangle, or the return. A triangle that is not wholly inside the guard band comes to `clip`.
+// The end of a loop over triangles: continues with the next triangle, or returns. The code at `clip` handles triangles
+// that are not completely inside the guard band.
         .macro  nextorclip
         btne    r0, r17, next
         ld.l    SAVE(r2), r1
@@ -16,19 +17,19 @@ clip:   ld.l    P_CLIPPER(r20), r6
         .endm
 
 .if STRIPS
-// A display list of strips: each vertex makes a triangle with the two before it, but for those that begin a strip.
+// A display list of strips: each vertex makes a triangle with the two vertices before it, unless a strip begins there.
 
-LIST_STEP    = VERTEX_BYTES     // from one triangle to the next, which share two corners
+LIST_STEP    = VERTEX_BYTES     // bytes from one triangle to the next, which share two corners
 RECORD       = 56
-RECORD_STEP  = RECORD           // from the records of one to those of the next
-BATCH_TRIANGLES = 76            // of 78 corners
+RECORD_STEP  = RECORD           // bytes from the records of one triangle to the records of the next
+BATCH_TRIANGLES = 76            // a batch has 78 corners
 
-// vertices to triangles
+// Converts the number of vertices to the number of triangles.
         .macro  counted
         adds    -2, r17, r17
         .endm
 
-// each turn of the loop over corners makes three records, until there are two more than triangles
+// Each turn of the loop over corners makes three records, until there are two more records than triangles.
         .macro  turns
         adds    1, r31, r30
         .endm
@@ -43,7 +44,7 @@ BATCH_TRIANGLES = 76            // of 78 corners
             bnc     corners
         .endm
 
-// not a triangle where the last corner begins a strip
+// Leaves out the triangle if its last corner begins a strip.
         .macro  passover
         d.fnop
             ld.l    R_BEGINS(r5), r8
@@ -70,21 +71,22 @@ BATCH_TRIANGLES = 76            // of 78 corners
         st.l    r0, R_DOUBT(r5)
         .endm
 
-// Vertices in doubt are found at the end of the loop: three more words to ask for would cost more than they save.
+// Vertices in doubt are found only at the end of the loop. A test here would take three more words, which cost more
+// time than they save.
         .macro  doubtfulpairs
         .endm
 .else
-// A display list of triangles, each with corners of its own.
+// A display list of triangles with separate corners.
 
-LIST_STEP    = TRIANGLE_BYTES   // from one triangle to the next
-RECORD_STEP  = 144              // from the records of one to those of the next
+LIST_STEP    = TRIANGLE_BYTES   // bytes from one triangle to the next
+RECORD_STEP  = 144              // bytes from the records of one triangle to the records of the next
 RECORD       = 48
 BATCH_TRIANGLES = 26
 
         .macro  counted
         .endm
 
-// each turn of the loop over corners makes the records of one triangle
+// Each turn of the loop over corners makes the records of one triangle.
         .macro  turns
         mov     r31, r30
         .endm
@@ -109,7 +111,7 @@ BATCH_TRIANGLES = 26
         st.l    r0, R_DOUBT(r3)
         .endm
 
-// the same in pairs, at the beginning of the second loop: what is in doubt does not go through it first
+// The same test in instruction pairs, at the beginning of the second loop. Triangles in doubt leave the loop here.
         .macro  doubtfulpairs
         d.fnop
             ld.l    R_DOUBT(r3), r8

@@ -1,6 +1,6 @@
 // Reciprocals by Newton steps.
 
-// f12 = 1 / f8 to double precision: seed and three Newton steps
+// f12 = 1 / f8 in double precision: a seed and three Newton steps.
         .macro  reciprocal
         fld.d   P_TWO(r20), f10
         frcp.dd f8, f12
@@ -11,7 +11,8 @@
         .endr
         .endm
 
-// f18 = 1 / the root of f16 to double precision: seed and three Newton steps. In: 0.5 in f20, 1.5 in f22. Changes f8, f20.
+// f18 = 1 / the root of f16 in double precision: a seed and three Newton steps. In: 0.5 in f20, 1.5 in f22. Changes f8,
+// f20.
         .macro  reciprocal_root
         fmul.dd f16, f20, f20
         frsqr.dd f16, f18

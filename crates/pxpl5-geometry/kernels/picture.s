@@ -1,8 +1,8 @@
-// Picture: macros for rows, lines and regions, for back faces, and for bins.
+// Macros that depend on the picture: for rows, lines and regions, for back faces, and for bins.
 
 .if GRID
-// A picture of any size in regions of 128 x 128, the last ones cut off where the size is no multiple; a row of it is a line of the frame.
-// Its size stands in the parameter block.
+// A picture of any size in regions of 128 x 128. The last regions are cut off if the size is not a multiple of 128. A
+// row of the picture is a line of the frame. The parameter block has the size.
 
 LAST_OF_REGION = 127
 
@@ -30,7 +30,7 @@ LAST_OF_REGION = 127
         .macro  quadraticrows
         .endm
 
-// At most what the register says
+// Limits r to the value in the register `most`.
         .macro  atmost r, most
         subs    \most, \r, r0
         bnc     am\@
@@ -84,9 +84,9 @@ am\@:
         ld.l    P_SAFE(r20), \to
         .endm
 .else
-// What frames and fields share: 640 pixels and five regions across, 7680 subpixels down the frame.
+// Code that frames and fields share: 640 pixels and five regions across, 7680 subpixels down the frame.
 
-// At most the last pixel, the last row
+// Limits a number to the last pixel of a row, or to the last row.
         .macro  lastcolumn r
         subs    639, \r, r0
         bnc     lc\@
@@ -100,11 +100,11 @@ lc\@:
 ll\@:
         .endm
 
-// The same of the last pixel of a column of regions, which is never cut off here
+// Limits a number to the last pixel of a column of regions. In these pictures, no column is cut off.
         .macro  cutoff r
         .endm
 
-// At most the last subpixel of the frame, and that itself
+// Limits a number to the last subpixel of the frame, or loads the last subpixel.
         .macro  atmostx r
         subs    10239, \r, r0
         bnc     ax\@
@@ -124,21 +124,22 @@ ay\@:
         mov     7679, \to
         .endm
 
-// r28 = the number of a region by its row and its column; f8 to f13 may change
+// r28 = number of a region from its row and its column. May change f8 to f13.
         .macro  regionnumber row, column
         shl     2, \row, r28                // 5 row + column
         adds    r28, \row, r28
         adds    r28, \column, r28
         .endm
 
-// A distance from pixel (0, 0) in subpixels that is inside the guard band, which ends at 65520 and twice the centre less that
+// A distance from pixel (0, 0) in subpixels that is inside the guard band. The guard band ends at 65520 and at twice
+// the centre minus 65520.
         .macro  safe to
         or      55264, r0, \to
         .endm
 
 .if FIELD
-// A picture that is a field of 640 x 240 in regions of 128 x 120: its rows are every second line of the frame, from line
-// P_LINE on.
+// A picture that is a field of 640 x 240 in regions of 128 x 120. The rows of the picture are every second line of the
+// frame, beginning with line P_LINE.
 
 LAST_ROW = 239
 LAST_OF_REGION = 119
@@ -173,7 +174,8 @@ LAST_OF_REGION = 119
         adds    r28, \r, \r
         .endm
 
-// An expression at `at` of the command: c + b where the field begins with line 1 (r5 is all ones then, else 0), 2 b
+// Converts an expression at `at` of the command to the rows of a field. b becomes 2 b. c becomes c + b if the field
+// begins with line 1: r5 is then all ones, otherwise 0.
         .macro  restated at
         ld.l    \at+4(r18), r6
         ld.l    \at+8(r18), r7
@@ -196,7 +198,7 @@ LAST_OF_REGION = 119
         restated 108
         .endm
 
-// The same of a quadratic: xx xy yy x y 1 of 64 bits in f16 to f26
+// Converts a quadratic expression in the same way. Its coefficients xx xy yy x y 1 of 64 bits are in f16 to f26.
         .macro  quadraticrows
         bte     r0, r5, even
         fiadd.dd f26, f24, f26
@@ -210,46 +212,46 @@ even:   fiadd.dd f18, f18, f18
         fiadd.dd f20, f20, f20
         .endm
 .else
-// A picture that is a whole frame of 640 x 480 in regions of 128 x 128: a row of it is a line of the frame.
+// A picture that is a complete frame of 640 x 480 in regions of 128 x 128. A row of the picture is a line of the frame.
 
 LAST_ROW = 479
 LAST_OF_REGION = 127
 
-// Row of regions of a row of the picture
+// Row of regions that contains a row of the picture.
         .macro  regionrow r
         shr     7, \r, \r
         .endm
 
-// First row of the picture of a row of regions
+// First row of the picture in a row of regions.
         .macro  toprow r, to
         shl     7, \r, \to
         .endm
 
-// First and last row of the picture among lines of the frame
+// First and last row of the picture in a range of lines of the frame.
         .macro  firstrow r
         .endm
         .macro  lastrow r
         .endm
 
-// Line of the frame that a row is
+// Line of the frame that a row of the picture shows.
         .macro  line r
         .endm
 
-// Expressions over the frame's pixels, restated for the rows of the picture
+// Converts expressions of the frame's pixels to the rows of the picture.
         .macro  restate
         .endm
         .macro  restated at
         .endm
 
-// The same of a quadratic: xx xy yy x y 1 of 64 bits in f16 to f26
+// Converts a quadratic expression in the same way. Its coefficients xx xy yy x y 1 of 64 bits are in f16 to f26.
         .macro  quadraticrows
         .endm
 .endif
 .endif
 
 .if CULLED
-// Triangles that face away are not drawn: to `otherwise` if the high word of the area, in the frame or in a register, tells so.
-// Changes r11, r13 and r14.
+// Triangles that face away are not drawn: jumps to `otherwise` if the high word of the area (in the frame or in a
+// register) shows that a triangle faces away. Changes r11, r13 and r14.
 
         .macro  facing_word otherwise
         ld.l    P_CULL(r20), r13
@@ -269,7 +271,7 @@ LAST_OF_REGION = 127
         facing_word \otherwise
         .endm
 .else
-// Triangles are drawn whichever way they face.
+// Triangles are drawn in both orientations.
 
         .macro  facing at, otherwise
         .endm
@@ -277,7 +279,8 @@ LAST_OF_REGION = 127
         .endm
 .endif
 
-// Puts the command at r18 into the bin of a region: table of bins r19, entries made r22. Changes r28, r29.
+// Puts the command at r18 into the bin of a region. In: r19 table of bins, r22 number of entries so far. Changes r28,
+// r29.
         .macro  insert region
         shl     2, \region, r28
         ld.l    r28(r19), r29

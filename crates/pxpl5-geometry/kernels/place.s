@@ -1,13 +1,16 @@
-// The beginning of a pass and what the host changes in the display list, as a good compiler of about 1990 would give plain functions in
-// C (compiled_rules.md). Matrices are singles, column after column, as the host sends them; sums are formed in double precision, in
-// the order of the native code, and rounded once. Divisions are Newton steps in double precision.
+// Code for the beginning of a pass and for edits of the display list. It is like the output of a good compiler of about
+// 1990 for plain functions in C (compiled_rules.md). Matrices are singles, column by column, as the host sends them.
+// Sums are computed in double precision in the order of the native code, and rounded once. Divisions are Newton steps
+// in double precision.
 //
-//   edit   r16 edits of a message, each the number of a structure and its model matrix, r17 their number, r18 model matrices by structure
-//   reset  r16 where each bin begins, r17 number of bins, r19 table of bins
-//   place  r16 matrix to the eye, r17 model matrix, r18 projection, r19 light (towards it, x y z; part in shadow; part added), r20
-//          parameter block, r21 not 0 if triangles that face away are not drawn, r22 parameter block of spheres, or 0 where there are
-//          none or the projection cannot show them, r2 stack: what depends on the view of a structure, whose matrix to the eye has an
-//          inverse
+//   edit   r16 edits of a message (each has the number of a structure and its model matrix), r17 number of edits, r18
+//          model matrices of all structures
+//   reset  r16 first addresses of the bins, r17 number of bins, r19 table of bins
+//   place  r16 matrix to the eye, r17 model matrix, r18 projection, r19 light (direction towards the light x, y, z;
+//          ambient part; diffuse part), r20 parameter block, r21 not 0 if triangles that face away are not drawn, r22
+//          parameter block of spheres, or 0 if there are no spheres or the projection cannot show them, r2 stack.
+//          Computes the words that depend on the view of a structure. The structure's matrix to the eye must have an
+//          inverse.
 
 MATRIX_BYTES = 64
 
@@ -16,9 +19,9 @@ SAVE    = 0
 VECTOR  = 16       // four doubles
 PRODUCT = 48       // four doubles
 EYE     = 80       // the model-view matrix, singles
-ROWS    = 144      // columns of rows x y z to the eye, doubles: 32 bytes a column
+ROWS    = 144      // columns of the rows x y z to the eye, doubles: 32 bytes a column
 CROSS   = 240      // y x z, z x x, x x y of the columns, doubles
-ORIGIN  = 312      // of the eye, doubles
+ORIGIN  = 312      // position of the eye, doubles
 LINK    = 336      // the return address of `lens`
 FRAME   = 352
 
@@ -48,7 +51,8 @@ reset:  ld.l    0(r16), r8
         bri     r1
         nop
 
-// f12 = 1 / f8 to double precision: as in reciprocal.s, but for the 2, since nothing may be in the parameter block yet
+// f12 = 1 / f8 in double precision, as in newton.s. The constant 2 is not read from the parameter block, which may
+// still be empty.
         .macro  reciprocal
         orh     0x4000, r0, r8              // 2.0
         ixfr    r0, f10
@@ -61,7 +65,7 @@ reset:  ld.l    0(r16), r8
         .endr
         .endm
 
-// ---- product of the matrix at r5 and the vector at VECTOR, to PRODUCT
+// ---- PRODUCT = the matrix at r5 times the vector at VECTOR
 times:  mov     r5, r8
         adds    PRODUCT, r2, r9
         mov     4, r10
@@ -92,14 +96,14 @@ row:    fld.l   0(r8), f8
         bri     r1
         nop
 
-// a column of four singles at r6 to VECTOR
+// VECTOR = a column of four singles at r6.
         .macro  widened k
         fld.l   4*\k(r6), f8
         fmov.sd f8, f10
         fst.d   f10, VECTOR+8*\k(r2)
         .endm
 
-// a double at `from` of the frame, rounded, to `to`
+// Rounds the double at `from` of the frame, and stores the single at `to`.
         .macro  narrowed from, to
         fld.d   \from(r2), f8
         fmov.ds f8, f10
@@ -143,7 +147,7 @@ row:    fld.l   0(r8), f8
         fadd.dd f12, f14, f12
         .endm
 
-// coordinate k of the eye's place
+// Coordinate k of the eye's position.
         .macro  solved k
         dotted  CROSS+24*\k, EYE+48
         fsub.dd f0, f12, f12
@@ -169,7 +173,7 @@ row:    fld.l   0(r8), f8
         fadd.dd f12, f14, f12
         .endm
 
-// the greater of f16 and the square of row k to the eye, to f16
+// f16 = the greater of f16 and the squared length of row k to the eye.
         .macro  longer k
         three   ROWS+8*\k, ROWS+8*\k, ROWS+32+8*\k, ROWS+32+8*\k, ROWS+64+8*\k, ROWS+64+8*\k
         pfgt.dd f12, f16, f0
@@ -200,7 +204,7 @@ column: widened 0
         adds    -1, r4, r4
         adds    16, r7, r7
         btne    r0, r4, column
-        // the eye's place: what the matrix takes to the origin
+        // The position of the eye: the matrix maps this point to the origin.
         crossed 16, 32, CROSS
         crossed 32, 0, CROSS+24
         crossed 0, 16, CROSS+48
@@ -211,7 +215,7 @@ column: widened 0
         solved  0
         solved  1
         solved  2
-        // the axes and the eye's place to the eye, and on to the picture
+        // Transform the axes and the position of the eye to eye coordinates, and then to the picture.
         mov     r0, r4
 axis:   fst.d   f0, VECTOR(r2)
         fst.d   f0, VECTOR+8(r2)
@@ -262,7 +266,7 @@ onward: call    times
         narrowed PRODUCT+24, P_ROWS+48(r7)
         adds    1, r4, r4
         btne    4, r4, axis
-        // normals: the rows to the eye by the length of the longest
+        // Normals: divide the rows to the eye by the length of the longest row.
         fmov.dd f0, f16
         longer  0
         longer  1
@@ -277,7 +281,7 @@ onward: call    times
         orh     0x4680, r0, r8              // 2^14
         ixfr    r8, f9
         mov     r0, r4
-        // row after row, and back into its place, unit for the light
+        // Each row replaces its old value; the light gets unit length.
 unit:   shl     3, r4, r7
         adds    r2, r7, r7
         shl     4, r4, r9
@@ -296,7 +300,7 @@ cell:   fld.d   ROWS(r7), f12
         btne    r0, r10, cell
         adds    1, r4, r4
         btne    3, r4, unit
-        // the light: to the eye, and from there as the normals see it
+        // Transform the light to the eye, and from there to the coordinates of the normals.
         fld.l   0(r19), f20
         fld.l   4(r19), f21
         fld.l   8(r19), f22
@@ -330,7 +334,7 @@ turn:   fld.l   0(r7), f8
         ld.l    16(r19), r9
         st.l    r8, P_AMBIENT(r20)
         st.l    r9, P_DIFFUSE(r20)
-        // which way triangles face that are not drawn: the sign of the determinant of rows x, y and w
+        // The orientation of triangles that are not drawn is the sign of the determinant of the rows x, y and w.
         st.l    r0, P_CULL(r20)
         st.l    r0, P_CULL+4(r20)
         bte     r0, r21, placed
@@ -339,7 +343,7 @@ turn:   fld.l   0(r7), f8
         call    sign
         adds    P_ROWS+48, r20, r7
         btne    r0, r11, signed
-        call    sign                        // of a parallel projection x, y and depth
+        call    sign                        // rows x, y and depth for a parallel projection
         adds    P_ROWS+32, r20, r7
 signed: subs    r0, r11, r0
         bc      placed                      // mirrored: the determinant is greater than 0
@@ -352,9 +356,10 @@ left:   ld.l    SAVE(r2), r1
         bri     r1
         adds    FRAME, r2, r2
 
-// ---- what spheres need of the view, to their parameter block r22; the light in eye coordinates is at VECTOR
+// ---- writes the words that depend on the view to the parameter block of spheres at r22. The direction towards the
+// light in eye coordinates is at VECTOR.
 
-// row k of the matrix to the eye, without its last cell
+// Row k of the matrix to the eye, without its last number.
         .macro  eyerow k
         ld.l    EYE+4*\k(r2), r8
         ld.l    EYE+16+4*\k(r2), r9
@@ -370,7 +375,7 @@ left:   ld.l    SAVE(r2), r1
         fst.d   f8, VECTOR+8*\k(r2)
         .endm
 
-// the greater of f16 and the square of axis k of the matrix to the eye, to f16
+// f16 = the greater of f16 and the squared length of axis k of the matrix to the eye.
         .macro  wider k
         fld.l   EYE+16*\k(r2), f8
         fld.l   EYE+16*\k+4(r2), f9
@@ -386,7 +391,7 @@ left:   ld.l    SAVE(r2), r1
 thinner\@:
         .endm
 
-// along axis k of the picture; the projection's scale at `scale`, the middle moved by `shift`
+// Words for axis k of the picture. In: the projection's scale at `scale`, the shift of the middle at `shift`.
         .macro  across k, scale, shift
         fld.l   \scale(r18), f8
         fld.d   S_HALF_FRAME+8*\k(r22), f10
@@ -404,7 +409,7 @@ thinner\@:
         fst.d   f10, S_CORNER+8*\k(r22)
         .endm
 
-// a cell of the projection as a double
+// A number of the projection as a double.
         .macro  celled at, to
         fld.l   \at(r18), f8
         fmov.sd f8, \to
@@ -438,7 +443,7 @@ lens:   st.l    r1, LINK(r2)
         reciprocal_root
         fmul.dd f16, f18, f16
         fst.d   f16, S_SCALE(r22)
-        // parallel if w does not depend on z
+        // The projection is parallel if w does not depend on z.
         ld.l    44(r18), r8
         fld.d   S_ONE(r22), f30
         andnoth 0x8000, r8, r8
@@ -448,7 +453,7 @@ lens:   st.l    r1, LINK(r2)
         celled  36, f4
         celled  56, f6                      // slope of depth
         celled  40, f18
-        fsub.dd f0, f18, f18                // its constant part
+        fsub.dd f0, f18, f18                // constant part of the depth
         fst.d   f18, S_NEAR(r22)
         fst.d   f6, S_NEAR+8(r22)
         fsub.dd f18, f30, f8
@@ -486,7 +491,7 @@ deep:   fld.d   S_RANGE(r22), f8
         bri     r1
         nop
 
-// ---- r11 less than, equal to or greater than 0 as the determinant of rows x, y and that at r7
+// ---- r11 = sign of the determinant of the rows x, y and the row at r7: less than, equal to or greater than 0
         .macro  part a, b, c
         fld.l   P_ROWS+\a(r20), f8
         fld.l   P_ROWS+16+\b(r20), f9

@@ -16,7 +16,7 @@
             br      again
         d.fnop
             nop
-        fnop                                // never reached: what follows is single
+        fnop                                // never executed: single instructions follow
             nop
         fnop
             nop

@@ -1,27 +1,28 @@
 // Macros of the scalar set-up, for compiled code and the clipper.
 
-// From three corners at CORNERS to the words of a command at r18 and its bins: functions, locals in registers, scalar floating point
-// with loads in its shadow. What includes it gives the macros `firstcorner`, `secondcorner` (the third lies behind it), `surfaceof`
-// (component k of a corner's surface, counted from the corner, to r10), `finish` and `steep`.
+// Makes the words of a command at r18, and its bin entries, from three corners at CORNERS. The code has functions,
+// local variables in registers, and scalar floating point with loads in its shadow. The program that includes this file
+// defines the macros `firstcorner`, `secondcorner` (the third corner follows the second), `surfaceof` (component k of a
+// corner's surface, counted from the corner, to r10), `finish` and `steep`.
 
 // ---- stack frame
-BOX    = 8        // low x, high x, low y, high y
-FIRST  = 24       // the corners in clockwise order, over a call of bins
+BOX    = 8        // lowest x, highest x, lowest y, highest y
+FIRST  = 24       // the corners in clockwise order, kept during a call of bins
 SECOND = 28
 THIRD  = 32
-DX1    = 40       // corner 0 to 1 and 0 to 2, single
+DX1    = 40       // from corner 0 to 1 and from corner 0 to 2, single
 DY1    = 44
 DX2    = 48
 DY2    = 52
 PERPIX = 56       // 16 / twice the area
-TOX    = 64       // corner 0 to the pixel of reference, in pixels
+TOX    = 64       // from corner 0 to the reference pixel, in pixels
 TOY    = 72
-REFX   = 80       // pixel of reference, double
+REFX   = 80       // reference pixel, double
 REFY   = 88
-CORNERS = 96      // of each corner:
-C_X    = 0        // place, snapped, single
+CORNERS = 96      // three corners, each with:
+C_X    = 0        // position, rounded to subpixels, single
 C_Y    = 4
-C_DEPTH = 8       // values that planes go through, double
+C_DEPTH = 8       // values of the planes at the corner, double
 C_SURFACE = 16
 C_AWAY = 40       // how far the normal turns away from the eye, single
 C_BYTES = 48
@@ -54,7 +55,7 @@ s\@:    ftrunc.sd f16, f18
         st.l    r11, \to+4(r2)
         .endm
 
-// at least 0, and brought to the picture by `atmost`
+// Limits a number to at least 0 and to the limit of the macro `atmost`.
         .macro  clamped r, atmost
         subs    r0, \r, r0
         bc      low\@                       // r > 0
@@ -63,7 +64,8 @@ low\@:  \atmost \r
         nop
         .endm
 
-// pixel of reference along one axis, the middle of the box within the picture, and how far the corner's coordinate is from its centre
+// Computes the reference pixel along one axis, which is the middle of the box within the picture. Also computes the
+// distance from the corner's coordinate to the centre of this pixel.
         .macro  reference box, at, atmost, to, distance
         ld.l    \box(r2), r10
         ld.l    \box+4(r2), r11
@@ -71,7 +73,7 @@ low\@:  \atmost \r
         clamped r11, \atmost
         adds    r10, r11, r10
         shra    5, r10, r10
-        xorh    0x8000, r10, r11            // to a double
+        xorh    0x8000, r10, r11            // convert to a double
         ixfr    r11, f8
         orh     0x4330, r0, r11
         ixfr    r11, f9
@@ -87,7 +89,8 @@ low\@:  \atmost \r
         fst.d   f12, \distance(r2)
         .endm
 
-// clip coordinate k: ((c0 x + c1 y) + c2 z) + t with c0 c1 in f8 f9, and those of the next row there
+// Clip coordinate k: ((c0 x + c1 y) + c2 z) + t. In: c0 and c1 in f8 and f9. Out: c0 and c1 of the next row in f8 and
+// f9.
         .macro  clipped k, to
         fmul.ss f8, f16, \to
         fld.l   P_ROWS+16*\k+8(r20), f10
@@ -101,13 +104,13 @@ low\@:  \atmost \r
         fadd.ss \to, f11, \to
         .endm
 
-// to `beyond` unless a <= b
+// Jumps to `beyond` unless a <= b.
         .macro  within a, b
         pfle.ss \a, \b, f0
         bc      beyond
         .endm
 
-// the vertex at r5: relative to the eye in f16 f17 f18, clip coordinates in f20 to f23
+// The vertex at r5: position relative to the eye in f16 f17 f18, clip coordinates in f20 to f23.
         .macro  projected
         fld.l   0(r5), f16
         fld.l   P_ORIGIN(r20), f8
@@ -126,7 +129,7 @@ low\@:  \atmost \r
         clipped 3, f23
         .endm
 
-// to `beyond` if the clip coordinates lie outside of the guard band
+// Jumps to `beyond` if the clip coordinates lie outside the guard band.
         .macro  guarded
         fld.l   P_GUARD(r20), f8
         fld.l   P_GUARD+4(r20), f9
@@ -146,7 +149,8 @@ low\@:  \atmost \r
         within f23, f11
         .endm
 
-// clip coordinates to the place in the structure at r6; the depth in f12, to be lessened by f10
+// Stores the screen position of the clip coordinates in the structure at r6. The depth in f12 must still be reduced by
+// f10.
         .macro  placed
         fld.l   P_TWO_S(r20), f10           // 1 / w: seed and two Newton steps
         fld.l   P_SCREEN(r20), f14
@@ -163,7 +167,7 @@ low\@:  \atmost \r
         fsub.ss f10, f12, f12
         fld.d   P_DEPTH(r20), f28
         fmul.ss f11, f12, f11
-        fmul.ss f20, f11, f20               // snapped
+        fmul.ss f20, f11, f20               // rounded to subpixels
         fmul.ss f20, f14, f20
         fadd.ss f20, f24, f20
         fsub.ss f20, f26, f20
@@ -183,7 +187,8 @@ nearer\@: fld.d   P_DEPTH_BIAS(r20), f14
         fadd.dd f12, f14, f12
         .endm
 
-// ---- one triangle; to `done` if there is nothing to draw. r18 goes behind its words, and they into bins.
+// ---- one triangle: writes the command's words at r18, advances r18 and makes bin entries. Jumps to `done` if there is
+// nothing to draw.
         .macro  set_up done
         // orientation
         firstcorner r7
@@ -204,7 +209,7 @@ nearer\@: fld.d   P_DEPTH_BIAS(r20), f14
         facing_float f21, \done
         pfgt.dd f0, f20, f0
         bnc     oriented\@
-        fmov.ss f16, f24                    // make it clockwise
+        fmov.ss f16, f24                    // change to clockwise order
         fmov.ss f18, f16
         fmov.ss f24, f18
         fmov.ss f17, f24
@@ -244,7 +249,7 @@ oriented\@: fst.l f16, DX1(r2)
         call    bins
         nop
         bte     r0, r22, \done              // no region
-        // what all planes share
+        // Values that all planes share.
         ld.l    FIRST(r2), r7
         ld.l    SECOND(r2), r8
         fld.d   C_X(r7), f24
@@ -268,7 +273,7 @@ oriented\@: fst.l f16, DX1(r2)
         surfaceof 2
         call    plane
         adds    108, r18, r11
-        // heads
+        // Store the instruction heads.
         ld.l    P_HEADS(r20), r10
         ld.l    P_HEADS+4(r20), r11
         st.l    r10, 0(r18)
@@ -290,7 +295,8 @@ oriented\@: fst.l f16, DX1(r2)
         adds    COMMAND_BYTES, r18, r18
         .endm
 
-// The light at the vertex at r5, whose normal turns away as `away` of the structure at r6 says: 0 to 1 in f16; the colour in r8.
+// Computes the light at the vertex at r5: 0 to 1 in f16, and the colour in r8. `away` of the structure at r6 states how
+// far the normal turns away from the eye.
 
         .macro  intensity away
         fld.l   P_LIGHT(r20), f16
@@ -307,7 +313,7 @@ oriented\@: fst.l f16, DX1(r2)
         fadd.ss f16, f18, f16               // the cosine
         pfgt.ss f8, f0, f0
         bnc     facing\@
-        fsub.ss f0, f16, f16                // of the other side
+        fsub.ss f0, f16, f16                // use the other side of the normal
 facing\@: pfgt.ss f16, f0, f0
         bc      lit\@
         fmov.ss f0, f16
@@ -316,7 +322,7 @@ lit\@:    fld.l   P_DIFFUSE(r20), f8
         fmul.ss f8, f16, f16
         fld.l   P_ONE(r20), f10
         fadd.ss f9, f16, f16
-        pfle.ss f0, f16, f0                 // 0 to 1
+        pfle.ss f0, f16, f0                 // limit to the range from 0 to 1
         bnc     least\@
         fmov.ss f0, f16
 least\@:  pfgt.ss f16, f10, f0
@@ -326,7 +332,7 @@ most\@: ld.l    COLOUR(r5), r8
         .endm
 
 .if PHONG
-// A command: enable; three edges; depth compared, depth loaded again; normal x, y, z; the object's colour.
+// A command: enable; three edges; depth compare, depth load; normal x, y, z; the object's colour.
 COMMAND_BYTES = 128
 
 // The colour of the triangle's first corner, and its instruction head
@@ -337,19 +343,20 @@ COMMAND_BYTES = 128
         st.l    r11, 124(r18)
         .endm
 .else
-// A command: enable; three edges; depth compared, depth loaded again; red, green, blue.
+// A command: enable; three edges; depth compare, depth load; red, green, blue.
 COMMAND_BYTES = 120
 
-// Nothing follows the planes.
+// No words follow the planes.
         .macro  finish
         .endm
 .endif
 
-// How normals of corners turn, for the kernels whose corners are structures in memory. place.s turns the rows themselves, in doubles and
-// once for a structure: it has neither.
+// Rotation of the normals of corners, for kernels whose corners are structures in memory. place.s includes none of
+// these macros, because it transforms the rows once for each structure, in doubles.
 
-// r8 = r20 if three corners face the eye on the whole, else 24 more: what P_SIDES and the place behind it are found by. The first
-// one's measure of turning away lies at `at` of the frame, the others `bytes` behind each other.
+// r8 = r20 if the normals of the three corners together face the eye, otherwise r20 + 24. With r8 as base, P_SIDES is
+// the table of the right side. `at` of the frame states how far the first normal turns away. The numbers of the other
+// corners follow at intervals of `bytes`.
         .macro  sided at, bytes
         fld.l   \at(r2), f8
         fld.l   \at+\bytes(r2), f9
@@ -363,7 +370,8 @@ COMMAND_BYTES = 120
 facing:
         .endm
 
-// f16 = the normal in f20 f21 f22 along the axis of the eye whose row is at r11, less the block's P_EYE; r11 to the next, r9 one less
+// f16 = component of the normal in f20 f21 f22 along an axis of the eye, whose row is at P_EYE(r11). Advances r11 to
+// the next row, and decrements r9.
         .macro  alongaxis
         fld.l   P_EYE(r11), f16
         fld.l   P_EYE+4(r11), f17

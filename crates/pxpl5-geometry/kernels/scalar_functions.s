@@ -1,7 +1,7 @@
 // Functions of the scalar set-up.
 
-// ---- edge from the corner at r10 to that at r11, to the words at r12: a = -dy, b = dx,
-// c = floor((dx (8 - y) - dy (8 - x) - tie) / 16)
+// ---- edge from the corner at r10 to the corner at r11, stored at r12: a = -dy, b = dx, c = floor((dx (8 - y) - dy (8
+// - x) - tie) / 16)
 edge:   fld.d   C_X(r10), f8
         fld.d   C_X(r11), f10
         orh     0x4100, r0, r13             // 8.0
@@ -38,7 +38,7 @@ tied:   fld.d   P_SIXTEENTH(r20), f12
         bri     r1
         st.l    r13, 8(r12)
 
-// ---- plane through the values at r10 of the corners r7, r8 and r9, to the words at r11
+// ---- plane through the values at r10 of the corners r7, r8 and r9, stored at r11
 plane:  adds    r10, r7, r12
         fld.d   0(r12), f16
         adds    r10, r8, r12
@@ -78,7 +78,7 @@ plane:  adds    r10, r7, r12
         fmul.dd f24, f20, f20
         st.l    r13, 4(r11)
         fld.d   REFX(r2), f22
-        fadd.dd f16, f20, f16               // value at the pixel of reference
+        fadd.dd f16, f20, f16               // value at the reference pixel
         fld.d   REFY(r2), f24
         fsub.dd f10, f28, f10
         fsub.dd f12, f28, f12

@@ -23,7 +23,7 @@ again:  d.fnop
 triangles:
         passover
         doubtfulpairs
-// The triangle of the records at r3, r4 and r5 to the words of a command at r18.
+// Makes the words of a command at r18 from the triangle with the records at r3, r4 and r5.
 AREA_WORD = 8
 LOW_XY    = 16
 HIGH_XY   = 24
@@ -34,19 +34,19 @@ TO_Y      = 328
 FROM_X    = 336
 FROM_Y    = 344
 TIES      = 352   // three words whose signs say which edges own their pixels
-// for depth and each word of the surface: slopes before the division by the area, and value at corner 0
+// For depth and each word of the surface: slopes before the division by the area, and the value at corner 0.
 S_z       = 368
 S_n0      = 392
 S_n1      = 416
 S_n2      = 440
-// places of the planes in the command
+// Positions of the planes in the command.
 AT_z      = 56
 AT_n0     = 76
 AT_n1     = 92
 AT_n2     = 108
 
         .pool   r1 r8 r9 r10 r11 r12 r13 r14 r15 r26 r27 r28 r29 r30 r6
-// Settings with which the scheduler found the shortest code: window, eagerness, reserve, slope and shake.
+// Settings of the scheduler that gave the shortest code: window, eagerness, reserve, slope and shake.
 .if PHONG & FIELD & !BINNED & !CULLED
         .linear 300 20 2 8 0
 .elseif !BINNED | CULLED
@@ -65,14 +65,14 @@ AT_n2     = 108
         .linear 64 15 2 8 0
 .endif
 .if STRIPS
-        // in doubt where one of the corners is
+        // A triangle is in doubt if one of its corners is in doubt.
 doubt0  = ld.l R_DOUBT(r3)
 doubt1  = ld.l R_DOUBT(r4)
 doubt2  = ld.l R_DOUBT(r5)
 doubt01 = or doubt0, doubt1
 doubted = or doubt01, doubt2
 .else
-        // corners in doubt did not come here
+        // Triangles with corners in doubt do not reach this code.
 doubted = or r0, r0
 .endif
 a       = fld.d R_SNAPPED(r3)
@@ -96,7 +96,7 @@ third   = xor r5, pb
 ae      = shl 1, ad
 af      = shr 1, ae
 flat    = adds -1, af
-        // the box: the least of the corners, and of what is left of them to 8
+        // The box: the least coordinates of the corners, and the least of the coordinates subtracted from 8.
 na      = fld.d R_TURNED(r3)
 nb      = fld.d R_TURNED(r4)
 nc      = fld.d R_TURNED(r5)
@@ -111,7 +111,7 @@ ra      = mul.dd ac, seed
 rb      = sub.dd two, ra
 rc      = mul.dd seed, rb
 .if CULLED
-        // turned the way that is not drawn, too
+        // A triangle in the orientation that is not drawn is in doubt too.
 cull_a  = ld.l P_CULL(r20)
 cull_b  = xor cull_a, ad
 cull_c  = ld.l P_CULL+4(r20)
@@ -132,7 +132,8 @@ ly      = subs lya, bias
 hx      = subs bias8, hxa
 hy      = subs bias8, hya
 .if BINNED
-        // the pixel of reference: the middle of what is seen of the box; where nothing is, there will be no command
+        // The reference pixel: the middle of the visible part of the box. If no part is visible, there will be no
+        // command.
 lx_p    = shra 31, lx
 lx_u    = andnot lx_p, lx
 ly_p    = shra 31, ly
@@ -160,7 +161,7 @@ rx      = shra 5, rxa
 rya     = adds ly_u, hy_u
 ry      = shra 5, rya
 .else
-        // the pixel of reference: the middle of what is in the picture of the box, or its nearest side
+        // The reference pixel: the middle of the part of the box in the picture, or the picture's nearest side.
         for v lx hx
 $v_p     = shra 31, $v
 $v_q     = andnot $v_p, $v
@@ -182,7 +183,7 @@ rx      = shra 5, rxa
 rya     = adds ly_u, hy_u
 ry      = shra 5, rya
 .endif
-        // corners in clockwise order
+        // Corners in clockwise order.
 bb      = fld.d R_SNAPPED(second)
 cc      = fld.d R_SNAPPED(third)
 ex0     = sub.ss bb.0, a.0
@@ -191,7 +192,7 @@ ex2     = sub.ss a.0, cc.0
 ey2     = sub.ss a.1, cc.1
 ex1     = sub.ss cc.0, bb.0
 ey1     = sub.ss cc.1, bb.1
-        // 16 / area goes on
+        // Continue the computation of 16 / area.
 rd      = mul.dd ac, rc
 re      = sub.dd two, rd
 rf      = mul.dd rc, re
@@ -199,7 +200,7 @@ rg      = mul.dd ac, rf
 rh      = sub.dd two, rg
 ri      = mul.dd rf, rh
 .if PHONG & STRIPS
-        // on the whole turned away? the place in the table of sides
+        // Do the normals together turn away? The result is the position in the table of sides.
 away0   = fld.l R_SIDE(r3)
 away1   = fld.l R_SIDE(r4)
 away2   = fld.l R_SIDE(r5)
@@ -219,7 +220,7 @@ side    = or r0, r20
 turn    = ld.l R_SIDE(r3)
 side    = adds turn, r20
 .endif
-        // slopes before they are divided by the area, and values at corner 0
+        // Slopes before the division by the area, and values at corner 0.
 depth0  = fld.d R_DEPTH(r3)
 depth1  = fld.d R_DEPTH(second)
 depth2  = fld.d R_DEPTH(third)
@@ -262,7 +263,7 @@ mg$k    = sub.dd mc$k, md$k
 @n$kx   fst.d mf$k, S_n$k(r2)
 @n$ky   fst.d mg$k, S_n$k+8(r2)
         endfor
-        // edges: a = -dy and b = dx in integers by way of 1.5 * 2^52
+        // Edges: a = -dy and b = dx as integers, by an addition to 1.5 * 2^52.
 round52 = fld.l P_ROUND52_S(r20)
 two18   = fld.l P_TWO18(r20)
 round   = fld.l P_ROUND_S(r20)
@@ -277,7 +278,7 @@ qy1     = sub.ss nnb.1, roundy
 qx2     = sub.ss nnc.0, round
 qy2     = sub.ss nnc.1, roundy
         for k 0 1 2
-        // dy 2^18 - dx is negative for a top and for a left edge, which own their pixels
+        // dy 2^18 - dx is negative for a top edge and for a left edge. These edges own their pixels.
 ta$k    = mul.ss ey$k, two18
 tb$k    = sub.ss ta$k, ex$k
 @tie$k  fst.l tb$k, TIES+4*$k(r2)
@@ -296,13 +297,13 @@ ke$k    = add.dd kd$k, round56
         fst.l ke$k, 16*$k+16(r18)
         endfor
 .if FIELD & !BINNED
-        // two lines of the frame are one of the field
+        // Two lines of the frame are one line of the field.
         for k 0 1 2
 wd$k    = add.ss ex$k, ex$k
 wb$k    = add.sd round52, wd$k
         fst.l wb$k, 16*$k+12(r18)
         endfor
-        // from corner 0 to the pixel of reference, and that itself, as doubles
+        // The distance from corner 0 to the reference pixel, and the reference pixel, as doubles.
 sixteenth = fld.l P_SIXTEENTH_S(r20)
 rounds  = fld.l P_ROUND_S(r20)
 rxb     = adds rx, bias
@@ -328,7 +329,7 @@ ty      = add.sd rys, tya
 wb$k    = add.sd round52, ex$k
         fst.l wb$k, 16*$k+12(r18)
         endfor
-        // from corner 0 to the pixel of reference, and that itself, as doubles
+        // The distance from corner 0 to the reference pixel, and the reference pixel, as doubles.
 sixteenth = fld.l P_SIXTEENTH_S(r20)
 rounds  = fld.l P_ROUND_S(r20)
 rxb     = adds rx, bias
@@ -348,8 +349,8 @@ tya     = mul.ss qy0, sixteenth
 ty      = add.sd rys, tya
 @ty     fst.d ty, TO_Y(r2)
 .endif
-        // depth and the three words of the surface, two planes beside each other: slopes, and the value at the origin from that at the
-        // pixel of reference
+        // Depth and the three words of the surface, two planes at a time: slopes, and the value at the origin from the
+        // value at the reference pixel.
 ta      = and 8, turned
 tb      = adds ta, r20
 sixteen = fld.d P_SIXTEENS(tb)
@@ -479,10 +480,10 @@ $pc     = sub.dd $pte, $pbc
         fst.l $pc, AT_$p+8(r18)
         endfor
 .if PHONG
-        // heads, and the colour of the first corner
+        // Store the instruction heads, and load the colour of the first corner.
 colour  = ld.l R_COLOUR(r3)
 .else
-        // heads
+        // Store the instruction heads.
 .endif
         st.l r24, 0(r18)
         st.l r25, 4(r18)
@@ -504,8 +505,8 @@ h7      = ld.l P_HEADS+28(r20)
         st.l colour, 124(r18)
 .endif
 .if BINNED & !FIELD
-        // r22 is not 0 where more must be asked: corners in doubt, no area, no pixel, not in one region alone;
-        // else r23 is the place of the region's bin in the table, r7 its end
+        // r22 is not 0 if more tests are necessary: corners in doubt, no area, no pixel, or more than one region.
+        // Otherwise, r23 is the place of the region's bin in the table, and r7 the end of the bin.
 lxb     = ld.l LOW_XY(r2) !low
 lyb     = ld.l LOW_XY+4(r2) !low
 ga      = subs lxb, bias8
@@ -535,7 +536,7 @@ gl      = shra 11, gk
 gm      = xor column, gj
 gn      = xor row, gl
 go      = or gm, gn
-        // the last pixel before the high side, times 16, less what is before the low side
+        // The last pixel before the high side, times 16, minus the low side.
 hx_l    = andnot 15, gi
 hx_m    = adds -16, hx_l
 gp      = subs hx_m, ga
@@ -547,7 +548,7 @@ gs      = or gr, gh
 gt      = shr 31, gs
 r22     = or gt, go
 .if GRID
-        // the row times the regions across, as floats that are whole
+        // The row times the number of regions across, as floating-point numbers with integer values.
 across  = ld.l P_COLUMNS(r20)
 ca      = adds across, bias
 cb      = ixfr ca
@@ -576,7 +577,8 @@ entry   = adds ie, r19
 r23     = or r0, entry
 r7      = ld.l 0(entry)
 .else
-        // r22 is not 0 where more must be asked: corners in doubt or near the guard band, no area; bins, if any, are made afterwards
+        // r22 is not 0 if more tests are necessary: corners in doubt or near the guard band, or no area. Bins, if any,
+        // are made later.
 guard   = or 55264, r0
 leastw  = subs bias, guard
 leastv  = adds 8, leastw
@@ -594,7 +596,7 @@ gg      = or ge, gf
 gh      = or gg, doubt
 r22     = shr 31, gh
 .if BOXES
-        // the box goes to r19
+        // The box is stored at r19.
 keptlx  = subs lxb, bias
 keptly  = subs lyb, bias
 kepthx  = subs bias8, hxb
@@ -672,7 +674,7 @@ slow:   fnop
         doubtful r8
         nop
         subs    r8, r0, r0
-        bc      doubt                       // 0 > the words
+        bc      doubt                       // the words are negative
         call    box
         nop
         safe    r7                          // inside the guard band?
@@ -712,7 +714,7 @@ drop:   ld.l    LEFT(r2), r31
         br      more
         nop
 
-// the box in integers
+// The box as integers.
 box:    orh     0x4B40, r0, r7
         ld.l    LOW_XY(r2), r24
         ld.l    LOW_XY+4(r2), r26

@@ -1,5 +1,5 @@
 .if BOXES
-// There are no bins of spheres: the box of each command goes to r19, in pixels of the picture.
+// There are no bins of spheres. The box of each command is stored at r19, in pixels of the picture.
 
         .macro  boxed
         st.l    r11, 0(r19)
@@ -17,7 +17,7 @@
         .macro  boxed
         .endm
 
-// columns r11 to r12 and rows r13 to r14 of regions
+// Columns r11 to r12 and rows r13 to r14 of regions.
         .macro  binned
         mov     r0, r22
         mov     r13, r15
@@ -34,11 +34,11 @@ columns: regionnumber r15, r23
 .endif
 
 .if PHONG
-// A command: enable; silhouette, root, depth; normal x and y; its z from the root; the object's colour.
+// A command: enable; silhouette, root, depth; normal x and y; normal z from the root; the object's colour.
 COMMAND_BYTES = 152
 
         .macro  surface
-        fld.d   PEAK_VALUE(r2), f16         // the root at the middle, a quarter of which is z
+        fld.d   PEAK_VALUE(r2), f16         // the root at the middle of the sphere; z is a quarter of it
         call    root
         nop
         fmul.dd f16, f18, f18
@@ -79,17 +79,18 @@ COMMAND_BYTES = 152
         st.l    r9, 148(r18)
         .endm
 .else
-// A command: enable; silhouette, root, depth; of three components a product with the root, a linear part, a limit.
+// A command: enable; silhouette, root, depth; for each of three components a product with the root, a linear part, a
+// limit.
 COMMAND_BYTES = 212
 
-// the vector f24 f26 f28 the other way round
+// Reverses the vector f24 f26 f28.
         .macro  turnedround
         fsub.dd f0, f24, f24
         fsub.dd f0, f26, f26
         fsub.dd f0, f28, f28
         .endm
 
-// the same with length 1
+// Scales the vector f24 f26 f28 to length 1.
         .macro  unit
         fmul.dd f24, f24, f16
         fmul.dd f26, f26, f8
@@ -102,7 +103,8 @@ COMMAND_BYTES = 212
         fmul.dd f28, f18, f28
         .endm
 
-// of the vector that is 1 along axis k, what is at a right angle to where the eye lies, unit: its part along the light
+// Takes the unit vector along axis k, removes its part along the direction to the eye, and scales the result to length
+// 1. Stores the part of this vector along the light.
         .macro  across k, to
         fld.d   TOWARDS(r2), f24
         fld.d   TOWARDS+8(r2), f26
@@ -125,7 +127,7 @@ COMMAND_BYTES = 212
         fadd.dd f26, f8, f26
         .endm
 
-// a = the vector a, b, c times the light
+// a = dot product of the vector a, b, c and the light.
         .macro  lit a, b, c
         fld.d   S_LIGHT(r20), f8
         fld.d   S_LIGHT+8(r20), f10
@@ -138,7 +140,7 @@ COMMAND_BYTES = 212
         .endm
 
         .macro  surface
-        // towards the eye
+        // Direction towards the eye.
         ld.l    S_PARALLEL(r20), r8
         fmov.dd f0, f24
         fmov.dd f0, f26
@@ -159,7 +161,7 @@ ahead:  fst.d   f24, TOWARDS(r2)
         fld.d   TOWARDS+16(r2), f28
         lit     f24, f26, f28
         fst.d   f24, TOWARDS(r2)
-        // one over the greatest value of the root's upper bits
+        // Reciprocal of the greatest value of the root's upper bits.
         fld.d   PEAK_VALUE(r2), f16
         call    root
         nop
@@ -180,7 +182,7 @@ component: ld.b 0(r9), r8
         ixfr    r30, f29
         fsub.dd f28, f10, f28               // the component
         fld.d   S_DIFFUSE(r20), f30
-        fmul.dd f28, f30, f12               // what the root contributes
+        fmul.dd f28, f30, f12               // part of the root
         fld.d   TOWARDS(r2), f8
         fmul.dd f12, f8, f12
         fld.d   S_256(r20), f8
@@ -238,9 +240,10 @@ darker: fld.d   S_ROUND(r20), f10
         .endm
 .endif
 
-// What the code of spheres is written with: tests, ranges of pixels, whole numbers of 64 bits. Registers and frame stand in sphere.s.
+// Macros for spheres: tests, ranges of pixels, integers of 64 bits. The registers and the stack frame are described
+// below.
 
-// to `drop` unless |v| <= f12
+// Jumps to `drop` unless |v| <= f12.
         .macro  limited v
         pfle.dd \v, f12, f0
         bc      drop
@@ -249,7 +252,7 @@ darker: fld.d   S_ROUND(r20), f10
         bc      drop
         .endm
 
-// to `drop` if the number with this high word is none, or infinite
+// Jumps to `drop` if the number with this high word is NaN or infinite.
         .macro  finite high
         fxfr    \high, r8
         andh    0x7FF0, r8, r8
@@ -257,7 +260,7 @@ darker: fld.d   S_ROUND(r20), f10
         bc      drop
         .endm
 
-// eye coordinate k of the point in f16 f17 f18
+// Eye coordinate k of the point in f16 f17 f18.
         .macro  eye k, to
         fld.l   S_ROWS+16*\k(r20), f8
         fld.l   S_ROWS+16*\k+4(r20), f9
@@ -271,7 +274,7 @@ darker: fld.d   S_ROUND(r20), f10
         fadd.ss \to, f11, \to
         .endm
 
-// pixel coordinate k of an eye coordinate
+// Pixel coordinate k of an eye coordinate.
         .macro  pixel k, from
         fld.d   S_CORNER+8*\k(r20), f8
         fld.d   S_RATE+8*\k(r20), f10
@@ -280,13 +283,13 @@ darker: fld.d   S_ROUND(r20), f10
         fst.d   f8, ORIGIN+8*\k(r2)
         .endm
 
-// a coefficient in f8 times the square of the bulge
+// Multiplies a coefficient in f8 by the square of the bulge.
         .macro  scaled to
         fmul.dd f8, f18, f8
         fst.d   f8, \to(r2)
         .endm
 
-// first and last pixel of the ellipse along axis k
+// First and last pixel of the ellipse along axis k.
         .macro  extent k, first, last
         fld.d   SQUARES+8*\k(r2), f16
         call    root
@@ -306,13 +309,13 @@ darker: fld.d   S_ROUND(r20), f10
         within  f12
         within  f14
         fld.d   S_ROUND(r20), f16
-        fadd.dd f12, f16, f18               // up
+        fadd.dd f12, f16, f18               // round up
         fxfr    f18, \first
         fsub.dd f18, f16, f18
         pfgt.dd f12, f18, f0
         bnc     up\@
         adds    1, \first, \first
-up\@:   fadd.dd f14, f16, f18               // down
+up\@:   fadd.dd f14, f16, f18               // round down
         fxfr    f18, \last
         fsub.dd f18, f16, f18
         pfgt.dd f18, f14, f0
@@ -321,7 +324,7 @@ up\@:   fadd.dd f14, f16, f18               // down
 down\@:
         .endm
 
-// v between f20 and f18
+// Limits v to the range from f20 to f18.
         .macro  within v
         pfgt.dd \v, f20, f0
         bc      low\@
@@ -332,7 +335,7 @@ low\@:  pfgt.dd f18, \v, f0
 high\@:
         .endm
 
-// r from 0 to `most`
+// Limits r to the range from 0 to `most`.
         .macro  clamped r, most
         subs    r0, \r, r0
         bc      low\@                       // r > 0
@@ -343,7 +346,8 @@ low\@:  subs    \most, \r, r0
 high\@:
         .endm
 
-// a range from 0, its end brought to the picture by `atmost`; to `drop` if nothing is left
+// A range that begins at 0 or later and ends at the limit of `atmost` or earlier. Jumps to `drop` if the range is
+// empty.
         .macro  clipped first, last, atmost
         subs    r0, \first, r0
         bc      above\@                     // first > 0
@@ -353,7 +357,7 @@ above\@: \atmost \last
         bc      drop
         .endm
 
-// an integer of at least 0 as a double: r30 is the high word of 2^52, f10 that number
+// Converts an integer of at least 0 to a double. In: r30 high word of 2^52, f10 2^52.
         .macro  double r, to
         ixfr    \r, f8
         ixfr    r30, f9
@@ -361,7 +365,7 @@ above\@: \atmost \last
         fst.d   f8, \to(r2)
         .endm
 
-// the pixel nearest to the peak along axis k
+// The pixel nearest to the peak along axis k.
         .macro  nearest k, first, last, word
         fld.d   \first(r2), f20
         fld.d   \last(r2), f18
@@ -375,7 +379,7 @@ above\@: \atmost \last
         fst.d   f12, PIXEL+8*\k(r2)
         .endm
 
-// the greatest |value| so far, f30, and that at a corner
+// f30 = the greater of f30 and |value| at a corner.
         .macro  greater x, y
         fld.d   \x(r2), f8
         fld.d   ORIGIN(r2), f12
@@ -394,14 +398,14 @@ less\@: pfgt.dd f14, f30, f0
 lesser\@:
         .endm
 
-// the whole number of 64 bits nearest to a times f28; 1.5 * 2^52 in f30
+// The integer of 64 bits nearest to a times f28. In: 1.5 * 2^52 in f30.
         .macro  whole a
         fmul.dd \a, f28, \a
         fadd.dd \a, f30, \a
         fisub.dd \a, f30, \a
         .endm
 
-// to = the number of 64 bits in low and high, times the small one p; f9, f11 and f14 are 0
+// to = the number of 64 bits in low and high, times the small number p. f9, f11 and f14 must be 0.
         .macro  times low, high, p, to
         fmov.ss \low, f8
         fmov.ss \high, f10
@@ -419,13 +423,14 @@ lesser\@:
         st.l    r9, 4*\n(r18)
         .endm
 
-// Spheres from the display list to the words of a command and to bins, as a good compiler of about 1990 would give a plain program in C
-// (compiled_rules.md). The arithmetic and its order are those of the native transform and set-up.
+// Makes the words of commands and bin entries from the spheres of the display list. The code is like the output of a
+// good compiler of about 1990 for a plain program in C (compiled_rules.md). The arithmetic and its order are the same
+// as in the native transform and set-up.
 //
 // A sphere of the display list: centre x, y, z and radius (single), colour (0x00RRGGBB), three words unused.
 //
-// In: r16 first sphere, r17 number of spheres (at least 1), r18 where command words go, r19 table of bins, r20 parameter block, r2 stack.
-// Out: r18 behind the last command.
+// In: r16 first sphere, r17 number of spheres (at least 1), r18 address for command words, r19 table of bins, r20
+// parameter block, r2 stack. Out: r18 address after the last command.
 
 SPHERE_BYTES = 32
 RADIUS  = 12
@@ -438,29 +443,29 @@ P_COLUMNS = S_COLUMNS
 
 // ---- stack frame
 SAVE    = 0        // return address
-CENTRE  = 16       // in eye coordinates, double
+CENTRE  = 16       // centre in eye coordinates, double
 FRONT   = 40       // distance of the nearest point
-ORIGIN  = 48       // of the conic, in pixels
-ONE     = 64       // its coefficients: constant, x, y, xx, xy, yy
+ORIGIN  = 48       // origin of the conic, in pixels
+ONE     = 64       // coefficients of the conic: constant, x, y, xx, xy, yy
 ALONG_X = 72
 ALONG_Y = 80
 XX      = 88
 XY      = 96
 YY      = 104
 DEPTH   = 112      // plane of depth: value, slopes
-PEAK    = 136      // the ellipse: where it is greatest
+PEAK    = 136      // position of the ellipse's greatest value
 PEAK_VALUE = 152
-SQUARES = 160      // of half its width and half its height
-PER     = 176      // one over these halves
+SQUARES = 160      // squares of half the width and half the height of the ellipse
+PER     = 176      // reciprocals of half the width and half the height
 LEFT    = 192      // frame pixels of the touched regions, double
 RIGHT   = 200
 TOP     = 208
 BOTTOM  = 216
-PIXEL   = 224      // where planes are rounded, double
-PIXEL_X = 240      // the same as words, 0 above
+PIXEL   = 224      // pixel around which planes are rounded, double
+PIXEL_X = 240      // the same pixel as words, with high words of 0
 PIXEL_Y = 248
-TOWARDS = 256      // Gouraud: towards the eye; its part along the light
-ACROSS  = 280      // parts of the other axes along the light
+TOWARDS = 256      // Gouraud: direction towards the eye; its part along the light
+ACROSS  = 280      // parts along the light of the unit vectors across and up (see macro `across`)
 UP      = 288
 PER_ROOT = 296
 
@@ -495,12 +500,12 @@ next:   fld.l   0(r16), f16
         limited f28
         pfle.dd f0, f28, f0
         bc      drop
-        // in sight?
+        // Is the sphere visible?
         fsub.dd f0, f6, f30                 // distance of the middle
         fld.d   S_LEAST(r20), f8
-        fsub.dd f30, f28, f14               // of the front
+        fsub.dd f30, f28, f14               // distance of the front
         fld.d   S_NEAR(r20), f10
-        fadd.dd f30, f28, f16               // of the back
+        fadd.dd f30, f28, f16               // distance of the back
         pfgt.dd f14, f8, f0
         bnc     drop
         fmul.dd f10, f14, f10
@@ -529,7 +534,7 @@ next:   fld.l   0(r16), f16
         fadd.dd f10, f22, f10
         pfgt.dd f10, f0, f0
         bnc     seen
-        // the silhouette's deepest point
+        // The deepest point of the silhouette.
         fmov.dd f30, f16
         btne    r0, r4, deepest
         fmov.dd f24, f8
@@ -537,9 +542,9 @@ next:   fld.l   0(r16), f16
         fld.d   S_ONE(r20), f10
         fmul.dd f26, f12, f14
         fmul.dd f6, f6, f16
-        fsub.dd f10, f14, f14               // how the circle of tangents shrinks
+        fsub.dd f10, f14, f14               // factor by which the circle of tangents is smaller
         fmul.dd f16, f12, f16
-        fsub.dd f10, f16, f16               // how it is tilted
+        fsub.dd f10, f16, f16               // slope of the circle of tangents
         fmul.dd f14, f16, f16
         fmul.dd f30, f14, f30
         pfgt.dd f16, f0, f0
@@ -559,10 +564,10 @@ deepest: fmul.dd f20, f16, f10
         fadd.dd f10, f22, f10
         pfgt.dd f10, f0, f0
         bc      drop
-        // the picture, and the plane of depth
+        // The picture, and the plane of depth.
 seen:   btne    r0, r4, parallel
         fmov.dd f30, f8
-        reciprocal                          // one over the distance
+        reciprocal                          // 1 / distance
         fmul.dd f2, f12, f20
         fmul.dd f4, f12, f22
         fmul.dd f24, f12, f18
@@ -570,7 +575,7 @@ seen:   btne    r0, r4, parallel
         reciprocal
         fld.d   S_REACH(r20), f8
         fld.d   S_BASE(r20), f10
-        fmul.dd f8, f12, f16                // the bulge's factor
+        fmul.dd f8, f12, f16                // factor of the bulge
         fld.d   S_STEP(r20), f12
         fmul.dd f16, f18, f8
         fld.d   S_STEP+8(r20), f14
@@ -643,7 +648,7 @@ parallel: fld.d S_REACH(r20), f18
         fmul.dd f14, f14, f8
         fsub.dd f0, f8, f8
         scaled  YY
-        // the ellipse
+        // The ellipse.
 pictured: fld.d XX(r2), f16
         fld.d   S_FOUR(r20), f10
         fld.d   YY(r2), f20
@@ -686,7 +691,7 @@ pictured: fld.d XX(r2), f16
         fst.d   f20, SQUARES(r2)
         fmul.dd f10, f16, f16
         fst.d   f16, SQUARES+8(r2)
-        // its box, and the regions that this meets
+        // The box of the ellipse, and the regions that the box meets.
         extent  0, r11, r12
         extent  1, r13, r14
         clipped r11, r12, lastcolumn
@@ -699,7 +704,7 @@ pictured: fld.d XX(r2), f16
         regionrow r13
         regionrow r14
         binned
-        // their pixels
+        // The pixels of these regions.
         orh     0x4330, r0, r30
         fld.d   S_TWO52(r20), f10
         shl     7, r11, r8
@@ -717,7 +722,7 @@ pictured: fld.d XX(r2), f16
         fld.d   S_ROUND(r20), f16
         nearest 0, LEFT, RIGHT, PIXEL_X
         nearest 1, TOP, BOTTOM, PIXEL_Y
-        // how far values are shifted
+        // The shifts of the values.
         ld.l    PEAK_VALUE+4(r2), r8
         fld.d   XX(r2), f16
         fld.d   XY(r2), f18
@@ -753,7 +758,7 @@ pictured: fld.d XX(r2), f16
         shl     20, r9, r9
         ixfr    r0, f28
         ixfr    r9, f29
-        // coefficients around the pixel, then around pixel (0, 0)
+        // Coefficients around the pixel, then around pixel (0, 0).
         fld.d   PIXEL(r2), f8
         fld.d   ORIGIN(r2), f12
         fld.d   PIXEL+8(r2), f10
@@ -815,7 +820,7 @@ pictured: fld.d XX(r2), f16
         fst.l   f25, 44(r18)
         fst.l   f26, 48(r18)
         fst.l   f27, 52(r18)
-        // depth, half a step of the root nearer where there is room
+        // Depth; half a step of the root nearer if there is room.
         fld.d   FRONT(r2), f8
         ld.l    S_PARALLEL(r20), r8
         fsub.dd f0, f8, f12
@@ -870,7 +875,7 @@ drop:   adds    -1, r17, r17
         bri     r1
         nop
 
-// What the code of spheres calls.
+// Functions that the code of spheres calls.
 
 // ---- f18 = 1 / the root of f16. Changes f8, f20, f22.
 root:   fld.d   S_HALF(r20), f20
@@ -880,7 +885,7 @@ root:   fld.d   S_HALF(r20), f20
         bri     r1
         nop
 
-// ---- f12 = the conic, whose coefficients are in f16 to f26, at f8, f10 from its origin. Changes f14.
+// ---- f12 = value of the conic at f8, f10 from its origin. In: coefficients in f16 to f26. Changes f14.
 value:  fmul.dd f16, f8, f12
         fmul.dd f18, f10, f14
         fadd.dd f12, f14, f12
@@ -893,7 +898,8 @@ value:  fmul.dd f16, f8, f12
         bri     r1
         fadd.dd f12, f26, f12
 
-// ---- plane of value f16 and slopes f18, f20 at the pixel f22, f24 to the words at r11. Keeps r4, r9, r10, f22 to f26, f30.
+// ---- plane with value f16 and slopes f18, f20 at the pixel f22, f24, stored at r11. Keeps r4, r9, r10, f22 to f26,
+// f30.
 plane:  fld.d   S_LIMIT(r20), f28
         fsub.dd f0, f18, f8
         pfgt.dd f28, f18, f0

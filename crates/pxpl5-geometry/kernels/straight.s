@@ -2,7 +2,7 @@
 
 // Clip coordinates of a corner and the tests of the guard band in straight code.
 
-// clip coordinate `to` of corner n: ((c0 x + c1 y) + c2 z) + t with x y z in f16 f17 f18
+// Clip coordinate `to` of corner n: ((c0 x + c1 y) + c2 z) + t with x y z in f16 f17 f18.
         .macro  row n, k
         fld.l   P_ROWS+16*\k(r20), f8
         fmul.ss f8, f16, f9
@@ -17,20 +17,20 @@
         fst.l   f9, CLIP+16*\n+4*\k(r2)
         .endm
 
-// relative to the eye
+// Positions relative to the eye.
         .macro  relative n, k, to
         fld.l   32*\n+4*\k(r16), f8
         fld.l   P_ORIGIN+4*\k(r20), f9
         fsub.ss f8, f9, \to
         .endm
 
-// to the clipper unless a <= b
+// Jumps to the clipper unless a <= b.
         .macro  need a, b
         pfle.ss \a, \b, f0
         bc      clip
         .endm
 
-// |coordinate k| <= guard k * w
+// |coordinate k| <= guard k * w.
         .macro  side n, k
         fld.l   CLIP+16*\n+12(r2), f8
         fld.l   P_GUARD+4*\k(r20), f9
@@ -64,10 +64,10 @@
         row     \n, 3
         .endm
 
-// What both surface routines of straight code begin with: normals, and how far each turns away from the eye. Arithmetic and its
-// order are those of the native code.
+// The beginning of both surface routines of straight code: normals, and how far each normal turns away from the eye.
+// The arithmetic and its order are the same as in the native code.
 
-// an operation for each corner through a pipe of three stages
+// An operation for each corner through a pipe of three stages.
         .macro  three op, a0, b0, a1, b1, a2, b2, d0, d1, d2
         \op     \a0, \b0, f0
         \op     \a1, \b1, f0
@@ -77,7 +77,7 @@
         \op     f0, f0, \d2
         .endm
 
-// d = (u x + v y) + w z for each corner; u0 to u2 are lost, f20 to f25 used
+// d = (u x + v y) + w z for each corner. Changes u0 to u2 and f20 to f25.
         .macro  sum u0, u1, u2, v0, v1, v2, w0, w1, w2, x0, x1, x2, y0, y1, y2, z0, z1, z2, t0, t1, t2, d0, d1, d2
         pfmul.ss \u0, \x0, f0
         pfmul.ss \u1, \x1, f0
@@ -100,12 +100,12 @@
         three   pfadd.ss, f20, \t0, f21, \t1, f22, \t2, \d0, \d1, \d2
         .endm
 
-// the same with weights that all corners share, which are lost
+// The same with weights that all corners share. Changes the weights.
         .macro  weighted u, v, w, x0, x1, x2, y0, y1, y2, z0, z1, z2, d0, d1, d2
         sum     \u, \u, \u, \v, \v, \v, \w, \w, \w, \x0, \x1, \x2, \y0, \y1, \y2, \z0, \z1, \z2, \u, \v, \w, \d0, \d1, \d2
         .endm
 
-// row k of the normals at f4, f8, f12 in eye coordinates
+// Row k of the normals at f4, f8, f12 in eye coordinates.
         .macro  direction k, d0, d1, d2
         fld.l   P_EYE+16*\k(r20), f16
         fld.l   P_EYE+16*\k+4(r20), f17
@@ -113,7 +113,7 @@
         weighted f16, f17, f18, f4, f8, f12, f5, f9, f13, f6, f10, f14, \d0, \d1, \d2
         .endm
 
-// how far the normal x y z of corner n turns away from the eye
+// Computes how far the normal x y z of corner n turns away from the eye.
         .macro  away n, x, y, z, to
         fld.l   32*\n(r5), f20
         fld.l   P_ORIGIN(r20), f21
@@ -131,7 +131,7 @@
         fadd.ss f22, f23, \to
         .endm
 
-// In: r5 triangle. Out: normals as the display list holds them at f4, f8, f12; how far they turn away from the eye in f11 f15 f19.
+// In: r5 triangle. Out: normals of the display list at f4, f8, f12; how far they turn away from the eye in f11 f15 f19.
         .macro  normals
         fld.q   NORMAL(r5), f4
         fld.q   NORMAL+32(r5), f8
@@ -142,10 +142,10 @@
         .endm
 
 .if PHONG
-// Surfaces for Phong shading: normals of the corners, turned over if they face away from the eye on the whole, in
-// units of the command's expressions, and half a unit.
+// Surfaces for Phong shading: the normals of the corners in units of the command's expressions, plus half a unit. The
+// normals are reversed if they together turn away from the eye.
 
-// A command: enable; three edges; depth compared, depth loaded again; normal x, y, z; the object's colour.
+// A command: enable; three edges; depth compare, depth load; normal x, y, z; the object's colour.
 COMMAND_BYTES = 128
 
 // The colour of the triangle's first corner, and its instruction head
@@ -170,7 +170,7 @@ COMMAND_BYTES = 128
         leave   f14, SURFACE_WORD*\k+2*SURFACE_CORNER
         .endm
 
-// In: r5 triangle, r6 where the words go. Changes r11, r14 and all floating-point registers.
+// In: r5 triangle, r6 destination of the words. Changes r11, r14 and all floating-point registers.
         .align  32
 surface: normals
         direction 0, f26, f27, f28
@@ -191,12 +191,12 @@ facing: fld.l   P_ROUND_S(r20), f5
         bri     r1
         nop
 .elseif PRECOMPUTED
-// Surfaces of precomputed colours: those of the corners, 0 to 255 in units of 1/4096, and half a unit.
+// Surfaces of precomputed colours: the colours of the corners, 0 to 255 in units of 1/4096, plus half a unit.
 
-// A command: enable; three edges; depth compared, depth loaded again; red, green, blue.
+// A command: enable; three edges; depth compare, depth load; red, green, blue.
 COMMAND_BYTES = 120
 
-// Nothing follows the planes.
+// No words follow the planes.
         .macro  finish triangle
         .endm
 
@@ -214,7 +214,7 @@ COMMAND_BYTES = 120
         leave   16-8*\k, r9, SURFACE_WORD*\k+2*SURFACE_CORNER
         .endm
 
-// In: r5 triangle, r6 where the words go. Changes r7 to r9 and r11.
+// In: r5 triangle, r6 destination of the words. Changes r7 to r9 and r11.
         .align  32
 surface: ld.l   COLOUR(r5), r7
         ld.l    COLOUR+32(r5), r8
@@ -225,16 +225,16 @@ surface: ld.l   COLOUR(r5), r7
         bri     r1
         nop
 .else
-// Surfaces for Gouraud shading: lit colours of the corners, 0 to 255 in units of 1/4096, and half a unit.
+// Surfaces for Gouraud shading: lit colours of the corners, 0 to 255 in units of 1/4096, plus half a unit.
 
-// A command: enable; three edges; depth compared, depth loaded again; red, green, blue.
+// A command: enable; three edges; depth compare, depth load; red, green, blue.
 COMMAND_BYTES = 120
 
-// Nothing follows the planes.
+// No words follow the planes.
         .macro  finish triangle
         .endm
 
-// the cosine c of the light, of the normal's other side where it turns away by d; at least 0
+// The cosine c of the light, at least 0. If the normal turns away (by d), the other side of the normal counts.
         .macro  cosine d, c
         pfgt.ss \d, f0, f0
         bnc     facing\@
@@ -245,7 +245,7 @@ facing\@: pfgt.ss \c, f0, f0
 lit\@:  nop
         .endm
 
-// 0 to 1
+// Limit to the range from 0 to 1.
         .macro  within s
         pfle.ss f0, \s, f0
         bnc     least\@
@@ -256,7 +256,7 @@ least\@: pfgt.ss \s, f6, f0
 most\@: nop
         .endm
 
-// 256 times 8 bits of a colour, by way of 2^23
+// 256 times 8 bits of a colour, by an addition to 2^23.
         .macro  eight shift, colour, to
         shr     \shift, \colour, r11
         and     255, r11, r11
@@ -284,7 +284,7 @@ most\@: nop
         leave   f14, SURFACE_WORD*\k+2*SURFACE_CORNER
         .endm
 
-// In: r5 triangle, r6 where the words go. Changes r7 to r14 and all floating-point registers.
+// In: r5 triangle, r6 destination of the words. Changes r7 to r14 and all floating-point registers.
         .align  32
 surface: normals
         fld.l   P_LIGHT(r20), f16
@@ -319,11 +319,12 @@ surface: normals
         nop
 .endif
 
-// One Gouraud triangle after another, as a compiler of 1989 would give it: every statement loads its variables from
-// the stack frame, computes with scalar operations and stores the result; the routines for corners, edges and planes
-// are written out at every call. Larger than the 4 KB instruction cache.
+// Computes one Gouraud triangle after another, like the output of a compiler of 1989 without optimization. Every
+// statement loads its variables from the stack frame, computes with scalar operations and stores the result. The
+// routines for corners, edges and planes are repeated at every call. The program is larger than the 4 KB instruction
+// cache.
 //
-// The arithmetic and its order are those of the native transform and set-up.
+// The arithmetic and its order are the same as in the native transform and set-up.
 
 // ---- stack frame
 CLIP   = 0        // corner n: x y z w in clip coordinates, single, 16 bytes each
@@ -331,15 +332,15 @@ INV    = 48       // 1 / w, single, 4 bytes each (3, padded to 16)
 SX     = 64       // x in subpixels, integer, of corners 0, 1, 2
 SY     = 76       // y
 SZ     = 88       // depth
-DX1    = 112      // corner 0 to 1 and 0 to 2, double
+DX1    = 112      // from corner 0 to 1 and from corner 0 to 2, double
 DY1    = 120
 DX2    = 128
 DY2    = 136
 AREA   = 144      // twice the area, double
 PERPIX = 152      // 16 / twice the area
-TOX    = 160      // corner 0 to the pixel of reference, in pixels
+TOX    = 160      // from corner 0 to the reference pixel, in pixels
 TOY    = 168
-REFX   = 176      // pixel of reference, double
+REFX   = 176      // reference pixel, double
 REFY   = 184
 TMP    = 192      // temporaries, double
 TMP2   = 200
@@ -349,7 +350,7 @@ EDGEA  = 224      // a, b, c of edges 0, 1, 2, integer, 12 bytes each
 V0     = 264      // values of a plane at the corners, double
 V1     = 272
 V2     = 280
-BOX    = 288      // low x, high x, low y, high y
+BOX    = 288      // lowest x, highest x, lowest y, highest y
 D1     = 304
 D2     = 312
 SAVE   = 320      // return address
@@ -361,7 +362,7 @@ SURF   = 328      // surface words
 
 // ---- statements
 
-// frame double to = frame double a (op) frame double b
+// Frame double to = frame double a (op) frame double b.
         .macro  dop op, a, b, to
         fld.d   \a(r2), f8
         fld.d   \b(r2), f10
@@ -369,7 +370,7 @@ SURF   = 328      // surface words
         fst.d   f12, \to(r2)
         .endm
 
-// frame double = integer in register
+// Frame double = integer in register.
         .macro  todouble r, to
         xorh    0x8000, \r, r30
         ixfr    r30, f8
@@ -380,7 +381,7 @@ SURF   = 328      // surface words
         fst.d   f12, \to(r2)
         .endm
 
-// register = nearest integer, modulo 2^32, of a frame double
+// Register = nearest integer, modulo 2^32, of a frame double.
         .macro  nearest from, r
         fld.d   \from(r2), f8
         fld.d   P_ROUND(r20), f10
@@ -388,7 +389,7 @@ SURF   = 328      // surface words
         fxfr    f12, \r
         .endm
 
-// frame double = frame double rounded to an integer
+// Frame double = frame double rounded to an integer.
         .macro  rounded from, to
         fld.d   \from(r2), f8
         fld.d   P_ROUND(r20), f10
@@ -399,7 +400,7 @@ SURF   = 328      // surface words
 
 // ---- one corner
 
-// 1 / w: seed and two Newton steps in single precision
+// 1 / w: a seed and two Newton steps in single precision.
         .macro  invert n
         fld.l   CLIP+16*\n+12(r2), f16
         fld.l   P_TWO_S(r20), f17
@@ -412,7 +413,7 @@ SURF   = 328      // surface words
         fst.l   f18, INV+4*\n(r2)
         .endm
 
-// screen coordinate k in subpixels
+// Screen coordinate k in subpixels.
         .macro  snap n, k, to
         fld.l   CLIP+16*\n+4*\k(r2), f8
         fld.l   INV+4*\n(r2), f9
@@ -427,7 +428,7 @@ SURF   = 328      // surface words
         st.l    r30, \to+4*\n(r2)
         .endm
 
-// depth: the integer nearest to z (1 / w * (far - near)) + near, at most far
+// Depth: the integer nearest to z (1 / w * (far - near)) + near, at most far.
         .macro  depth n
         fld.l   CLIP+16*\n+8(r2), f8
         fld.l   INV+4*\n(r2), f9
@@ -546,7 +547,8 @@ d\@:    st.l    r24, \to(r2)
         st.l    r25, \to+4(r2)
         .endm
 
-// pixel of reference along one axis: middle of the box within the picture, whose last subpixel is what the macro `most` gives
+// The reference pixel along one axis: the middle of the box within the picture, whose last subpixel the macro `most`
+// gives.
         .macro  clamped r, most
         subs    r0, \r, r0
         bc      low\@                       // r > 0
@@ -589,7 +591,7 @@ high\@: nop
         fst.d   f12, \to(r2)
         .endm
 
-// coefficients of the plane through V0 V1 V2 to the words at `to` of the command
+// Stores the coefficients of the plane through V0 V1 V2 at `to` of the command.
         .macro  plane to
         dop     fsub.dd, V1, V0, D1
         dop     fsub.dd, V2, V0, D2
@@ -608,7 +610,7 @@ high\@: nop
         dop     fmul.dd, TMP, TOX, TMP3
         dop     fadd.dd, V0, TMP3, TMP3
         dop     fmul.dd, TMP2, TOY, TMP4
-        dop     fadd.dd, TMP3, TMP4, TMP3   // value at the pixel of reference
+        dop     fadd.dd, TMP3, TMP4, TMP3   // value at the reference pixel
         rounded TMP, TMP
         rounded TMP2, TMP2
         dop     fmul.dd, TMP, REFX, TMP
@@ -672,7 +674,7 @@ next:   passover_straight
         facing  AREA+4, done
         pfgt.dd f0, f8, f0
         bnc     oriented
-        swapwords SX                        // make it clockwise
+        swapwords SX                        // change to clockwise order
         swapwords SY
         swapwords SZ
         swapsurface 0

@@ -1,6 +1,6 @@
-// Dual-instruction code: the places of three corners.
+// Dual-instruction code: the positions of three corners.
 
-// Settings with which the scheduler found the shortest code: window, eagerness, reserve, slope and shake.
+// Settings of the scheduler that gave the shortest code: window, eagerness, reserve, slope and shake.
 .if GOURAUD & STRIPS
         .linear 300 30 2 3 0
 .elseif GOURAUD
@@ -89,7 +89,7 @@ nd$i    = mul.ss w$i, nc$i
         for i 0 1 2
 ne$i    = sub.ss two, nd$i
         endfor
-        // far enough from w itself that rounding does not matter, and w fit to be divided by
+        // The depth must differ from w so much that rounding does not matter, and w must be a valid divisor.
         prefetch TRIANGLE_BYTES+32(r29)
 least   = ld.l P_LEAST_W(r20)
 most    = ld.l P_MOST_W(r20)

@@ -1,6 +1,6 @@
 // Dual-instruction code: the end of the loop over corners.
 
-        // and not so far beside the picture that the words have lost their order
+        // The corner must not be so far outside the picture that the words lose their order.
         for i 0 1 2
 qa$i    = ld.l RECORD*$i+R_SNAPPED(r6) !xi$i
 qb$i    = ld.l RECORD*$i+R_TURNED(r6) !xj$i

@@ -1,7 +1,7 @@
 // Dual-instruction code: the surface values of three corners.
 
 .if PRECOMPUTED
-        // the precomputed colours at the corners
+        // The precomputed colours at the corners.
 above   = orh 0x4B40, r0
         for i 0 1 2
 ka$i    = ld.l 32*$i+COLOUR(r29)
@@ -17,7 +17,8 @@ lb$k$i  = or above, la$k$i
         endfor
         prefetch TRIANGLE_BYTES+64(r29)
 .elseif GOURAUD
-        // the light at the corners: the cosine, of the other side where the normal turns away, at least 0; 0 to 1 of the colour
+        // The light at the corners: the cosine (for the other side if the normal turns away), at least 0; then 0 to 1
+        // of the colour.
         for c 0 1 2
 l$c      = fld.l P_LIGHT+4*$c(r20)
         endfor
@@ -86,7 +87,7 @@ lf$k$i  = add.ss le$k$i, round
 .endif
 .else
 .if !STRIPS
-        // on the whole turned away? the place in the table of sides
+        // Do the normals together turn away? The result is the position in the table of sides.
 gf      = add.ss ge0, ge1
 gg      = add.ss gf, ge2
 @gg     fst.l gg, SIDE_WORD(r2)
@@ -98,7 +99,7 @@ gl      = andnot gi, gk
 gm      = and 24, gl
         st.l gm, R_SIDE(r6)
 .endif
-        // the normal in eye coordinates
+        // The normal in eye coordinates.
         for i 0 1 2
 mx$i    = fld.l 32*$i+NORMAL(r29)
 my$i    = fld.l 32*$i+NORMAL+4(r29)
@@ -127,7 +128,7 @@ hf$k$i  = add.ss he$k$i, round
         endfor
         endfor
 .if STRIPS
-        // of each corner by itself, since triangles share them
+        // Separately for each corner, because triangles of a strip share corners.
         for i 0 1 2
         fst.l ge$i, RECORD*$i+R_SIDE(r6)
 colour$i = ld.l 32*$i+COLOUR(r29)

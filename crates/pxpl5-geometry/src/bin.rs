@@ -1,15 +1,15 @@
 //! Binning: finds the regions that a screen triangle touches.
 //!
 //! Renderers evaluate a triangle at pixel centres. The *pixel-centre box* of a region is the smallest rectangle that
-//! contains the centres of the region's pixels. A region is *touched* if the triangle meets this box:
+//! contains the centres of the region's pixels. A region is *touched* if two conditions hold:
 //!
 //! - The triangle's bounding box contains the centre of a pixel column and the centre of a pixel row of the region.
 //! - For each edge of the triangle, some point of the pixel-centre box is on the inner side. Points on right and bottom
 //!   edges do not count.
 //!
-//! Together, the conditions test all sides of the Minkowski sum of triangle and box, so they are exact. Every region
-//! with a covered pixel is touched. A touched region can have no covered pixel, if the triangle passes between the
-//! pixel centres. A triangle between two adjacent columns or rows of pixel centres touches no region.
+//! Together, the two conditions are exact, because they test all sides of the Minkowski sum of triangle and box. Every
+//! region with a covered pixel is touched. A touched region can have no covered pixel, if the triangle passes between
+//! the pixel centres. A triangle between two adjacent columns or rows of pixel centres touches no region.
 
 use crate::outline::{Outline, extent};
 use crate::regions::RegionMask;
@@ -87,8 +87,8 @@ impl Binner {
         self.columns
     }
 
-    /// Returns the pixel rows of the picture that lie on the lines `lines` of the video frame. A field has only every
-    /// second line of its video frame.
+    /// Returns the rows of the picture that lie on the lines `lines` of the video frame. A field has only every second
+    /// line of its video frame.
     #[inline(always)]
     pub(crate) fn rows_of_lines(&self, lines: Range) -> Range {
         let round_up = (1 << self.line_shift) - 1;
@@ -98,7 +98,6 @@ impl Binner {
         }
     }
 
-    /// Returns the regions with pixels in the columns `x` and on the lines `lines` of the video frame.
     pub(crate) fn rectangle(&self, x: Range, lines: Range) -> RegionMask {
         let x = x.within(self.width);
         let y = self.rows_of_lines(lines).within(self.height);
@@ -144,8 +143,8 @@ impl Binner {
         })
     }
 
-    /// Returns the regions with pixels in the columns `x` and rows `y` for which `test` returns true. The arguments of
-    /// `test` are the column and the row of a region.
+    /// Returns the regions with pixels in the columns `x` and rows `y` for which `test` returns true. `test` receives
+    /// the region's column and row in the grid of regions.
     fn cells(&self, x: Range, y: Range, test: impl Fn(i32, i32) -> bool) -> RegionMask {
         let columns = [x.first, x.last].map(|n| quotient(n, self.column_reciprocal));
         let rows = [y.first, y.last].map(|n| quotient(n, self.row_reciprocal));
@@ -158,14 +157,14 @@ impl Binner {
         RegionMask::with_bits(mask)
     }
 
-    /// Returns the first and the last pixel column of the regions in a column.
+    /// Returns the first and the last pixel column of the grid's column `column`.
     #[inline(always)]
     pub(crate) fn column_box(&self, column: i32) -> (i32, i32) {
         let left = column * self.region_width;
         (left, (left + self.region_width).min(self.width) - 1)
     }
 
-    /// Returns the first and the last line, in the video frame, of the regions in a row.
+    /// Returns the first and the last line, in the video frame, of the grid's row `row`.
     #[inline(always)]
     pub(crate) fn row_box(&self, row: i32) -> (i32, i32) {
         let top = row * self.region_height;
@@ -180,8 +179,8 @@ impl Binner {
 }
 
 impl Outline {
-    /// Returns true if the triangle meets the box around the pixel centres of a rectangle, by the same rule as for
-    /// regions.
+    /// Returns true if the triangle touches the box around the pixel centres of a rectangle of the screen. The test is
+    /// the same as for regions.
     ///
     /// `across` has the first and the last pixel column of the rectangle, and `lines` its first and last line in the
     /// video frame.

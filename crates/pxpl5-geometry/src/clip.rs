@@ -4,11 +4,13 @@
 //! plane (z = w), and the four planes of a guard band. The guard band extends about 4,000 px beyond the picture. A
 //! triangle outside the picture but inside the guard band needs no clipping.
 //!
-//! If two triangles share an edge, both are cut at exactly the same point, bit for bit, and no gap opens. For this, the
-//! cut is always computed from the same end of the edge, independent of the winding of the triangle.
+//! If two triangles share an edge, both triangles are cut at exactly the same point of this edge, bit for bit, and no
+//! gap opens. For this, the cut is always computed from the same end of the edge, independent of the winding of the
+//! triangle.
 //!
 //! Cuts are computed in double precision. Close to the eye, the small coordinates of a long edge are differences of
-//! large numbers. An error of several pixels could make the pieces of a triangle overlap.
+//! large numbers. In single precision, their error could reach several pixels, and the pieces of a triangle could
+//! overlap.
 
 use crate::newton;
 use std::cmp::Ordering;
@@ -69,8 +71,8 @@ impl<const N: usize> Polygon<N> {
         &self.corners[..self.len]
     }
 
-    /// Adds a corner, up to nine. Because of rounding, a polygon can be slightly concave and have more corners, which
-    /// are left out.
+    /// Adds a corner, if the polygon has fewer than nine corners. Because of rounding, a polygon can be slightly
+    /// concave and get more than nine corners. The additional corners are left out.
     fn push(&mut self, corner: Corner<N>) {
         if let Some(slot) = self.corners.get_mut(self.len) {
             *slot = corner;
@@ -80,7 +82,7 @@ impl<const N: usize> Polygon<N> {
 }
 
 impl Guard {
-    /// Returns a number that is negative if the point is outside the plane `plane`, one of the six clip planes.
+    /// Returns a number that is negative if the point is outside plane 0 to 5: near, far, right, left, top or bottom.
     fn distance(self, plane: usize, [x, y, z, w]: [f64; 4]) -> f64 {
         let [right, top] = [self.x, self.y].map(f64::from);
         match plane {
@@ -155,8 +157,7 @@ fn order(a: &[f64; 4], b: &[f64; 4]) -> Ordering {
     a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
 }
 
-/// Returns true if all three corners are beyond the same side of the visible volume, so that the triangle is not
-/// visible.
+/// Returns true if all three corners are outside the same plane of the visible volume. The triangle is then invisible.
 pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
     let beyond_a_side: [fn(&[f32; 4]) -> bool; 6] = [
         |[x, _, _, w]| x > w,
@@ -200,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_corner_before_the_near_plane_leaves_a_quadrilateral() {
+    fn clipping_one_corner_at_the_near_plane_leaves_a_quadrilateral() {
         let polygon = GUARD.clip(&[
             vertex([0.0, 0.0, -1.0, 1.0], 0.0),
             vertex([1.0, 0.0, 1.0, 2.0], 2.0),
@@ -211,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_behind_the_eye_never_pass_the_guard_band() {
+    fn vertices_behind_the_eye_are_never_inside_the_guard_band() {
         for clip in [[0.0, 0.0, -1.0, -1.0], [0.0, 0.0, 0.5, -1.0], [f32::NAN, 0.0, 0.0, 1.0]] {
             assert!(!GUARD.contains(clip), "{clip:?}");
         }

@@ -9,11 +9,11 @@ const VALUE_BITS: i32 = 46;
 
 pub(crate) const ROOT_BITS: i32 = 12;
 
-/// Largest number of low bits that the renderer's square root can ignore.
+/// Largest number of low bits of the quadratic that the renderer's square root can ignore.
 const MAX_ROOT_SHIFT: i32 = 24;
 
-/// Largest number of bits by which the renderer can shift a square root to the left before it subtracts the root from a
-/// depth.
+/// Largest number of bits by which the renderer can shift a square root to the left. The renderer subtracts the shifted
+/// root from a depth.
 const MAX_DEPTH_SHIFT: i32 = 20;
 
 /// The quadratic `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`, where (dx, dy) is the distance from `origin`
@@ -30,7 +30,9 @@ pub(crate) struct Conic {
     pub(crate) yy: f64,
 }
 
-/// A conic in fixed point, with the shifts by which the renderer computes a depth from its square root.
+/// A conic in fixed point. The renderer computes the depth of a sphere from the conic's square root. Before the root,
+/// the renderer shifts the conic to the right by `root_shift` bits. After the root, it shifts the root to the left by
+/// `depth_shift` bits.
 ///
 /// The value is `Q = 2^root_shift (bulge / 2^depth_shift)^2`. The bulge is the depth by which the sphere's surface is
 /// nearer than the plane through its silhouette.
@@ -54,14 +56,13 @@ fn exponent_above(value: f64) -> i32 {
 /// Position, greatest value and size of a conic that is positive inside an ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ellipse {
-    /// The pixel position of the greatest value.
+    /// Position of the greatest value, in pixels.
     pub(crate) peak: [f64; 2],
     pub(crate) value: f64,
     half_squares: [f64; 2],
 }
 
 impl Ellipse {
-    /// Returns 1 / (half the width) and 1 / (half the height) of the ellipse.
     pub(crate) fn per_half_size(&self) -> [f64; 2] {
         self.half_squares.map(reciprocal_root)
     }
@@ -124,10 +125,11 @@ impl Conic {
     }
 
     /// Rounds the conic to fixed point, for the pixels of `rectangle` (first and last pixel along x, then along y).
+    /// `peak` is the conic's greatest value.
     ///
     /// The values are scaled by the largest power of two with which they fit into 46 bits on the rectangle. Rounding
-    /// errors are smallest at the pixel (px, py). Callers pass the pixel with the greatest value, `peak`, so that even
-    /// a small sphere covers a pixel.
+    /// errors are smallest at the pixel (px, py). If this is the pixel of the greatest value, even a small sphere
+    /// covers a pixel.
     pub(crate) fn fixed(&self, peak: f64, rectangle: [[i32; 2]; 2], [px, py]: [i32; 2]) -> FixedConic {
         let local = self.around([f64::from(px), f64::from(py)]);
         let depth_shift = ((exponent_above(peak) + 1).div_euclid(2) - ROOT_BITS).clamp(0, MAX_DEPTH_SHIFT);
@@ -201,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_greater_than_the_peak() {
+    fn no_value_of_a_conic_exceeds_its_peak() {
         let Ellipse { peak: [x, y], value, .. } = SHIFTED.ellipse();
         for (dx, dy) in [(0.1, 0.0), (-0.1, 0.05), (0.0, 0.1), (0.0, -0.1)] {
             assert!(SHIFTED.at(x + dx - 3.25, y + dy + 7.5) < value);
@@ -220,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn exponents_bound_their_values() {
+    fn a_value_lies_below_the_power_of_two_of_its_exponent() {
         for v in [0.75, 1.0, 3.0, 4096.0, 1e20] {
             let n = exponent_above(v);
             assert!(v < power_of_two(n) && v >= power_of_two(n - 1), "{v}");

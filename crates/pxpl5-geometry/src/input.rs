@@ -3,7 +3,6 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// A triangle in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     /// Positions of the corners. The corners can run clockwise or counterclockwise.
@@ -14,10 +13,8 @@ pub struct Triangle {
     pub colours: [[u8; 3]; 3],
 }
 
-/// A sphere in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorldSphere {
-    /// Centre in world coordinates.
     pub centre: Vec3,
     /// Radius in world units, not negative.
     pub radius: f32,

@@ -14,12 +14,12 @@
 //!                                             clipper -> the same for pieces
 //! ```
 //!
-//! The Rust code of this crate makes the same computation, so both give the same words, bit for bit. The reciprocal of
-//! w is computed from a first approximation by two Newton steps, in single precision. A matrix rotates the normals,
-//! which are not normalized again. Light is computed in the coordinates of the normals. kernels/parameters.s defines
-//! registers and memory layouts. A [`Kernel`] concatenates source files, like a linker, and defines constants. The
-//! conditions in the files (`.if`) use these constants to select lines. This crate neither assembles nor runs the
-//! sources.
+//! The Rust code of this crate makes the same computation, so the Rust code and the i860 code give the same words, bit
+//! for bit. The reciprocal of w is computed from a first approximation by two Newton steps, in single precision. A
+//! matrix rotates the normals, which are not normalized again. Light is computed in the coordinates of the normals.
+//! kernels/parameters.s defines registers and memory layouts. A [`Kernel`] concatenates source files, like a linker,
+//! and defines constants. The conditions in the files (`.if`) use these constants to select lines. This crate neither
+//! assembles nor runs the sources.
 
 mod between;
 
@@ -75,8 +75,8 @@ pub enum KernelPicture {
     Frame,
     /// An NTSC field: 640 x 240 pixels in regions of 128 x 120.
     Field,
-    /// A video frame of another size in regions of 128 x 128, for example a face of a cube. The size is a parameter of
-    /// the code.
+    /// A video frame of any size in regions of 128 x 128, for example a face of a cube. The size is a parameter of the
+    /// i860 code.
     Grid,
 }
 
@@ -85,11 +85,8 @@ pub enum KernelPicture {
 pub struct Kernel {
     /// Version of the code: without optimization, compiled or hand-written.
     pub schedule: Schedule,
-    /// Values that the kernel interpolates.
     pub surface: KernelSurface,
-    /// Arrangement of the triangles in the display list.
     pub list: KernelList,
-    /// Size of the picture, and its division into regions.
     pub picture: KernelPicture,
     /// True if the kernel sorts commands into the bins of the touched regions. False if every region receives the same
     /// list of commands.
@@ -122,13 +119,14 @@ pub const VERTEX_WORDS: usize = 8;
 /// Number of words of a kernel's parameters.
 pub const PARAMETER_WORDS: usize = 128;
 
-/// The constant 1.5 * 2^23. The low bits of the sum of this constant and a number hold the number, rounded to an
-/// integer.
+/// The constant 1.5 * 2^23. If a number is added to this constant, the low bits of the sum hold the number, rounded to
+/// an integer.
 const ROUND_SINGLE: f32 = 12_582_912.0;
 const TWO_23: f32 = 8_388_608.0;
 const TWO_18: f32 = 262_144.0;
 
-/// Constant from which biased integers are subtracted to reverse their order.
+/// Constant from which the bits of the single-precision number 1.5 * 2^23 + n are subtracted. The subtraction reverses
+/// the order of the integers n.
 const FLIP: Word = 0x9700_0000;
 
 const PARAMETERS: &str = include_str!("../kernels/parameters.s");
@@ -140,10 +138,8 @@ const BINS: &str = include_str!("../kernels/bins.s");
 const VERTICES: &str = include_str!("../kernels/vertices.s");
 const VERTICES_END: &str = include_str!("../kernels/vertices_end.s");
 
-/// Sources of the compiled kernel. The functions that compute colours or normals come first.
 const COMPILED: [&str; 5] = [NEWTON, SCALAR, include_str!("../kernels/compiled.s"), SCALAR_FUNCTIONS, BINS];
 
-/// Sources of the hand-written kernel.
 const DUAL: [&str; 7] = [
     include_str!("../kernels/dual.s"),
     VERTICES,
@@ -187,7 +183,8 @@ impl Kernel {
 
     /// Returns the source in i860 assembly. Execution begins at the label `start`.
     ///
-    /// For [`Schedule::Dual`], the assembler of this project must first schedule the linear parts of the source.
+    /// For [`Schedule::Dual`], the assembler of this project must first choose the order and registers of the parts
+    /// without branches.
     #[must_use]
     pub fn source(&self) -> String {
         let choices = self.choices(false);
@@ -232,7 +229,6 @@ impl Kernel {
         ])
     }
 
-    /// Returns the size of one renderer command in bytes.
     #[must_use]
     pub const fn command_bytes(&self) -> u32 {
         match self.surface {
@@ -241,7 +237,8 @@ impl Kernel {
         }
     }
 
-    /// Returns the kernel's parameters for a view. `clipper` is the address of the clipper's code.
+    /// Returns the kernel's parameters for a view. `clipper` is the address of the code for triangles that need
+    /// clipping.
     #[must_use]
     pub fn parameters(
         &self,
@@ -292,7 +289,8 @@ impl Kernel {
     /// Returns the factor and the summand that convert a surface value to a plane's units, for the front and the back
     /// of a triangle.
     ///
-    /// The summand adds half a unit for rounding, and removes [`ROUND_SINGLE`], which an earlier step has added.
+    /// The summand adds half a unit for rounding. The summand also removes [`ROUND_SINGLE`], which an earlier step has
+    /// added.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),
@@ -340,8 +338,7 @@ impl KernelPicture {
     }
 }
 
-/// Returns the greatest x and the greatest y of the video frame (the whole screen), both in subpixels, and the number
-/// of columns of regions.
+/// Returns the greatest x and the greatest y of the video frame, in subpixels, and the number of columns of regions.
 pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
     let grid = viewport.grid();
     [16 * grid.width - 1, 16 * viewport.frame_lines() - 1, grid.columns()]
@@ -374,8 +371,8 @@ impl ParameterWords {
     }
 }
 
-/// Returns two masks, for XOR and AND, by which the kernel tests the winding. If the result for the high word of a
-/// triangle's area is negative, the triangle is not drawn.
+/// Returns two masks, for XOR and AND, by which the kernel tests the winding. Applied to the high word of a triangle's
+/// area, the masks give a negative number if the triangle is not drawn.
 const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     const SIGN: Word = 1 << 31;
     match dropped {
@@ -397,7 +394,7 @@ pub fn place_source() -> String {
     [PARAMETERS, spheres, NEWTON, place].join("\n")
 }
 
-/// Returns a row of the matrix that rotates normals, in the units of normals in commands.
+/// Returns a row of the matrix that rotates normals, scaled to the units of normals in renderer commands.
 fn normal_row(row: [f32; 3]) -> [f32; 4] {
     let [x, y, z] = row.map(|v| v * f32::from(NORMAL_UNIT));
     [x, y, z, 0.0]

@@ -20,11 +20,11 @@ pub(crate) type EachLane<T> = [T; LANES];
 #[derive(Clone, Debug)]
 pub struct TriangleLanes<'a> {
     len: usize,
-    /// Vertices by corner, then by triangle.
+    /// Vertices, indexed by corner and then by triangle.
     corners: [EachLane<&'a SurfaceVertex>; 3],
 }
 
-/// The corner of a triangle without area, for unused lanes.
+/// A vertex for unused lanes. Triangles of this vertex have no area.
 static NOWHERE: SurfaceVertex = SurfaceVertex::NOWHERE;
 
 impl Default for TriangleLanes<'_> {
@@ -34,19 +34,16 @@ impl Default for TriangleLanes<'_> {
 }
 
 impl<'a> TriangleLanes<'a> {
-    /// Returns the number of triangles, at most [`LANES`].
     #[must_use]
     pub const fn len(&self) -> usize {
         self.len
     }
 
-    /// Returns true if there are no triangles.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// Removes all triangles.
     pub const fn clear(&mut self) {
         self.len = 0;
     }
@@ -82,13 +79,13 @@ impl<'a> TriangleLanes<'a> {
     }
 }
 
-/// Values at the corners of several triangles, by corner, then by triangle.
+/// Values at the corners of several triangles, indexed by corner and then by triangle.
 struct CornerValues {
     x: [EachLane<i32>; 3],
     y: [EachLane<i32>; 3],
     z: [EachLane<f64>; 3],
     facing: [EachLane<f32>; 3],
-    /// Components of the colours or normals, by component, corner and triangle.
+    /// Components of the colours or normals, indexed by component, corner and triangle.
     surface: [[EachLane<f32>; 3]; 3],
 }
 
@@ -115,8 +112,8 @@ impl CornerValues {
     }
 }
 
-/// Replaces each expression whose element of `there` is 0 by `constant`. All other elements of `there` must have all
-/// bits set.
+/// Replaces each expression whose element of `there` is 0 by `constant`. In all other elements of `there`, all bits
+/// must be 1.
 #[inline(always)]
 fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> LinearLanes {
     for (i, there) in there.iter().enumerate() {
@@ -136,7 +133,7 @@ struct Expressions {
     flattened: EachLane<u8>,
 }
 
-/// Three edges, depth, and three components of colour or normal.
+/// Expressions of one triangle: three edges, depth, and three components of colour or normal.
 type OneTriangle = ([Linear; 3], Linear, [Linear; 3]);
 
 impl Expressions {
@@ -178,7 +175,7 @@ impl GouraudLanes {
 pub struct PhongLanes(Expressions);
 
 impl PhongLanes {
-    /// Returns the first `len` triangles in the form that renderers evaluate, with their colours, 0x00RRGGBB.
+    /// Returns the first `len` triangles in the form that renderers evaluate. `colours` are 0x00RRGGBB.
     #[must_use]
     pub const fn batch(&self, len: usize, colours: [u32; LANES]) -> TriangleBatch<'_> {
         TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: Some(colours) }
@@ -222,7 +219,6 @@ const fn last_subpixel(pixels: u32) -> i32 {
     pixels as i32 * SUBPIXELS - 1
 }
 
-/// The rows of a picture: row r is line `first_line + r * line_step` of the video frame.
 #[derive(Clone, Copy)]
 struct PictureRows {
     line_step: i32,
@@ -294,8 +290,8 @@ fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     away
 }
 
-/// Returns one component of the normals at the corners, plus `half` for rounding. The normals of triangles that face
-/// away from the eye are reversed.
+/// Returns one component of the normals at the corners of all triangles, plus `half` for rounding. The normals of
+/// triangles that face away from the eye are reversed.
 #[inline(always)]
 fn component([p, q, r]: &[EachLane<f32>; 3], away: &EachLane<bool>, half: f32) -> [EachLane<f64>; 3] {
     [values(p, away, half), values(q, away, half), values(r, away, half)]
@@ -321,7 +317,6 @@ fn with_area(twice_area: &EachLane<f64>) -> EachLane<i32> {
     out
 }
 
-/// Returns all ones for each triangle whose corners run counterclockwise, otherwise 0.
 #[inline(always)]
 fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
     let mut out = [0; LANES];
@@ -346,7 +341,6 @@ fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLa
     [*p, second, third]
 }
 
-/// Returns the expression of the edge from one corner to another, as in [`crate::Outline`].
 #[inline(always)]
 fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> LinearLanes {
     let mut out = LinearLanes::default();
@@ -372,7 +366,7 @@ fn sixteenth(k: f64) -> i32 {
     plane::rounded(k * (1.0 / 16.0) - 15.0 / 32.0)
 }
 
-/// The values that all planes of a triangle share, for each triangle (see [`plane::Planes`]).
+/// For each triangle, the values that all planes of the triangle share (see [`plane::Planes`]).
 struct LanePlanes {
     twice_area: EachLane<f64>,
     x: [EachLane<f64>; 2],
@@ -383,8 +377,8 @@ struct LanePlanes {
 }
 
 impl LanePlanes {
-    /// Computes the values that all planes of a triangle share. Both windings have the same result, because the other
-    /// winding changes the signs of the cross products and of the area.
+    /// Computes the values that all planes of a triangle share. The result does not depend on the winding, which
+    /// changes the signs of both the cross products and the area.
     #[inline(always)]
     fn through_corners(corners: &CornerValues, rows: PictureRows) -> Self {
         let [p, q, r] = &corners.x;
@@ -402,8 +396,8 @@ impl LanePlanes {
         Self { twice_area, x, y, per_pixel, to_reference, reference }
     }
 
-    /// Returns the planes through the values at the corners. Planes that are steeper than `MAX_SLOPE` are made
-    /// constant, and counted in `flattened`.
+    /// Returns the plane of each triangle through the values at the triangle's corners. Planes that are steeper than
+    /// `MAX_SLOPE` become constant and are counted in `flattened`.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> LinearLanes {
         let mut out = LinearLanes::default();
@@ -443,7 +437,6 @@ fn flatten(v: [&EachLane<f64>; 3], flat: &EachLane<bool>, out: &mut LinearLanes,
     }
 }
 
-/// Returns the distance between two corners along one axis, in subpixels.
 #[inline(always)]
 fn side(from: &EachLane<i32>, to: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];
@@ -465,7 +458,6 @@ fn middle([p, q, r]: &[EachLane<i32>; 3], last: i32) -> EachLane<i32> {
     out
 }
 
-/// Returns the distance from the corner `from` to the centre of `pixel` along one axis, in pixels.
 #[inline(always)]
 fn pixels(from: &EachLane<i32>, pixel: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];

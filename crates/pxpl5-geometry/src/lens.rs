@@ -4,9 +4,9 @@ use crate::newton::reciprocal_double;
 use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
 use crate::view::Columns;
 
-/// The projection of eye coordinates to pixels and depths, for spheres.
+/// A projection from eye coordinates to pixels and depths, for spheres.
 ///
-/// A depth from 0 to 1 is `constant + slope u`. Let t be the distance from the eye along -Z. Then u is 1/t with
+/// Let t be the distance from the eye along -Z. A depth from 0 to 1 is `constant + slope u`. Here u is 1/t with
 /// perspective, and -t with a parallel projection.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lens {
@@ -18,11 +18,11 @@ pub(crate) struct Lens {
     pub(crate) rate: [f64; 2],
     /// x and y of the centre of pixel (0, 0) in eye coordinates, at distance 1 if there is perspective.
     pub(crate) corner: [f64; 2],
-    /// Coefficients of t and 1 in two expressions of the distance t. The expression `near` is negative before the near
-    /// plane, and the expression `far` is positive behind the far plane.
+    /// Coefficients (of t, of 1) of an expression of the distance t that is negative before the near plane. The
+    /// expression of `far` is positive behind the far plane.
     ///
-    /// With a parallel projection, the expressions are depth and depth - 1. With perspective, they are these values
-    /// times t.
+    /// With a parallel projection, the two expressions are depth and depth - 1. With perspective, they are t depth and
+    /// t (depth - 1).
     pub(crate) near: [f64; 2],
     pub(crate) far: [f64; 2],
     /// Largest distance t at which a point still counts as behind the eye.
@@ -32,7 +32,6 @@ pub(crate) struct Lens {
     pub(crate) reach: f64,
 }
 
-/// Distance from the near to the far plane, in the fixed-point units of depth.
 pub(crate) const DEPTH_RANGE: f64 = (DEPTH_FAR - DEPTH_NEAR) as f64;
 
 /// Returns the centre of pixel (0, 0) in normalized device coordinates.
@@ -82,7 +81,6 @@ impl Lens {
         (scale.iter().all(|scale| *scale > 0.0) && slope < 0.0).then_some(lens)
     }
 
-    /// Returns true if a point at distance t along -Z is nearer than the near plane, or behind the eye.
     pub(crate) fn is_before_near(&self, t: f64) -> bool {
         t <= self.least || self.near[0] * t + self.near[1] < 0.0
     }
@@ -91,14 +89,13 @@ impl Lens {
         self.far[0] * t + self.far[1] > 0.0
     }
 
-    /// Returns the fixed-point depth at distance t along -Z.
     pub(crate) fn depth(&self, t: f64) -> f64 {
         let u = if self.parallel { -t } else { reciprocal_double(t) };
         self.base + self.reach * u
     }
 
-    /// Returns the pixel at which a point (x, y) of the plane t = 1 appears. With a parallel projection, the plane may
-    /// be at any distance.
+    /// Returns the pixel of a point (x, y) in the plane t = 1. With a parallel projection, the pixel is the same for
+    /// every t.
     pub(crate) fn pixel(&self, x: f64, y: f64) -> [f64; 2] {
         [(x - self.corner[0]) * self.rate[0], (y - self.corner[1]) * self.rate[1]]
     }

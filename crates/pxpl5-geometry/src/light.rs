@@ -30,7 +30,6 @@ impl NormalRows {
         Self { rows: [x, y, z].map(|row| row.map(|v| (v * scale) as f32)), origin: to_eye.origin() }
     }
 
-    /// Rotates a direction from eye to world coordinates.
     pub(crate) fn to_world(self, direction: [f32; 3]) -> [f32; 3] {
         let rows = self.rows.map(|row| row.map(f64::from));
         let [x, y, z] = direction.map(f64::from);
@@ -96,8 +95,6 @@ impl<'a> ModelLight<'a> {
     }
 }
 
-/// Returns the normals at the corners in eye coordinates. If the surface faces away from the eye, the normals are
-/// reversed.
 pub(crate) fn facing_normals(rows: &NormalRows, positions: &[Vec3; 3], normals: &[Vec3; 3]) -> [[f32; 3]; 3] {
     let [a, b, c] = [0, 1, 2].map(|i| normal_and_facing(rows, positions[i], normals[i]));
     turned([a.0, b.0, c.0], [a.1, b.1, c.1])
@@ -110,7 +107,7 @@ pub(crate) fn normal_and_facing(rows: &NormalRows, position: Vec3, normal: Vec3)
     (rows.apply(n), rows.towards_eye(position, n))
 }
 
-/// Returns the normals of three corners, reversed if they face away from the eye on average.
+/// Returns the normals of three corners. The normals are reversed if they face away from the eye on average.
 #[inline(always)]
 pub(crate) fn turned([a, b, c]: [[f32; 3]; 3], facing: [f32; 3]) -> [[f32; 3]; 3] {
     let away = (facing[0] + facing[1]) + facing[2] < 0.0;

@@ -1,10 +1,11 @@
 //! Division, square roots and rounding as on the i860, which has no instructions for division and square root.
 //!
 //! The i860 has the instructions `frcp` and `frsqr`, which give a first approximation with 8 bits of fraction. Newton
-//! steps refine the approximation. To round a number, the code adds a large constant and subtracts the constant again.
-//! The Rust code of this crate performs the same steps as the i860 kernels, so both give the same words.
+//! steps then increase the precision. To round a number, the code adds a large constant and subtracts the constant
+//! again. The Rust code of this crate performs the same steps as the i860 kernels, so the Rust code and the kernels
+//! give the same words.
 
-/// The bits of a double that a first approximation has: sign, exponent and 8 bits of fraction.
+/// Mask of the bits that a first approximation in double precision has: sign, exponent and 8 bits of fraction.
 const SEED: u64 = !((1 << (52 - 8)) - 1);
 
 /// The constant 1.5 * 2^52. The addition of this constant rounds a double below 2^51 to an integer, ties to even.
@@ -37,7 +38,6 @@ pub(crate) fn reciprocal_root(value: f64) -> f64 {
     (0..3).fold(seed(1.0 / value.sqrt()), |near, _| near * (1.5 - half * (near * near)))
 }
 
-/// Returns the square root of a positive number. Returns NaN for other numbers.
 pub(crate) fn root(value: f64) -> f64 {
     value * reciprocal_root(value)
 }
@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn roots_and_reciprocals_are_good_to_the_last_places() {
+    fn roots_and_reciprocals_are_accurate_to_the_last_places() {
         for n in -1000..1000 {
             let value = 1.7_f64.powf(f64::from(n) * 0.5);
             assert!((root(value) / value.sqrt() - 1.0).abs() < 1e-15, "root of {value}");
@@ -63,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_are_the_nearest_and_even_between_two() {
+    fn rounding_is_to_the_nearest_integer_with_ties_to_even() {
         let values = [0.0, 0.5, 1.5, -0.5, -1.5, 2.4, -2.6, 1e15 + 0.25, -1e15];
         assert_eq!(values.map(whole), [0, 0, 2, 0, -2, 2, -3, 1_000_000_000_000_000, -1_000_000_000_000_000]);
     }

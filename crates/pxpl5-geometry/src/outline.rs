@@ -3,7 +3,6 @@
 use crate::regions::RegionMask;
 use pxpl5_wire::{Linear, format};
 
-/// Number of subpixels along one side of a pixel.
 pub(crate) const SUBPIXELS: i32 = 1 << format::SUBPIXEL_BITS;
 
 /// The corners of a triangle on the screen, and the regions that the triangle touches.
@@ -30,7 +29,7 @@ impl Outline {
         i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0])
     }
 
-    /// Returns the edge expressions from corner 0 to 1, 1 to 2 and 2 to 0, over the lines of the video frame.
+    /// Returns the expressions of the edges from corner 0 to 1, 1 to 2 and 2 to 0, over the lines of the video frame.
     #[inline(always)]
     pub(crate) fn edges(&self) -> [Linear; 3] {
         [self.edge(0, 1), self.edge(1, 2), self.edge(2, 0)]
@@ -54,7 +53,6 @@ impl Outline {
     }
 }
 
-/// Returns the smallest and the largest of three values.
 #[inline(always)]
 pub(crate) fn extent(v: &[i32; 3]) -> [i32; 2] {
     [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])]

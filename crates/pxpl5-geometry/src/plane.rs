@@ -8,8 +8,8 @@
 //! therefore at most half of width plus height. On the largest picture, the error is below 1,026.
 //!
 //! A depth slope can need more than 32 bits: the depth of a wall seen edge-on can change by the whole range within a
-//! pixel. Expressions are therefore evaluated modulo 2^32. The result is right at every pixel whose true value fits 32
-//! bits, which includes all covered pixels.
+//! pixel. Expressions are therefore evaluated modulo 2^32. The result is correct at every pixel whose true value fits
+//! 32 bits, which includes all covered pixels.
 
 use crate::newton::reciprocal_double;
 use crate::outline::Outline;
@@ -41,16 +41,14 @@ pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
 
-/// Returns the distance from a corner to the centre of a pixel along one axis, in pixels. `corner` is in subpixels.
 #[inline(always)]
 fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
     f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)
 }
 
-/// The values that all planes of one triangle share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
-    /// Distances from corner 0 to corners 1 and 2 along x, in subpixels.
+    /// Differences in x from corner 0 to corners 1 and 2, in subpixels.
     x: [f64; 2],
     y: [f64; 2],
     /// Factor from cross products to slopes per pixel: 16 divided by twice the area.
@@ -74,7 +72,8 @@ impl Planes {
         }
     }
 
-    /// Returns the plane through the values `v` at the corners, which must be integers below 2^32 in absolute value.
+    /// Returns the plane through the values `v` at the three corners of the triangle. The values must be integers below
+    /// 2^32 in absolute value.
     ///
     /// A cross product is a sum of two products below 2^32 * 2^17, so it is exact.
     #[inline(always)]

@@ -20,19 +20,16 @@ impl RegionMask {
         Self(1 << region.0)
     }
 
-    /// Returns true if the set contains no region.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Returns the number of regions in the set.
     #[must_use]
     pub const fn len(self) -> u32 {
         self.0.count_ones()
     }
 
-    /// Returns true if `region` is in the set.
     #[must_use]
     pub const fn contains(self, region: RegionId) -> bool {
         Self::only(region).0 & self.0 != 0
@@ -70,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mask_iterates_its_regions_by_rising_number() {
+    fn a_mask_iterates_its_regions_in_ascending_order() {
         let mask = [0, 5, 127].into_iter().fold(RegionMask::EMPTY, |m, r| m.union(RegionMask::only(RegionId(r))));
         let found: Vec<u16> = mask.iter().map(|r| r.0).collect();
         assert_eq!((mask.len(), found), (3, vec![0, 5, 127]));

@@ -51,7 +51,6 @@ pub(crate) fn normal_fixed(component: f32) -> i16 {
     rounded(component * f32::from(NORMAL_UNIT)) as i16
 }
 
-/// Factor from depths between 0 and 1 to fixed point.
 pub(crate) const DEPTH_SCALE: f32 = (DEPTH_FAR - DEPTH_NEAR) as f32;
 
 /// Converts a depth to fixed point. `beyond_near` is the distance from the near plane in fixed-point units.
@@ -140,14 +139,13 @@ impl Outline {
         PhongTriangle { edges: self.picture_edges(viewport), z, normal: [nx, ny, nz], colour }
     }
 
-    /// Returns the edge expressions over the columns and rows of the picture.
     #[inline(always)]
     fn picture_edges(&self, viewport: &Viewport) -> [Linear; 3] {
         let [a, b, c] = self.edges();
         [for_rows(a, viewport), for_rows(b, viewport), for_rows(c, viewport)]
     }
 
-    /// Returns the planes through the depths and through three components of the colours or normals.
+    /// Returns the planes of the triangle: first depth, then three components of the colours or normals.
     #[inline(always)]
     fn planes(&self, corners: [[f32; 3]; 3], viewport: &Viewport, stats: &mut SetupStats) -> [Linear; 4] {
         let planes = Planes::for_outline(self, self.middle(viewport));
@@ -174,7 +172,6 @@ fn component([a, b, c]: &[[f32; 3]; 3], number: usize) -> [f64; 3] {
     [f64::from(a[number]), f64::from(b[number]), f64::from(c[number])]
 }
 
-/// Returns the middle pixel of the triangle's visible part along one axis, in a picture of `size` pixels.
 #[inline(always)]
 fn middle_pixel(corners: &[i32; 3], size: u32) -> i32 {
     let [low, high] = extent(corners);
@@ -194,7 +191,7 @@ pub(crate) fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
 }
 
 impl<A> ScreenTriangle<A> {
-    /// Returns the edge expressions over the columns and rows of the picture.
+    /// Returns the expressions of the three edges over the columns and rows of the picture.
     #[must_use]
     pub fn edges(&self, viewport: &Viewport) -> [Linear; 3] {
         self.outline.picture_edges(viewport)
@@ -223,7 +220,8 @@ impl ScreenTriangle<SurfaceNormals> {
     }
 }
 
-/// Applies `value` to three numbers by three calls, because compilers do not always inline a closure over an array.
+/// Applies `value` to three numbers. The function makes three calls instead of mapping an array, because compilers do
+/// not always inline the mapping.
 #[inline(always)]
 fn values<T: Copy>([a, b, c]: &[T; 3], value: impl Fn(T) -> f32) -> [f32; 3] {
     [value(*a), value(*b), value(*c)]

@@ -29,11 +29,11 @@ use crate::{RegionMask, SetupStats, WorldSphere};
 /// Largest absolute value of a sphere's eye coordinates and radius, so that squares cannot overflow.
 pub(crate) const MAX_COORDINATE: f64 = 1e30;
 
-/// A sphere on the screen.
+/// The elliptic image of a sphere on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenSphere {
-    /// Regions that meet the bounding box of the sphere's image. Near the corners of the box, the image itself may not
-    /// touch a region.
+    /// Regions that the bounding box of the sphere's image overlaps. Near the corners of the box, the image itself may
+    /// not touch a region.
     pub regions: RegionMask,
     /// Red, green and blue, 0 to 255 each.
     pub colour: [u8; 3],
@@ -49,7 +49,7 @@ pub struct ScreenSphere {
 }
 
 impl ScreenSphere {
-    /// Returns true if the bounding box of the sphere's image meets a rectangle.
+    /// Returns true if the bounding box of the sphere's image overlaps a rectangle.
     ///
     /// `across` has the first and the last pixel column of the rectangle, and `lines` its first and last line in the
     /// video frame.
@@ -74,7 +74,6 @@ fn across(v: [f64; 3], axis: [f64; 3]) -> [f64; 3] {
     unit(std::array::from_fn(|i| v[i] - along * axis[i]))
 }
 
-/// A sphere in eye coordinates.
 #[derive(Clone, Copy, Debug)]
 struct EyeSphere {
     centre: [f64; 3],
@@ -129,7 +128,6 @@ impl Lens {
         if self.parallel { -sphere.centre[2] } else { sphere.farthest_tangent() }
     }
 
-    /// Returns the sphere's image as a conic, and the plane of depth through the silhouette.
     fn picture(&self, sphere: &EyeSphere) -> (Conic, [f64; 3]) {
         let [cx, cy, cz] = sphere.centre;
         let r = sphere.radius;
@@ -223,8 +221,8 @@ impl Transform {
     }
 }
 
-/// Margin around a bounding box, in pixels. Rounding of the quadratic expression moves the silhouette by less than
-/// this.
+/// Margin around a bounding box, in pixels. Rounding of the quadratic expression moves the silhouette by a smaller
+/// distance.
 pub(crate) const SLACK: f64 = 1.0 / 64.0;
 
 /// Returns the pixels with centres from `low` to `high`. The centre of pixel 0 is at 0.
@@ -232,7 +230,7 @@ fn pixels([low, high]: [f64; 2]) -> Range {
     Range { first: near_screen((low - SLACK).ceil()) as i32, last: near_screen((high + SLACK).floor()) as i32 }
 }
 
-/// Limits a pixel coordinate, so that all later steps fit 32 bits.
+/// Limits a pixel coordinate, so that all computations after this function fit 32 bits.
 fn near_screen(pixel: f64) -> f64 {
     pixel.clamp(-4096.0, 4096.0)
 }

@@ -5,8 +5,8 @@
 //! commands into bins. The steps are: centre and radius in eye coordinates, tests against the near and far plane,
 //! conic, bounding box, regions, conic in fixed point, and planes of depth and surface. There is only one version of
 //! the sphere code, in the style of the compiled triangle kernels. This version is used with every optimization level
-//! of the triangle kernels. The Rust code of this crate makes the same computation, so both give the same words, bit
-//! for bit.
+//! of the triangle kernels. The Rust code of this crate makes the same computation, so the Rust code and the i860 code
+//! give the same words, bit for bit.
 //!
 //! kernels/sphere_parameters.s defines the parameter block. On the processor, the code at the label `place` writes the
 //! parameters that depend on the view ([`crate::kernel::place_source`]).
@@ -21,9 +21,8 @@ use pxpl5_wire::{Word, format};
 /// The choice of sphere code for a kind of shading and a kind of picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SphereKernel {
-    /// Values that the kernel computes: colours, or normals for Phong shading.
+    /// Values that the kernel computes: lit colours, or normals for Phong shading.
     pub surface: KernelSurface,
-    /// Size of the picture, and its division into regions.
     pub picture: KernelPicture,
     /// True if the kernel makes no bins, but stores the bounding box of each command for later searches.
     pub keeps_boxes: bool,
@@ -35,10 +34,11 @@ pub const SPHERE_WORDS: usize = 8;
 /// Number of words of a sphere kernel's parameters.
 pub const SPHERE_PARAMETER_WORDS: usize = SIZE + 3;
 
-/// Index of the first word of the blank command in the parameters. The kernel fills the operands of this command.
+/// Index, in the parameters, of a renderer command with zeros as operands. The kernel copies this command and fills in
+/// the operands.
 const TEMPLATE: usize = 110;
 
-/// Index of the picture's size in the parameters, after the longest blank command.
+/// Index, in the parameters, of the picture's size. The size follows the longest renderer command.
 const SIZE: usize = TEMPLATE + 53;
 
 /// Number of words at the start of the parameters that depend on a view and a light.
@@ -65,7 +65,6 @@ impl SphereKernel {
         [&choices, parameters, kernel::PICTURE, kernel::NEWTON, include_str!("../kernels/sphere.s")].join("\n")
     }
 
-    /// Returns the number of words of a sphere's renderer command.
     #[must_use]
     pub const fn command_words(&self) -> usize {
         match self.surface {
@@ -107,7 +106,6 @@ impl SphereKernel {
         Some(words)
     }
 
-    /// Returns the constants among the kernel's parameters, some of which depend on the picture.
     fn constants(&self, viewport: &Viewport) -> [f64; 27] {
         let [width, lines] = [viewport.grid().width, viewport.frame_lines()];
         let half = lens::half_frame(width, lines);
@@ -156,7 +154,7 @@ fn doubles(words: &mut [Word], values: &[f64]) {
     }
 }
 
-/// Returns the words of a sphere in the format of the display list.
+/// Returns the words of a sphere in the display list.
 #[must_use]
 pub fn sphere_words(sphere: &WorldSphere) -> [Word; SPHERE_WORDS] {
     let [x, y, z] = sphere.centre.to_array().map(f32::to_bits);

@@ -32,7 +32,6 @@ pub struct SphereSetup {
 /// A sphere for Gouraud shading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GouraudSphere {
-    /// Silhouette and depth of the sphere.
     pub setup: SphereSetup,
     /// Linear parts of red, green and blue, to which a multiple of the square root is added, with
     /// [`format::COLOUR_FRACTION_BITS`] fraction bits.
@@ -45,7 +44,6 @@ pub struct GouraudSphere {
 /// A sphere for Phong shading. The z component of a pixel's normal is `root >> 2`, in the same scale as x and y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhongSphere {
-    /// Silhouette and depth of the sphere.
     pub setup: SphereSetup,
     /// x and y of the normal in eye coordinates, with [`format::NORMAL_FRACTION_BITS`] fraction bits.
     pub normal: [Linear; 2],
@@ -56,7 +54,6 @@ pub struct PhongSphere {
 /// Steepest slope of a plane per pixel. Steeper slopes do not fit 32 bits.
 pub(crate) const MAX_SLOPE: f64 = 2_147_483_648.0;
 
-/// A plane: its value at the point `origin`, and its slopes along x and y.
 struct Slope {
     origin: [f64; 2],
     value: f64,
@@ -179,7 +176,6 @@ impl ScreenSphere {
         GouraudSphere { setup, rgb, root_factor }
     }
 
-    /// Computes the operands for Phong shading.
     #[must_use]
     pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongSphere {
         let (setup, conic) = self.common(viewport, stats);

@@ -1,5 +1,3 @@
-//! Counters of the set-up of triangles and spheres.
-
 use serde::{Deserialize, Serialize};
 
 /// Counts of primitives, and of all cases in which a primitive was dropped, cut or limited.
@@ -44,7 +42,6 @@ pub struct SetupStats {
 }
 
 impl SetupStats {
-    /// Adds the counts of `other` to these counts.
     pub fn add(&mut self, other: &Self) {
         self.triangles += other.triangles;
         self.screen_triangles += other.screen_triangles;

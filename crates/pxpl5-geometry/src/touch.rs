@@ -1,5 +1,3 @@
-//! Results of binning: the regions that a triangle touches, or the reason why the triangle is not drawn.
-
 use crate::regions::RegionMask;
 use crate::stats::SetupStats;
 use pxpl5_wire::RegionId;

@@ -28,7 +28,7 @@ impl Touched {
     /// Returns the regions that triangle `i` touches, or the reason why the triangle is not drawn.
     ///
     /// # Panics
-    /// Panics if there is no triangle `i`.
+    /// Panics if `i` is not the index of a triangle.
     #[inline(always)]
     #[must_use]
     pub fn get(&self, i: usize) -> Touch {
@@ -45,7 +45,7 @@ impl Touched {
     /// Returns the region of triangle `i` if the triangle touches exactly one region, otherwise `None`.
     ///
     /// # Panics
-    /// Panics if there is no triangle `i`.
+    /// Panics if `i` is not the index of a triangle.
     #[inline(always)]
     #[must_use]
     pub fn only_region(&self, i: usize) -> Option<RegionId> {
@@ -104,7 +104,6 @@ impl Transform {
         all.codes.extend_from_slice(&found.codes[..len]);
     }
 
-    /// Tests the edges of a triangle whose bounding box meets more than one region.
     fn touch_several(&self, corners: &CornerLanes, found: &LaneTouches, lane: usize) -> Touch {
         let [x, y] = corners.clockwise(lane);
         Touch::from_mask(self.binner.test_edges(x, y, range_in(lane, &found.x), range_in(lane, &found.y)))
@@ -115,7 +114,6 @@ fn range_in(lane: usize, [first, last]: &[EachLane<i32>; 2]) -> Range {
     Range { first: first[lane], last: last[lane] }
 }
 
-/// x and y of the corners of several triangles, by corner, then by triangle.
 #[derive(Debug)]
 struct CornerLanes([EachLane<[i32; 2]>; 3]);
 
@@ -150,10 +148,10 @@ impl CornerLanes {
     }
 }
 
-/// Results of a first search by the bounding boxes of triangles.
+/// Results of a first search, which compares only the bounding boxes of the triangles with the regions.
 struct LaneTouches {
-    /// Codes of the triangles, with the meanings of the codes of [`Touched`]. The code [`SEVERAL`] without an index
-    /// marks a triangle whose bounding box meets several regions, so that its edges must be tested.
+    /// Codes of the triangles, as in [`Touched`]. The code [`SEVERAL`] without an index marks a triangle whose bounding
+    /// box overlaps several regions. The edges of this triangle must still be tested.
     codes: EachLane<u32>,
     any_several: bool,
     x: [EachLane<i32>; 2],
@@ -236,7 +234,8 @@ fn ranges([low, high]: &[EachLane<i32>; 2], within: impl Fn(Range) -> Range) -> 
 
 /// Returns for each triangle the column (or row) of regions that contains all corners, or -1 if there is none.
 ///
-/// `of` returns the column (or row) of regions that contains a pixel, with its first and last pixel.
+/// For a pixel, `of` returns the column (or row) of regions with this pixel, and the first and last pixel of this
+/// column (or row).
 #[inline(always)]
 fn cells(
     [low, high]: &[EachLane<i32>; 2],

@@ -1,5 +1,3 @@
-//! Transform of triangles from world coordinates to the screen.
-
 use crate::bin::Binner;
 use crate::clip::{self, ClipVertex, Corner, Guard};
 use crate::lens::Lens;
@@ -14,7 +12,7 @@ use glam::Vec3;
 use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
-/// Choice of the triangles that are not drawn because of their winding.
+/// The choice whether back faces are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Culling {
@@ -27,7 +25,7 @@ pub enum Culling {
 }
 
 impl Culling {
-    /// Both choices with their names.
+    /// Both choices with their names in settings.
     pub const ALL: [(&str, Self); 2] = [("none", Self::None), ("back", Self::Back)];
 }
 
@@ -153,7 +151,6 @@ impl ToScreen {
     }
 }
 
-/// A screen triangle with clockwise corners.
 pub(crate) struct Assembled {
     pub(crate) outline: Outline,
     /// True if corners 1 and 2 of the input were exchanged.
@@ -161,7 +158,8 @@ pub(crate) struct Assembled {
 }
 
 impl Assembled {
-    /// Arranges corners in clockwise order, or returns `None` if the triangle has no area. The regions are not set.
+    /// Arranges corners in clockwise order, or returns `None` if the triangle has no area. The result has no regions
+    /// yet.
     #[inline(always)]
     pub(crate) fn clockwise([p, q, r]: [Snapped; 3]) -> Option<Self> {
         let mut outline =
@@ -176,7 +174,6 @@ impl Assembled {
         (twice_area != 0).then_some(Self { outline, swapped })
     }
 
-    /// Rearranges the values of three corners in the same way as the corners.
     #[inline(always)]
     pub(crate) fn order<T>(&self, [p, q, r]: [T; 3]) -> [T; 3] {
         if self.swapped { [p, r, q] } else { [p, q, r] }
@@ -230,7 +227,6 @@ impl Transform {
         })
     }
 
-    /// Returns the size, regions and lines of the picture to which primitives are transformed.
     #[must_use]
     pub const fn viewport(&self) -> &Viewport {
         &self.viewport
@@ -334,7 +330,6 @@ impl Transform {
         Some(TriangleEnds { from: self.snap_unclipped(positions)?, to: end.snap_unclipped(positions)? })
     }
 
-    /// Returns the corners of a triangle on the screen, or `None` if a corner is outside the guard band.
     fn snap_unclipped(&self, positions: &[Vec3; 3]) -> Option<[Snapped; 3]> {
         let clip = positions.map(|p| self.to_clip.point(p));
         clip.iter().all(|c| self.guard.contains(*c)).then(|| clip.map(|c| self.to_screen.snap(c)))

@@ -1,8 +1,8 @@
 //! Vertices that several triangles share, each transformed only once.
 //!
-//! Triangles of such vertices are [binned](Transform::touched), and set up in [groups](crate::TriangleLanes), if they
-//! need no clipping. The results equal the results of [`Transform::bin`], [`Transform::gouraud`] and
-//! [`Transform::phong`]. These three functions also handle triangles that need clipping.
+//! Triangles of shared vertices are [binned](Transform::touched) and set up in [groups](crate::TriangleLanes), unless
+//! they need clipping. The results equal the results of [`Transform::bin`], [`Transform::gouraud`] and
+//! [`Transform::phong`], which also handle triangles that need clipping.
 
 use crate::clip::Guard;
 use crate::light::{self, ModelLight, NormalRows};
@@ -19,8 +19,8 @@ use pxpl5_wire::LANES;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex(pub(crate) Snapped);
 
-/// The x of a vertex outside the guard band. This x is greater than any x inside the band, and its differences from
-/// other coordinates are still exact.
+/// The x of a vertex outside the guard band. This x is greater than any x inside the band. Its differences from x
+/// inside the band are still exact.
 pub(crate) const OUTSIDE: i32 = 2 * screen::GUARD_PIXELS * SUBPIXELS;
 
 const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };
@@ -32,7 +32,7 @@ const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };
 #[repr(align(32))]
 pub struct SurfaceVertex {
     pub(crate) screen: ScreenVertex,
-    /// A number that is positive if the normal faces the eye, negative if it faces away, and 0 for vertices with
+    /// A positive number if the normal faces the eye, a negative number if it faces away, and 0 for vertices with
     /// colours.
     pub(crate) facing: f32,
     /// Colour or normal, in the fixed-point units of planes. Colours include half a unit for rounding, and normals do
@@ -233,7 +233,7 @@ mod tests {
     use glam::Mat4;
 
     #[test]
-    fn vertices_side_by_side_are_those_of_one_after_the_other() {
+    fn vertices_computed_side_by_side_equal_vertices_computed_singly() {
         let view = ViewTransform {
             model_view: Mat4::from_rotation_y(0.3),
             projection: Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.1, 50.0),
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_side_by_side_are_those_of_one_after_the_other() {
+    fn surfaces_computed_side_by_side_equal_surfaces_computed_singly() {
         let view = ViewTransform {
             model_view: Mat4::from_rotation_y(0.3),
             projection: Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.1, 50.0),

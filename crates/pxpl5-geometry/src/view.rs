@@ -76,7 +76,6 @@ impl Viewport {
         Ok(Self { grid, lines })
     }
 
-    /// Returns the division of the picture into regions.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         self.grid
@@ -88,8 +87,8 @@ impl Viewport {
         self.lines
     }
 
-    /// Returns the number of lines of the video frame from one row of the picture to the next: 1 for a whole video
-    /// frame, 2 for a field.
+    /// Returns the distance between rows of the picture, in lines of the video frame: 1 for a whole video frame, 2 for
+    /// a field.
     #[must_use]
     pub const fn line_step(&self) -> u32 {
         match self.lines {
@@ -134,8 +133,8 @@ impl From<Viewport> for PictureFields {
 
 /// The columns of a 4 x 4 matrix.
 ///
-/// Products are computed in the same order on every computer. The library glam uses another order with vector units
-/// than in scalar code.
+/// Products are computed in the same order on every computer. The library glam computes products in different orders
+/// with and without vector instructions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Columns(pub(crate) [[f32; 4]; 4]);
 
@@ -199,7 +198,7 @@ impl FromWorld {
         Self { columns, origin }
     }
 
-    /// Returns the rows x, y, z and w of the matrix, for points relative to [`Self::origin`].
+    /// Returns the rows x, y, z and w of the matrix. The matrix applies to points relative to [`Self::origin`].
     pub(crate) fn rows(&self) -> [[f32; 4]; 4] {
         std::array::from_fn(|row| self.columns.map(|column| column[row]))
     }
@@ -238,7 +237,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn absurd_pictures_are_refused_with_what_was_found() {
+    fn pictures_of_impossible_size_are_refused_with_the_found_size() {
         assert!(refusal(0, 480, 128).contains("found 0 x 480"));
         assert!(refusal(640, u32::MAX, 128).contains("4294967295"));
         assert!(refusal(640, 480, 0).contains("found 0 x 128"));

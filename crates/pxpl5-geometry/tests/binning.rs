@@ -133,7 +133,7 @@ proptest! {
     }
 
     #[test]
-    fn what_touches_no_region_covers_no_pixel(points in triangle()) {
+    fn a_triangle_that_touches_no_region_covers_no_pixel(points in triangle()) {
         let viewport = Viewport::FRAME;
         let (outline, stats) = screen(viewport, points);
         if outline.is_none() && stats.untouched == 1 {
@@ -151,13 +151,13 @@ proptest! {
 }
 
 #[test]
-fn a_triangle_inside_one_region_touches_it_alone() {
+fn a_triangle_inside_one_region_touches_only_this_region() {
     let (outline, _) = screen(Viewport::FRAME, [[2080, 2080], [2240, 2080], [2080, 2240]]);
     assert_eq!(outline.expect("it is on the screen").regions, RegionMask::only(RegionId(6)));
 }
 
 #[test]
-fn a_triangle_that_only_leans_over_a_regions_border_must_pass_the_edge_test() {
+fn a_triangle_at_the_border_of_a_region_must_pass_the_edge_test() {
     // Region 6 has pixel centres from 128.5 to 255.5 px. The bounding box contains only the centre at (128.5, 128.5).
     // The hypotenuse passes this centre on the outside.
     let (outline, stats) = screen(Viewport::FRAME, [[2049, 2067], [2067, 2049], [2050, 2050]]);
@@ -174,7 +174,7 @@ fn a_triangle_over_the_whole_screen_touches_all_twenty_regions() {
 }
 
 #[test]
-fn a_diagonal_leaves_out_the_corner_regions_that_its_bounding_box_holds() {
+fn a_diagonal_triangle_skips_corner_regions_of_its_bounding_box() {
     let (outline, _) = screen(Viewport::FRAME, [[8, 8], [24, 8], [10_000, 7_600]]);
     let regions = outline.expect("it is on the screen").regions;
     assert!(regions.contains(RegionId(0)) && regions.contains(RegionId(19)));

@@ -74,7 +74,7 @@ fn back_faces_are_dropped_only_on_request() {
 }
 
 #[test]
-fn matrices_that_mirror_turn_no_face_round() {
+fn mirroring_matrices_do_not_reverse_faces() {
     let view = pixel_view(1.0, 16_384.0);
     let culled = |view: &ViewTransform, positions: [Vec3; 3]| {
         let transform = Transform::new(view, Viewport::FRAME, Culling::Back).expect("a finite view");
@@ -120,7 +120,7 @@ fn colours_follow_their_corners_when_a_triangle_is_turned_clockwise() {
 }
 
 #[test]
-fn a_vertex_that_faces_the_light_has_its_full_colour_and_one_edge_on_the_ambient_part() {
+fn a_vertex_that_faces_the_light_has_full_light_and_a_vertex_at_90_degrees_has_ambient_light() {
     let mut lit = triangle(clockwise());
     lit.normals = [Vec3::Z, Vec3::NEG_Z * 7.0, Vec3::X];
     lit.colours = [[200; 3]; 3];
@@ -145,7 +145,7 @@ fn phong_normals_are_unit_length_and_face_the_eye() {
 }
 
 #[test]
-fn shared_vertices_give_what_their_triangles_give() {
+fn shared_vertices_give_the_same_result_as_separate_triangles() {
     let pictures = [Viewport::FRAME, Viewport::field(FieldParity::Even), Viewport::field(FieldParity::Odd)];
     for (picture, culling) in pictures.iter().flat_map(|p| [(p, Culling::None), (p, Culling::Back)]) {
         let mut whole = 0;
@@ -205,7 +205,7 @@ fn in_lane(lane: usize, corners: &[SurfaceVertex]) -> TriangleLanes<'_> {
 }
 
 #[test]
-fn spheres_behind_around_or_cut_are_counted_each_under_its_own_name() {
+fn spheres_outside_the_view_and_spheres_cut_by_a_clip_plane_have_separate_counts() {
     assert_eq!(one(50.0, 10.0).spheres_outside, 1);
     assert_eq!(one(0.0, 10.0).spheres_across_near, 1);
     assert_eq!(one(-5.0, 4.5).spheres_across_near, 1);
@@ -239,7 +239,7 @@ fn a_projection_that_is_neither_perspective_nor_parallel_draws_no_spheres() {
 }
 
 #[test]
-fn silhouettes_are_exact_to_the_pixel_and_regions_miss_none_of_it() {
+fn silhouettes_are_exact_to_the_pixel_and_covered_by_their_regions() {
     let mut random = Random::new(77);
     let mut pixels = 0;
     for _ in 0..25 {
@@ -309,7 +309,7 @@ fn a_sphere_of_a_field_is_every_second_line_of_the_frame() {
 }
 
 #[test]
-fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() {
+fn a_sphere_in_a_parallel_projection_is_a_circle_whose_depth_is_a_square_root() {
     // The view has 64 px per unit along both axes. Depth is 0 at distance 1, and 1 at distance 9.
     let view = ViewTransform {
         model_view: Mat4::IDENTITY,
@@ -342,7 +342,7 @@ fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() 
 }
 
 #[test]
-fn a_gouraud_sphere_is_full_in_the_middle_and_ambient_at_its_rim_under_a_headlight() {
+fn a_gouraud_sphere_under_a_headlight_is_bright_in_the_middle_and_ambient_at_the_rim() {
     let sphere = WorldSphere { centre: Vec3::new(0.0, 0.0, -1920.0), radius: 600.0, colour: [200, 0, 0] };
     let mut stats = SetupStats::default();
     let screen = spheres::transform().sphere(&sphere, &mut stats).expect("in sight");

@@ -24,7 +24,7 @@ fn row(name: &str) -> &'static Row {
 }
 
 #[test]
-fn the_file_is_up_to_date() {
+fn the_numerics_document_is_fresh() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/numerics.md");
     let found = std::fs::read_to_string(path).expect("docs/numerics.md exists");
     let expected = report::text(measured());
@@ -35,7 +35,7 @@ fn the_file_is_up_to_date() {
 }
 
 #[test]
-fn tilings_have_no_hole_and_no_pixel_twice() {
+fn tilings_cover_each_pixel_exactly_once() {
     let tilings = rows().iter().filter(|(case, _)| case.tiling);
     assert_eq!(tilings.clone().count(), 3);
     for (case, row) in tilings {
@@ -44,21 +44,21 @@ fn tilings_have_no_hole_and_no_pixel_twice() {
 }
 
 #[test]
-fn corners_on_pixel_centres_and_region_borders_give_every_pixel_right() {
+fn triangles_with_corners_on_pixel_centres_or_region_borders_have_no_wrong_pixel() {
     for name in ["corners on pixel centres", "corners on region borders"] {
         assert_eq!(row(name).wrong, 0, "{name}");
     }
 }
 
 #[test]
-fn models_far_from_the_origin_are_as_good_as_near_ones() {
+fn a_model_at_10_to_the_6_units_from_the_origin_has_only_the_errors_of_the_snapping_grid() {
     // The limit includes the error of the grid itself, and a few pixels for 32-bit vertices.
     let far = row("10^6 from the origin");
     assert!(far.wrong <= far.grids[2] + 10, "{} {}", far.wrong, far.grids[2]);
 }
 
 #[test]
-fn planes_add_less_than_a_unit_and_a_half_of_depth_and_a_quarter_of_colour() {
+fn depth_planes_have_errors_below_1_61_units_and_colour_planes_below_0_57_units() {
     for (case, row) in rows().iter().filter(|(_, row)| row.stats.flattened_planes == 0) {
         // Half a unit is the rounding of the pixel. The set-up contributes 282/256 and 282/4096.
         assert!(row.depth_plane <= 0.5 + 282.0 / 256.0, "{} {}", case.name, row.depth_plane);
@@ -82,7 +82,7 @@ fn every_sphere_that_is_drawn_is_exact_to_the_pixel() {
 }
 
 #[test]
-fn surfaces_three_units_of_depth_apart_never_fight() {
+fn parallel_surfaces_more_than_three_depth_units_apart_never_exchange_their_order() {
     for fight in measured().fights.iter().filter(|f| f.name.starts_with("parallel") && f.apart > 3.0) {
         assert_eq!(fight.wrong, 0, "{}", fight.name);
     }

@@ -193,7 +193,7 @@ proptest! {
     }
 
     #[test]
-    fn normals_are_within_one_unit(
+    fn interpolated_normals_have_an_error_of_at_most_one_unit(
         (x, y) in corners(),
         normals in prop::array::uniform3(prop::array::uniform3(-NORMAL_UNIT..=NORMAL_UNIT)),
     ) {

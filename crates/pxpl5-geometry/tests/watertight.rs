@@ -69,7 +69,7 @@ proptest! {
     }
 
     #[test]
-    fn two_triangles_on_either_side_of_an_edge_that_is_clipped_share_it_without_a_gap(
+    fn two_triangles_share_a_clipped_edge_without_a_gap(
         a in prop::array::uniform3(-3.0..3.0_f32), b in prop::array::uniform3(-3.0..3.0_f32),
         depth in -4.0..-1.5_f32, scale in prop_oneof![Just(1.0_f32), Just(1e3), Just(1e5)],
     ) {
@@ -95,7 +95,7 @@ proptest! {
 }
 
 #[test]
-fn an_edge_of_10_5_units_that_passes_the_eye_closely_is_cut_where_it_is() {
+fn a_long_edge_close_to_the_eye_is_clipped_at_the_exact_point() {
     // With cuts in single precision, a cut had an error of five pixels. The pieces overlapped and drew 85 pixels twice.
     let projection = Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.25, 1e6);
     let view = ViewTransform { model_view: Mat4::IDENTITY, projection };
@@ -121,7 +121,7 @@ fn a_corner_on_a_pixel_centre_belongs_to_exactly_one_of_its_triangles() {
 }
 
 #[test]
-fn a_triangle_that_passes_the_eye_covers_what_is_before_the_near_plane() {
+fn of_a_triangle_that_extends_behind_the_eye_the_part_beyond_the_near_plane_is_drawn() {
     // The floor y = -1 extends from far in front of the eye to far behind the eye. Every pixel below the horizon must
     // be covered.
     let view = pixel_view(0.5, 1e6);
@@ -136,7 +136,7 @@ fn a_triangle_that_passes_the_eye_covers_what_is_before_the_near_plane() {
 }
 
 #[test]
-fn triangles_a_million_pixels_beyond_the_screen_still_meet_along_one_line() {
+fn triangles_with_corners_a_million_pixels_off_the_screen_share_their_edge() {
     // Without the guard band these edges would need 40 bits. Every second triangle is reversed.
     let rim = [[-1.0, -0.9], [1.0, -1.1], [0.8, 1.0], [-0.7, 1.0]];
     let rim = rim.map(|[x, y]| at_pixel(320.0 + x * 1e6, 240.0 + y * 1e6, 1.0));
@@ -147,7 +147,7 @@ fn triangles_a_million_pixels_beyond_the_screen_still_meet_along_one_line() {
 }
 
 #[test]
-fn what_the_near_plane_cuts_off_is_not_drawn() {
+fn parts_clipped_by_the_near_plane_are_not_drawn() {
     // The same floor with the near plane at 2. No pixel is nearer, so rows below 240 + 120 stay empty.
     let corners = [Vec3::new(-1e5, -1.0, 1e4), Vec3::new(1e5, -1.0, 1e4), Vec3::new(0.0, -1.0, -9e5)];
     let (counts, _) = draw(&pixel_view(2.0, 1e6), &[corners]);

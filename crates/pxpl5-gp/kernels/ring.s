@@ -1,45 +1,45 @@
-// The software of messages of a board (ring_rules.md).
+// The software of a board for messages on the ring (ring_rules.md).
 //
-//   receive  the interrupt of the ring interface, and what a program does to take one message and to give it back
-//            out: r16 queue entry, 0 if there was none; r17 where the words of the message are, or what was wrong with it; r18 how
-//            many; r19 sender
-//   send     r16 requests of four words (receiver; flags; length in words; address), r17 how many, r18 ticket
-//            out: r16 0 if the chain was started, otherwise what is wrong; r17 which request
+//   receive  handles the interrupt of the ring interface. Then takes one message and gives it back, as a program does.
+//            out: r16 queue entry, or 0 if there was none; r17 address of the message's words, or the fault; r18 number
+//                 of words; r19 sender
+//   send     r16 requests of four words (receiver; flags; length in words; address), r17 number of requests, r18 ticket
+//            out: r16 0 if the chain was started, otherwise the fault; r17 the request with the fault
 //
-// r2 is a stack. DATA and WINDOW come from the program that assembles it.
+// r2 is the stack. The program that assembles this file defines DATA and WINDOW.
 
-// ---- what the software keeps, at DATA
+// ---- variables of the software, at DATA
 NODE      = 0           // port of this board
 RX_NEXT   = 4           // descriptor of the next message
 HEAD      = 8           // the oldest and the newest entry of the queue
 TAIL      = 12
 FREE      = 16          // a list of free entries
 QUEUED    = 20
-WRONG     = 24          // what was wrong with a message that was thrown away
+WRONG     = 24          // fault of a message that was discarded
 TX_NEXT   = 28          // the next free descriptor of a chain
-TX_ROOM   = 32          // how many are free
-ISSUED    = 36          // chains started, and those known to be finished
+TX_ROOM   = 32          // number of free descriptors
+ISSUED    = 36          // number of chains started, and number of chains known to be finished
 FINISHED  = 40
-COMPLETE  = 44          // ticket of the last of them
-HANDLERS  = 64          // by kind
-CHAINS    = 128         // by the lower bits of their number: descriptors, ticket
-FRAME     = 384         // registers of what was interrupted
+COMPLETE  = 44          // ticket of the last finished chain
+HANDLERS  = 64          // addresses of the handlers, by kind of message
+CHAINS    = 128         // table of chains, by the lower bits of their number: number of descriptors, ticket
+FRAME     = 384         // registers of the interrupted program
 
 // ---- a queue entry
 E_NEXT    = 0
 E_WORDS   = 4
 E_SENDER  = 8
 E_PLACE   = 12
-E_BUFFER  = 16          // descriptor of the buffer that it keeps, or 0
+E_BUFFER  = 16          // descriptor of the buffer that the entry keeps, or 0
 E_COPY    = 32
 
 // ---- registers of the interface, at WINDOW
-CAUSE     = 0           // not 0 when messages have arrived
-CREDIT    = 4           // takes the descriptor of a buffer that is free again
-START     = 8           // takes the first descriptor of a chain
-DONE      = 12          // chains sent
+CAUSE     = 0           // not 0 if messages have arrived
+CREDIT    = 4           // write the descriptor of a free buffer here
+START     = 8           // write the first descriptor of a chain here
+DONE      = 12          // number of chains sent
 
-// ---- a descriptor of a received message: 0 the interface's, 1 it has arrived, 2 a queue entry keeps it; buffer
+// ---- a descriptor of a received message: state (0 owned by the interface, 1 arrived, 2 kept by a queue entry); buffer
 D_OWNER   = 0
 D_BUFFER  = 4
 D_BYTES   = 16
@@ -52,10 +52,10 @@ T_HEADER  = 4
 T_ADDRESS = 12
 TX        = WINDOW+0x1000
 TX_END    = TX+TX_COUNT*D_BYTES
-LAST      = 4           // flags: the last of its chain; the others are the caller's
+LAST      = 4           // flags: the last message of its chain; the caller sets all other flags
 
 SHORT     = 8           // words of a message that is copied
-IM        = 0x10        // psr: interrupts are taken
+IM        = 0x10        // psr: interrupts are enabled
 
 // ---- faults
 NO_LENGTH = 1
@@ -63,11 +63,11 @@ NO_KIND   = 2
 NO_ENTRY  = 3
 NO_ROOM   = 4
 
-// ---- a program takes a message and gives it back
+// ---- takes a message and gives it back, as a program does
 receive:
         adds    -32, r2, r2
         st.l    r1, 0(r2)
-        call    interrupt               // what it waited for
+        call    interrupt               // the program has waited for this interrupt
         nop
         call    take
         nop
@@ -87,14 +87,14 @@ received:
         bri     r1
         adds    32, r2, r2
 
-// psr without IM; the old one in r28
+// Clears IM in psr. The old psr is in r28.
         .macro  masked
         ld.c    psr, r28
         andnot  IM, r28, r27
         st.c    r27, psr
         .endm
 
-// ---- takes the oldest entry: r16 entry or 0, r17 place or fault, r18 words, r19 sender
+// ---- takes the oldest entry: r16 entry or 0, r17 address or fault, r18 words, r19 sender
 take:   mov     DATA, r30
         masked
         ld.l    HEAD(r30), r16
@@ -117,7 +117,7 @@ nothing:
         bri     r1
         st.c    r28, psr
 
-// ---- gives the entry r16 back, and its buffer
+// ---- frees the entry r16 and its buffer
 release:
         mov     DATA, r30
         masked
@@ -132,7 +132,7 @@ kept:   st.l    r18, E_NEXT(r16)
         bri     r1
         st.c    r28, psr
 
-// ---- the interrupt; r30 and r31 are its own
+// ---- the interrupt, for which r30 and r31 are reserved
 interrupt:
         mov     DATA, r30
         st.l    r1, FRAME(r30)
@@ -241,7 +241,7 @@ queue:  ld.l    FREE(r30), r16
         st.l    r16, E_NEXT(r19)
 alone:  st.l    r16, HEAD(r30)
 linked: ld.l    QUEUED(r30), r17
-        adds    8, r21, r18             // behind the header
+        adds    8, r21, r18             // address after the header
         adds    1, r17, r17
         st.l    r17, QUEUED(r30)
         subu    SHORT, r25, r0
@@ -275,7 +275,7 @@ send:   bte     r0, r17, empty
         mov     DATA, r30
         mov     WINDOW, r29
         masked
-        // what has been sent
+        // Count the chains that have been sent.
         ld.l    DONE(r29), r19
         ld.l    FINISHED(r30), r20
         ld.l    TX_ROOM(r30), r21
@@ -296,11 +296,11 @@ known:  subu    r21, r17, r0
         ld.l    ISSUED(r30), r23
         ld.l    NODE(r30), r22
         subs    r23, r20, r23
-        subu    15, r23, r0             // chains that are noted
+        subu    15, r23, r0             // the table of chains has 16 places
         bnc     noroom
         ld.l    TX_NEXT(r30), r20
-        mov     r17, r19                // still to come
-        mov     r20, r26                // the first
+        mov     r17, r19                // number of requests left
+        mov     r20, r26                // the first descriptor of the chain
         mov     TX_END, r27
 link:   ld.l    8(r16), r23
         adds    -1, r23, r24
@@ -326,7 +326,7 @@ more:   st.l    r25, T_FLAGS(r20)
         btne    r20, r27, inside
         mov     TX, r20
 inside: btne    r0, r19, link
-        // the chain as a whole
+        // The place of the chain in the table.
         ld.l    ISSUED(r30), r23
         subs    r21, r17, r21
         st.l    r20, TX_NEXT(r30)

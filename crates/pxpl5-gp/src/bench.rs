@@ -4,18 +4,17 @@ use crate::board::{GpBoard, GpEvent, GpOutput};
 use pxpl5_sim::{Phase, TestBench, Time};
 use pxpl5_wire::Message;
 
-/// A board together with a [`TestBench`], which holds the board's event queue. The test supplies the messages and
-/// acceptances that other boards would send.
+/// A board together with its event queue ([`TestBench`]). The test supplies the messages and acceptances that other
+/// boards would send.
 #[derive(Debug)]
 pub struct BoardBench {
-    /// The board under test with its programs.
     pub board: GpBoard,
     bench: TestBench<GpEvent, GpOutput>,
     accepted: usize,
 }
 
 impl BoardBench {
-    /// Makes a test bench for a board. The board's programs start to run at time zero.
+    /// Makes a test bench, in which the programs of `board` start at time zero.
     #[must_use]
     pub fn new(board: GpBoard) -> Self {
         let mut bench = TestBench::new();
@@ -23,14 +22,12 @@ impl BoardBench {
         Self { board, bench, accepted: 0 }
     }
 
-    /// Schedules an event for the board at time `at`. At this time, the board handles the event before its programs
-    /// work.
+    /// Schedules an event for the board at time `at`. The board handles the event before its programs continue.
     pub fn feed(&mut self, at: Time, event: GpEvent) {
         self.bench.feed(at, Phase::Arrive, event);
     }
 
-    /// Schedules, at time `at`, the acceptance of all messages that the board has sent and that were not accepted
-    /// before.
+    /// Schedules, at time `at`, the acceptance of all messages of the board that were not accepted before.
     pub fn accept_all(&mut self, at: Time) {
         while let Some((_, GpOutput::Send { ticket, .. })) = self.bench.outputs.get(self.accepted) {
             let accepted = GpEvent::Accepted(*ticket);
@@ -44,8 +41,7 @@ impl BoardBench {
         self.bench.run_until(until, |event, context| self.board.handle(event, context));
     }
 
-    /// Iterates over the messages that the board has sent, in the order of sending. Each item is the time at which a
-    /// message left the board, and the message.
+    /// Iterates over the messages of the board and the times at which they left the board, in the order of sending.
     pub fn sent(&self) -> impl Iterator<Item = (Time, &Message)> {
         self.bench.outputs.iter().map(|(time, GpOutput::Send { message, .. })| (*time, message))
     }

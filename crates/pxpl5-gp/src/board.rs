@@ -16,55 +16,45 @@ use std::fmt;
 use std::rc::Rc;
 use std::task::{Context as TaskContext, Poll, Waker};
 
-/// An event of a graphics processor board.
 #[derive(Clone, Debug)]
 pub enum GpEvent {
-    /// The last word of a message has arrived. The event belongs to phase `Arrive` of the event queue.
+    /// The last word of a message has arrived. The event belongs to phase `Arrive`.
     Delivered(Message),
-    /// A receiver has accepted a message of a batch, a group of messages that a program sent together. The number is
-    /// the `ticket` of the message in [`GpOutput::Send`]. The event belongs to phase `Arrive` of the event queue.
+    /// A receiver has accepted a message. The number is the `ticket` of the message in [`GpOutput::Send`]. The event
+    /// belongs to phase `Arrive`.
     Accepted(u64),
-    /// A retrace begins a field. The event belongs to phase `Arrive` of the event queue.
+    /// A retrace begins a field. The event belongs to phase `Arrive`.
     Retrace(PeriodNumber),
-    /// The status signal of another board has changed. A status signal carries one number, for example the count of a
-    /// frame buffer's swaps. The event belongs to phase `Arrive` of the event queue.
-    Status {
-        /// Ring port of the board whose status signal has changed.
-        from: NodeId,
-        /// New value of the status signal.
-        value: u64,
-    },
-    /// The board runs its programs, which read the inputs that have arrived at this instant.
+    /// The status signal of another board has changed. A status signal carries one number, for example the number of
+    /// swaps of a frame buffer. The event belongs to phase `Arrive`.
+    Status { from: NodeId, value: u64 },
+    /// The programs of the board continue. They can read all inputs that have arrived at this instant.
     Poll,
-    /// The running work of the CPU ends at this instant, unless an interrupt has delayed the end. In the latter case,
-    /// the event has no effect.
+    /// The current CPU work ends at this instant. The event has no effect if an interrupt has delayed the end.
     WorkEnds,
 }
 
-/// Output of a graphics processor board.
 #[derive(Debug)]
 pub enum GpOutput {
-    /// A message for the ring. When the receiver accepts the message, the board gets `ticket` back in
-    /// [`GpEvent::Accepted`].
+    /// A message for the ring. When the receiver accepts it, the board gets `ticket` back in [`GpEvent::Accepted`].
     Send {
-        /// Message with its destination.
         message: Message,
         /// Two numbers in one word. The lower [`PLACE_BITS`] bits have the index of the message in its batch, a group
-        /// of messages that are sent together. The upper bits have the number of the batch.
+        /// of messages that the board sends together. The upper bits have the number of the batch.
         ticket: u64,
         /// True if the receiver's port stays reserved for the next message of this board.
         hold: bool,
     },
 }
 
-/// Number of bits of a ticket that hold the index of a message in its batch.
+/// Number of bits of a ticket for the index of a message in its batch.
 pub const PLACE_BITS: u32 = 20;
 const PLACE_MASK: u64 = (1 << PLACE_BITS) - 1;
 
-/// The CPU time that a board has spent, by kind of work.
+/// The CPU time of a board, by kind of work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpUse {
-    /// CPU time of all kinds of work together.
+    /// CPU time of all work.
     pub busy: Span,
     /// CPU time of the software that receives and sends messages.
     pub messages: Span,
@@ -74,8 +64,7 @@ pub struct GpUse {
 }
 
 impl GpUse {
-    /// Returns the CPU time of all work except message software and the answers to tokens. This work includes EDIT and
-    /// TRANSFORM.
+    /// Returns the CPU time of all work except messages and tokens, for example of EDIT and TRANSFORM.
     #[must_use]
     pub const fn work(&self) -> Span {
         Span(self.busy.0.saturating_sub(self.messages.0 + self.tokens.0))
@@ -92,8 +81,8 @@ struct Task {
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,
-    /// Times at which a [`GpEvent::WorkEnds`] is scheduled. The list has the next end of CPU work. It can also have
-    /// earlier times, at which the work would have ended without an interrupt.
+    /// Times at which a [`GpEvent::WorkEnds`] is scheduled: the next end of CPU work, and earlier ends that an
+    /// interrupt has delayed.
     announced: Vec<Time>,
     poll_pending: bool,
     cycle: Span,
@@ -107,8 +96,8 @@ impl fmt::Debug for GpBoard {
 }
 
 impl GpBoard {
-    /// Makes a board without programs at the ring port `node`. Each output leaves the board one `cycle` after the event
-    /// that causes the output.
+    /// Makes a board without programs at the ring port `node`. `cycle` is the time from an event to the resulting
+    /// output at the ring port.
     #[must_use]
     pub fn new(node: NodeId, timing: GpTiming, cycle: Span) -> Self {
         let shared = Shared {
@@ -141,9 +130,8 @@ impl GpBoard {
         Self { shared, tasks: Vec::new(), announced: Vec::new(), poll_pending: false, cycle, fault: None }
     }
 
-    /// Makes the board run i860 code for each [`Work`](crate::Work) instead of using the timing table. `core`
-    /// configures the i860. Boards with the same `decoded` (store of decoded programs) share decoded programs and their
-    /// memoized clocks.
+    /// Makes the board run i860 code for each [`Work`](crate::Work), instead of using the timing table. `core`
+    /// configures the i860. Boards with the same store `decoded` share decoded programs and their memoized clocks.
     pub fn run_code(&mut self, version: CodeVersion, core: i860::Config, decoded: &Rc<RefCell<i860::DecodedPrograms>>) {
         let shared = &mut *self.shared.borrow_mut();
         let mut processor = Processor::new(shared.node, shared.timing.memory_bytes, version, core);
@@ -151,8 +139,7 @@ impl GpBoard {
         shared.processor = Some(Box::new(processor));
     }
 
-    /// Turns memoization of the i860 off, so that the i860 counts every clock again. Call this function before the
-    /// first event.
+    /// Turns off memoization, so that the i860 counts every clock again. Call this function before the first event.
     pub fn disable_memoization(&mut self) {
         if let Some(processor) = &mut self.shared.borrow_mut().processor {
             processor.disable_memoization();
@@ -165,7 +152,7 @@ impl GpBoard {
         Gp { shared: Rc::clone(&self.shared), priority }
     }
 
-    /// Loads a program with a CPU priority. Each priority can have only one program.
+    /// Loads the program of priority `priority`. Each priority can have only one program.
     pub fn load(&mut self, priority: Priority, firmware: Firmware) {
         self.shared.borrow_mut().waits[priority as usize] = Wait::NOT_STARTED;
         self.tasks.push(Task { firmware, priority, has_ended: false });
@@ -176,7 +163,7 @@ impl GpBoard {
     pub fn handle(&mut self, event: GpEvent, context: &mut Context<GpEvent, GpOutput>) {
         let mut shared = self.shared.borrow_mut();
         shared.now = context.now();
-        // Record the event. The programs read it at their next poll.
+        // Record the event, which the programs read at their next poll.
         let cause = match event {
             GpEvent::Delivered(message) => shared.latch(message),
             GpEvent::Accepted(ticket) => shared.note_accepted(ticket >> PLACE_BITS, ticket & PLACE_MASK),
@@ -198,7 +185,6 @@ impl GpBoard {
         }
     }
 
-    /// Polls the programs, passes the next batch of messages to the ring, and schedules the end of CPU work.
     fn work(&mut self, context: &mut Context<GpEvent, GpOutput>) {
         self.poll_pending = false;
         {
@@ -209,7 +195,7 @@ impl GpBoard {
         self.poll_until_quiet();
         let mut shared = self.shared.borrow_mut();
         if let Some(batch) = shared.next_batch() {
-            // All messages of a chain go to the board's ring port at once.
+            // Pass all messages of a chain to the board's ring port at once.
             for (place, ChainLink { message, hold }) in (0..).zip(batch.links) {
                 let ticket = batch.ticket.0 << PLACE_BITS | place;
                 context.output(context.now() + self.cycle, GpOutput::Send { message, ticket, hold });
@@ -221,8 +207,7 @@ impl GpBoard {
         self.announce(end, context);
     }
 
-    /// Polls the programs if the running CPU work ends now. If an interrupt has delayed the end of the work, the event
-    /// has no effect.
+    /// Polls the programs if the current CPU work ends now. Does nothing if an interrupt has delayed its end.
     fn end_of_work(&mut self, context: &mut Context<GpEvent, GpOutput>) {
         let now = context.now();
         self.announced.retain(|at| *at > now);
@@ -231,7 +216,7 @@ impl GpBoard {
         }
     }
 
-    /// Schedules a [`GpEvent::WorkEnds`] at time `end`, unless such an event is already scheduled at that time.
+    /// Schedules a [`GpEvent::WorkEnds`] at time `end`, unless such an event is already scheduled at this time.
     fn announce(&mut self, end: Option<Time>, context: &mut Context<GpEvent, GpOutput>) {
         if let Some(end) = end.filter(|end| !self.announced.contains(end)) {
             self.announced.push(end);
@@ -239,13 +224,12 @@ impl GpBoard {
         }
     }
 
-    /// Polls the programs in turn until all programs wait for an event outside the board. A poll lets a program
-    /// continue until it must wait again. Each program is polled again only if the board's other program has
-    /// progressed.
+    /// Polls the programs in turn until all of them wait for an event outside the board. After its first poll, a
+    /// program is polled again only if the other program has progressed.
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;
-        // Stop after a full round without progress.
+        // Stop after one poll of every program without progress.
         for place in (0..self.tasks.len()).cycle() {
             let before = self.shared.borrow().progress;
             self.poll(place, &mut task_context);
@@ -265,12 +249,12 @@ impl GpBoard {
         }
         if let Poll::Ready(result) = task.firmware.as_mut().poll(context) {
             task.has_ended = true;
-            // The board reports only its first fault.
+            // Keep only the first fault of the board.
             self.fault = self.fault.take().or(result.err());
         }
     }
 
-    /// If the message software of the board has had a fault, ends all programs and returns true.
+    /// Ends all programs and returns true if the message software of the board has had a fault.
     fn stop(&mut self) -> bool {
         let Some(fault) = self.shared.borrow_mut().software_fault.take() else { return false };
         self.fault.get_or_insert(fault);
@@ -278,15 +262,13 @@ impl GpBoard {
         true
     }
 
-    /// Returns the fault (an input that cannot be processed) that has stopped a program or the board, or `None` without
-    /// a fault.
+    /// Returns the fault (an input that cannot be processed) that has stopped a program or the board.
     #[must_use]
     pub const fn fault(&self) -> Option<&Fault> {
         self.fault.as_ref()
     }
 
-    /// Removes the records of stages that the programs have made, and passes the records to `take`, the oldest record
-    /// first.
+    /// Removes the records of stages that the programs have made, and passes them to `take`, the oldest record first.
     pub fn drain_marks(&mut self, take: impl FnMut(Mark)) {
         let marks = &mut self.shared.borrow_mut().marks;
         if !marks.is_empty() {
@@ -294,74 +276,71 @@ impl GpBoard {
         }
     }
 
-    /// Returns the CPU time that the board has spent so far.
     #[must_use]
     pub fn busy(&self) -> Span {
         self.shared.borrow().cpu.busy()
     }
 
-    /// Returns the CPU time spent up to `now`, by kind of work. `now` must not be earlier than the last handled event.
+    /// Returns the CPU time up to `now`, by kind of work. `now` must not be earlier than the last handled event.
     #[must_use]
     pub fn used(&self, now: Time) -> GpUse {
         let shared = self.shared.borrow();
         GpUse { busy: shared.cpu.busy_at(now), messages: shared.message_software, tokens: shared.answer_work }
     }
 
-    /// Returns the number of vertices that the programs have transformed so far
+    /// Returns the number of vertices that the programs have transformed
     /// ([`Work::vertex_transforms`](crate::Work::vertex_transforms)).
     #[must_use]
     pub fn vertex_transforms(&self) -> u64 {
         self.shared.borrow().vertex_transforms
     }
 
-    /// Returns true if a decision of a program has depended on the fact that the backing store of a renderer was full
+    /// Returns true if a decision of a program has ever depended on a full backing store of a renderer
     /// ([`Gp::note_full_store`]).
     #[must_use]
     pub fn found_store_full(&self) -> bool {
         self.shared.borrow().found_store_full
     }
 
-    /// Returns the greatest number of memory bytes that were in use at the same time.
+    /// Returns the greatest number of bytes of memory that were in use at the same time.
     #[must_use]
     pub fn memory_peak_bytes(&self) -> u64 {
         self.shared.borrow().memory.peak()
     }
 
-    /// Returns a snapshot of the board at time `now`, which must not be earlier than the last handled event. The board
-    /// stays unchanged.
+    /// Returns a snapshot of the board at time `now`, which must not be earlier than the last handled event.
     #[must_use]
     pub fn look(&self, now: Time) -> GpSnapshot {
         GpSnapshot::of(&self.shared.borrow(), self.tasks.iter().map(|task| task.priority), now)
     }
 
-    /// Calls `look` with the board's i860 and returns the result of `look`. Returns `None` if the board does not run
-    /// i860 code.
+    /// Calls `look` with the board's i860, and returns its result. Returns `None` if the board does not run i860 code.
     pub fn with_processor<T>(&self, look: impl FnOnce(&Processor) -> T) -> Option<T> {
         self.shared.borrow().processor.as_deref().map(look)
     }
 
-    /// Sets breakpoints: code addresses at which calls of i860 code record [`BreakpointHit`]s
-    /// ([`Processor::break_at`]). Boards without i860 code ignore the call.
+    /// Sets breakpoints at code addresses. Calls of i860 code then record [`BreakpointHit`]s ([`Processor::break_at`]).
+    /// Has no effect on boards without i860 code.
     pub fn break_at(&mut self, addresses: &BTreeSet<u32>) {
         if let Some(processor) = &mut self.shared.borrow_mut().processor {
             processor.break_at(addresses.clone());
         }
     }
 
-    /// Removes and returns the breakpoint hits recorded since the last call of this function.
+    /// Removes and returns the recorded breakpoint hits, if the board runs i860 code.
     #[must_use]
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()
     }
 
-    /// Returns the name of the condition for which the board waits, for deadlock reports. If both programs wait, the
-    /// function returns the condition of the foreground program.
+    /// Returns the name of the condition for which the board waits, for reports of deadlocks. If both programs wait,
+    /// returns the condition of the foreground program.
     #[must_use]
     pub fn blocked(&self) -> Option<&'static str> {
         Some(self.wait()?.what)
     }
 
-    /// Returns true if the board waits for an event that only another board can cause. A retrace is not such an event.
+    /// Returns true if the board waits for an event that only another board can cause. A retrace is no such event.
     #[must_use]
     pub fn waits_for_a_board(&self) -> bool {
         self.wait().is_some_and(|wait| wait.ended_by != Cause::Retrace)
@@ -436,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn an_echo_leaves_after_both_software_costs_the_work_and_one_cycle() {
+    fn an_echo_leaves_the_board_after_reception_work_sending_and_one_cycle() {
         let mut board = board();
         let mut bench = TestBench::new();
         bench.feed(Time(500_000), Phase::Arrive, GpEvent::Delivered(words(2, 7)));
@@ -445,7 +424,7 @@ mod tests {
     }
 
     #[test]
-    fn simultaneous_messages_are_taken_in_the_order_of_their_senders_whatever_the_tie() {
+    fn simultaneous_messages_are_taken_in_the_order_of_their_senders() {
         for seed in 0..20 {
             let mut board = board();
             let mut bench = TestBench::new();
@@ -459,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn a_batch_waits_for_the_clump_buffer_and_not_for_the_ring() {
+    fn a_second_batch_waits_only_until_the_clump_buffer_is_free() {
         async fn two_clumps(gp: Gp) -> Result<(), Fault> {
             for clump in 0..2 {
                 gp.clump_buffer_free().await;
@@ -479,7 +458,7 @@ mod tests {
     }
 
     #[test]
-    fn a_group_keeps_its_receiver_until_its_last_message() {
+    fn a_group_of_messages_reserves_its_receiver_until_the_last_message_of_the_group() {
         async fn groups(gp: Gp) -> Result<(), Fault> {
             let word = |value: u32| (1, Body::Words([value].into()));
             gp.send_groups(vec![(NodeId(1), vec![word(0), word(1), word(2)]), (NodeId(2), vec![word(3)])]).await;
@@ -500,7 +479,7 @@ mod tests {
     }
 
     #[test]
-    fn a_blocked_board_names_what_it_waits_for() {
+    fn a_blocked_board_names_the_cause_of_its_wait() {
         let mut board = board();
         let mut bench = TestBench::new();
         bench.feed(Time(0), Phase::Work, GpEvent::Poll);

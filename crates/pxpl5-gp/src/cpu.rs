@@ -1,13 +1,13 @@
-//! CPU time of a board, which two programs of different priorities share.
+//! The CPU of a board. Two programs of different priorities share its time.
 
 use pxpl5_sim::{Span, Time};
 
 /// CPU priority of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Priority {
-    /// The interrupt program. While the interrupt program spends CPU time, the foreground program is suspended.
+    /// The interrupt program. The foreground program is suspended while the interrupt program spends CPU time.
     Interrupt,
-    /// The foreground program. The foreground program runs while the interrupt program spends no CPU time.
+    /// The foreground program, which continues while the interrupt program spends no CPU time.
     Foreground,
 }
 
@@ -24,15 +24,14 @@ pub(crate) struct Cpu {
 }
 
 impl Cpu {
-    /// Starts CPU work of length `span` for the program of priority `priority`.
     pub(crate) fn begin(&mut self, priority: Priority, span: Span, now: Time) {
         self.settle(now);
         self.remaining[priority as usize] = Some(span);
         self.dispatch(now);
     }
 
-    /// Subtracts the CPU time up to `now` from the remaining work of the running program. Work that ends exactly at
-    /// `now` counts as finished.
+    /// Subtracts the CPU time up to `now` from the remaining time of the running program. Work that ends exactly at
+    /// `now` is finished.
     pub(crate) fn settle(&mut self, now: Time) {
         let Some((priority, since)) = self.running else {
             return;
@@ -50,19 +49,17 @@ impl Cpu {
         self.running = first.map(|priority| (priority, now));
     }
 
-    /// Returns true if the program of this priority has spent all the CPU time that it requested.
     pub(crate) fn is_done(&self, priority: Priority) -> bool {
         self.remaining[priority as usize].is_none()
     }
 
-    /// Returns the time at which the running work ends, provided that no interrupt occurs. Returns `None` if no work is
-    /// running.
+    /// Returns the time at which the current work ends if no interrupt occurs.
     pub(crate) fn next_end(&self) -> Option<Time> {
         let (priority, since) = self.running?;
         Some(since + self.remaining[priority as usize]?)
     }
 
-    /// Returns the remaining CPU time of the work of priority `priority` at time `now`, or `None` if all this work is
+    /// Returns the remaining CPU time, at `now`, of the program of priority `priority`. Returns `None` if its work is
     /// finished.
     pub(crate) fn left(&self, priority: Priority, now: Time) -> Option<Span> {
         let left = self.remaining[priority as usize]?;
@@ -76,8 +73,8 @@ impl Cpu {
         self.busy
     }
 
-    /// Returns the CPU time that all programs of the board together have spent up to `now`. `now` must not be earlier
-    /// than the last call of [`Cpu::settle`].
+    /// Returns the CPU time of all programs up to `now`. `now` must not be earlier than the last call of
+    /// [`Cpu::settle`].
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let Some((priority, since)) = self.running else { return self.busy };
         let left = self.remaining[priority as usize].unwrap_or(Span::ZERO);

@@ -14,25 +14,21 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program on a board. The program runs forever or ends with a fault. A program must await only one future at a time,
-/// because the board records only one wait for each program.
+/// A program on a board.
+///
+/// It runs forever or ends with a fault. It must await only one future at a time, because the board records one wait
+/// for each program.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
-    /// Data did not fit into the memory of the board.
+    /// Data do not fit in the memory of the board.
     #[error(transparent)]
     Memory(#[from] OutOfMemory),
-    /// The program has received a message that it does not expect.
     #[error("node {}: unexpected message {found}", node.0)]
-    Protocol {
-        /// Ring port of the board that received the message.
-        node: NodeId,
-        /// Description of the unexpected message.
-        found: String,
-    },
+    Protocol { node: NodeId, found: String },
     /// The i860 code trapped, did not return, or needed more memory than was free.
     #[error(transparent)]
     Processor(#[from] ProcessorFault),
@@ -43,18 +39,17 @@ pub enum Fault {
 pub struct Received {
     /// Arrival time of the last word of the message.
     pub arrived: Time,
-    /// Ring port of the board that sends the message.
     pub source: NodeId,
-    /// Content of the message: words, commands or pixels.
     pub body: Body,
 }
 
-/// The number of a batch of messages that a program has passed to the DMA. The DMA (direct memory access) is the part
-/// of the board that sends messages in the background.
+/// Number of a batch of messages that a program has passed to the DMA.
+///
+/// The DMA (direct memory access) is the part of the board that sends messages in the background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticket(pub(crate) u64);
 
-/// A chain of messages that the DMA sends together, after the receivers have accepted the previous chain.
+/// A group of messages that the DMA sends together. The receivers must first have accepted the previous group.
 #[derive(Debug)]
 pub(crate) struct Batch {
     pub(crate) ticket: Ticket,
@@ -64,11 +59,10 @@ pub(crate) struct Batch {
 #[derive(Debug)]
 pub(crate) struct ChainLink {
     pub(crate) message: Message,
-    /// True if the receiver's port stays reserved for the next message of this board.
+    /// True if the port of the receiver stays reserved for the next message of this board.
     pub(crate) hold: bool,
 }
 
-/// State shared by the board and its programs.
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub(crate) node: NodeId,
@@ -76,39 +70,36 @@ pub(crate) struct Shared {
     pub(crate) timing: GpTiming,
     pub(crate) cpu: Cpu,
     pub(crate) memory: Memory,
-    /// The i860 that runs code, or `None` if all times come from the timing table.
+    /// The i860 that runs code. `None` if all times come from the timing table.
     pub(crate) processor: Option<Box<Processor>>,
-    /// Number of vertices that the programs have transformed since the start of the simulation.
     pub(crate) vertex_transforms: u64,
-    /// True if a decision of a program has depended on the fact that a backing store was full.
+    /// True if a decision of a program has ever depended on a full backing store of a renderer.
     pub(crate) found_store_full: bool,
-    /// CPU time requested so far for the message software.
     pub(crate) message_software: Span,
-    /// CPU time requested so far for work that answers messages.
+    /// CPU time that was requested so far for answers to messages.
     pub(crate) answer_work: Span,
     pub(crate) inbox: VecDeque<Received>,
     pub(crate) batches: VecDeque<Batch>,
-    /// Messages of the current batch (the messages that were sent together) that the receivers have not accepted yet.
-    /// Each entry has the message's index in the batch and its receiver.
+    /// Messages of the current batch that the receivers have not accepted yet: the index in the batch, and the
+    /// receiver.
     pub(crate) in_flight: Vec<(u64, NodeId)>,
-    /// Receivers that have accepted no message of the current batch so far.
+    /// Receivers that have not accepted any message of the current batch yet.
     pub(crate) unaccepting_receivers: Vec<NodeId>,
     pub(crate) marks: Vec<Mark>,
-    /// Records of ends of stages that must be made when a batch of messages is accepted. Each entry has the number of
-    /// the batch and the record. The entries are sorted by batch.
+    /// Ends of stages that are not recorded yet. An end is recorded when the receivers have accepted the last batch of
+    /// messages of the stage. Each entry has the number of this batch and the record. The list is sorted by batch.
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,
-    /// Number of the last batch of messages for which every receiver has accepted at least one message.
+    /// Number of the last batch of messages of which every receiver has accepted at least one message.
     pub(crate) draining: u64,
     /// Number of the last batch of messages that the receivers have accepted completely.
     pub(crate) accepted: u64,
     pub(crate) issued: u64,
-    /// Number of waits that have ended so far. The board polls all its programs again and again until this number stays
-    /// the same.
+    /// Number of waits that have ended so far. The board polls its programs until this number stays the same.
     pub(crate) progress: u64,
     pub(crate) waits: [Wait; 2],
-    /// Fault in the message software of the board. This fault stops all programs.
+    /// Fault in the message software of the board, which stops all programs.
     pub(crate) software_fault: Option<Fault>,
 }
 
@@ -119,16 +110,15 @@ pub(crate) struct Wait {
     pub(crate) ended_by: Cause,
 }
 
-/// A kind of event that can end the wait of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Cause {
     /// Work on the board's CPU has ended.
     Work,
     /// A receiver has accepted a message.
     Acceptance,
-    /// A message, a retrace or a new value of a status signal has arrived, or the board's other program has progressed.
+    /// A message, a retrace or a new status signal has arrived, or the board's other program has progressed.
     Arrival,
-    /// A retrace. Each field begins with a retrace, so a wait for a retrace always ends.
+    /// A retrace, which always comes, because each field begins with a retrace.
     Retrace,
     /// No event can end the wait, because the board has no program of this priority.
     Nothing,
@@ -142,15 +132,13 @@ impl Cause {
 }
 
 impl Wait {
-    /// The wait that is recorded for a priority without a program.
     pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Nothing };
 
-    /// The wait that is recorded for a program before its first poll.
     pub(crate) const NOT_STARTED: Self = Self { what: "", ended_by: Cause::Arrival };
 }
 
 impl Shared {
-    /// Returns true if an event of the kind `cause` can end the wait of a program, or can allow the DMA to send another
+    /// Returns true if an event of the kind `cause` can end the wait of a program, or permit the DMA to send another
     /// chain.
     pub(crate) fn can_end_wait(&self, cause: Cause) -> bool {
         let next_chain = cause == Cause::Acceptance && self.in_flight.is_empty() && !self.batches.is_empty();
@@ -162,11 +150,12 @@ impl Shared {
         self.waits[priority as usize].ended_by == Cause::Work && !self.cpu.is_done(priority)
     }
 
-    /// Adds a message to the inbox. Messages that arrive at the same instant are sorted by sender, so the order in
-    /// which the events are handled has no effect.
+    /// Adds a message to the inbox. Messages of the same instant are sorted by sender, so the order of their events has
+    /// no effect.
     pub(crate) fn latch(&mut self, Message { source, body, .. }: Message) -> Cause {
         let arrived = self.now;
-        // Insert after all messages of earlier instants and lower senders.
+        // Insert after messages of earlier instants, and after messages of the same instant from ports with lower
+        // numbers.
         let before = self.inbox.iter().rposition(|other| (other.arrived, other.source) <= (arrived, source));
         self.inbox.insert(before.map_or(0, |place| place + 1), Received { arrived, source, body });
         Cause::Arrival
@@ -178,14 +167,14 @@ impl Shared {
     }
 
     pub(crate) fn note_accepted(&mut self, batch: u64, place: u64) -> Cause {
-        // Messages of a batch are accepted one by one, in any order.
+        // The receivers accept the messages of a batch in any order.
         let Some(i) = self.in_flight.iter().position(|flight| flight.0 == place) else { return Cause::Acceptance };
         let (_, receiver) = self.in_flight.swap_remove(i);
         self.unaccepting_receivers.retain(|node| *node != receiver);
         if self.unaccepting_receivers.is_empty() {
             self.draining = batch;
         }
-        // The whole batch is accepted: stages that waited for it end now.
+        // The receivers have accepted the whole batch, so stages that waited for it end now.
         if self.in_flight.is_empty() {
             self.accepted = batch;
             while let Some((_, mark)) = self.ends.front().filter(|end| end.0.0 <= batch) {
@@ -196,7 +185,7 @@ impl Shared {
         Cause::Acceptance
     }
 
-    /// If the DMA is free, removes the oldest waiting batch of messages, records its receivers, and returns the batch.
+    /// Removes the oldest batch of messages from the queue if the DMA is free, and records its receivers.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
         // All messages of the batch now wait for their acceptance.
@@ -215,7 +204,7 @@ impl Shared {
     }
 }
 
-/// A program's handle to its board. The handle contains the CPU priority of the program.
+/// A program's access to its board, with the CPU priority of the program.
 #[derive(Clone, Debug)]
 pub struct Gp {
     pub(crate) shared: Rc<RefCell<Shared>>,
@@ -223,51 +212,48 @@ pub struct Gp {
 }
 
 impl Gp {
-    /// Returns a handle to the same board for the program of the CPU priority `priority`.
+    /// Returns a handle to this board for the program of priority `priority`.
     #[must_use]
     pub fn at_priority(&self, priority: Priority) -> Self {
         Self { shared: Rc::clone(&self.shared), priority }
     }
 
-    /// Returns the ring port of this board.
     #[must_use]
     #[inline]
     pub fn node(&self) -> NodeId {
         self.shared.borrow().node
     }
 
-    /// Returns the current simulated time.
     #[must_use]
     #[inline]
     pub fn now(&self) -> Time {
         self.shared.borrow().now
     }
 
-    /// Returns the board's timing table.
     #[must_use]
     #[inline]
     pub fn timing(&self) -> GpTiming {
         self.shared.borrow().timing
     }
 
-    /// Returns the number of the current field of the first display. This field began at the last retrace.
+    /// Returns the number of the current field of the first display, which began at the last retrace.
     #[must_use]
     pub fn field(&self) -> PeriodNumber {
         self.shared.borrow().field
     }
 
-    /// Returns the value of another board's status signal. The status signal of a frame buffer carries the number of
-    /// its swaps. The value is zero before the first change.
+    /// Returns the value of another board's status signal, or zero before its first change. The status signal of a
+    /// frame buffer carries the number of its swaps.
     #[must_use]
     pub fn status(&self, from: NodeId) -> u64 {
         self.shared.borrow().status.iter().find(|status| status.0 == from).map_or(0, |status| status.1)
     }
 
-    /// Waits until `ready` returns a value, and returns this value. `what` is the name of the wait in a deadlock
-    /// report.
+    /// Waits until `ready` returns a value, and returns this value. `what` is the name of the wait in reports of
+    /// deadlocks.
     ///
     /// The board calls `ready` again after a message, a retrace or a change of a status signal, and after progress of
-    /// the board's other program. To wait for the acceptance of messages, use [`Gp::accepted`].
+    /// its other program. The acceptance of messages does not cause a call: use [`Gp::accepted`] for this.
     #[inline]
     pub async fn until<T>(&self, what: &'static str, ready: impl FnMut() -> Option<T>) -> T {
         self.wait(Wait { what, ended_by: Cause::Arrival }, ready).await
@@ -288,7 +274,6 @@ impl Gp {
         .await
     }
 
-    /// Spends CPU time at the priority of this program.
     #[inline]
     pub async fn spend(&self, span: Span) {
         if span == Span::ZERO {
@@ -302,39 +287,38 @@ impl Gp {
         self.wait(wait, || self.shared.borrow().cpu.is_done(self.priority).then_some(())).await;
     }
 
-    /// Waits for the next retrace and returns the number of the field that begins at this retrace.
+    /// Waits for the next retrace, and returns the number of the field that begins then.
     pub async fn retrace(&self) -> PeriodNumber {
         self.field_from(self.field().next()).await
     }
 
-    /// Waits until the number of the current field is at least `first`, and returns the number.
+    /// Waits until the number of the current field is at least `first`, and returns this number.
     pub async fn field_from(&self, first: PeriodNumber) -> PeriodNumber {
         let wait = Wait { what: "a retrace", ended_by: Cause::Retrace };
         self.wait(wait, || Some(self.field()).filter(|field| *field >= first)).await
     }
 
-    /// Waits until the clump buffer, the memory for outgoing messages, is free. The buffer is free when the receivers
-    /// have accepted all earlier messages.
+    /// Waits until the clump buffer (the memory for outgoing messages) is free. It is free when the receivers have
+    /// accepted all earlier messages.
     #[inline]
     pub async fn clump_buffer_free(&self) {
         let issued = self.shared.borrow().issued;
         self.accepted(Ticket(issued)).await;
     }
 
-    /// Waits until every receiver of a batch of messages has accepted at least one message. From this time on, the DMA
-    /// empties the clump buffer (the memory for outgoing messages).
+    /// Waits until every receiver of a batch has accepted at least one of its messages. From then on, the DMA empties
+    /// the clump buffer (the memory for outgoing messages).
     pub async fn draining(&self, ticket: Ticket) {
         let wait = Wait { what: "all receivers to begin with a clump", ended_by: Cause::Acceptance };
         self.wait(wait, || (self.shared.borrow().draining >= ticket.0).then_some(())).await;
     }
 
-    /// Waits until the receivers have accepted all messages of a batch.
     pub async fn accepted(&self, ticket: Ticket) {
         let wait = Wait { what: "a receiver to accept a message", ended_by: Cause::Acceptance };
         self.wait(wait, || (self.shared.borrow().accepted >= ticket.0).then_some(())).await;
     }
 
-    /// Sets the number of memory bytes that the purpose `account` uses.
+    /// Sets the number of bytes of memory in use for the purpose `account`.
     ///
     /// # Errors
     ///
@@ -343,21 +327,20 @@ impl Gp {
         Ok(self.shared.borrow_mut().memory.set(account, bytes, region)?)
     }
 
-    /// Returns true if the bins of `context` can occupy `bytes` bytes of memory beside the bins of the other context. A
-    /// context is one of two sets of bins.
+    /// Returns true if the bins of `context` (one of two sets of bins) can use `bytes` bytes while the other set keeps
+    /// its size.
     #[must_use]
     pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
         bytes <= self.shared.borrow().memory.room_for_bins(context)
     }
 
-    /// Records that a decision of the program depended on the fact that the backing store of a renderer was full. The
-    /// record takes no time.
+    /// Records that a decision of the program depended on a full backing store of a renderer. Takes no simulated time.
     pub fn note_full_store(&self) {
         self.shared.borrow_mut().found_store_full = true;
     }
 
-    /// Records, for observers of the run, that a stage begins now. `surface` is the surface (such as the picture of an
-    /// eye) for which the stage draws. `surface` is `None` if the stage does not draw one surface at a time.
+    /// Records that a stage begins now, for observers of the run. `surface` is the surface for which the stage draws,
+    /// for example the picture of an eye. It is `None` if the stage does not draw one surface at a time.
     pub fn begin(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
         self.mark(stage, picture, surface, StageEdge::Begin, self.now());
     }
@@ -367,8 +350,8 @@ impl Gp {
         self.mark(stage, picture, surface, StageEdge::End, self.now());
     }
 
-    /// Records the end of a stage at the time at which the receivers have accepted the batch `ticket`. The program
-    /// continues immediately.
+    /// Records the end of a stage later, when the receivers have accepted the batch `ticket`. The program does not
+    /// wait.
     pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: PictureNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;
@@ -378,14 +361,14 @@ impl Gp {
             .push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: StageEdge::End, view: None }));
     }
 
-    /// Records that a stage began or ended at `time`, which the program has read from a message.
+    /// Records that a stage began or ended at `time`. The program has read this time from a message.
     pub fn mark(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>, edge: StageEdge, time: Time) {
         let shared = &mut *self.shared.borrow_mut();
         let node = shared.node;
         shared.marks.push(Mark { time, node, picture, surface, stage, edge, view: None });
     }
 
-    /// Records that a stage begins now for a picture. `view` is the number of the view that the picture shows.
+    /// Records that a stage begins now for a picture, which shows the view with the number `view`.
     pub fn begin_view(&self, stage: Stage, picture: PictureNumber, view: ViewNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;

@@ -9,28 +9,28 @@
 //!                 +-----------------------------------------------+
 //! ```
 //!
-//! A message passes the parts of the board in this order:
+//! The parts of the board, in the order in which a message passes them:
 //!
-//! - A message that has arrived waits in the inbox, in order of arrival.
-//! - *Firmware* is straight-line `async fn` code that holds a [`Gp`]. Every `.await` in the code either spends CPU time
-//!   ([`Gp::spend`]) or waits for an event ([`Gp::receive`], [`Gp::retrace`], [`Gp::until`]).
+//! - The inbox holds messages that have arrived, in order of arrival.
+//! - *Firmware* is `async fn` code that uses the board through a [`Gp`]. Every `.await` in the code either spends CPU
+//!   time ([`Gp::spend`]) or waits for an event ([`Gp::receive`], [`Gp::retrace`], [`Gp::until`]).
 //! - There are two priorities with one program each. While the program of [`Priority::Interrupt`] spends CPU time, the
 //!   program of [`Priority::Foreground`] is suspended.
 //! - [`Gp::send`] costs the CPU a fixed software time. The messages then go to the DMA, which sends them in the
-//!   background. There is one clump buffer, the memory for outgoing messages. A second batch therefore waits until the
-//!   receivers have accepted the first batch. A group of messages ([`Gp::send_groups`]) reserves its receiver's port
-//!   from the first message to the last.
+//!   background. There is only one clump buffer (memory for outgoing messages). A batch of messages therefore waits
+//!   until the receivers have accepted the previous batch. A group of messages ([`Gp::send_groups`]) reserves the
+//!   receiver's port from its first message to its last.
 //! - [`Memory`] counts the used bytes of the board's 8 MB. A request that does not fit is a [`Fault`], which names the
 //!   board and the region.
 //! - The time of [`Work`] comes from the timing table, or from i860 code on the board's [`Processor`]
-//!   ([`GpBoard::run_code`]). Programs do not depend on this choice. The message software also exists as i860 code
+//!   ([`GpBoard::run_code`]). The firmware is the same in both cases. The message software also exists as i860 code
 //!   (kernels/ring.s) and has its own memory ([`RING_MEMORY`]).
 //!
 //! The host workstation uses the same board model with its own timing table.
 //!
 //! **Not modelled here:** the bus between CPU and DMA, and the instant of an interrupt within a call of i860 code. A
-//! call of i860 code runs as a whole when it begins. The code of an interrupt during this call therefore finds the
-//! caches in their state after the call.
+//! call runs completely at its start. The code of an interrupt during the call therefore finds the caches in their
+//! state after the call.
 //!
 //! Sources: TR94 (memory, clock, background rendering). The timing table states the source of each parameter.
 
@@ -61,7 +61,6 @@ pub use timing::{CodeUse, GpTiming, HostTiming};
 pub use window::RING_MEMORY;
 pub use work::Work;
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

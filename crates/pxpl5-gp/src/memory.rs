@@ -1,4 +1,4 @@
-//! The memory of a board, as the number of bytes in use for each purpose. The bins have a separate limit.
+//! The memory of a board, as the number of bytes in use for each purpose. The bins have a limit of their own.
 
 use pxpl5_wire::{NodeId, RegionId};
 use serde::Serialize;
@@ -9,18 +9,18 @@ use std::fmt;
 pub enum Account {
     /// The program, its stacks and message buffers.
     Program,
-    /// The primitives in this graphics processor's share of the scene.
+    /// The primitives of the scene that this graphics processor stores.
     DisplayList,
-    /// The renderer commands of bin context 0 or 1, one of two sets of bins.
+    /// The renderer commands of one of the two sets of bins (bin context 0 or 1).
     Commands(u8),
-    /// The pointers in the bins of bin context 0 or 1, one of two sets of bins.
+    /// The pointers in one of the two sets of bins (bin context 0 or 1).
     Bins(u8),
 }
 
 impl Account {
     const SLOTS: usize = 6;
 
-    /// All purposes of memory. Commands and bins occur twice, once for each of the two sets of bins.
+    /// All purposes of memory. Commands and bins occur twice, once for each set of bins.
     pub const ALL: [Self; Self::SLOTS] =
         [Self::Program, Self::DisplayList, Self::Commands(0), Self::Commands(1), Self::Bins(0), Self::Bins(1)];
 
@@ -45,7 +45,7 @@ impl fmt::Display for Account {
     }
 }
 
-/// A request for memory that exceeds the free memory.
+/// A request for more memory than is free.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
 #[error(
     "graphics processor at node {}: {account} {}needs {needed_bytes} bytes, {available_bytes} are available",
@@ -53,15 +53,13 @@ impl fmt::Display for Account {
     named(*region)
 )]
 pub struct OutOfMemory {
-    /// Ring port of the board.
     pub gp: NodeId,
-    /// Purpose of the requested memory.
     pub account: Account,
-    /// Region whose bin did not fit into memory, if the request was for bins.
+    /// Region whose bin did not fit in memory, if the request was for bins.
     pub region: Option<RegionId>,
-    /// Number of bytes that the purpose `account` would have used after the request.
+    /// Number of bytes in use for the purpose `account` after the request.
     pub needed_bytes: u64,
-    /// Number of bytes that the purpose `account` could use at most.
+    /// Largest number of bytes that could be in use for the purpose `account`.
     pub available_bytes: u64,
 }
 
@@ -69,7 +67,6 @@ fn named(region: Option<RegionId>) -> String {
     region.map_or_else(String::new, |region| format!("(region {}) ", region.0))
 }
 
-/// The memory of a board: number of bytes in use for each purpose.
 #[derive(Clone, Debug)]
 pub struct Memory {
     gp: NodeId,
@@ -80,8 +77,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Makes an empty memory of `capacity` bytes. The two sets of bins (contexts) together can use at most `bins` of
-    /// these bytes.
+    /// Makes a memory of `capacity` bytes, of which the two sets of bins (contexts) together can use at most `bins`.
     #[must_use]
     pub const fn new(gp: NodeId, capacity: u64, bins: u64) -> Self {
         Self { gp, capacity, bins, used: [0; Account::SLOTS], peak: 0 }
@@ -91,7 +87,8 @@ impl Memory {
     ///
     /// # Errors
     ///
-    /// Returns [`OutOfMemory`] if the memory that the other purposes leave is too small. In this case, nothing changes.
+    /// Returns [`OutOfMemory`] if the bytes do not fit into the memory that the other purposes leave free. In this
+    /// case, nothing changes.
     pub fn set(&mut self, account: Account, bytes: u64, region: Option<RegionId>) -> Result<(), OutOfMemory> {
         // The request replaces the old value of the account, so only the other accounts count.
         let others = self.used() - self.used[account.slot()];
@@ -115,19 +112,17 @@ impl Memory {
         self.bins.saturating_sub(self.used[Account::Bins(context ^ 1).slot()])
     }
 
-    /// Returns the number of bytes in use for one purpose.
     #[must_use]
     pub const fn used_by(&self, account: Account) -> u64 {
         self.used[account.slot()]
     }
 
-    /// Returns the number of bytes in use for all purposes together.
     #[must_use]
     pub fn used(&self) -> u64 {
         self.used.iter().sum()
     }
 
-    /// Returns the greatest number of bytes that were in use at the same time so far.
+    /// Returns the greatest number of bytes so far that were in use at the same time.
     #[must_use]
     pub const fn peak(&self) -> u64 {
         self.peak
@@ -152,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bins_of_both_contexts_share_their_own_part() {
+    fn the_bins_of_both_contexts_share_one_part_of_the_memory() {
         let mut memory = Memory::new(NodeId(0), 1_000, 300);
         memory.set(Account::Bins(0), 200, Some(RegionId(0))).expect("fits");
         let error = memory.set(Account::Bins(1), 101, Some(RegionId(4))).expect_err("100 are left of 300");

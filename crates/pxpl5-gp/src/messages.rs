@@ -1,8 +1,8 @@
-//! Functions with which a program receives and sends messages. A program receives messages from the inbox and sends
-//! messages in chains. Each received message and each sent chain costs CPU time of the message software.
+//! Functions with which a program receives messages from the inbox and sends messages in chains. The message software
+//! needs CPU time for each received message and each sent chain.
 //!
-//! The cost is `message_ns` of the timing table, or the time of the i860 code that handles the message on the board's
-//! processor ([`Processor::receive_message`], [`Processor::send_chain`]).
+//! This time is `message_ns` of the timing table, or the time of i860 code on the board's processor
+//! ([`Processor::receive_message`], [`Processor::send_chain`]).
 
 use crate::firmware::{Batch, ChainLink, Fault, Gp, Received, Ticket};
 use crate::processor::Processor;
@@ -10,8 +10,8 @@ use crate::work::Work;
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, Message, NodeId};
 
-/// A chain of messages that the DMA sends together. [`Gp::prepare`] makes the chain and spends its CPU time.
-/// [`Gp::start`] sends the chain.
+/// A chain of messages that the DMA sends together. [`Gp::prepare`] makes the chain and spends its CPU time, and
+/// [`Gp::start`] sends it.
 #[derive(Debug)]
 pub struct Chain(Vec<ChainLink>);
 
@@ -24,14 +24,14 @@ impl Gp {
         received
     }
 
-    /// Waits for the next message in order of arrival, without spending CPU time. The program spends the time later
-    /// with [`Gp::pay_for`].
+    /// Waits for the next message in order of arrival. The program must spend the CPU time of its reception later, with
+    /// [`Gp::pay_for`].
     #[inline]
     pub async fn next_message(&self) -> Received {
         self.until("a message", || self.shared.borrow_mut().inbox.pop_front()).await
     }
 
-    /// Takes the next message if one has arrived, without spending CPU time. The program spends the time later with
+    /// Takes the next message if one has arrived. The program must spend the CPU time of its reception later, with
     /// [`Gp::pay_for`].
     #[must_use]
     #[inline]
@@ -39,15 +39,15 @@ impl Gp {
         self.shared.borrow_mut().inbox.pop_front()
     }
 
-    /// Spends the CPU time of the reception of a message. The time comes from the timing table or from i860 code.
+    /// Spends the CPU time of the reception of a message.
     #[inline]
     pub async fn pay_for(&self, received: &Received) {
         self.software(|processor| processor.receive_message(received.source, &received.body)).await;
     }
 
-    /// Answers a message. The function first spends the CPU time of the message's reception and does `work`. It then
-    /// sends the messages of `messages` one by one, and finally sends `last` in the background. Before each message of
-    /// the list, the function waits for a free clump buffer (the memory for outgoing messages).
+    /// Answers a message: spends the CPU time of its reception, does `work`, sends `messages` one by one, and finally
+    /// sends `last` in the background. Before each of `messages`, the function waits for a free clump buffer (the
+    /// memory for outgoing messages).
     ///
     /// # Errors
     ///
@@ -59,7 +59,7 @@ impl Gp {
         messages: impl Iterator<Item = (NodeId, u32, Body)>,
         last: (NodeId, u32, Body),
     ) -> Result<(), Fault> {
-        // The costs follow in the order of the program: reception, work, messages.
+        // The costs follow in this order: reception, work, messages.
         self.pay_for(received).await;
         if let Some(work) = work {
             self.answer_work(work).await?;
@@ -73,25 +73,24 @@ impl Gp {
         Ok(())
     }
 
-    /// Sends one message in the background. The program spends the CPU time of the message software. The message then
-    /// waits in a queue behind earlier messages.
+    /// Sends one message in the background, after all earlier messages. The program spends the CPU time of the message
+    /// software.
     #[inline]
     pub async fn send(&self, destination: NodeId, words: u32, body: Body) -> Ticket {
         self.send_batch(vec![(destination, words, body)]).await
     }
 
-    /// Sends several messages as one DMA chain, in the background. The message software takes the same CPU time for the
-    /// whole chain as for one message. The DMA sends messages to different receivers at the same time. The DMA sends a
-    /// chain only after the acceptance of the previous chain.
+    /// Sends several messages as one chain in the background, after the acceptance of the previous chain. The CPU time
+    /// is the same as for one message. The DMA sends messages to different receivers at the same time.
     #[inline]
     pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         let chain = self.prepare(batch).await;
         self.start(chain)
     }
 
-    /// Sends groups of messages as one DMA chain, as [`Gp::send_batch`] does. Each group has one receiver. The
-    /// receiver's port stays reserved from the first to the last message of a group. No message of another board can
-    /// therefore arrive between messages of the group.
+    /// Sends groups of messages as one chain, like [`Gp::send_batch`]. Each group has one receiver, whose port stays
+    /// reserved from the first to the last message of the group. No message of another board can therefore arrive in
+    /// between.
     #[inline]
     pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
         let links = groups.into_iter().flat_map(|(destination, group)| {
@@ -104,14 +103,13 @@ impl Gp {
         self.start(chain)
     }
 
-    /// Makes a chain of messages and spends the CPU time of the message software. The program sends the chain later
-    /// with [`Gp::start`].
+    /// Makes a chain of messages, and spends the CPU time of the message software. [`Gp::start`] sends the chain.
     #[inline]
     pub async fn prepare(&self, batch: Vec<(NodeId, u32, Body)>) -> Chain {
         self.pay_for_chain(self.unheld(batch)).await
     }
 
-    /// Passes a chain of messages to the DMA. The DMA sends the chain after all earlier chains.
+    /// Passes a chain of messages to the DMA, which sends the chain after all earlier chains.
     #[inline]
     pub fn start(&self, Chain(links): Chain) -> Ticket {
         let shared = &mut *self.shared.borrow_mut();
@@ -129,9 +127,8 @@ impl Gp {
         self.chain(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)))
     }
 
-    /// Makes a chain of messages, which the DMA sends together. Each item has the receiver, the number of words, the
-    /// content of a message and a boolean. The boolean is true if the receiver's port stays reserved for the next
-    /// message of the chain.
+    /// Makes a chain of messages. Each item has the receiver, the number of words, and the content of a message. The
+    /// boolean is true if the receiver's port stays reserved for the next message of the chain.
     #[inline]
     fn chain(&self, batch: impl Iterator<Item = (NodeId, u32, Body, bool)>) -> Chain {
         let source = self.node();
@@ -148,8 +145,8 @@ impl Gp {
         chain
     }
 
-    /// Spends the CPU time of the message software. The time comes from the timing table, or from a call of `code` on
-    /// boards that run i860 code.
+    /// Spends the CPU time of the message software: `message_ns` of the timing table, or the time of `code` on boards
+    /// that run i860 code.
     #[inline]
     async fn software(&self, code: impl FnOnce(&mut Processor) -> Result<Span, Fault>) {
         let span = {
@@ -168,8 +165,7 @@ impl Gp {
         }
     }
 
-    /// Stops the board because of a fault in its message software. The program that awaits this function never
-    /// continues.
+    /// Stops the board because of a fault in its message software. This future never completes.
     async fn stop(&self, fault: Fault) {
         self.shared.borrow_mut().software_fault = Some(fault);
         std::future::pending().await
@@ -226,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn by_code_a_message_takes_the_time_of_the_code_whatever_the_table_says() {
+    fn with_code_a_message_takes_the_time_of_the_code() {
         let lengths = [1, 2, 100, 3];
         let [one, other] = [1_000, 5_000].map(|message_ns| fed(&mut board(message_ns, true), &lengths));
         assert_eq!(one, other);

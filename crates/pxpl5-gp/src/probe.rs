@@ -1,4 +1,4 @@
-//! Records of stages, made by firmware for observers of a run. Records cost no simulated time and change no state.
+//! Records of stages, which firmware makes for observers of a run. Records cost no simulated time and change no state.
 
 use pxpl5_sim::Time;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId, ViewNumber};
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
-    /// The instant at which the tracker measured the pose of the head for which the picture is drawn.
+    /// The instant at which the tracker measures the pose of the head for a picture.
     Sample,
     /// The host sends edits, attributes and transforms to the graphics processors.
     Send,
@@ -25,7 +25,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// All stages with their names in reports, in the order in which a picture passes the stages.
+    /// All stages with their names in reports, in the order of the work on a picture.
     pub const ALL: [(&str, Self); 7] = [
         ("sample", Self::Sample),
         ("send", Self::Send),
@@ -39,40 +39,34 @@ impl Stage {
 
 pxpl5_sim::parameters::named!(Stage, "stage", Stage::ALL);
 
-/// One end of a stage: its begin or its end.
+/// The begin or the end of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StageEdge {
-    /// The start of the stage.
     Begin,
-    /// The end of the stage: the time at which the last work of the stage ends or its last message is accepted.
+    /// The time at which the last work of the stage ends, or the receiver accepts its last message.
     End,
 }
 
 impl StageEdge {
-    /// The two edges of a stage with their names in reports.
     pub const ALL: [(&str, Self); 2] = [("begin", Self::Begin), ("end", Self::End)];
 }
 
 pxpl5_sim::parameters::named!(StageEdge, "edge of a stage", StageEdge::ALL);
 
-/// A record that a stage began or ended at a certain time.
+/// A record that a stage began or ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Mark {
-    /// Simulated time at which the stage began or ended.
     pub time: Time,
-    /// Ring port of the board that made the record.
     pub node: NodeId,
-    /// Number of the picture that the stage makes. If the host sends views independently of pictures, its records have
-    /// the number of the transmission instead.
+    /// Number of the picture to which the stage belongs. If the host sends views independently of pictures, its records
+    /// contain the number of the transmission instead.
     pub picture: PictureNumber,
-    /// Surface (such as the picture of an eye) for which the stage draws. `None` if the stage does not draw one surface
-    /// at a time.
+    /// Picture of an eye, or other surface, for which the stage draws. `None` if the stage does not draw one surface at
+    /// a time.
     pub surface: Option<SurfaceId>,
-    /// Stage that began or ended.
     pub stage: Stage,
-    /// Begin or end of the stage.
     pub edge: StageEdge,
-    /// View that the picture shows, if the program has recorded the view.
+    /// View that the picture shows. `None` if the program did not record the view.
     pub view: Option<ViewNumber>,
 }

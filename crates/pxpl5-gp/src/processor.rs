@@ -1,4 +1,5 @@
-//! The board's i860 with its memory. The i860 runs the code of the programs and counts the clocks of the code.
+//! The i860 of a board with its memory. It runs code for the work of the board's programs, and counts the clocks of
+//! this code.
 
 use crate::window;
 use i860::{Bus, Cpu, DecodedPrograms, Program, Ram, RunEnd, State, Trap, Unmapped};
@@ -16,22 +17,21 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CodeVersion {
-    /// Code like the output of a compiler without optimization. The code is nearly twice as large as the instruction
-    /// cache.
+    /// Code like the output of a compiler without optimization. It is nearly twice as large as the instruction cache.
     Unoptimised,
-    /// Code like the output of a good compiler of about 1990. Slats used code of this kind in 1994 and 1995. That code
+    /// Code like the output of a good compiler of about 1990. The code of Slats in 1994 and 1995 was of this kind, and
     /// was too large for the instruction cache (I3D95).
     Compiled,
-    /// Code that was scheduled by hand in dual-instruction mode and fits the instruction cache. Optimized PPHIGS used
-    /// code of this kind (TR94). With this code, Slats would have been about 3 times faster (I3D95).
+    /// Code that is scheduled by hand in dual-instruction mode and fits in the instruction cache. Optimized PPHIGS used
+    /// code of this kind (TR94). It would have made Slats about 3 times faster (I3D95).
     Scheduled,
 }
 
 impl CodeVersion {
-    /// All versions of the code, the slowest version first.
+    /// All versions, the slowest first.
     pub const ALL: [Self; 3] = [Self::Unoptimised, Self::Compiled, Self::Scheduled];
 
-    /// Returns the name by which experiment files choose this version of the code.
+    /// Returns the name with which experiment files choose this version of the code.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -48,71 +48,49 @@ pxpl5_sim::parameters::named!(
     CodeVersion::ALL.map(|version| (version.name(), version))
 );
 
-/// The reason why a program on the i860 did not return.
+/// The reason why a call of i860 code failed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProcessorFault {
-    /// The program caused a processor trap.
     #[error("graphics processor at node {}: {trap}", gp.0)]
-    Trap {
-        /// Ring port of the board.
-        gp: NodeId,
-        /// Cause and address of the trap.
-        trap: Trap,
-    },
-    /// The program used up its instruction budget before it returned.
+    Trap { gp: NodeId, trap: Trap },
+    /// The code used up its instruction budget before it returned.
     #[error("graphics processor at node {}: no return within {budget} instructions, at {address:#010x}", gp.0)]
     Endless {
-        /// Ring port of the board.
         gp: NodeId,
         /// Address of the instruction that would have been executed next.
         address: u32,
-        /// Instruction budget of the call.
         budget: u64,
     },
-    /// An access to data at an address without memory.
+    /// An access from outside the i860 to addresses without memory.
     #[error("graphics processor at node {}: no memory for {words} words at {address:#010x}", gp.0)]
-    Unmapped {
-        /// Ring port of the board.
-        gp: NodeId,
-        /// Address of the first word of the access.
-        address: u32,
-        /// Number of words in the requested access.
-        words: usize,
-    },
-    /// The memory is too small for the outputs of the two bin contexts (two sets of bins).
+    Unmapped { gp: NodeId, address: u32, words: usize },
+    /// The memory is too small for the outputs of the two bin contexts (sets of bins).
     #[error("graphics processor at node {}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available", gp.0)]
     NoRoom {
-        /// Ring port of the board.
         gp: NodeId,
-        /// Number (0 or 1) of the bin context that requested memory. A bin context is one of two sets of bins.
+        /// Bin context (set of bins, 0 or 1) that requested memory.
         context: u8,
-        /// Number of bytes that the context requested.
         needed_bytes: u32,
         /// Number of bytes that are free for the context. The free range of context 0 ends at context 1 or at the end
         /// of memory. The free range of context 1 begins after context 0 or after the program's data.
         available_bytes: u32,
     },
-    /// The program has no label with the name of the requested entry.
+    /// The program has no label with the requested name.
     #[error("graphics processor at node {}: the program has no label `{label}`", gp.0)]
-    NoEntry {
-        /// Ring port of the board.
-        gp: NodeId,
-        /// Name of the missing label.
-        label: String,
-    },
+    NoEntry { gp: NodeId, label: String },
 }
 
-/// Return address of every call. There is no code at this address. The i860 stops when its program counter reaches the
-/// address.
+/// Return address of every call. There is no code at this address, and the i860 stops when its program counter reaches
+/// it.
 const RETURN: u32 = 0x0800;
 
 fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
 
-/// The board's memory with the bus interface for the i860. The caches never hold data of the part of memory that the
-/// i860 shares with the ring interface.
+/// The memory of the board, with the bus interface for the i860. The caches never hold data of the range that the i860
+/// shares with the ring interface.
 struct Memory(Ram);
 
 impl Bus for Memory {
@@ -135,20 +113,20 @@ impl Bus for Memory {
 /// Size of a data-cache line in bytes. The output of a bin context begins at a multiple of this size.
 const LINE: u32 = i860::timing::ChipSizes::PAPERS.line_bytes as u32;
 
-/// Number of the integer register that holds the return address of a call.
+/// Integer register that holds the return address of a call.
 const LINK: usize = 1;
 
 /// An i860 with the memory of a board.
 ///
 /// The i860's clock stops between calls. Caches, queues and the open DRAM row keep their state until the next call. A
-/// write by Rust code stands for an earlier write by i860 code, so this write takes no time and changes no cache.
+/// write by Rust code takes no time and changes no cache, because it stands for an earlier write by i860 code.
 ///
-/// The clocks of a whole call cannot be reused, because no call repeats exactly. While the head is still, 96 % of the
-/// calls have the code, arguments and parameters of an earlier call. While the head moves, no call repeats in this
-/// sense. The measurements covered 48 fields each: 188 calls of Slats with 110 triangles, and 2,800 calls of Rendering
-/// Control with the aircraft scene. However, even calls with equal inputs find different cache lines in the caches,
-/// because the replacement of lines is pseudo-random. The time to the next memory refresh also differs from call to
-/// call. The clocks of short sequences of instructions can be reused (see [`i860::Config::memoise`]).
+/// The model does not memoize the clocks of a whole call, because no call repeats exactly. While the head is still, 96
+/// % of the calls have the same code and inputs as an earlier call. While the head moves, no call has. These numbers
+/// are from 48 fields each: 188 calls of Slats with 110 triangles, and 2,800 calls of Rendering Control with the
+/// aircraft scene. Even calls with equal inputs differ in the content of the caches, because the replacement of lines
+/// is pseudo-random. They also differ in the time to the next memory refresh. The model can memoize the clocks of short
+/// sequences of instructions ([`i860::Config::memoise`]).
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,
@@ -156,28 +134,24 @@ pub struct Processor {
     cpu: Cpu,
     memory: Memory,
     loaded: Option<Arc<Program>>,
-    /// True if memory still holds the loaded program unchanged.
     is_as_loaded: bool,
     /// Decoded programs with their memoized clocks. Several boards share this store.
     decoded: Rc<RefCell<DecodedPrograms>>,
-    /// All programs that were loaded so far, in the order of their first calls.
+    /// All programs loaded so far, in the order of their first calls.
     programs: Vec<Arc<Program>>,
-    /// Address range of the output of each bin context (one of two sets of bins). `None` if no range is reserved.
+    /// Address range that is reserved for the output of each bin context (set of bins).
     outputs: [Option<Range<u32>>; 2],
     breakpoints: BTreeSet<u32>,
-    /// Breakpoint hits recorded since the last [`Processor::take_hits`].
     hits: Vec<BreakpointHit>,
 }
 
-/// The state of the i860 at a breakpoint, before the instruction executes.
+/// The state of the i860 at a breakpoint, before the execution of the instruction.
 ///
-/// A call runs completely at one instant of simulated time, and the board spends the clocks of the call afterwards. The
-/// call therefore does not stop at a breakpoint.
+/// A call does not stop at a breakpoint: it runs completely at one instant of simulated time, and the board spends its
+/// clocks afterwards.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BreakpointHit {
-    /// Ring port of the board.
     pub gp: NodeId,
-    /// Address of the instruction at the breakpoint.
     pub address: u32,
     /// Time on the i860's clock from the start of the call to the breakpoint.
     pub into_call: Span,
@@ -185,7 +159,7 @@ pub struct BreakpointHit {
     pub state: Box<State>,
 }
 
-/// Greatest number of breakpoint hits that are kept until [`Processor::take_hits`]. Further hits are not recorded.
+/// Greatest number of breakpoint hits that are kept until [`Processor::take_hits`]. Later hits are not recorded.
 pub const KEPT_HITS: usize = 64;
 
 impl fmt::Debug for Processor {
@@ -198,8 +172,8 @@ impl Processor {
     /// Period of the i860's clock: 25 ns at 40 MHz (TR94).
     pub const CLOCK: Span = Span(25_000);
 
-    /// Makes an i860 in the state after reset, with zeroed memory. `core` configures the timing of instructions and
-    /// memory.
+    /// Makes an i860 in the state after reset. All bytes of its memory are zero. `core` configures the timing of
+    /// instructions and memory.
     #[must_use]
     pub fn new(gp: NodeId, memory_bytes: u64, version: CodeVersion, core: i860::Config) -> Self {
         let memory = Memory(Ram::new(0, memory_bytes as usize));
@@ -219,25 +193,23 @@ impl Processor {
         }
     }
 
-    /// Shares decoded programs and their memoized clocks with other boards. All boards must have the same configuration
-    /// of the i860. Simulated times do not depend on this call.
+    /// Shares decoded programs and their memoized clocks with other boards, whose i860s must have the same
+    /// configuration. Simulated times do not depend on this call.
     pub fn share(&mut self, decoded: &Rc<RefCell<DecodedPrograms>>) {
         self.decoded = Rc::clone(decoded);
     }
 
-    /// Resets the i860 and turns memoization off. Simulated times do not depend on this call.
+    /// Resets the i860, and turns off memoization. Simulated times do not depend on this call.
     pub fn disable_memoization(&mut self) {
         self.core.memoise = false;
         self.cpu = Cpu::new(self.core);
     }
 
-    /// Returns the version of the i860 code that the board runs.
     #[must_use]
     pub const fn version(&self) -> CodeVersion {
         self.version
     }
 
-    /// Returns the ring port of the board.
     #[must_use]
     pub const fn node(&self) -> NodeId {
         self.gp
@@ -283,9 +255,9 @@ impl Processor {
         ProcessorFault::Unmapped { gp: self.gp, address, words }
     }
 
-    /// Reserves memory for the output of bin context 0 or 1 (one of two sets of bins) and returns the address. An
-    /// earlier reservation of the same context ends. Context 0 begins after the program's data, at address
-    /// `end_of_data` or above. Context 1 lies at the end of memory.
+    /// Reserves memory for the output of bin context 0 or 1 (one of two sets of bins), and returns its address. The
+    /// range replaces an earlier range of the same context. Context 0 begins after the program's data, at address
+    /// `end_of_data` or above. Context 1 is at the end of memory.
     ///
     /// # Errors
     ///
@@ -299,7 +271,7 @@ impl Processor {
             _ => (lower.as_ref().map_or(end_of_data, |lower| lower.end), self.memory_bytes()),
         };
         let first = first.next_multiple_of(LINE);
-        // Context 0 begins at the lowest line of the range, context 1 at the highest that fits.
+        // Context 0 begins at the lowest cache line of the range, and context 1 at the highest line at which it fits.
         let available_bytes = last.saturating_sub(first);
         let highest = last.checked_sub(bytes).map(|begin| begin / LINE * LINE).filter(|begin| *begin >= first);
         let no_room = ProcessorFault::NoRoom { gp: self.gp, context, needed_bytes: bytes, available_bytes };
@@ -309,17 +281,15 @@ impl Processor {
         Ok(begin)
     }
 
-    /// Returns the value of integer register `number`, 0 to 31.
     #[must_use]
     pub const fn register(&self, number: usize) -> Word {
         self.cpu.state.r[number]
     }
 
-    /// Calls a program at its label `entry`. Before the call, the function writes the values of `registers` to integer
-    /// registers. Returns the time from the call to the return.
+    /// Calls a program at its label `entry`, with the values of `registers` in integer registers. Returns the time from
+    /// the call to the return.
     ///
-    /// If memory does not hold the called program, the program is loaded before the call. Loading takes no simulated
-    /// time.
+    /// If memory does not hold the program, the function first loads it. Loading takes no simulated time.
     ///
     /// # Errors
     ///
@@ -338,7 +308,7 @@ impl Processor {
         let begin = self.cpu.clocks();
         let state = &mut self.cpu.state;
         state.pc = start;
-        // A return to this address ends the run.
+        // The run ends when the program returns to this address.
         state.r[LINK] = RETURN;
         for (number, value) in registers {
             state.r[*number] = *value;
@@ -351,7 +321,7 @@ impl Processor {
         }
     }
 
-    /// Runs the loaded program until it returns. The decoded code of the program comes from the shared store `decoded`.
+    /// Runs the loaded program until it returns. Its decoded code comes from the shared store `decoded`.
     fn run(&mut self, program: &Arc<Program>, begin: u64, budget: u64) -> RunEnd {
         let decoded = Rc::clone(&self.decoded);
         let decoded = &mut *decoded.borrow_mut();
@@ -367,8 +337,8 @@ impl Processor {
         end
     }
 
-    /// Runs the loaded program step by step and records a hit at each breakpoint. A step is an instruction, a dual-mode
-    /// pair, or a branch with its delay slot.
+    /// Runs the loaded program step by step, and records a hit at each breakpoint. A step is an instruction, a pair in
+    /// dual-instruction mode, or a branch with its delay slot.
     fn run_with_breakpoints(&mut self, begin: u64, budget: u64) -> RunEnd {
         let last = self.cpu.instructions().saturating_add(budget);
         loop {
@@ -386,37 +356,35 @@ impl Processor {
         }
     }
 
-    /// Replaces all breakpoints by breakpoints at `addresses`. Breakpoints do not change the number of clocks of a
-    /// call.
+    /// Replaces all breakpoints. Breakpoints do not change the number of clocks of a call.
     pub fn break_at(&mut self, addresses: BTreeSet<u32>) {
         self.breakpoints = addresses;
     }
 
-    /// Removes and returns the breakpoint hits recorded since the last call of this function, at most [`KEPT_HITS`].
+    /// Removes and returns the recorded breakpoint hits, at most [`KEPT_HITS`].
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         std::mem::take(&mut self.hits)
     }
 
-    /// Returns the state of the i860 after the last call. The program counter holds the return address of this call.
+    /// Returns the state of the i860 after the last call. The program counter contains the return address of this call.
     #[must_use]
     pub const fn state(&self) -> &State {
         &self.cpu.state
     }
 
-    /// Returns the total number of clocks that all calls so far have taken.
+    /// Returns the sum of the clocks of all calls so far.
     #[must_use]
     pub fn clocks(&self) -> u64 {
         self.cpu.clocks()
     }
 
-    /// Returns the program that was called last, or `None` before the first call.
     #[must_use]
     pub const fn program(&self) -> Option<&Arc<Program>> {
         self.loaded.as_ref()
     }
 
-    /// Returns the programs that memory still holds unchanged. The most recently called program comes first. The
-    /// remaining programs follow in the order of their first calls.
+    /// Returns the programs that memory still holds unchanged: the most recently called program, then the others in the
+    /// order of their first calls.
     pub fn programs(&self) -> impl Iterator<Item = &Arc<Program>> {
         let is_last = |program: &&Arc<Program>| self.loaded.as_ref().is_some_and(|last| Arc::ptr_eq(last, program));
         let others = self.programs.iter().filter(move |program| !is_last(program));
@@ -440,7 +408,6 @@ impl Processor {
         Ok(())
     }
 
-    /// Returns true if memory holds a program exactly as it was loaded.
     fn holds(&self, program: &Program) -> bool {
         let Range { start, end } = extent(program);
         self.memory.0.bytes().get(start as usize..end as usize) == Some(program.bytes.as_slice())

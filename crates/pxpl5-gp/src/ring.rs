@@ -1,5 +1,5 @@
-//! The message software as i860 code of the board (kernels/ring.s), and the memory that the software shares with the
-//! ring interface.
+//! The message software of a board as i860 code (kernels/ring.s), and the memory that the software shares with the ring
+//! interface.
 //!
 //! ```text
 //!   CODE      DATA                REQUESTS     WINDOW, never in a cache
@@ -8,12 +8,12 @@
 //! ```
 //!
 //! The original message software is not published. The file kernels/ring_rules.md states the assumptions about this
-//! software, and how the code was written.
+//! software, and the rules by which its i860 code was written.
 //!
-//! Before each call, Rust code does the work of the DMA of the ring interface. The simulated inbox of the board holds
-//! any number of messages. The Rust code therefore puts a message into the next receive buffer only when the message
-//! software begins. The i860 code always finds that all earlier chains were sent, because [`crate::Gp::start`]
-//! simulates the queue of chains.
+//! Before each call, Rust code does the work of the ring interface's DMA. The simulated inbox holds any number of
+//! messages, but there are few receive buffers. The Rust code therefore puts a message into the next receive buffer
+//! only when the message software begins. For the i860 code, all earlier chains are already sent, because
+//! [`crate::Gp::start`] simulates the queue of chains.
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};
@@ -30,24 +30,21 @@ const STACK: u32 = 0xF_3000;
 const REQUESTS: u32 = STACK;
 const BUFFERS: u32 = WINDOW + 0x3000;
 
-// The sizes of rings, queue and buffers are assumptions, because the interface is an assumption too
-// (kernels/ring_rules.md, last table).
+// The sizes of tables, queue and buffers are assumed, because the interface is also assumed (kernels/ring_rules.md,
+// last table).
 
 /// Number of buffers for received messages. Each buffer has one descriptor.
 const RX_COUNT: u32 = 8;
 const RX: u32 = WINDOW + 256;
-/// Size of a receive buffer in bytes. A buffer holds a header of two words and the longest message, in whole cache
-/// lines.
+/// Size of a receive buffer in bytes. It holds a header of two words and the longest message, in whole cache lines.
 const BUFFER_BYTES: u32 = 4608;
-/// Number of descriptors for outgoing messages in chains.
 const TX_COUNT: u32 = 256;
 const TX: u32 = WINDOW + 0x1000;
 const DESCRIPTOR_BYTES: u32 = 16;
-/// Number of entries in the queue of received messages.
 const ENTRY_COUNT: u32 = 16;
 const ENTRY_BYTES: u32 = 64;
 
-// Variables of the software in the data area DATA, with the names of ring.s.
+// Variables of the software in the area DATA, with the same names as in ring.s.
 const NODE: u32 = DATA;
 const RX_NEXT: u32 = DATA + 4;
 const FREE: u32 = DATA + 16;
@@ -59,21 +56,18 @@ const HANDLERS: u32 = DATA + 64;
 const CAUSE: u32 = WINDOW;
 const DONE: u32 = WINDOW + 12;
 
-/// Number of kinds of messages: words for a program, commands for a renderer, and pixels. The header of a message
-/// states the kind.
+/// Number of kinds of messages: words for a program, commands for a renderer, and pixels.
 const KINDS: u32 = 3;
 
-/// Flag of a request to send a message: the receiver's port stays reserved for the next message.
+/// Flag of a send request: the port of the receiver stays reserved for the next message.
 const HOLD: Word = 1;
 
-/// Greatest number of instructions that a call of the message software may execute. A message needs far fewer
-/// instructions.
+/// Greatest number of instructions in a call of the message software. A message needs far fewer instructions.
 const BUDGET: u64 = 10_000;
 
 impl Processor {
-    /// Runs the i860 code that receives a message, and returns the time of this code. The code has four parts:
-    /// interrupt, dispatch, queue, and the program's part. The program's part takes the message from the queue and
-    /// releases the message's buffer.
+    /// Runs the i860 code that receives a message, and returns its time. The code has four parts: interrupt, dispatch,
+    /// queue, and the program's part. The last part takes the message from the queue and releases the message's buffer.
     ///
     /// # Errors
     ///
@@ -85,7 +79,7 @@ impl Processor {
             Body::Commands(list) => (1, list.words(), [].as_slice()),
             Body::Pixels(_) => (2, 1, [].as_slice()),
         };
-        // Only words are copied into the buffer. The software refuses other kinds because of their header.
+        // Copy only words into the buffer. The software refuses the other kinds because of their header.
         let (span, taken) = deliver(self, source, kind << 16 | length.min(0xFFFF), words)?;
         let what = || match kind {
             0 => format!("of {length} words from node {}", source.0),
@@ -94,16 +88,16 @@ impl Processor {
         taken.map(|_| span).map_err(|_| Fault::Protocol { node: self.node(), found: what() })
     }
 
-    /// Runs the software that sends a chain of messages, and returns the time of this software. The software writes a
-    /// header and a descriptor for each message, and releases the descriptors of earlier chains. The boolean beside
-    /// each message is true if the receiver's port stays reserved after this message. If there are more messages than
-    /// descriptors, they form several chains.
+    /// Runs the i860 code that sends a chain of messages, and returns its time. The code writes a header and a
+    /// descriptor for each message, and releases the descriptors of earlier chains. The boolean of a message is true if
+    /// the receiver's port stays reserved after this message. If the descriptors are not sufficient for all messages,
+    /// the remaining messages form one or more separate chains.
     ///
     /// # Errors
     ///
     /// Returns [`Fault::Protocol`] for an invalid length. Returns [`Fault::Processor`] if the code does not return.
     pub fn send_chain<'a>(&mut self, links: impl Iterator<Item = (&'a Message, bool)>) -> Result<Span, Fault> {
-        // The address of the words is 0, because their content does not travel through this memory.
+        // The address of the words is 0, because this memory does not contain their content.
         let request = |(message, hold): (&Message, bool)| {
             let kind = match message.body {
                 Body::Words(_) => 0,
@@ -130,7 +124,7 @@ impl Processor {
 /// A send request of four words: receiver, kind and flags, length in words, and address.
 type Request = [Word; 4];
 
-/// A received message in the form in which the message software passes the message to a program.
+/// A received message, as the message software passes it to a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Taken {
     place: u32,
@@ -138,12 +132,12 @@ struct Taken {
     sender: u32,
 }
 
-/// The error number, defined in ring.s, that the message software returns for a message that it cannot process.
+/// The error number (defined in ring.s) with which the message software refuses a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Refusal(Word);
 
-/// Puts a message into the next receive buffer, as the ring interface does, and runs the code that receives the
-/// message. `header` has the kind and length of the message.
+/// Puts a message into the next receive buffer, like the ring interface, and runs the code that receives it. `header`
+/// contains the kind and length of the message.
 fn deliver(
     processor: &mut Processor,
     source: NodeId,
@@ -166,8 +160,8 @@ fn deliver(
     Ok((span, if entry == 0 { Err(Refusal(place)) } else { Ok(Taken { place, words, sender }) }))
 }
 
-/// Runs the code that builds and starts a chain of messages. Returns the time of the code. If the code refuses a
-/// message, the function also returns the index of the first refused message.
+/// Runs the code that builds and starts a chain of messages, and returns its time. If the code refuses a message, also
+/// returns the index of the first refused message.
 fn chain(
     processor: &mut Processor,
     requests: &[Request],
@@ -175,7 +169,7 @@ fn chain(
 ) -> Result<(Span, Option<usize>), ProcessorFault> {
     install(processor)?;
     processor.write(REQUESTS, requests.as_flattened())?;
-    // All earlier chains have been sent.
+    // All earlier chains are already sent.
     let sent = processor.word(ISSUED)?;
     processor.write(DONE, &[sent])?;
     let count = requests.len() as Word;
@@ -184,17 +178,17 @@ fn chain(
     Ok((span, (processor.register(16) != 0).then(|| processor.register(17) as usize)))
 }
 
-/// Initializes the queues, the descriptors and the table of handlers in memory. If memory already holds these data, the
-/// function changes nothing.
+/// Writes the initial queues, descriptors and table of handlers to memory. Does nothing if memory already contains
+/// them.
 fn install(processor: &mut Processor) -> Result<(), ProcessorFault> {
     if processor.word(RX_NEXT)? != 0 {
         return Ok(());
     }
-    // Only messages of words have a handler. Other kinds are refused.
+    // Only messages of words have a handler. The software refuses all other kinds.
     let handler = |label: &str| PROGRAM.symbol(label).unwrap_or_default();
     let handlers = [handler("queue"), handler("nohandler"), handler("nohandler")];
     const { assert!(KINDS == 3, "a handler for each kind") };
-    // Every receive descriptor points to its buffer, and the interface owns all of them.
+    // Every receive descriptor points to its buffer, and belongs to the interface.
     for number in 0..RX_COUNT {
         let buffer = BUFFERS + number * BUFFER_BYTES;
         processor.write(RX + number * DESCRIPTOR_BYTES, &[0, buffer])?;

@@ -1,4 +1,4 @@
-//! Snapshots of a graphics processor board, for display in user interfaces.
+//! Snapshots of a graphics processor board (copies of its state), for display in user interfaces.
 
 use crate::cpu::Priority;
 use crate::firmware::Shared;
@@ -6,25 +6,23 @@ use crate::memory::Account;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{NodeId, PeriodNumber};
 
-/// A snapshot of a graphics processor board at one instant.
+/// A snapshot of a graphics processor board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GpSnapshot {
-    /// Snapshots of the board's programs, the interrupt program first.
+    /// Snapshots of the programs, the interrupt program first.
     pub programs: Vec<ProgramSnapshot>,
-    /// Messages that have arrived and that no program has received yet, in order of arrival.
+    /// Messages that no program has received yet, in order of arrival.
     pub inbox: Vec<WaitingMessageInfo>,
-    /// Receivers that have not yet accepted their message of the current chain. A chain is a sequence of messages that
-    /// the DMA sends together. The receivers have the order of the chain's messages.
+    /// Receivers of those messages of the current chain that were not accepted yet, in the order of the chain. The DMA
+    /// sends the messages of a chain together.
     pub unaccepted: Vec<NodeId>,
-    /// Number of messages in each chain that waits for the DMA, in the order of sending. The DMA sends the messages of
-    /// a chain together.
+    /// Number of messages in each chain that waits for the DMA, in the order of sending.
     pub chains: Vec<usize>,
     /// Bytes of memory in use for each purpose.
     pub memory: Vec<(Account, u64)>,
-    /// CPU time that the board has spent from the start of the simulation to its last event.
+    /// CPU time of the board from the start of the simulation to the last event.
     pub busy: Span,
-    /// Number of the current period (a field on an NTSC display) of the first display. The period began at this
-    /// display's last retrace.
+    /// Number of the current period of the first display (a field on an NTSC display).
     pub period: PeriodNumber,
 }
 
@@ -32,19 +30,18 @@ pub struct GpSnapshot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProgramSnapshot {
     pub priority: Priority,
-    /// Name of the condition that the program waits for. The name is empty before the program runs for the first time.
+    /// Name of the condition for which the program waits. Empty before the program runs for the first time.
     pub waits_for: &'static str,
-    /// Remaining CPU time of the program's work, or `None` if the program has no work. The time of the foreground
-    /// program stays constant while the interrupt program works.
+    /// Remaining CPU time of the program's work. It stays constant in the foreground program while the interrupt
+    /// program works.
     pub work_left: Option<Span>,
 }
 
-/// A message that waits in the inbox.
+/// A message that waits in the inbox of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitingMessageInfo {
     /// Arrival time of the last word of the message.
     pub arrived: Time,
-    /// Ring port of the board that sends the message.
     pub source: NodeId,
 }
 
@@ -55,7 +52,7 @@ impl GpSnapshot {
             waits_for: shared.waits[priority as usize].what,
             work_left: shared.cpu.left(priority, now).filter(|left| *left > Span::ZERO),
         };
-        // Receivers accept messages in any order, so restore the order of the chain.
+        // Receivers accept messages in any order, so sort the messages in the order of the chain.
         let mut unaccepted = shared.in_flight.clone();
         unaccepted.sort_unstable_by_key(|flight| flight.0);
         Self {

@@ -36,17 +36,17 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 impl GpTiming {
-    /// Timing of the Slats prototype of 1994: 30.0 us of CPU time for each triangle and eye. The time is fitted to the
-    /// published limit of 110 triangles without the COPY optimization (TR94). Any time from 29.8 to 30.1 us gives a
-    /// limit of exactly 110 triangles.
+    /// Timing of the Slats prototype of 1994: 30.0 us of CPU time for each triangle and eye. This time is fitted to the
+    /// published limit of 110 triangles without the COPY optimization (TR94). Any time from 29.8 to 30.1 us gives this
+    /// limit.
     pub const SLATS_1994: Self = Self { triangle_ns: 30_000, sphere_ns: 30_000, bin_entry_ns: 0, ..Self::PAPERS };
 
-    /// Timing of the Slats code of 1995: 55.8 us of CPU time for each triangle and eye. The time is fitted to the
+    /// Timing of the Slats code of 1995: 55.8 us of CPU time for each triangle and eye. This time is fitted to the
     /// published limit of about 100 triangles with the COPY optimization (I3D95). Any time from 55.4 to 56.3 us gives a
     /// limit of exactly 100 triangles.
     pub const SLATS_1995: Self = Self { triangle_ns: 55_800, sphere_ns: 55_800, bin_entry_ns: 0, ..Self::PAPERS };
 
-    /// Timing of Slats with code that fits the instruction cache. The CPU time of a triangle is a third of the time in
+    /// Timing of Slats with code that fits in the instruction cache. A triangle takes a third of its time in
     /// [`Self::SLATS_1994`] (I3D95).
     pub const SLATS_OPTIMISED: Self = Self {
         triangle_ns: Self::SLATS_1994.triangle_ns / 3,
@@ -55,12 +55,12 @@ impl GpTiming {
     };
 }
 
-/// A pipeline with its own i860 code for triangles and spheres. The times in the timing table depend on this code.
+/// A pipeline with its own i860 code for triangles and spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CodeUse {
     /// PPHIGS: whole frames, Phong shading, commands in bins.
     Pphigs,
-    /// Slats: fields, precomputed colours, clumps of thirty triangles, both eyes in one pass.
+    /// Slats: fields, precomputed colours, clumps of thirty triangles, and one pass for both eyes.
     Slats,
     /// Slats with lighting on the graphics processor: fields, clumps of thirty triangles, and a separate pass for each
     /// eye.
@@ -71,16 +71,17 @@ pub enum CodeUse {
 // measured by `pxpl5_lab::code_times`. A test of that module compares these constants with the code.
 //
 // `message_ns` is the time of kernels/ring.s for a message or a chain, which differs between scenes
-// (docs/gp-timing.md). `message_ns` is also the time of kernels/token.s for a token without entries. `token_entry_ns`
-// is the time for each entry of a token.
+// (docs/gp-timing.md). It is also the time of kernels/token.s for a token without entries. `token_entry_ns` is the time
+// for each entry of a token.
 //
-// `pass_ns` is the time at the start of a pass that does not belong to structures: to reset bins and to load code into
-// the caches. A structure with culling takes 3.2 us more than others. The table does not contain this difference.
+// `pass_ns` is the time at the start of a pass for work that does not belong to structures: to reset bins, and to load
+// code into the caches. A structure with culling takes 3.2 us more than other structures. The table does not contain
+// this difference.
 impl GpTiming {
-    /// Replaces the times of triangles and spheres in this table by the times that the i860 code takes. `version` is
-    /// the version of the code, and `of` is the pipeline whose code is used.
+    /// Returns this timing table with the times that triangles and spheres take in i860 code. `version` is the version
+    /// of the code, and `of` is its pipeline.
     ///
-    /// PPHIGS has times only for scheduled code. This code fits the instruction cache, like all PPHIGS code in the
+    /// PPHIGS has times only for scheduled code, which fits in the instruction cache like all PPHIGS code in the
     /// papers.
     #[must_use]
     pub const fn of_code(self, version: CodeVersion, of: CodeUse) -> Self {
@@ -93,8 +94,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of primitives in PPHIGS. The code is scheduled by hand, the triangles are
-    /// Phong triangles of a frame, and the commands go into bins.
+    /// Returns this timing table with the times of triangles and spheres in PPHIGS: code scheduled by hand, Phong
+    /// triangles, whole frames, and commands in bins.
     #[must_use]
     pub const fn of_scheduled_phong(self) -> Self {
         Self {
@@ -112,8 +113,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of primitives in Slats. The code is compiled, the picture is a field, and
-    /// vertex colours are precomputed. A clump has thirty triangles, and one pass makes the commands of both eyes.
+    /// Returns this timing table with the times of triangles and spheres in Slats: compiled code, fields, and
+    /// precomputed vertex colours. A clump has thirty triangles, and one pass makes the commands of both eyes.
     #[must_use]
     pub const fn of_compiled_precomputed(self) -> Self {
         Self {
@@ -130,8 +131,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of primitives in Slats. The code is scheduled by hand, the picture is a field,
-    /// and vertex colours are precomputed. Triangles are sent in clumps.
+    /// Returns this timing table with the times of triangles and spheres in Slats: code scheduled by hand, fields, and
+    /// precomputed vertex colours. Triangles are sent in clumps.
     #[must_use]
     pub const fn of_scheduled_precomputed(self) -> Self {
         Self {
@@ -148,8 +149,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of primitives in Slats with lighting on the graphics processor. The code is
-    /// compiled, the picture is a field, and the triangles are Gouraud triangles. A clump has thirty triangles.
+    /// Returns this timing table with the times of triangles and spheres in Slats with lighting: compiled code, fields,
+    /// and Gouraud triangles. A clump has thirty triangles.
     #[must_use]
     pub const fn of_compiled_gouraud(self) -> Self {
         Self {
@@ -166,9 +167,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of primitives in Slats with lighting on the graphics processor. The code is
-    /// scheduled by hand, the picture is a field, and the triangles are Gouraud triangles. Triangles are sent in
-    /// clumps.
+    /// Returns this timing table with the times of triangles and spheres in Slats with lighting: code scheduled by
+    /// hand, fields, and Gouraud triangles. Triangles are sent in clumps.
     #[must_use]
     pub const fn of_scheduled_gouraud(self) -> Self {
         Self {
@@ -206,14 +206,14 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 impl HostTiming {
-    /// Returns the time that `words` words need on the link, rounded down to a picosecond.
+    /// Returns the time of `words` words on the link, rounded down to a picosecond.
     #[must_use]
     pub const fn link_span(&self, words: u32) -> Span {
         Span((words as u128 * 4 * 1_000_000_000_000 / self.link_bytes_per_s as u128) as u64)
     }
 
-    /// Returns the application's time for one frame, chosen from a uniform distribution around the mean. `drawn` is a
-    /// random 64-bit number that selects the time.
+    /// Returns the application's time for one frame, from a uniform distribution around the mean. `drawn` is a random
+    /// 64-bit number that selects the time.
     #[must_use]
     pub const fn application_span(&self, drawn: u64) -> Span {
         let jitter = if self.application_jitter_ns < self.application_ns {
@@ -225,8 +225,8 @@ impl HostTiming {
         Span::from_ns(self.application_ns - jitter + spread as u64)
     }
 
-    /// Returns the timing table of the board model that represents the host. For the host, only the CPU times of
-    /// messages and the memory size in this table have an effect.
+    /// Returns the timing table of the board that models the host. Only its CPU time of messages and its memory size
+    /// have an effect.
     #[must_use]
     pub const fn board(&self) -> GpTiming {
         GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }
@@ -239,7 +239,7 @@ mod tests {
     use pxpl5_sim::parameters::ParameterTable;
 
     #[test]
-    fn every_number_lies_in_its_range() {
+    fn every_published_time_of_the_processors_and_the_host_lies_in_its_range() {
         assert_eq!(GpTiming::PAPERS.out_of_range(), []);
         assert_eq!(HostTiming::PAPERS.out_of_range(), []);
     }
@@ -247,7 +247,7 @@ mod tests {
     /// Tests the presets of Slats. Their times were fitted to published limits of triangles, so they can lie outside
     /// the plausible range for PPHIGS. They must lie within the limits of the model.
     #[test]
-    fn every_preset_is_within_the_limits() {
+    fn every_timing_preset_of_slats_is_within_the_limits() {
         for preset in [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED] {
             assert_eq!(preset.check(), Ok(()));
         }
@@ -257,7 +257,7 @@ mod tests {
     /// triangles (1995). I3D95 expects a third of the time of 1994 for code that fits the instruction cache. Slats has
     /// no bins, so a bin entry takes no time.
     #[test]
-    fn slats_takes_what_its_published_limits_ask_for() {
+    fn the_times_of_slats_follow_from_its_published_limits() {
         let presets = [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED];
         let times = presets.map(|preset| [preset.triangle_ns, preset.sphere_ns, preset.bin_entry_ns]);
         assert_eq!(times, [30_000, 55_800, 10_000].map(|ns| [ns, ns, 0]));
@@ -266,7 +266,7 @@ mod tests {
     /// Tests the timing tables with times of i860 code. They must replace every time of the published table that i860
     /// code determines.
     #[test]
-    fn tables_of_code_leave_no_time_of_code_as_it_was() {
+    fn tables_of_code_replace_every_time_of_code() {
         let mut before = GpTiming::PAPERS;
         for entry in GpTiming::PAPERS.entries() {
             before.set(entry.info.name, 1.into()).expect("a number of nanoseconds or bytes");
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn the_applications_time_is_spread_around_its_mean_and_never_below_nothing() {
+    fn the_applications_time_varies_around_its_mean_and_is_never_negative() {
         let host = |application_ns, application_jitter_ns| HostTiming {
             application_ns,
             application_jitter_ns,
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_on_the_hosts_link_takes_four_bytes_of_its_rate() {
+    fn a_word_on_the_hosts_link_takes_the_time_of_four_bytes() {
         // 5 MB/s give 800 ns per word, and 3 bytes per second give 4/3 s.
         assert_eq!(HostTiming::PAPERS.link_span(7), Span::from_ns(5_600));
         let slow = HostTiming { link_bytes_per_s: 3, ..HostTiming::PAPERS };

@@ -5,28 +5,28 @@ use crate::processor::{Processor, ProcessorFault};
 use crate::timing::GpTiming;
 use pxpl5_sim::Span;
 
-/// A unit of CPU work. The time of the work can be taken from the timing table or measured by running i860 code.
+/// A unit of CPU work. Its time comes from the timing table, or from a run of i860 code.
 pub trait Work {
     /// Returns the CPU time of the work according to the timing table.
     fn by_table(&self, timing: &GpTiming) -> Span;
 
-    /// Runs the work as i860 code on the board's processor and returns the time of the code. For a part of the work
-    /// without code, the function adds the time from the timing table.
+    /// Runs the work as i860 code on the board's processor, and returns its time. A part of the work without code takes
+    /// its time from the timing table.
     ///
     /// # Errors
     ///
     /// Returns [`ProcessorFault`] if the code does not return.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault>;
 
-    /// Returns the number of vertices that the work transforms: corners of triangles and centres of spheres. A vertex
-    /// that is transformed for two views counts twice. Most kinds of work transform no vertices, so the default is 0.
+    /// Returns the number of vertices that the work transforms: corners of triangles and centres of spheres. Each
+    /// vertex counts once for each view. Most kinds of work transform no vertices, so the default is 0.
     fn vertex_transforms(&self) -> u64 {
         0
     }
 }
 
 impl Gp {
-    /// Does a unit of work. The program spends the CPU time of the work at its own priority.
+    /// Does a unit of work. The program spends its CPU time.
     ///
     /// # Errors
     ///
@@ -37,8 +37,7 @@ impl Gp {
         Ok(())
     }
 
-    /// Does a unit of work that answers a message. [`GpUse::tokens`](crate::GpUse::tokens) counts the CPU time of this
-    /// work.
+    /// Does a unit of work that answers a message. Its CPU time counts in [`GpUse::tokens`](crate::GpUse::tokens).
     pub(crate) async fn answer_work(&self, work: &impl Work) -> Result<(), Fault> {
         let span = self.time_of(work)?;
         self.shared.borrow_mut().answer_work += span;
@@ -46,8 +45,7 @@ impl Gp {
         Ok(())
     }
 
-    /// Returns the CPU time of a unit of work, from the timing table or from i860 code, and counts the transformed
-    /// vertices.
+    /// Returns the CPU time of a unit of work, and counts the transformed vertices.
     fn time_of(&self, work: &impl Work) -> Result<Span, Fault> {
         let shared = &mut *self.shared.borrow_mut();
         shared.vertex_transforms += work.vertex_transforms();
@@ -63,8 +61,7 @@ impl Gp {
         self.shared.borrow().processor.is_some()
     }
 
-    /// Calls `image`, a function that writes data to the memory of the i860. On boards that do not run i860 code,
-    /// `image` is not called.
+    /// Calls `image`, which writes data to the memory of the i860. Does not call `image` on boards without i860 code.
     ///
     /// # Errors
     ///
@@ -85,7 +82,7 @@ mod tests {
 
     const SCHEDULED: Option<CodeVersion> = Some(CodeVersion::Scheduled);
 
-    /// Test work: i860 code with a loop of so many iterations. Without a number, the code executes a trap.
+    /// Test work: i860 code with a loop of so many iterations, or with a trap if there is no number.
     struct Turns(Option<u32>);
 
     impl Work for Turns {
@@ -159,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn an_image_is_put_where_there_is_a_processor_and_does_not_fit_anywhere() {
+    fn installing_an_image_needs_a_processor_and_enough_memory() {
         for (code, address, fault) in [
             (SCHEDULED, 0x2000, None),
             (SCHEDULED, 8 << 20, Some("graphics processor at node 5: no memory for 1 words at 0x00800000")),

@@ -39,7 +39,6 @@ fn accepted(batch: u64, place: u64) -> GpEvent {
     GpEvent::Accepted(batch << PLACE_BITS | place)
 }
 
-/// A board on its test bench.
 struct Rig {
     board: GpBoard,
     bench: TestBench<GpEvent, GpOutput>,
@@ -53,7 +52,6 @@ impl Rig {
         Self { board: GpBoard::new(BOARD, timing, CYCLE), bench }
     }
 
-    /// Adds a program.
     fn with<F>(mut self, priority: Priority, program: impl FnOnce(Gp) -> F) -> Self
     where
         F: Future<Output = Result<(), Fault>> + 'static,
@@ -63,7 +61,6 @@ impl Rig {
         self
     }
 
-    /// Adds an event at an instant.
     fn fed(mut self, at_ns: u64, event: GpEvent) -> Self {
         self.bench.feed(ns(at_ns), Phase::Arrive, event);
         self
@@ -88,7 +85,7 @@ impl Rig {
 }
 
 #[test]
-fn messages_of_one_instant_are_looked_at_together_and_once() {
+fn messages_that_arrive_at_one_instant_are_processed_in_one_poll() {
     let notes = Notes::default();
     let told = Rc::clone(&notes);
     let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
@@ -98,25 +95,25 @@ fn messages_of_one_instant_are_looked_at_together_and_once() {
         }
     });
     rig = rig.fed(500, message(4)).fed(500, message(2)).fed(500, message(3)).fed(800, message(1));
-    // The first poll, four arrivals, and a poll for each of two instants.
+    // The events are the first poll, four arrivals, and a poll for each of two instants.
     assert_eq!(rig.events(), 1 + 4 + 2);
     assert_eq!(*notes.borrow(), [(ns(500), 2), (ns(500), 3), (ns(500), 4), (ns(800), 1)]);
 }
 
 #[test]
-fn what_ends_no_wait_is_no_reason_to_look() {
+fn an_event_that_ends_no_wait_does_not_wake_the_board() {
     let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
         gp.spend(Span::from_ns(5_000)).await;
         gp.until("nothing", || None::<()>).await;
         Ok(())
     });
     rig = rig.fed(1_000, message(1)).fed(2_000, message(2)).fed(3_000, GpEvent::Retrace(PeriodNumber(7)));
-    // The first poll, three arrivals during work, and its end.
+    // The events are the first poll, three arrivals during work, and the end of the work.
     assert_eq!(rig.events(), 1 + 3 + 1);
 }
 
 #[test]
-fn acceptances_wake_the_board_when_the_next_chain_can_go() {
+fn acceptances_wake_the_board_when_the_next_chain_can_start() {
     let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
         let of = |value: u16| (NodeId(value), 1, word(u32::from(value)).1);
         gp.send_batch(vec![of(1), of(2), of(3)]).await;
@@ -126,7 +123,8 @@ fn acceptances_wake_the_board_when_the_next_chain_can_go() {
     });
     rig = rig.fed(10_000, accepted(1, 2)).fed(11_000, accepted(1, 0)).fed(12_000, accepted(1, 1));
     rig = rig.fed(20_000, accepted(2, 0));
-    // The first poll, two software costs, four acceptances, and a poll at the acceptance after which the DMA is free.
+    // The events are the first poll, two software costs, four acceptances, and a poll at the acceptance after which the
+    // DMA is free.
     assert_eq!(rig.events(), 1 + 2 + 4 + 1);
     let sent: Vec<_> = rig.bench.outputs.iter().map(|(time, GpOutput::Send { ticket, .. })| (*time, *ticket)).collect();
     let first = (0..3).map(|place| (ns(MESSAGE_NS) + CYCLE, 1 << PLACE_BITS | place));
@@ -157,7 +155,7 @@ fn waits_of_a_chain(receivers: [u16; 3], order: [u64; 3]) -> Vec<(Time, u64)> {
 }
 
 #[test]
-fn a_chain_drains_when_each_receiver_has_taken_one_message_and_is_accepted_when_all_have() {
+fn a_chain_is_accepted_when_all_receivers_have_taken_their_messages() {
     let [twenty, thirty] = [20_000, 30_000].map(ns);
     let all_at_the_end = [(thirty, 1), (thirty, 2), (thirty, 3)];
     assert_eq!(waits_of_a_chain([1, 1, 2], [0, 2, 1]), [(twenty, 1), (thirty, 2), (thirty, 3)]);
@@ -167,7 +165,7 @@ fn a_chain_drains_when_each_receiver_has_taken_one_message_and_is_accepted_when_
 
 /// The interrupt program is polled first. It gets the progress of the other program at the same instant.
 #[test]
-fn what_one_program_does_for_the_other_is_found_at_once() {
+fn one_program_sees_the_changes_of_the_other_at_once() {
     let notes = Notes::default();
     let (told, done) = (Rc::clone(&notes), Rc::new(Cell::new(false)));
     let is_done = Rc::clone(&done);
@@ -187,7 +185,7 @@ fn what_one_program_does_for_the_other_is_found_at_once() {
 }
 
 #[test]
-fn stages_are_told_with_their_instants_pictures_and_views() {
+fn stages_are_reported_with_their_times_pictures_and_views() {
     let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
         gp.begin(Stage::Edit, PictureNumber(3), None);
         gp.spend(Span::from_ns(400)).await;
@@ -212,7 +210,7 @@ fn stages_are_told_with_their_instants_pictures_and_views() {
 }
 
 #[test]
-fn a_stage_that_ends_with_a_chain_ends_when_that_one_is_accepted() {
+fn a_stage_that_ends_with_a_chain_ends_at_its_acceptance() {
     let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
         for picture in [1, 2] {
             let (words, body) = word(picture);
@@ -255,7 +253,7 @@ fn a_program_sees_retraces_and_status_lines() {
 }
 
 #[test]
-fn memory_that_does_not_fit_stops_the_program() {
+fn a_request_for_more_memory_than_available_stops_the_program() {
     let asked = |account, bytes| {
         Rig::new().with(Priority::Foreground, move |gp| async move {
             gp.reserve(Account::Program, 600, None)?;
@@ -283,7 +281,7 @@ fn memory_that_does_not_fit_stops_the_program() {
 }
 
 #[test]
-fn a_message_can_be_taken_for_nothing() {
+fn a_message_can_be_received_without_cpu_time() {
     let notes = Notes::default();
     let told = Rc::clone(&notes);
     let mut rig = Rig::new().with(Priority::Interrupt, |gp| async move {
@@ -366,7 +364,7 @@ fn a_snapshot_shows_each_account_of_the_memory() {
         for (bytes, account) in (1..).zip(Account::ALL) {
             gp.reserve(account, bytes, None)?;
         }
-        // Contexts alternate, so number 2 is context 0.
+        // The numbers use contexts 0 and 1 in turn, so number 2 uses context 0.
         gp.reserve(Account::Commands(2), 30, None)?;
         gp.reserve(Account::Bins(3), 60, None)
     });
@@ -390,7 +388,7 @@ impl Work for Code {
 }
 
 #[test]
-fn breakpoints_are_met_where_there_is_a_processor() {
+fn breakpoints_need_a_processor() {
     let program = Arc::new(i860::assemble("code", 0x1000, "start: bri r1\n nop").expect("it can be assembled"));
     for code in [None, Some(CodeVersion::Compiled)] {
         let mut board = GpBoard::new(BOARD, GpTiming::PAPERS, CYCLE);
@@ -466,10 +464,10 @@ fn answers(orders: &[Order], foreground: &[u64], delays: &[u64]) -> (Vec<(Time, 
     (sent.collect(), rig.board.busy())
 }
 
-/// Reception and work take 0.3 us together, and then each message follows. The second message begins at the acceptance
-/// of the first message, which is a cycle and 0.1 us after the end of the first message's software.
+/// Reception and work take 0.3 us together, and the messages follow. The second message begins at the acceptance of the
+/// first message. This is a cycle and 0.1 us after the end of the first message's software.
 #[test]
-fn an_answer_takes_a_message_for_what_is_received_and_for_each_that_is_sent() {
+fn an_answer_takes_the_software_time_of_one_received_message_and_of_each_sent_message() {
     for (count, expected_ns) in [(0, vec![3_300]), (1, vec![3_300, 4_300]), (2, vec![3_300, 4_425, 5_425])] {
         let (sent, busy) = answers(&[(10, Some(3), count)], &[], &[1]);
         let times: Vec<Time> = sent.iter().map(|(time, ..)| *time).collect();

@@ -1,41 +1,38 @@
-//! Effect of the application's time per frame on the latencies of fly-throughs. No paper prints this time.
+//! Effect of the application's time per frame on the latencies of fly-throughs.
+//!
+//! No paper prints this time.
 //!
 //! The host of a real viewer ran a loop under Unix that read input, changed its scene, and asked for the next frame.
 //! The simulated host asks for the next frame immediately unless `host.application_ns` and `host.application_jitter_ns`
 //! are set. This module varies both parameters and reports the mean and standard deviation of each figure. No parameter
 //! is fitted to the results.
 //!
-//! The ranges of the two parameters end where a trivial scene still runs at the 30 frames/s that TR94 prints. No rate
-//! is printed for the fly-throughs, so the application of a fly-through may have taken longer than this range. In this
-//! module, therefore, the mean time reaches 40 ms, with a jitter of up to 30 ms. A Unix host polled its serial ports
-//! once in 30 ms (TR94). Both maxima are assumed.
+//! TR94 prints 30 frames/s for a trivial scene. This rate limits the application's time for the trivial scene. TR94
+//! prints no rate for the fly-throughs, whose application may therefore have been slower. This module assumes mean
+//! times up to 40 ms and jitters up to 30 ms. A Unix host polled its serial ports once in 30 ms (TR94).
 
 use crate::figures::{Bench, FIGURES};
 use crate::parallel;
 use pxpl5_run::{ExperimentError, Level};
 use serde::Serialize;
 
-/// Path of the parameter for the mean time of the application.
 const MEAN: &str = "host.application_ns";
-/// Path of the parameter for the jitter of the application's time.
 const JITTER: &str = "host.application_jitter_ns";
 
-/// Mean times of the application to simulate, in milliseconds. Assumed: from no application to a loop of 25 frames a
-/// second.
+/// Mean times of the application in milliseconds. Assumed: from no application to a loop of 25 frames a second.
 const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
 
-/// Jitters of the application's time to simulate, in milliseconds. A jitter above the mean time is not simulated,
-/// because some times would be negative. Assumed: up to 30 ms, the period at which a Unix host polled its serial ports
-/// (TR94).
+/// Jitters of the application's time in milliseconds. A jitter above the mean time is skipped, because some times would
+/// be negative. Assumed: up to 30 ms, the period at which a Unix host polled its serial ports (TR94).
 const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
 
-/// Numbers, in [`FIGURES`], of the published figures that are latencies of fly-throughs.
+/// Numbers of the fly-through latencies in [`FIGURES`].
 const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
 
 /// Mean and standard deviation of one published latency of a fly-through.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FlyThroughLatency {
-    /// Number of the figure, as in [`FIGURES`].
+    /// Number of the figure in [`FIGURES`].
     pub id: &'static str,
     /// Mean of all latency samples, in the figure's unit.
     pub mean: f64,
@@ -50,19 +47,19 @@ pub struct ApplicationTime {
     pub mean_ms: u64,
     /// Half the width of the uniform distribution of the application's time, in milliseconds.
     pub jitter_ms: u64,
-    /// Latencies of the fly-throughs of the scenes "mig", "molecules" and "head", in this order.
+    /// Latencies of fly-throughs of the scenes "mig", "molecules" and "head", in this order.
     pub figures: Vec<FlyThroughLatency>,
 }
 
-/// Simulates the fly-throughs for all times of the application at the analytic level. `bench` holds the common settings
-/// of all measurements, such as the interpretation of the papers and the numbers of seeds and frames.
+/// Simulates the fly-throughs for all times of the application at the analytic level. `bench` holds the interpretation
+/// of the papers and the numbers of seeds and frames.
 ///
 /// # Errors
 ///
 /// Fails in the same cases as [`Bench::measure`].
 pub fn application_times(bench: &Bench) -> Result<Vec<ApplicationTime>, ExperimentError> {
     let times = MEANS_MS.iter().flat_map(|mean| JITTERS_MS.iter().map(|jitter| (*mean, *jitter)));
-    // A jitter beyond the mean would need negative times.
+    // A jitter greater than the mean would need negative times.
     let times: Vec<_> = times.filter(|(mean, jitter)| jitter <= mean).collect();
     parallel::map(&times, |(mean_ms, jitter_ms)| measure(bench, *mean_ms, *jitter_ms)).into_iter().collect()
 }
@@ -70,7 +67,7 @@ pub fn application_times(bench: &Bench) -> Result<Vec<ApplicationTime>, Experime
 fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTime, ExperimentError> {
     let changes = [(MEAN, mean_ms), (JITTER, jitter_ms)].map(|(path, ms)| (path.to_owned(), ms * 1_000_000));
     let changes = bench.changes.iter().cloned().chain(changes).collect();
-    // Only the two parameters differ from the given bench.
+    // This bench differs from the argument only in these two parameters and in the level.
     let bench = Bench { level: Level::Analytic, changes, ..bench.clone() };
     let spread = |id: &'static str| {
         let measured = bench.measure(id)?;
@@ -95,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_host_that_asks_at_once_gives_the_figures_as_they_are() {
+    fn an_application_time_of_zero_leaves_the_figures_unchanged() {
         let bench = Bench::new(Level::Analytic).with_mig(2, 60);
         let as_it_is = bench.measure("7").expect("the mig").value;
         let at_once = measure(&bench, 0, 0).expect("the scenes are there");
@@ -104,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ranges_of_the_parameters_are_covered() {
+    fn the_studied_application_times_include_the_end_of_each_parameter_range() {
         let parameters = pxpl5_machine::MachineConfig::small_hmd().parameters();
         let last_ms = |path: &str| {
             let parameter = parameters.iter().find(|parameter| parameter.path == path).expect("a parameter");

@@ -1,8 +1,9 @@
-//! Measures the times of primitives by executing i860 code. The results fill the timing table, from which the levels of
-//! modelling without executed code take their times.
+//! Measures the times of primitives by executing i860 code.
 //!
-//! The measurement executes the transformation of the application scenes on one board (a *pass*), and attributes the
-//! board's clocks to primitives:
+//! These times fill the timing table that the analytic level and the transaction level use.
+//!
+//! The measurement transforms the application scenes of TR94 on one board (one transformation is a *pass*), and divides
+//! the board's clocks among primitives:
 //!
 //! ```text
 //!   clocks of triangles in a pass = triangle * (triangles) + guard * (clipped triangles) + entry * (bin entries)
@@ -13,10 +14,9 @@
 //! - `triangle`, `entry` and `sphere` come from one board's share of each of the three application scenes, seen along
 //!   the scene's own head motion. The first pass only fills the caches.
 //! - `entry` is the slope of the clocks over the number of bin entries, fitted to all passes by least squares.
-//! - `triangle` is first averaged over the passes of each scene, then over the scenes. Triangles are measured without
-//!   the spheres of their scene, because the code for spheres would displace the code for triangles from the
-//!   instruction cache.
-//! - `sphere` is the time of spheres without their bin entries: the mean over the scenes that have spheres.
+//! - `triangle` is first averaged over the passes of each scene, then over the scenes. The spheres of the scene are
+//!   left out, because their code would displace the triangle code from the instruction cache.
+//! - `sphere` is the time of spheres without their bin entries: the mean over the scenes with spheres.
 //!
 //! Each of `guard`, `entry` and `triangle` depends on the other two, so the measurement computes one time after the
 //! other. Repetitions make the three times converge.
@@ -27,15 +27,15 @@
 //!
 //! - `structure` is the cost of one more empty structure in the display list.
 //! - `sphere view` is the extra cost of a scene compared with the same scene without spheres.
-//! - `pass` is the remainder: the time to reset the bins, and the time to load code into the caches.
+//! - `pass` is the remainder: the time to reset the bins and to load code into the caches.
 //!
 //! Each of `structure`, `sphere view` and `pass` is averaged over each scene, then over the scenes.
 //!
-//! The time of a message is the mean over all messages that a board receives and sends around these passes. Under
-//! PPHIGS (the graphics library that runs Rendering Control) the board is a slave, and each message includes the cost
-//! of the token whose bin the slave sends. Under Slats, the measured messages are those that a board receives and sends
-//! in one display field. The time of a message is the mean over the three scenes. `token entry` is the additional time
-//! to send a bin for each entry in the bin. This time is the slope of a least-squares fit over all bins.
+//! The time of a message is the mean over all messages that the board receives and sends around these passes. Under
+//! PPHIGS (the graphics library that runs Rendering Control), the board is a slave. Each message then includes the cost
+//! of the token whose bin the slave sends. Under Slats, the measurement covers the messages of one display field. The
+//! time of a message is averaged over the three scenes. `token entry` is the additional time to send a bin for each
+//! entry in the bin. This time is the slope of a least-squares fit over all bins.
 
 mod messages;
 mod strips;
@@ -57,26 +57,22 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber};
 use std::sync::Arc;
 
-/// The application scenes of TR94.
 const SCENES: [&str; 3] = ["mig", "molecules", "head"];
 
-/// Number of slaves among which a scene's triangles are divided: the number of slaves of the preset `small-hmd`. Only
-/// the first slave's share is measured.
+/// Number of slaves among which a scene's triangles are divided, as in the preset `small-hmd`. Only the first slave's
+/// share is measured.
 const BOARDS: usize = 12;
 
-/// Number of head poses from which each scene is transformed.
 const VIEWS: u64 = 4;
-/// Time between two successive head poses in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
-/// Size in metres of the triangles that measure the clipper. Each triangle covers a square whose sides have twice this
-/// length at a distance of 1 m. The corners of the triangle lie up to 4,477 pixels outside the picture's corners.
+/// Size in metres of the triangles that measure the clipper. At a distance of 1 m, each triangle covers a square with
+/// sides of twice this length. The corners of the triangle lie up to 4,477 pixels outside the picture's corners.
 /// Assumed: any size beyond the guard band has the same effect.
 const CLIPPED_M: f32 = 2.0;
 
-/// Size of a clump: the number of triangles that Slats transforms at a time (published in TR94).
+/// Number of triangles in a clump, which Slats transforms at a time (published in TR94).
 const CLUMP: usize = 30;
-/// Number of clumps (groups of triangles) measured in each scene.
 const CLUMPS: usize = 20;
 
 /// Number of additional edits (matrix replacements) in a message, from which the time of one edit follows. The replaced
@@ -89,27 +85,25 @@ const MORE_STRUCTURES: usize = 8;
 /// Memory of a graphics processor in bytes (published in TR94).
 const MEMORY: u64 = 8 << 20;
 
-/// Times of primitives in nanoseconds, measured by executing code.
+/// Times of primitives in nanoseconds, measured by executing i860 code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CodeTimes {
-    /// Time to transform a triangle that is not clipped, averaged over each scene and then over the scenes.
+    /// Time to transform an unclipped triangle, averaged over each scene and then over the scenes.
     pub triangle_ns: f64,
-    /// Smallest and largest of the scenes' mean times per triangle.
+    /// Smallest and largest mean time per triangle among the scenes.
     pub triangle_range_ns: [f64; 2],
     /// Time to transform a sphere, averaged over each scene and then over the scenes.
     pub sphere_ns: f64,
     /// Time to write one entry into a bin.
     pub entry_ns: f64,
-    /// Additional time of a clipped triangle: the time to cut the triangle, and to process all resulting triangles
-    /// except one.
+    /// Additional time of a clipped triangle: the time to cut it and to process all resulting triangles except one.
     pub guard_ns: f64,
-    /// Time to begin a pass over the display list, without its structures. The time is averaged over each scene and
-    /// then over the scenes.
-    pub pass_ns: f64,
-    /// Time to transform one more structure of the display list for one eye, averaged over each scene and then over the
+    /// Time to begin a pass over the display list, without its structures, averaged over each scene and then over the
     /// scenes.
+    pub pass_ns: f64,
+    /// Time to transform one more structure for one eye, averaged over each scene and then over the scenes.
     pub structure_ns: f64,
-    /// Additional time per eye for a structure that contains spheres: mean over the scenes with spheres.
+    /// Additional time per eye for a structure that contains spheres: the mean over the scenes with spheres.
     pub sphere_view_ns: f64,
     /// Time of one more edit (matrix replacement) in a message.
     pub edit_ns: f64,
@@ -117,18 +111,16 @@ pub struct CodeTimes {
     pub token_entry_ns: f64,
     /// Time to process a message, or a chain of messages, averaged over each scene and then over the scenes.
     pub message_ns: f64,
-    /// Smallest and largest of the scenes' mean times per message.
+    /// Smallest and largest mean time per message among the scenes.
     pub message_range_ns: [f64; 2],
 }
 
-/// Number of iterations of [`CodeTimes::improve`]. Each iteration leaves only a small part of the previous error.
+/// Number of iterations of [`CodeTimes::improve`]. Each iteration leaves only a small fraction of the previous error.
 const ROUNDS: usize = 30;
 
-/// Result of one pass over triangles: number of unclipped triangles, number of clipped triangles, number of bin
-/// entries, time in nanoseconds.
+/// Numbers of unclipped triangles, clipped triangles and bin entries of one pass, and its time in nanoseconds.
 type Sample = [f64; 4];
 
-/// Result of one pass over spheres: number of spheres, number of bin entries, time in nanoseconds.
 type SphereSample = [f64; 3];
 
 fn picture(of: CodeUse) -> Picture {
@@ -140,7 +132,8 @@ fn picture(of: CodeUse) -> Picture {
     Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: false }
 }
 
-/// Returns the eyes for which each pass transforms the display list: one list of indices (0 or 1) for each pass.
+/// Returns a list of eyes (0 or 1) for each pass. A pass of PPHIGS transforms the display list for one eye, a pass of
+/// Slats for both eyes.
 const fn eyes_of_a_pass(of: CodeUse) -> &'static [&'static [usize]] {
     match of {
         CodeUse::Pphigs => &[&[0], &[1]],
@@ -155,8 +148,8 @@ fn parts(of: CodeUse, share: &Share) -> Vec<Share> {
     }
 }
 
-/// Measures the times of a version of the i860 code. `of` selects the code of Slats or the code of PPHIGS, the graphics
-/// library that runs Rendering Control.
+/// Measures the times of one version of the i860 code. `of` selects Slats or PPHIGS, the graphics library that runs
+/// Rendering Control.
 ///
 /// # Errors
 ///
@@ -176,7 +169,7 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
     let token_entry_ns = messages::token_entry_ns(&traffic);
     let messages: Vec<f64> = traffic.iter().map(|traffic| traffic.message_ns(token_entry_ns)).collect();
     let range = [0.0; 2];
-    // Times that other times influence start at zero.
+    // Times that depend on other times start at zero.
     let mut times = CodeTimes {
         triangle_ns: 0.0,
         triangle_range_ns: range,
@@ -200,10 +193,10 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
 }
 
 impl CodeTimes {
-    /// Improves the times of a bin entry, a triangle and the clipper by one step of an iteration. Each time is fitted
-    /// to measured passes, after the estimated contributions of the other two times are subtracted.
+    /// Improves the times of a bin entry, a triangle and the clipper by one iteration. Each time is fitted to measured
+    /// passes after the estimated contributions of the other two times are subtracted.
     fn improve(&mut self, of: CodeUse, cut: &[Sample], scenes: &[Vec<Sample>]) {
-        // Clipped triangles are counted apart, so their time is subtracted here.
+        // Clipped triangles are counted separately, so their time is subtracted here.
         let of_clipper = self.triangle_ns + self.guard_ns;
         let uncut = |sample: &Sample| [sample[0], sample[2], sample[3] - of_clipper * sample[1]];
         // Only PPHIGS bins triangles by region; Slats sends every clump to all regions.
@@ -225,7 +218,6 @@ impl CodeTimes {
         self.guard_ns = solve(cut.iter().map(without_entries)) - self.triangle_ns;
     }
 
-    /// Returns the mean time of a sphere without its bin entries. Scenes without spheres do not count.
     fn sphere(&self, scenes: &[Vec<SphereSample>]) -> f64 {
         let sums = scenes.iter().map(|samples| {
             samples.iter().fold([0.0; 2], |[n, ns], [spheres, entries, of_spheres]| {
@@ -245,8 +237,8 @@ fn extremes(values: &[f64]) -> [f64; 2] {
     [values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max)]
 }
 
-/// Fits `y = a p + b q` to rows of `([a, b], y)` by least squares. Returns `p`, the time of one item such as a bin
-/// entry. If all `b` are 0, only `p` is fitted.
+/// Fits `y = a p + b q` to rows of `([a, b], y)` by least squares, and returns `p`. If all `b` are 0, only `p` is
+/// fitted.
 fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
     let mut sums = [0.0; 5];
     for ([a, b], y) in rows {
@@ -259,8 +251,7 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
     if bb == 0.0 { ay / aa } else { (ay * bb - by * ab) / (aa * bb - ab * ab) }
 }
 
-/// A measuring set-up: the share of a scene that one board stores, and the head poses from which the board transforms
-/// the share.
+/// One board's share of a scene, with the head poses for which the board transforms the share.
 struct Rig {
     share: Share,
     views: Views,
@@ -276,7 +267,6 @@ impl Rig {
         Self::of_list(version, scene, boards, |list| list)
     }
 
-    /// Returns a measuring set-up with the triangles of a scene. The spheres of the scene are left out.
     fn of_triangles(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
         Self::of_list(version, scene, boards, without_spheres)
     }
@@ -306,14 +296,14 @@ fn samples(version: CodeVersion, of: CodeUse, scene: &str, boards: usize) -> Res
     measured(of, Rig::of_triangles(version, scene, boards)?, true, sample)
 }
 
-/// Returns one sample for each pass over a scene's spheres, or no samples if the scene has none.
+/// Returns one sample for each pass over a scene's spheres. The result is empty if the scene has no spheres.
 fn sphere_samples(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Vec<SphereSample>, ExperimentError> {
     let rig = Rig::new(version, scene, BOARDS)?;
     if rig.share.counts().spheres == 0 { Ok(Vec::new()) } else { measured(of, rig, true, sphere_sample) }
 }
 
-/// Returns the samples of all passes except the first, which only fills the caches. If `together` is true, the passes
-/// of both eyes are combined into one sample.
+/// Returns the samples of all passes except the first, which only fills the caches. If `together` is true, one sample
+/// combines the passes of both eyes.
 fn measured<const N: usize>(
     of: CodeUse,
     mut rig: Rig,
@@ -345,9 +335,8 @@ fn measured<const N: usize>(
     Ok(samples)
 }
 
-/// Replaces every triangle by a larger right-angled triangle that reaches beyond the guard band. A triangle at the
-/// distance d from the viewer gets two legs with a length of 4 ([`CLIPPED_M`] d + 0.5 m). The 0.5 m allow for the
-/// positions of the eyes.
+/// Replaces each triangle by a larger right-angled triangle that reaches beyond the guard band. At the distance d from
+/// the viewer, both legs have a length of 4 ([`CLIPPED_M`] d + 0.5 m). The 0.5 m allow for the positions of the eyes.
 fn beyond_the_guard_band(mut list: DisplayList) -> DisplayList {
     for triangle in list.positions.chunks_exact_mut(3) {
         for (corner, [x, y]) in triangle.iter_mut().zip([[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]]) {
@@ -364,7 +353,7 @@ fn without_spheres(mut list: DisplayList) -> DisplayList {
     list
 }
 
-/// Returns the display list with its spheres removed, and with [`MORE_STRUCTURES`] empty structures at its end.
+/// Returns the display list without its spheres, and with [`MORE_STRUCTURES`] empty structures at its end.
 fn with_more_structures(list: DisplayList) -> DisplayList {
     let mut list = without_spheres(list);
     let end = list.triangles.len();
@@ -374,7 +363,6 @@ fn with_more_structures(list: DisplayList) -> DisplayList {
     list
 }
 
-/// Times in nanoseconds of the parts of the work at the beginning of a pass.
 struct PassBeginning {
     pass_ns: f64,
     structure_ns: f64,
@@ -400,7 +388,7 @@ fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<PassBeginning
     })
 }
 
-/// Returns the mean time to begin a pass in nanoseconds. Depending on `of`, a pass transforms the scene for one eye or
+/// Returns the mean time to begin a pass in nanoseconds. `of` determines if a pass transforms the scene for one eye or
 /// for both eyes.
 fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
     let eyes = eyes_of_a_pass(of);
@@ -421,7 +409,6 @@ fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
     Ok(all_ns / (VIEWS * eyes.len() as u64) as f64)
 }
 
-/// Returns the time of one more edit (matrix replacement) in a message, in nanoseconds.
 fn edit_ns(version: CodeVersion) -> Result<f64, ExperimentError> {
     let mut processor = Processor::new(NodeId(1), MEMORY, version, MachineConfig::small_hmd().i860);
     let mut ns = |count: u32| {
@@ -451,7 +438,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sphere_takes_what_its_entries_leave() {
+    fn the_time_of_a_sphere_excludes_its_bin_entries() {
         let times = CodeTimes {
             triangle_ns: 0.0,
             triangle_range_ns: [0.0; 2],
@@ -471,7 +458,7 @@ mod tests {
     }
 
     #[test]
-    fn two_unknowns_are_found_from_exact_rows() {
+    fn the_solver_finds_two_unknowns_from_exact_equations() {
         let rows = [[1.0, 2.0], [3.0, 1.0], [2.0, 5.0]];
         let found = solve(rows.into_iter().map(|[a, b]| ([a, b], 7.0 * a + 11.0 * b)));
         assert!((found - 7.0).abs() < 1e-9, "{found}");

@@ -1,5 +1,4 @@
-//! Comparison of all low-latency methods: the same settings for every pipeline, several seeds, and one method of
-//! evaluation.
+//! Comparison of all low-latency methods, with the same settings, seeds and evaluation for every pipeline.
 //!
 //! [`CompareQuery`] describes a comparison. [`Comparison`] is its result. Each [`ComparisonRow`] has the latency from
 //! head to display, the prediction interval, and the error in pixels by cause. The row also has the largest number of

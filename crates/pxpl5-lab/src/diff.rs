@@ -1,4 +1,4 @@
-//! Comparison of two reports, number by number.
+//! Comparison of two reports, value by value.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -9,15 +9,15 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Changed {
     /// Path of the value, such as `latency_ms.mean`.
     pub key: String,
-    /// Value in the first report. `None` if the report has no such value.
+    /// Value in the first report. `None` if the first report lacks the value.
     pub a: Option<Value>,
-    /// Value in the second report. `None` if the report has no such value.
+    /// Value in the second report. `None` if the second report lacks the value.
     pub b: Option<Value>,
 }
 
 impl Changed {
-    /// Returns the change from the first to the second value, in percent of the first value. Returns `None` unless both
-    /// values are numbers and the first is not 0.
+    /// Returns the change from the first to the second value, in percent of the first value. `None` unless both values
+    /// are numbers and the first is not 0.
     #[must_use]
     pub fn percent(&self) -> Option<f64> {
         let [a, b] = [&self.a, &self.b].map(|value| value.as_ref().and_then(Value::as_f64));
@@ -33,13 +33,13 @@ pub struct Differences {
     pub same_trace: bool,
     /// Settings that differ.
     pub settings: Vec<Changed>,
-    /// Results that differ. Computing times of this computer are left out.
+    /// Results that differ, without the computing times of this computer.
     pub results: Vec<Changed>,
     /// Number of results that are equal in both reports.
     pub equal: usize,
 }
 
-/// First parts of the paths that denote settings. All other paths denote results.
+/// First parts of the paths of settings, up to the first dot. All other paths belong to results.
 const SETTINGS: [&str; 17] = [
     "schema",
     "version",
@@ -60,10 +60,10 @@ const SETTINGS: [&str; 17] = [
     "fields",
 ];
 
-/// First parts of the paths that are not compared, because their values do not describe the simulated machine.
+/// First parts of the paths of values that are not compared, because they do not describe the simulated machine.
 const LEFT_OUT: [&str; 4] = ["config_hash", "trace_hash", "host_seconds", "events"];
 
-/// Compares two reports as JSON, such as the contents of two files `report.json`.
+/// Compares two reports in JSON, such as the contents of two files `report.json`.
 #[must_use]
 pub fn diff(a: &Value, b: &Value) -> Differences {
     let [of_a, of_b] = [a, b].map(|report| {
@@ -71,7 +71,7 @@ pub fn diff(a: &Value, b: &Value) -> Differences {
         flatten(String::new(), report, &mut leaves);
         leaves
     });
-    // A key of only one report counts as different.
+    // A key that only one report has counts as different.
     let keys: BTreeSet<&String> = of_a.keys().chain(of_b.keys()).collect();
     let mut all = Differences {
         same_trace: a["trace_hash"].is_string() && a["trace_hash"] == b["trace_hash"],
@@ -97,7 +97,7 @@ pub fn diff(a: &Value, b: &Value) -> Differences {
     all
 }
 
-/// Collects all values of a JSON tree that are neither objects nor lists, with their paths.
+/// Collects all values of a JSON tree except objects and lists, with their paths.
 fn flatten<'a>(path: String, value: &'a Value, leaves: &mut BTreeMap<String, &'a Value>) {
     let joined = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
     match value {
@@ -111,8 +111,7 @@ fn flatten<'a>(path: String, value: &'a Value, leaves: &mut BTreeMap<String, &'a
     }
 }
 
-/// Returns the name of an entry in a list, such as a part of the latency. For an entry without a name, returns the
-/// index of the entry in the list.
+/// Returns the name of an entry in a list, or `None` if the entry has no name.
 fn name_of(value: &Value) -> Option<String> {
     let texts = ["name", "resource", "port", "of", "until"].map(|key| value[key].as_str());
     let texts: Vec<&str> = texts.into_iter().flatten().collect();
@@ -125,7 +124,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn settings_and_results_are_told_apart_and_host_times_left_out() {
+    fn settings_and_results_are_separated_and_host_times_are_ignored() {
         let a = json!({"pipeline": "slats", "shown": 4, "latency_ms": {"mean": 20.0, "n": 4}, "host_seconds": 1.0, "trace_hash": "x"});
         let b = json!({"pipeline": "frameless", "shown": 4, "latency_ms": {"mean": 25.0, "n": 4}, "host_seconds": 2.0, "trace_hash": "y"});
         let found = diff(&a, &b);

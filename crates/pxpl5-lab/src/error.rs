@@ -33,7 +33,7 @@ pub enum StudyError {
     /// The settings have no head motion, so there is no error to compare.
     #[error("expected a head.motion, found none: without a head there is no error to compare")]
     NoHead,
-    /// The query asks for a precision, but the head moves in the same way for every seed.
+    /// The query requires a precision, but the head moves in the same way for every seed.
     #[error(
         "this motion is the same for all seeds: its interval is a bootstrap over time, which more seeds do not make narrower; \
          use head.motion = synthetic or a longer recording, or compare without a precision"
@@ -42,9 +42,9 @@ pub enum StudyError {
     /// The seeds of a comparison are not usable.
     #[error("seeds: expected {expected}, found {found}")]
     Seeds {
-        /// The expected seeds, in words.
+        /// Description of usable seeds.
         expected: String,
-        /// The unusable seed, or the unusable number of seeds, in the query.
+        /// The unusable seed, or the unusable number of seeds.
         found: u64,
     },
     /// A file of finished rows cannot be read or written.
@@ -55,11 +55,11 @@ pub enum StudyError {
     OtherSettings {
         /// Path of the file of finished rows.
         path: String,
-        /// First key, or setting of the comparison, that differs.
+        /// First setting with a different value.
         key: String,
-        /// Value of the differing key in this comparison.
+        /// Value of the setting in this comparison.
         expected: String,
-        /// Value of the differing key in the file.
+        /// Value of the setting in the file.
         found: String,
     },
     /// The folder holds rows of an interrupted comparison, and the user did not allow a resume.
@@ -84,11 +84,11 @@ pub enum StudyError {
         path: String,
         /// Number of the damaged line in the file, counted from 1.
         line: usize,
-        /// Error of the parser.
+        /// Message of the parser.
         found: String,
     },
-    /// The pendulum rig gave no measurement: the tracker reported no pass of the pendulum through its lowest point, or
-    /// the photodiode detected no bright pixel.
+    /// The pendulum rig gave no measurement. Either the tracker reported no pass of the pendulum through its lowest
+    /// point, or the photodiode detected no bright pixel.
     #[error(transparent)]
     Rig(#[from] RigError),
     /// A requested frame was not shown completely.
@@ -96,17 +96,17 @@ pub enum StudyError {
         "expected the time of complete display for {expected} frames that low points requested, found it for {found}"
     )]
     NotShown {
-        /// Number of frames that the rig requested because the pendulum passed its lowest point.
+        /// Number of frames that the rig requested, one for each pass of the pendulum through its lowest point.
         expected: usize,
-        /// Number of requested frames that were shown completely, according to the pipeline's records.
+        /// Number of completely shown frames, according to the pipeline's records.
         found: usize,
     },
-    /// The photodiode cannot detect the appearance of a frame of this pipeline.
+    /// The photodiode cannot detect when a frame of this pipeline appears.
     #[error("expected a pipeline whose frames a photodiode can distinguish, found {pipeline}: {reason}; {definition}")]
     NoFrames {
         /// Name of the pipeline.
         pipeline: &'static str,
-        /// Reason why a step from dark to bright under the photodiode is not the start of a new frame.
+        /// Reason why a change from dark to bright under the photodiode does not show the start of a new frame.
         reason: &'static str,
         /// The pipeline's own definition of the time at which a picture is due.
         definition: &'static str,
@@ -116,7 +116,7 @@ pub enum StudyError {
     Photodiode {
         /// Number of lines on the screen.
         lines: u32,
-        /// Number of the screen's line under the photodiode in the settings, counted from 0.
+        /// Number of the line under the photodiode in the settings, counted from 0.
         found: u32,
     },
 }

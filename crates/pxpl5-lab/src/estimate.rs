@@ -1,32 +1,33 @@
-//! Estimates the memory and time of an experiment, computed from its settings before the experiment starts. Budgets,
-//! sweeps and Slurm jobs use these estimates.
+//! Estimates of the memory and time of an experiment, computed from its settings before the experiment starts.
+//!
+//! Budgets, sweeps and Slurm jobs use these estimates.
 //!
 //! Memory in bytes: `BASE + PICTURES + GP gps + PRIMITIVE primitives + WAITING batch + kept`
 //!
 //! - `PICTURES` counts only for a run that computes all pixels.
 //! - A run that keeps all observations has `kept = fields (FIELD + COPY blocks)`. A run that keeps statistics and its
 //!   last pictures has `kept = fields STATISTICS + min(fields, WINDOW) BLOCK blocks`.
-//! - A tracked head adds `min(fields, JUDGED) ERRORS` to either value of `kept`.
-//! - `batch` is the number of blocks of pixels drawn with one head pose, and `blocks` the greatest number that the ring
-//!   can carry in a field. Both are 0 except in frameless rendering.
+//! - A tracked head adds `min(fields, JUDGED) ERRORS` to `kept`.
+//! - `batch` is the number of blocks of pixels drawn with one head pose. `blocks` is the greatest number of blocks that
+//!   the ring can carry in a field. `batch` and `blocks` are 0 except in frameless rendering.
 //!
-//! The constants of memory are measured: the memory peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
+//! The constants of memory come from the measured peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
 //!
 //! Time in seconds on one core: `runs (FIELD_S fields + pictures eyes (PICTURE_S + GP_S gps) + BLOCK_S blocks fields) +
 //! LOAD_S eyes primitives + JUDGED_FIELD_S fields`
 //!
 //! - `runs` is `RUNS_OF_HEAD` for a tracked head, otherwise 1.
-//! - `LOAD_S` counts only for pictures whose times a closed-form formula gives. At the cycle level, the time of a
-//!   picture also contains `PRIMITIVE_AS_CODE_S primitives`.
-//! - `BLOCK_S` counts only for pipelines that draw blocks. Here `blocks` is the number that the experiment's processors
-//!   can send in a field.
+//! - `LOAD_S` counts only if a closed form gives the times of pictures. At the cycle level, the time of a picture also
+//!   contains `PRIMITIVE_AS_CODE_S primitives`.
+//! - `BLOCK_S` counts only for pipelines that draw blocks. Here `blocks` is the number of blocks that the processors of
+//!   the experiment can send in a field.
 //! - `JUDGED_FIELD_S` counts only for a tracked head.
 //!
 //! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and
 //! sweep-costs-heads.toml, release build). The fit minimizes the error of the logarithms, so that overestimates and
-//! underestimates count alike. docs/sweeps.md, "What a point costs", lists the errors of single points. The cost also
-//! depends on the visible part of a scene and on repeated head poses, which no formula predicts. An estimate is good
-//! enough to distinguish minutes from weeks. Running experiments are monitored as well.
+//! underestimates count alike. docs/guide/sweep-times.md, "What a point costs", lists the errors of single points. The
+//! cost also depends on the visible part of a scene and on repeated head poses, which no formula predicts. An estimate
+//! is good enough to distinguish minutes from weeks. Running experiments are monitored as well.
 
 use crate::Plan;
 use pxpl5_run::{KeyValue, Level, Pixels};
@@ -45,12 +46,12 @@ pub struct RunWork {
     pub eyes: u64,
     /// Number of pictures for each eye in a display field, at most 1.
     pub pictures_a_field: f64,
-    /// True if a closed-form formula gives the times of the pictures. The estimate then also counts the time to
-    /// transform each primitive once for each eye.
+    /// True if a closed form gives the times of the pictures. The estimate then counts the time to transform each
+    /// primitive once for each eye.
     pub uses_closed_form: bool,
-    /// Number of blocks of pixels drawn with one head pose, or 0 for a pipeline without blocks.
+    /// Number of blocks of pixels that are drawn with one head pose. 0 for a pipeline without blocks.
     pub batch: u64,
-    /// Width of a block of pixels, or 0 for a pipeline without blocks.
+    /// Width of a block in pixels. 0 for a pipeline without blocks.
     pub block: u64,
     /// True if the simulated processors execute i860 instructions.
     pub is_cycle_level: bool,
@@ -58,7 +59,7 @@ pub struct RunWork {
     pub keeps_everything: bool,
     /// True if the experiment has a tracked head.
     pub is_tracked: bool,
-    /// True if all pixels are computed during the run.
+    /// True if the run computes all pixels.
     pub computes_all_pixels: bool,
 }
 
@@ -71,70 +72,69 @@ pub struct Estimate {
     pub seconds: f64,
 }
 
-/// Memory in bytes of the process with a small machine.
+/// Bytes of the process with a small machine.
 const BASE: f64 = 15e6;
-/// Memory in bytes of the pictures in a run that computes all pixels.
+/// Bytes of the pictures in a run that computes all pixels.
 const PICTURES: f64 = 10e6;
-/// Memory in bytes of a graphics processor.
+/// Bytes for one graphics processor.
 const GP: f64 = 60e3;
-/// Memory in bytes of a primitive, including its entries in all lists.
+/// Bytes for one primitive, including its entries in all lists.
 const PRIMITIVE: f64 = 200.0;
-/// Memory in bytes for each block of pixels that is drawn with one head pose.
+/// Bytes for each block of pixels that is drawn with one head pose.
 const WAITING: f64 = 5.5e3;
-/// Memory in bytes for each field, in a run that keeps all observations.
+/// Bytes for each field in a run that keeps all observations.
 const FIELD: f64 = 4e3;
-/// Memory in bytes for each block of pixels in a field, in a run that keeps all observations.
+/// Bytes for each block of pixels in a field, in a run that keeps all observations.
 const COPY: f64 = 350.0;
-/// Memory in bytes for each field, in a run that keeps only statistics.
+/// Bytes for each field in a run that keeps only statistics.
 const STATISTICS: f64 = 10.0;
-/// Memory in bytes for each block of pixels in a field, in a run that keeps only statistics.
+/// Bytes for each block of pixels in a field, in a run that keeps only statistics.
 const BLOCK: f64 = 100.0;
-/// Number of latest fields whose blocks of pixels stay in memory, in a run that keeps only statistics.
+/// A run that keeps only statistics still stores the blocks of pixels of the most recent fields. This constant is the
+/// number of these fields.
 const WINDOW: f64 = 240.0;
-/// Memory in bytes of the pixel errors of a display field.
+/// Bytes for the pixel errors of one display field.
 const ERRORS: f64 = 1e3;
-/// Maximum number of display fields for which a run keeps separate pixel errors.
+/// Maximum number of display fields for which a run stores separate pixel errors.
 const JUDGED: f64 = 20_971.0;
 
 /// Seconds to simulate a field, including its retrace and the samples of the head pose.
 const FIELD_S: f64 = 3.5e-4;
 /// Seconds to simulate the regions of one eye's picture.
 const PICTURE_S: f64 = 1.8e-4;
-/// Seconds to simulate one processor's messages for one eye's picture.
+/// Seconds to simulate the messages of one processor for one eye's picture.
 const GP_S: f64 = 1.3e-5;
 /// Seconds to simulate a block of pixels in frameless rendering.
 const BLOCK_S: f64 = 5.6e-6;
-/// Seconds to transform a primitive for one eye. The primitives are transformed when a head pose is first drawn.
+/// Seconds to transform a primitive for one eye. Primitives are transformed when a head pose is first drawn.
 const LOAD_S: f64 = 2.8e-5;
 /// Seconds to simulate one primitive of a picture as i860 code. Assumed, from the speeds in the README.
 const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;
-/// Number of simulations of an experiment with a tracked head: a dry run, which measures the prediction interval, and
-/// the run itself.
+/// Number of simulations with a tracked head: a dry run, which measures the prediction interval, and the run itself.
 const RUNS_OF_HEAD: f64 = 2.0;
 /// Seconds to evaluate the pixel errors of a field.
 const JUDGED_FIELD_S: f64 = 6e-4;
-/// Slowdown factor of a simulation on a computer that is busy with other work. Assumed. Four measured runs on two busy
-/// cores took 1.3 to 12 times as long as the estimate for an idle core.
+/// Factor on the time for a computer that is busy with other work. Assumed. Four measured runs on two busy cores took
+/// 1.3 to 12 times as long as the estimate for an idle core.
 const BUSY: f64 = 2.5;
 
-/// Duration of an NTSC field in seconds. Estimates use this value for every display.
+/// Duration of an NTSC field in seconds, which estimates use for every display.
 const NTSC_FIELD_S: f64 = 16.683_333e-3;
-/// Seconds to send a word over the ring. Estimates use this value for every machine.
+/// Seconds to send a word over the ring, which estimates use for every machine.
 const WORD_S: f64 = 50e-9;
-/// Seconds that a simulated graphics processor takes to transform a primitive. Estimates use this value for every
-/// machine.
+/// Seconds in which a simulated graphics processor transforms a primitive, which estimates use for every machine.
 const TRANSFORM_S: f64 = 21.7e-6;
-/// Number of words sent with each block of pixels, in addition to its pixels.
+/// Number of words in the messages of a block in addition to its pixels.
 const BLOCK_WORDS: f64 = 16.0;
-/// Number of processors whose blocks of pixels saturate the ring.
+/// Number of processors whose blocks of pixels fill the ring completely.
 const BLOCK_GPS: f64 = 20.0;
-/// Minimum time between two blocks of pixels in seconds, limited by the messages of the processors. Derived: half of 12
-/// us, because two blocks are sent at a time.
+/// Minimum time between two blocks of pixels in seconds, due to the messages of the processors. Derived: half of 12 us,
+/// because two blocks are sent at a time.
 const LEAST_BLOCK_S: f64 = 6e-6;
 
 impl Estimate {
     /// Combines the estimates of many runs that are divided among `threads` threads. The time is the sum of all times
-    /// divided by the number of threads. The memory is the largest memory of a run times the number of threads.
+    /// divided by `threads`. The memory is the largest memory of a run times `threads`.
     #[must_use]
     pub fn of_all(all: impl IntoIterator<Item = Self>, threads: usize) -> Self {
         let threads = threads.max(1) as f64;
@@ -146,8 +146,8 @@ impl Estimate {
 }
 
 impl RunWork {
-    /// Returns the quantities that determine the cost of a checked experiment with its scene. Each field has one
-    /// picture, or less if the processors need longer than a field to transform all primitives.
+    /// Returns the quantities that determine the cost of an experiment with its scene. Each field has one picture, or
+    /// less if the processors need longer than a field to transform all primitives.
     #[must_use]
     pub fn of(plan: &Plan, scene: &Scene, keeps_everything: bool) -> Self {
         let settings = plan.pipeline.settings();
@@ -175,19 +175,20 @@ impl RunWork {
         work
     }
 
-    /// Returns the time, in NTSC fields, that the simulated processors take to transform all primitives for all eyes.
+    /// Returns the number of NTSC fields in which the simulated processors transform all primitives for all eyes.
     #[must_use]
     pub fn fields_of_transform(&self) -> f64 {
         let primitives = (self.primitives * self.eyes).max(1) as f64;
         TRANSFORM_S * primitives / (NTSC_FIELD_S * self.gps.max(1) as f64)
     }
 
-    /// Returns the maximum number of blocks of pixels in a field, limited by the ring and by the processors' messages.
+    /// Returns the maximum number of blocks of pixels in a field, limited by the ring and by the messages of the
+    /// processors.
     fn most_blocks(&self) -> f64 {
         if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s().max(LEAST_BLOCK_S) }
     }
 
-    /// Returns the number of blocks of pixels in a field that the experiment's processors can send.
+    /// Returns the number of blocks of pixels that the processors of the experiment can send in a field.
     fn blocks(&self) -> f64 {
         if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s() * (self.gps as f64 / BLOCK_GPS).min(1.0) }
     }
@@ -196,17 +197,17 @@ impl RunWork {
         WORD_S * ((self.block * self.block) as f64 + BLOCK_WORDS)
     }
 
-    /// Estimates memory and time of the experiment by the formulas in the documentation of [`crate::estimate`].
+    /// Estimates memory and time by the formulas in the documentation of [`crate::estimate`].
     #[must_use]
     pub fn estimate(&self) -> Estimate {
         Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() }
     }
 
-    /// Estimates the peak memory of the experiment in bytes.
+    /// Estimates the peak memory in bytes.
     #[must_use]
     pub fn bytes(&self) -> f64 {
         let fields = self.fields as f64;
-        // Observations dominate long runs; lists dominate large scenes.
+        // In long runs, observations take most of the memory. In large scenes, lists take most of the memory.
         let kept = if self.keeps_everything {
             fields * (FIELD + COPY * self.most_blocks())
         } else {
@@ -218,7 +219,7 @@ impl RunWork {
         BASE + pictures + GP * self.gps as f64 + lists + kept + errors
     }
 
-    /// Estimates the run time of the experiment in seconds on one idle core.
+    /// Estimates the run time in seconds on one idle core.
     #[must_use]
     pub fn core_seconds(&self) -> f64 {
         let (fields, eyes, primitives) = (self.fields as f64, self.eyes as f64, self.primitives as f64);
@@ -232,12 +233,13 @@ impl RunWork {
     }
 }
 
-/// A command that simulates a fixed set of experiments, with the settings that determine the cost of the command.
+/// A command with a fixed set of experiments, and the settings that determine its cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Study {
     /// The measurement of all published figures.
     Figures,
-    /// The ranking of interpretations ([`crate::readings`]), and the size of the fly-through of the scene "mig".
+    /// The ranking of interpretations ([`crate::readings`]), including the simulation of the fly-through of the scene
+    /// "mig".
     Readings {
         /// Number of seeds of the fly-through.
         seeds: u64,
@@ -246,42 +248,40 @@ pub enum Study {
         /// Number of best interpretations that are also simulated with events.
         best: u64,
     },
-    /// The comparison of all levels of modelling ([`crate::levels`]).
+    /// The comparison of the levels of detail ([`crate::levels`]).
     Levels {
-        /// Number of random experiments that measure the error against the cycle level.
+        /// Number of random experiments that measure the error relative to the cycle level.
         experiments: u64,
-        /// True if the simulation speeds are measured too.
+        /// True if the speed of the simulation is measured too.
         measures_speeds: bool,
     },
 }
 
-/// CPU seconds to measure all published figures. This constant and the following constants are fitted to measurements
-/// with the build profile `dist` on one core of 3 GHz (25 November 2026).
+/// CPU seconds to measure all published figures. This constant and the constants below were measured with the build
+/// profile `dist` on one core of 3 GHz (25 November 2026).
 const FIGURES_S: f64 = 36.0;
-/// CPU seconds to rank all interpretations for one frame of an application scene. Each interpretation that is also
+/// CPU seconds to rank all interpretations with one frame of an application scene. Each interpretation that is also
 /// simulated with events adds the fraction `READINGS_BEST` of this time.
 const READINGS_FRAME_S: f64 = 0.0172;
 const READINGS_BEST: f64 = 0.1;
-/// CPU seconds to simulate the published figures at all levels of modelling. The next two constants are the CPU seconds
-/// of one random experiment at all levels, and of the measurement of all simulation speeds.
+/// CPU seconds to simulate the published figures at all levels of detail. The next two constants are the CPU seconds of
+/// one random experiment at all levels, and of the measurement of all simulation speeds.
 const LEVELS_S: f64 = 56.0;
 const LEVELS_EXPERIMENT_S: f64 = 0.52;
 const SPEEDS_S: f64 = 23.0;
-/// Peak memory in bytes to measure all published figures. This constant and the next two were measured with two threads
-/// and rounded up.
+/// Peak memory in bytes to measure all published figures. This constant and the next two constants were measured with
+/// two threads and rounded up.
 const FIGURES_BYTES: f64 = 300e6;
 const READINGS_BYTES: f64 = 60e6;
 const LEVELS_BYTES: f64 = 800e6;
 
 impl Study {
-    /// Estimates the memory and the time of the study on `threads` threads. The computer is assumed to do other work
-    /// too.
+    /// Estimates the memory and time of the study on `threads` threads of a computer that also does other work.
     #[must_use]
     pub fn estimate(self, threads: usize) -> Estimate {
         Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() / threads.max(1) as f64 }
     }
 
-    /// Returns the peak memory in bytes.
     const fn bytes(self) -> f64 {
         match self {
             Self::Figures => FIGURES_BYTES,
@@ -290,12 +290,12 @@ impl Study {
         }
     }
 
-    /// Returns the run time in seconds on one core that does no other work.
+    /// Returns the run time in seconds on one idle core.
     fn core_seconds(self) -> f64 {
         match self {
             Self::Figures => FIGURES_S,
             Self::Readings { seeds, frames, best } => {
-                // The aircraft has all seeds, the molecules a third of the seeds, the head a fifth.
+                // The scene "mig" has all seeds, "molecules" a third of the seeds, and "head" a fifth.
                 let frames = frames * (seeds + seeds.div_ceil(3) + seeds.div_ceil(5));
                 READINGS_FRAME_S * frames as f64 * (1.0 + READINGS_BEST * best as f64)
             }
@@ -343,7 +343,7 @@ mod tests {
     ];
 
     #[test]
-    fn many_runs_take_the_sum_of_their_times_and_the_largest_memory_of_each_thread() {
+    fn many_runs_take_the_sum_of_times_and_the_largest_memory_of_each_thread() {
         let runs = [(3e9, 10.0), (5e9, 20.0), (4e9, 30.0)].map(|(bytes, seconds)| Estimate { bytes, seconds });
         assert_eq!(Estimate::of_all(runs.into_iter(), 2), Estimate { bytes: 10e9, seconds: 30.0 });
         assert_eq!(Estimate::of_all(std::iter::empty(), 0), Estimate { bytes: 0.0, seconds: 0.0 });
@@ -360,7 +360,7 @@ mod tests {
     /// Tests the estimated time of four runs whose time was measured on a busy computer. The estimate must be 0.1 to 2
     /// times the measured time.
     #[test]
-    fn time_is_estimated_between_a_tenth_and_the_double_of_a_busy_computer() {
+    fn the_estimated_time_of_a_run_is_0_1_to_2_times_the_measured_time() {
         for (work, seconds) in [
             (RunWork { fields: 12_000, ..SMALL }, 47.5),
             (RunWork { fields: 120, block: 16, ..SMALL }, 7.5),
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn more_of_anything_takes_more() {
+    fn larger_inputs_have_larger_estimates() {
         let least = RunWork { block: 16, batch: 4, ..SMALL }.estimate();
         for more in [
             RunWork { fields: 1_201, block: 16, batch: 4, ..SMALL },
@@ -402,7 +402,7 @@ mod tests {
     ];
 
     #[test]
-    fn studies_take_what_is_estimated_within_a_third() {
+    fn the_estimated_time_of_a_study_is_within_a_third_of_the_measured_time() {
         for (study, seconds, megabytes) in STUDIES {
             let time = study.core_seconds() / seconds;
             let memory = study.bytes() / 1e6 / megabytes;

@@ -1,4 +1,5 @@
-//! Experiments as text: TOML files, single settings `path=value`, and the checked [`Plan`] that results from both.
+//! Experiments as text: TOML files and single settings `path=value`. A checked [`Plan`] results from a file and the
+//! settings that are added to it.
 //!
 //! ```
 //! use pxpl5_lab::ExperimentFile;
@@ -56,7 +57,7 @@ use std::sync::Arc;
 use toml::Value;
 use toml::de::DeTable;
 
-/// The value of a setting, with its origin: a file and line, or an option.
+/// The value of a setting with its origin: a file and line, or an option of the command line.
 #[derive(Clone, Debug)]
 pub(crate) struct Setting {
     pub(crate) value: Value,
@@ -66,7 +67,8 @@ pub(crate) struct Setting {
 }
 
 impl Setting {
-    /// Returns the place of the setting with its key. An option such as `--level` names its key already.
+    /// Returns the origin of the setting and its key, for error messages. The origin `--level` is returned alone,
+    /// because it names the key already.
     fn place_of(&self, key: &str) -> String {
         match self.place.as_str() {
             "" => key.to_owned(),
@@ -76,32 +78,31 @@ impl Setting {
     }
 }
 
-/// Name of the head motion whose seed is the seed of the run.
+/// Name of the random head motion, which gets its seed from the run.
 const SYNTHETIC: &str = "synthetic";
 
-/// The settings of an experiment by path. Each setting was read, but the combination of all settings is not yet
+/// The settings of an experiment by path. Each setting is valid, but the combination of all settings is not yet
 /// checked.
 #[derive(Clone, Debug)]
 pub struct ExperimentFile {
     registry: Arc<Registry>,
     pub(crate) settings: BTreeMap<String, Setting>,
-    /// Sentences about settings whose keys have former names.
+    /// Warnings about settings with former names.
     pub(crate) notes: Vec<String>,
     pub(crate) sweep: Option<Setting>,
     /// File and line of each key in the table `sweep`, by the path of the key.
     pub(crate) sweep_places: BTreeMap<String, String>,
-    /// Contents of files that are held in memory, by file name.
     contents: BTreeMap<String, Arc<[u8]>>,
 }
 
 impl ExperimentFile {
-    /// Creates an experiment file without settings. The settings can name the built-in pipelines and displays.
+    /// Creates an experiment file without settings, for the built-in pipelines and displays.
     #[must_use]
     pub fn new() -> Self {
         Self::with(crate::registry())
     }
 
-    /// Creates an experiment file without settings. The settings can name the pipelines and displays of a registry.
+    /// Creates an experiment file without settings, for the pipelines and displays of `registry`.
     #[must_use]
     pub fn with(registry: Arc<Registry>) -> Self {
         Self {
@@ -114,14 +115,14 @@ impl ExperimentFile {
         }
     }
 
-    /// Returns the registry of the pipelines and displays that the file can name.
+    /// Returns the registry of the pipelines and displays that settings can name.
     #[must_use]
     pub const fn registry(&self) -> &Arc<Registry> {
         &self.registry
     }
 
-    /// Returns the keys for the pipelines and displays of a registry. Two groups of keys are left out. The keys of
-    /// machine parameters are `machine.` followed by a path of `MachineConfig::set`. [`tracking_parameters`] lists the
+    /// Returns the keys for the pipelines and displays of a registry. Two groups of keys are left out. The key of a
+    /// machine parameter is `machine.` followed by a path of `MachineConfig::set`. [`tracking_parameters`] lists the
     /// keys of trackers and predictors.
     #[must_use]
     pub fn keys_of(registry: &Registry) -> Vec<FileKey> {
@@ -137,7 +138,7 @@ impl ExperimentFile {
         Self::new().and_load(path)
     }
 
-    /// Reads an experiment file, whose settings override the current settings.
+    /// Reads an experiment file. Its settings replace the current settings.
     ///
     /// # Errors
     ///
@@ -152,7 +153,7 @@ impl ExperimentFile {
         self.parse_in(text, &file, &folder)
     }
 
-    /// Parses the text of an experiment file. Error messages call the text `name`.
+    /// Parses the text of an experiment file. `name` stands for the file name in error messages.
     ///
     /// # Errors
     ///
@@ -161,7 +162,8 @@ impl ExperimentFile {
         Self::new().and_parse(text, name)
     }
 
-    /// Parses text, whose settings override the current settings. Error messages call the text `name`.
+    /// Parses the text of an experiment file. Its settings replace the current settings. `name` stands for the file
+    /// name in error messages.
     ///
     /// # Errors
     ///
@@ -193,7 +195,7 @@ impl ExperimentFile {
         Ok(self)
     }
 
-    /// Sets the value of a key. `place` names the origin of the value in error messages, such as `--fields`.
+    /// Sets the value of a key. `place` is the origin of the value in error messages, such as `--fields`.
     ///
     /// # Errors
     ///
@@ -202,8 +204,8 @@ impl ExperimentFile {
         self.put(path, value.into(), place.to_owned(), Path::new(""))
     }
 
-    /// Provides the contents of a model file or recording from memory. The contents are used wherever a setting names
-    /// the file `name`. Hosts without a file system, such as browsers, need this function.
+    /// Stores the contents of a model file or recording in memory. Settings with the file name `name` use these
+    /// contents. Programs without a file system, such as web pages, need this function.
     #[must_use]
     pub fn with_contents(mut self, name: impl Into<String>, contents: impl Into<Arc<[u8]>>) -> Self {
         self.contents.insert(name.into(), contents.into());
@@ -229,7 +231,7 @@ impl ExperimentFile {
         Ok(self.whole("seed")?.unwrap_or(1))
     }
 
-    /// Returns the checked experiment for one seed. If `head.motion` is `synthetic`, the motion has the same seed.
+    /// Returns the checked settings for one seed. If `head.motion` is `synthetic`, the motion has the same seed.
     ///
     /// # Errors
     ///
@@ -243,8 +245,8 @@ impl ExperimentFile {
         file.resolve()
     }
 
-    /// Returns true if the head moves differently for each seed. The head does so for the motion `synthetic` if the
-    /// setting states no seed for the motion.
+    /// Returns true if the head moves differently for each seed. This requires the motion `synthetic` without a seed of
+    /// its own.
     ///
     /// # Errors
     ///
@@ -253,7 +255,7 @@ impl ExperimentFile {
         Ok(self.text("head.motion")? == Some(SYNTHETIC))
     }
 
-    /// Sets a key from the text `path=value`. A value that is not valid TOML is taken as a string.
+    /// Sets a key from the text `path=value`. A value that is not valid TOML becomes a string.
     ///
     /// # Errors
     ///
@@ -268,11 +270,10 @@ impl ExperimentFile {
         self.set(path.trim(), value.unwrap_or_else(|| Value::String(text.trim().to_owned())), place)
     }
 
-    /// Stores a value under the full path of its key.
     pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), SettingError> {
         let canonical = self.canonical_key(path, &place)?;
         if keys::renamed(path) != path {
-            // A call in a program has no place.
+            // A setting that a program has made by a call has no place in a file.
             let place = if place.is_empty() { String::new() } else { format!("{place}: ") };
             self.notes.push(format!("{place}{path} is now {canonical}; the next version does not accept {path}"));
         }
@@ -288,11 +289,7 @@ impl ExperimentFile {
         Ok(())
     }
 
-    /// Returns the full path of a key that may be abbreviated.
-    ///
-    /// # Errors
-    ///
-    /// Returns a [`SettingError`] with the most similar valid path.
+    /// Returns the full path of a key, which may be abbreviated. An error names the most similar valid path.
     pub(crate) fn canonical_key(&self, path: &str, place: &str) -> Result<String, SettingError> {
         keys::canonical(&self.registry, path).ok_or_else(|| keys::unknown(&self.registry, path).at(place))
     }
@@ -302,7 +299,7 @@ impl ExperimentFile {
         self.settings.keys().map(String::as_str)
     }
 
-    /// Copies all settings of another file into this file. The copied settings override the current settings.
+    /// Copies all settings of another file into this file. The copied settings replace the current settings.
     pub fn overlay(&mut self, other: Self) {
         if other.is_sweep() {
             self.sweep = other.sweep;
@@ -312,7 +309,7 @@ impl ExperimentFile {
         self.notes.extend(other.notes);
     }
 
-    /// Returns true if the file describes a sweep (one experiment at many points of a parameter space).
+    /// Returns true if the file describes a sweep, which runs an experiment at many points of a parameter space.
     #[must_use]
     pub const fn is_sweep(&self) -> bool {
         self.sweep.is_some()
@@ -325,8 +322,8 @@ impl Default for ExperimentFile {
     }
 }
 
-/// Returns the values of a nested TOML table with their paths and byte positions. An empty table counts as a value, so
-/// that the table is not lost.
+/// Returns the values of a nested TOML table with their paths and byte positions. An empty table counts as a value and
+/// is not lost.
 fn flat(
     path: String,
     value: Value,
@@ -358,7 +355,6 @@ fn starts(path: &str, table: &toml::de::DeValue<'_>) -> Vec<(String, usize)> {
     nested.collect()
 }
 
-/// Returns the file name and the line number of a byte position, for error messages.
 fn place(text: &str, name: &str, at: usize) -> String {
     format!("{name}, line {}", line(text, at))
 }

@@ -54,40 +54,40 @@ use thiserror::Error;
 pub struct FigureError {
     /// Number of the figure in ACCURACY.md.
     pub id: String,
-    /// Reason why the experiment yields no result.
+    /// Reason for the missing result.
     pub reason: String,
 }
 
 /// All published figures with the model's values and intervals.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
-    /// Table rows of the published figures, in the order of [`FIGURES`].
+    /// Rows of the main table, in the order of [`FIGURES`].
     pub rows: Vec<FigureRow>,
-    /// Interval of each figure while the unpublished parameters vary. Figures that depend only on scenes are left out.
-    /// The list is empty if the settings leave out intervals ([`Bench::without_intervals`]).
+    /// Interval of each figure while the unpublished parameters vary. Figures that depend only on scenes have no
+    /// interval. The list is empty if the settings leave out intervals ([`Bench::without_intervals`]).
     pub intervals: Vec<Interval>,
     /// Figures of papers about other systems than Pixel-Planes 5.
     pub families: Vec<FigureFamily>,
-    /// Further figures of Pixel-Planes 5 by topic: peak rates, just-in-time pixels, trackers.
+    /// Other figures of Pixel-Planes 5 by topic: peak rates, just-in-time pixels, trackers.
     pub groups: Vec<FigureGroup>,
 }
 
-/// Published figures under other assumptions than the assumptions of [`Figures`]. The document ACCURACY.md has all of
-/// them. The JSON of the command has the first list.
+/// Published figures under other assumptions than in [`Figures`]. ACCURACY.md shows all members. The JSON of `pxpl5
+/// figures` has only the member `of_code`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Alternatives {
-    /// Rows of the main table, measured with the times of executed i860 code, without intervals.
+    /// Rows of the main table with the times of executed i860 code, without intervals.
     pub of_code: Vec<FigureRow>,
-    /// Agreement of the model with the published figures of Rendering Control, for each interpretation of the papers at
-    /// the analytic level.
+    /// Fit of the model to the published figures of Rendering Control, for each interpretation of the papers, at the
+    /// analytic level.
     pub readings: Readings,
-    /// Latencies of the fly-throughs for several times of the host's application, at the analytic level.
+    /// Latencies of the fly-throughs for several times of the application on the host, at the analytic level.
     pub application_times: Vec<ApplicationTime>,
 }
 
-/// Number of seeds for each application scene, when interpretations of the papers are ranked.
+/// Number of seeds for each application scene in the ranking of interpretations of the papers.
 const SEEDS: u64 = 6;
-/// Number of frames for each seed, when interpretations of the papers are ranked.
+/// Number of frames for each seed in the ranking of interpretations of the papers.
 const FRAMES: u64 = 150;
 
 /// Measures all figures in parallel, with their intervals if the settings include intervals.
@@ -99,9 +99,8 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
     run_all_with(bench, |_, _| {})
 }
 
-/// Measures all figures in parallel, like [`run_all`]. `finished` is called with the number of finished steps and the
-/// number of all steps. A step is the measurement of one figure of the main table, or of another member of
-/// [`Figures`].
+/// Measures all figures in parallel, like [`run_all`]. Calls `finished` with the number of finished steps and the
+/// number of all steps. A step is the measurement of one row of the main table, or of another member of [`Figures`].
 ///
 /// # Errors
 ///
@@ -126,9 +125,8 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
     Ok(Figures { rows, intervals, families, groups })
 }
 
-/// Measures the figures under other assumptions in parallel: the times of executed code, the other interpretations of
-/// the papers, and other times of the host's application. `finished` is called with the number of finished parts and
-/// the number of all parts.
+/// Measures the members of [`Alternatives`] in parallel. Calls `finished` with the number of finished members and the
+/// number of all members.
 ///
 /// # Errors
 ///
@@ -153,7 +151,6 @@ pub fn alternatives_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> R
     })
 }
 
-/// Runs `part`, calls `step`, and returns the part's result.
 fn stepped<T>(step: &impl Fn(), part: impl FnOnce() -> T) -> T {
     let result = part();
     step();

@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-/// Size and result of one run. If no frame was shown, the members from `frames` on are zero.
+/// Size and result of one run. If no frame was shown, `frames` and all members below it are zero.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Point {
     /// Number of triangles and spheres in the scene.
@@ -25,32 +25,29 @@ pub struct Point {
     pub host_ms: f64,
     /// Mean latency of a frame in display fields.
     pub latency_fields: f64,
-    /// Number of frames per second of simulated time, or 0 for fewer than two frames.
+    /// Frames per second of simulated time, or 0 for fewer than two frames.
     pub updates_hz: f64,
 }
 
-/// Sizes of the test scenes in triangles, for a machine of 50 graphics processors (GPs) and 5 renderers.
+/// Triangles in the test scenes for a machine of 50 graphics processors (GPs) and 5 renderers.
 const TRIANGLES: [u32; 7] = [12, 100, 1_000, 10_000, 100_000, 300_000, 1_000_000];
 
-/// Sizes of the scenes, in triangles, that machines of all sizes draw: a typical scene of 1994, and the built-in head.
+/// Triangles in the scenes for machines of all sizes: a typical scene of 1994, and the built-in head.
 const SCENES: [u32; 2] = [10_000, 59_592];
 
-/// Sizes of the machines: number of GPs and number of renderers. Each machine draws each of the [`SCENES`].
+/// Numbers of GPs and of renderers. Each machine draws all scenes in [`SCENES`].
 const MACHINES: [(usize, usize); 9] = [(2, 5), (4, 5), (13, 5), (24, 5), (50, 5), (13, 1), (13, 2), (13, 10), (13, 20)];
 
-/// Memory of a GP in bytes in these runs. A million triangles do not fit into 50 real graphics processors with 8 MB
-/// each.
+/// Memory of a GP in bytes. A million triangles do not fit into 50 real graphics processors with 8 MB each.
 const MEMORY_BYTES: u64 = 1 << 30;
 
-/// Time to process a triangle in nanoseconds. The first time is for the graphics processor. The second time is for
-/// renderers, over the 1.35 regions that a triangle touches. The number of fields of a run is computed from these
-/// times.
+/// Nanoseconds to process a triangle: in a graphics processor, and in renderers for the 1.35 regions under a triangle.
+/// The length of a run is computed from these times.
 const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
 
-/// Minimum number of frames that a run shows.
 const FRAMES: u64 = 30;
 
-/// Returns the number of display periods that a run needs to show [`FRAMES`] stereo frames.
+/// Returns the number of display periods in which a run shows [`FRAMES`] stereo frames.
 fn fields(config: &MachineConfig, triangles: u64) -> Result<u64, ExperimentError> {
     let slaves = config.n_gps as u64 - 1;
     let renderers = config.n_renderers as u64;
@@ -59,7 +56,6 @@ fn fields(config: &MachineConfig, triangles: u64) -> Result<u64, ExperimentError
     Ok(50 + FRAMES * frame_ns / period_ns)
 }
 
-/// Runs the same experiment three times and returns the fastest run.
 fn run(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, ExperimentError> {
     let mut fastest = run_once(triangles, n_gps, n_renderers)?;
     for _ in 1..3 {
@@ -132,9 +128,8 @@ pub struct Application {
     pub frames: usize,
 }
 
-/// Number of seeds of the head motion for each application scene.
 const SEEDS: u64 = 30;
-/// Number of display fields in a run of an application scene: 300 frames at 30 Hz, and the warm-up.
+/// Number of display fields in a run of an application scene: the warm-up and 300 frames at 30 Hz.
 const FIELDS: u64 = 616;
 
 /// Simulates the scenes `mig`, `molecules` and `head` on the machine presets `small-hmd`, `medium` and `large`.
@@ -239,25 +234,25 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
     }
     text.push_str(
         "\nThe latencies are `latency_fields` of the pair of eyes, with back faces. Figure 7 counts whole retraces of each eye\n\
-         without back faces, so its values are lower ([One scene, several latencies](results.md#one-scene-several-latencies)).\n",
+         without back faces, so its values are lower ([One scene, several latencies](guide/latency.md#one-scene-several-latencies)).\n",
     );
     text
 }
 
-/// Returns the exponent of the power law by which a quantity grows with the number of primitives. Only runs with at
-/// least `from` primitives count.
+/// Returns the exponent of the power law by which a quantity grows with the number of primitives, over runs with at
+/// least `from` primitives.
 fn power(points: &[Point], from: usize, of: impl Fn(&Point) -> f64) -> f64 {
     let large = points.iter().filter(|p| p.primitives >= from && p.frames > 0);
     exponent(&large.map(|p| (p.primitives as f64, of(p))).collect::<Vec<_>>())
 }
 
-/// Returns the additional host time per frame on a machine, in percent of the time for 13 GPs and 5 renderers.
+/// Returns the additional host time per frame, in percent of the time with 13 GPs and 5 renderers.
 fn more_host_time(points: &[Point], primitives: usize, machine: (usize, usize)) -> Option<f64> {
     let other_ms = host_ms(points, primitives, machine)?;
     Some((other_ms / host_ms(points, primitives, (13, 5))? - 1.0) * 100.0)
 }
 
-/// Returns the computing time per frame of a machine in milliseconds, or `None` if no frame was shown.
+/// Returns the host time per frame in milliseconds, or `None` if no frame was shown.
 fn host_ms(points: &[Point], primitives: usize, (n_gps, n_renderers): (usize, usize)) -> Option<f64> {
     let mut shown = points.iter().filter(|p| p.frames > 0);
     let point = shown.find(|p| (p.primitives, p.n_gps, p.n_renderers) == (primitives, n_gps, n_renderers))?;
@@ -280,8 +275,8 @@ fn table(text: &mut String, points: &[Point]) {
     }
 }
 
-/// Writes a chart of the computing time for each number of triangles, with logarithmic axes. Each row of the chart is
-/// one scene size, and each column is a tenth of a decade of the computing time.
+/// Writes a chart of the host time for each number of triangles, with logarithmic axes. Each row is one scene size, and
+/// each column is a tenth of a decade of host time.
 fn chart(text: &mut String, points: &[Point]) {
     let least = points.iter().filter(|p| p.frames > 0).map(|p| p.host_ms).fold(f64::INFINITY, f64::min).log10().floor();
     for p in points.iter().filter(|p| p.frames > 0) {
@@ -300,7 +295,7 @@ fn chart(text: &mut String, points: &[Point]) {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn the_exponent_of_a_power_is_found() {
+    fn the_exponent_of_a_power_law_is_found_from_its_points() {
         let points: Vec<_> = (1..20).map(|i| (f64::from(i), 3.0 * f64::from(i).powf(1.5))).collect();
         assert!((super::exponent(&points) - 1.5).abs() < 1e-9);
     }

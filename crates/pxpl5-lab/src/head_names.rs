@@ -1,4 +1,4 @@
-//! Builds head motions, trackers and predictors from their names.
+//! Builders of head motions, trackers and predictors from their names.
 
 use glam::{DVec3, Vec3};
 use pxpl5_sim::parameters::{FileError, FileErrorKind, SettingError};
@@ -14,11 +14,10 @@ use tracking::motion::{
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
-/// Maximum speed of the motion `pan` in degrees per second. The peak rate of a human head is far lower, 370 degrees per
-/// second.
+/// Maximum speed of the motion `pan` in degrees per second. A human head reaches at most 370 degrees per second.
 const FASTEST_PAN: f64 = 10_000.0;
 
-/// Forms of all motions that [`motion`] and [`walk`] accept, for help texts and errors.
+/// Syntax of all motions that [`motion`] and [`walk`] accept, for help texts and errors.
 pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S (or \
                            walk:M_PER_S:SEED) along the scene's path, or a recording (FILE.csv, FILE.txt, FILE.tum or FILE.jsonl)";
 
@@ -27,16 +26,16 @@ const FASTEST_SLIDE: f64 = 100.0;
 /// Maximum frequency of the motion `sine` in Hz.
 const HIGHEST_HZ: f64 = 100.0;
 
-/// Options for replaying a recorded head motion: the format of its file, and the behaviour at its end.
+/// Options for the replay of a recorded head motion: the format of its file, and the behaviour at its end.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Replay {
-    /// Columns and axes of the recording's file, for a file whose header does not state the columns and axes.
+    /// Columns and axes of a file whose header does not state its columns and axes.
     pub format: RecordingFormat,
     /// Behaviour after the last sample of the recording.
     pub end: End,
 }
 
-/// Returns true if the name denotes the motion `walk`, along the scene's path.
+/// Returns true for a motion `walk`, which follows the scene's path.
 #[must_use]
 pub fn is_walk(name: &str) -> bool {
     name.split(':').next() == Some("walk")
@@ -61,7 +60,7 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, SettingError> {
     };
     let no_path = |_| no_path(text);
     let corners: Vec<DVec3> = path.iter().map(|corner| corner.as_dvec3()).collect();
-    // An empty path is the error of a scene without a path.
+    // An empty path shows that the scene has no path, which is an error.
     let ahead = Walk::new(&corners, speed).map_err(no_path)?;
     Ok(match seed {
         Some(seed) => ahead.with_glances(seed),
@@ -77,17 +76,19 @@ pub fn is_recording(name: &str) -> bool {
 }
 
 /// Builds a motion from its name: `still`, `pan:DEG_PER_S`, `slide:M_PER_S` (to the right), `sine:DEG:HZ` (of the yaw),
-/// `pendulum`, `synthetic:SEED`, or the path of a recording. A recording's path ends in `.csv`, `.txt`, `.tum` or
-/// `.jsonl` ([`Recording::read`]). The motion `walk` also needs a scene, see [`walk`].
+/// `pendulum`, `synthetic:SEED`, or the path of a recording.
+///
+/// A recording's path ends in `.csv`, `.txt`, `.tum` or `.jsonl` ([`Recording::read`]). For the motion `walk`, which
+/// needs a scene, see [`walk`].
 ///
 /// # Errors
 ///
-/// Returns a [`SettingError`] with the expected form and the text found.
+/// Returns a [`SettingError`] with the expected syntax and the text found.
 pub fn motion(text: &str) -> Result<Arc<dyn Motion + Send + Sync>, SettingError> {
     replayed(text, &Replay::default())
 }
 
-/// Builds a motion from its name. The options `replay` apply to recordings.
+/// Builds a motion from its name as [`motion`] does. `replay` has the options for recordings.
 ///
 /// # Errors
 ///
@@ -135,8 +136,8 @@ fn no_path(motion: &str) -> SettingError {
     ))
 }
 
-/// Creates the error of an unknown name. The message states the most similar of the valid names first, then `forms`:
-/// all names, or names with their parameters.
+/// Creates the error of an unknown name. The message states the most similar valid name, then `forms`: all names, or
+/// names with their parameters.
 pub(crate) fn unknown<'a>(what: &str, found: &str, names: impl Iterator<Item = &'a str>, forms: &str) -> SettingError {
     let SettingError { nearest, .. } = SettingError::unknown_path(what, found, names);
     SettingError::combination(format_args!(
@@ -149,7 +150,7 @@ fn listed(names: &str) -> impl Iterator<Item = &str> {
     names.split([',', ' ']).filter(|name| !["", "or"].contains(name))
 }
 
-/// Parses a number whose absolute value is at most `most`.
+/// Parses a number with an absolute value of at most `most`.
 fn within(text: &str, most: f64) -> Option<f64> {
     text.parse().ok().filter(|number: &f64| number.abs() <= most)
 }
@@ -162,7 +163,7 @@ fn recording(path: &Path, replay: &Replay) -> Result<Recording, SettingError> {
     recording_of(file, &name(), replay)
 }
 
-/// Reads a recorded head motion from the contents of its file. Error messages call the recording `name`.
+/// Reads a recorded head motion from the contents of its file. `name` stands for the file name in error messages.
 pub(crate) fn recording_of(contents: impl Read, name: &str, replay: &Replay) -> Result<Recording, SettingError> {
     let recording = Recording::read_as(contents, &replay.format);
     Ok(recording.map_err(|error| error.in_file(name))?.ending(replay.end))
@@ -171,7 +172,7 @@ pub(crate) fn recording_of(contents: impl Read, name: &str, replay: &Replay) -> 
 /// Names of all trackers that [`tracker`] accepts, for help texts and errors.
 pub const TRACKERS: &str = "optical, fastrak, fastrak-polled, flock, flock-patched, 3space, 3space-patched or ideal";
 
-/// Returns the tracker called `name`, one of the names in [`TRACKERS`].
+/// Returns the tracker `name`, which is one of the names in [`TRACKERS`].
 ///
 /// # Errors
 ///
@@ -180,8 +181,7 @@ pub fn tracker(name: &str) -> Result<TrackerConfig, SettingError> {
     Ok(tracker_by(&Tables::PAPERS, name)?.0)
 }
 
-/// Returns the tracker called `name`, one of the names in [`TRACKERS`], with the constants of `tables`. Also returns
-/// the name of the table from which the tracker's constants come.
+/// Returns the tracker `name` with the constants in `tables`, and the name of the table with these constants.
 ///
 /// # Errors
 ///
@@ -203,7 +203,7 @@ pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'stati
 /// Names of all predictors that [`predictor`] accepts, for help texts and errors.
 pub const PREDICTORS: &str = "none, velocity, acceleration or kalman";
 
-/// Returns the predictor called `name`, one of the names in [`PREDICTORS`].
+/// Returns the predictor `name`, which is one of the names in [`PREDICTORS`].
 ///
 /// # Errors
 ///

@@ -1,5 +1,4 @@
-//! The computer on which experiments run. The computer has a clock, and threads that compute pixels outside simulated
-//! time.
+//! The computer on which experiments run, with its clock and its threads for pixels outside simulated time.
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use pxpl5_machine::{PixelWorker, SameThread};
@@ -39,7 +38,7 @@ impl Default for Workstation {
     }
 }
 
-/// Instant from which the host's clock counts seconds: the first use of the clock.
+/// Zero of the host's clock: the first use of the clock.
 static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
 
 impl Host for Workstation {
@@ -73,13 +72,12 @@ impl PixelThreads {
     }
 }
 
-/// Starts a thread that computes the pixels of regions until the queue closes. The thread returns the number of regions
-/// that it computed.
+/// Starts a thread that computes the pixels of regions until the queue closes. The thread returns the number of its
+/// regions.
 fn start_thread(waiting: Receiver<Arc<dyn PixelSource>>) -> JoinHandle<u64> {
     std::thread::spawn(move || compute_all(&waiting))
 }
 
-/// Computes the pixels of regions until the queue closes. Returns the number of regions that were computed.
 fn compute_all(waiting: &Receiver<Arc<dyn PixelSource>>) -> u64 {
     waiting.iter().fold(0, |regions, region| {
         let _ = region.pixels();
@@ -98,11 +96,7 @@ impl PixelWorker for PixelThreads {
     }
 
     /// Computes the pixels of all waiting regions and ends the worker threads. Returns the number of all computed
-    /// regions.
-    ///
-    /// # Panics
-    ///
-    /// Panics when a worker has panicked, which is a bug.
+    /// regions. Panics if a worker thread has panicked because of a bug.
     fn finish(self: Box<Self>) -> u64 {
         let Self { regions, waiting, threads, own } = *self;
         // Closing the queue ends the workers once it is empty.

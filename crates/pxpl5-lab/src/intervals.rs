@@ -1,6 +1,6 @@
 //! Intervals of the published figures, while parameters that no paper prints vary within their ranges.
 //!
-//! The intervals come from three designs of experiments at the analytic level. For differences between settings, this
+//! The intervals come from three sets of experiments at the analytic level. For differences between settings, this
 //! level agrees closely enough with the transaction level.
 //!
 //! - *one at a time*: one parameter at the low or high end of its range, all others at their presets
@@ -8,7 +8,7 @@
 //! - *joint*: [`SAMPLES`] machines with every parameter drawn uniformly from its range, from a fixed seed
 //!
 //! Parameters that were fitted to a figure keep their values, except the two times per triangle of Slats. These two
-//! vary within the range that reproduces the figure exactly. The interval of a fitted figure therefore shows the
+//! times vary within the range that reproduces the figure exactly. The interval of a fitted figure therefore shows the
 //! figure's error without a new fit.
 //!
 //! Some figures need a simulation with events. For these figures, only two machine parameters without a source vary:
@@ -23,13 +23,12 @@ use pxpl5_sim::mix;
 use pxpl5_sim::parameters::Provenance;
 use serde::Serialize;
 
-/// Number of random machines in the joint sample.
+/// Number of random machines in the joint set.
 pub const SAMPLES: u64 = 500;
 
-/// Seed of the random machines in the joint sample.
 const SEED: u64 = 0x5EED_0F05;
 
-/// Number of seeds and number of frames of the test scene "mig" for each random machine.
+/// Number of seeds and of frames of the scene "mig" for each random machine.
 const MIG: (u64, u64) = (6, 150);
 
 /// A parameter that varies within its range.
@@ -40,9 +39,9 @@ pub struct Variation {
     pub path: String,
     /// Value of the parameter in the preset.
     pub value: u64,
-    /// Minimum and maximum value of the parameter that the sources allow.
+    /// Smallest and largest value that the sources allow.
     pub range: (u64, u64),
-    /// Provenance of the parameter's value in the preset: derived or assumed, never published.
+    /// Provenance of the preset's value: derived or assumed, never published.
     pub provenance: Provenance,
 }
 
@@ -51,63 +50,60 @@ pub struct Variation {
 pub struct Effect {
     /// Path of the parameter, as in [`Variation::path`].
     pub path: String,
-    /// Values of the figure at the low and at the high end of the parameter's range.
+    /// Values of the figure at the low end and at the high end of the parameter's range.
     pub ends: [f64; 2],
-    /// Relative change of the figure divided by the relative change of the parameter. Both changes are taken from the
-    /// low to the high end of the range.
+    /// Relative change of the figure divided by the relative change of the parameter, from the low to the high end of
+    /// the range.
     pub elasticity: f64,
 }
 
-/// Interval of a figure's value that follows from the ranges of all unpublished parameters.
+/// Interval of a figure's value due to the ranges of all unpublished parameters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interval {
-    /// Number of the figure, as in [`FIGURES`].
+    /// Number of the figure in [`FIGURES`].
     pub id: &'static str,
-    /// Value of the figure for the presets at the analytic level. Figures without a closed-form formula are simulated
-    /// with events instead.
+    /// Value of the figure for the presets at the analytic level. A figure without a closed form is simulated with
+    /// events instead.
     pub nominal: f64,
-    /// Minimum and maximum value of the figure when one parameter at a time takes either end of its range.
+    /// Minimum and maximum of the figure if one parameter at a time is set to each end of its range.
     pub one_at_a_time: [f64; 2],
-    /// Minimum and maximum value of the figure over the interpretations that change one answer at a time.
+    /// Minimum and maximum of the figure over the interpretations that change one answer at a time.
     pub readings: [f64; 2],
-    /// Interpretations that change the figure, each with the resulting value of the figure. The interpretation with the
-    /// greatest change comes first.
+    /// Interpretations that change the figure, with the resulting value. The greatest change comes first.
     pub rules: Vec<(String, f64)>,
-    /// Minimum and maximum value of the figure over the random machines of the joint sample.
+    /// Minimum and maximum of the figure over the random machines of the joint set.
     pub joint: [f64; 2],
-    /// 5th and 95th percentile of the figure over the random machines of the joint sample.
+    /// 5th and 95th percentile of the figure over the random machines of the joint set.
     pub likely: [f64; 2],
-    /// Parameters that change the figure. The parameter with the strongest effect comes first.
+    /// Parameters that change the figure. The strongest effect comes first.
     pub effects: Vec<Effect>,
 }
 
 impl Interval {
-    /// Returns the minimum and maximum of the figure over three designs of experiments: `one_at_a_time`, `readings` and
-    /// `joint`. The values are computed at the analytic level.
+    /// Returns the minimum and maximum over `one_at_a_time`, `readings` and `joint`.
     #[must_use]
     pub const fn bounds(&self) -> [f64; 2] {
         let [low, high] = self.of_parameters();
         [low.min(self.readings[0]), high.max(self.readings[1])]
     }
 
-    /// Returns the minimum and maximum of the figure while only the parameters vary. The interpretation of the papers
-    /// stays the same.
+    /// Returns the minimum and maximum while only the parameters vary, with the same interpretation of the papers.
     #[must_use]
     pub const fn of_parameters(&self) -> [f64; 2] {
         [self.one_at_a_time[0].min(self.joint[0]), self.one_at_a_time[1].max(self.joint[1])]
     }
 }
 
-/// Times per triangle in nanoseconds of the machines for Slats. The times were fitted to the largest numbers of
-/// triangles in the papers (rows 12 and 14 of ACCURACY.md). Any time within the range reproduces the figure exactly.
+/// Times per triangle in nanoseconds of the machines for Slats, fitted to the papers' largest numbers of triangles
+/// (rows 12 and 14 of ACCURACY.md). Any time within the range reproduces the figure exactly.
 const FITTED: [(&str, u64, (u64, u64)); 2] =
     [("slats:gp.triangle_ns", 30_000, (29_800, 30_100)), ("slats-1995:gp.triangle_ns", 55_800, (55_400, 56_300))];
 
 /// Returns all parameters that are derived or assumed, have a range, and can change a figure at the analytic level.
 ///
-/// Parameters of the i860 are left out. The analytic level uses formulas with the timing tables and executes no code,
-/// so an interval would wrongly suggest that these parameters never matter. At the cycle level these parameters do
-/// matter. In the intervals, the range of `gp.triangle_ns` stands for the effect of these parameters.
+/// Parameters of the i860 are left out, because the analytic level executes no code. An interval would wrongly suggest
+/// that these parameters never matter, but they matter at the cycle level. In the intervals, the range of
+/// `gp.triangle_ns` stands for their effect.
 #[must_use]
 pub fn variations() -> Vec<Variation> {
     let parameters = MachineConfig::small_hmd().parameters().into_iter().filter(|p| !p.path.starts_with("i860."));
@@ -125,13 +121,13 @@ pub fn variations() -> Vec<Variation> {
     of_machine.chain(fitted).collect()
 }
 
-/// Measures all figures with some changed parameters. A figure is `None` if its experiment yields no value.
+/// Measures all figures with changed parameters. A figure without a result is `None`.
 fn measure(bench: &Bench, changes: Vec<(String, u64)>) -> Vec<Option<f64>> {
     let bench = Bench { changes, ..bench.clone() };
     FIGURES.iter().map(|figure| value_of(&bench, figure.id)).collect()
 }
 
-/// Returns the value of a figure, or `None` if the figure has no closed-form formula or no finite value.
+/// Returns the value of a figure, or `None` if the figure has no closed form or no finite value.
 fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     if WITHOUT_CLOSED_FORM.contains(&id) {
         return None;
@@ -139,27 +135,27 @@ fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     Some(bench.measure(id).ok()?.value).filter(|value| value.is_finite())
 }
 
-/// Computes the intervals of all figures at the analytic level, around the figures' values for `bench`, the common
-/// settings of all measurements. The list is empty if another thread sets the flag of `bench`.
+/// Computes the intervals of all figures at the analytic level. `bench` has the settings of all measurements. The list
+/// is empty if another thread sets the flag of `bench`.
 #[must_use]
 pub fn intervals(bench: &Bench) -> Vec<Interval> {
     let bench = Bench { level: Level::Analytic, ..bench.clone() }.with_mig(MIG.0, MIG.1);
     let variations = variations();
     let nominal = measure(&bench, Vec::new());
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
-    // One at a time: both ends of every range.
+    // Measure at both ends of each range, one parameter at a time.
     let at_ends = crate::parallel::map(&ends, |(v, value)| measure(&bench, vec![(v.path.clone(), *value)]));
     let samples: Vec<u64> = (0..SAMPLES).collect();
-    // Joint: machines with all parameters drawn at random.
+    // Measure machines with all parameters drawn at random.
     let joint = crate::parallel::map(&samples, |sample| measure(&bench, draw(&variations, *sample)));
     let neighbours = bench.reading.neighbours();
-    // Interpretations: one question answered otherwise.
+    // Measure with other interpretations, each with another answer to one question.
     let read = crate::parallel::map(&neighbours, |reading| measure(&bench.with(*reading), Vec::new()));
     // After a stop, values are missing.
     if bench.stop.is_stopped() {
         return Vec::new();
     }
-    // Collect the designs for each figure. A missing value counts as the value for the presets.
+    // Collect the results for each figure. A missing value counts as the value for the presets.
     let mut intervals = Vec::new();
     for (index, figure) in FIGURES.iter().enumerate().filter(|(_, figure)| !WITHOUT_CLOSED_FORM.contains(&figure.id)) {
         let nominal = nominal[index].unwrap_or(f64::NAN);
@@ -175,16 +171,14 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
     intervals
 }
 
-/// Figures of a tracker combined with a pipeline. Their experiments are simulated with events, also at the analytic
-/// level.
+/// Figures of a tracker combined with a pipeline, which are always simulated with events.
 const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
 
-/// Paths of the machine parameters without a source. These parameters vary for figures that need a simulation with
-/// events.
+/// Machine parameters without a source, which vary for figures that need a simulation with events.
 const OF_EVENTS: [&str; 2] = ["renderer.fifo_words", "ring.source_channels"];
 
-/// Computes the interval of a figure that needs a simulation with events. Each parameter of [`OF_EVENTS`] takes both
-/// ends of its range, while the other parameters keep their presets.
+/// Computes the interval of a figure that needs a simulation with events. One parameter of [`OF_EVENTS`] at a time is
+/// set to each end of its range.
 fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     let variations: Vec<_> = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str())).collect();
     let nominal = bench.measure(id).ok()?.value;
@@ -192,8 +186,8 @@ fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     Some(interval(id, nominal, &ends, vec![nominal], &variations))
 }
 
-/// Returns the values of a figure at both ends of each parameter's range, while all other parameters keep their
-/// presets. An experiment without a result gets the value `nominal`.
+/// Returns the values of a figure at both ends of each parameter's range, while all other parameters have their
+/// presets. `nominal` replaces the result of a failed experiment.
 fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: f64) -> Vec<f64> {
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     crate::parallel::map(&ends, |(v, value)| {
@@ -207,7 +201,7 @@ fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: 
     })
 }
 
-/// Number, in [`FIGURES`], of the figure that the pendulum rig measures.
+/// Number in [`FIGURES`] of the figure from the pendulum rig.
 const OF_RIG: &str = "17";
 
 /// Computes the interval of the pendulum rig's figure by simulation with events. The photodiode's position, machine
@@ -233,9 +227,8 @@ pub(crate) fn photodiode_line() -> Option<Variation> {
     Some(Variation { path: line.path, value, range, provenance: line.info.provenance })
 }
 
-/// Combines the results of two designs of experiments into the interval of one figure. `ends` has the figure's values
-/// at both ends of each parameter's range, one parameter after the other. `joint` has the figure's values on the random
-/// machines.
+/// Combines two sets of experiments into the interval of one figure. `ends` has the figure's values at both ends of
+/// each parameter's range, one parameter after the other. `joint` has the figure's values on the random machines.
 fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, variations: &[Variation]) -> Interval {
     joint.sort_by(f64::total_cmp);
     Interval {
@@ -251,7 +244,6 @@ fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, v
 }
 
 impl Interval {
-    /// Adds the values of the figure under other interpretations of the papers to the interval.
     fn add_readings(&mut self, usual: &Reading, values: impl Iterator<Item = (Reading, f64)>) {
         let reach = |value: f64| (value / self.nominal - 1.0).abs();
         // Interpretations without a visible effect are left out.
@@ -263,7 +255,7 @@ impl Interval {
     }
 }
 
-/// Returns a quantile of sorted values: the value nearest to the position `share`, from 0 (first) to 1 (last).
+/// Returns the value nearest to the position `share` in a sorted list, from 0 (first) to 1 (last).
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     sorted[((sorted.len() - 1) as f64 * share).round() as usize]
 }
@@ -281,7 +273,7 @@ fn bounds(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// Smallest relative change of a figure for which the causing parameter is listed.
+/// Minimum relative change of a figure. Parameters and interpretations with smaller changes are not listed.
 const VISIBLE: f64 = 1e-3;
 
 fn effects(variations: &[Variation], ends: &[f64], nominal: f64) -> Vec<Effect> {
@@ -299,14 +291,14 @@ fn effect(v: &Variation, ends: [f64; 2], nominal: f64) -> Effect {
 }
 
 impl Effect {
-    /// Returns the largest change of a figure that a parameter causes, relative to the figure's value for the presets.
+    /// Returns the largest change of a figure that a parameter causes, relative to the value for the presets.
     fn reach(&self, nominal: f64) -> f64 {
         bounds(self.ends.iter().map(|end| (end / nominal - 1.0).abs()))[1]
     }
 }
 
-/// Copies the computed intervals into the rows of the figures. A figure without a closed-form formula gets no value at
-/// the analytic level.
+/// Copies the computed intervals into the rows of the figures. At the analytic level, a figure without a closed form
+/// has no value.
 pub fn fill(rows: &mut [FigureRow], intervals: &[Interval]) {
     for row in rows {
         let interval = intervals.iter().find(|interval| interval.id == row.id);
@@ -342,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interval_stays_where_it_was_computed_however_far_off_the_simulated_value_is() {
+    fn an_interval_is_not_moved_to_the_simulated_value() {
         for simulated in [1.0, 21.0, 500.0] {
             let row = row_of_figure_2(simulated);
             assert_eq!((row.interval, row.analytic), (Some([20.0, 22.0]), Some(21.0)));
@@ -350,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_is_out_of_reach_beyond_the_interval_widened_by_the_distance_of_the_levels() {
+    fn a_figure_is_out_of_reach_outside_the_interval_widened_by_the_distance_of_the_levels() {
         // 31.2 ms minus the last printed digit, 0.312, is 8.888 above the upper bound of 22 ms.
         for (distance, out_of_reach) in [(0.0, true), (8.8, true), (-8.8, true), (8.9, false), (-8.9, false)] {
             let row = row_of_figure_2(21.0 + distance);
@@ -359,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn the_figure_of_the_scenes_has_no_interval() {
+    fn the_figure_without_a_closed_form_has_no_interval() {
         let figure = FIGURES.iter().find(|figure| figure.id == "8").expect("listed");
         let mut rows = [figure.row(FigureValue::from(9.0))];
         fill(&mut rows, &[]);
@@ -370,7 +362,7 @@ mod tests {
     /// Tests the effect of the line at which the photodiode is mounted. The last of the 240 lines lights 239 times
     /// 63.56 us after the first line.
     #[test]
-    fn the_figure_of_the_rig_moves_with_the_photodiode_as_the_beam_does() {
+    fn the_figure_of_the_pendulum_rig_moves_with_the_line_of_the_photodiode() {
         let interval = of_rig(&Bench::new(Level::Analytic)).expect("it is measured");
         let line = interval.effects.iter().find(|effect| effect.path == PHOTODIODE_LINE).expect("it moves");
         let [low, high] = line.ends;
@@ -395,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn draws_are_the_same_every_time_and_stay_in_range() {
+    fn random_parameters_are_the_same_for_each_sample_number_and_stay_in_range() {
         let all = variations();
         assert_eq!(draw(&all, 17), draw(&all, 17));
         assert_ne!(draw(&all, 17), draw(&all, 18));

@@ -1,4 +1,4 @@
-//! A common interface to all levels of modelling, and a comparison of the levels by speed and error.
+//! A common interface to all levels of detail, and a comparison of the levels by speed and error.
 
 mod compare;
 mod random;
@@ -10,12 +10,12 @@ pub use record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
 
 use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Summary};
 
-/// Runs an experiment at its level of modelling, without pixels, and returns the summary.
+/// Runs an experiment at its level of detail without pixels, and returns the summary.
 ///
 /// # Errors
 ///
 /// Fails in the same cases as [`Experiment::run`]. At the analytic level, returns the error of the pipeline's closed
-/// form, or [`ExperimentError::Level`] if the pipeline has none.
+/// form, or [`ExperimentError::Level`] if the pipeline has no closed form.
 pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary, ExperimentError> {
     if experiment.modelling_level() != Level::Analytic {
         return Ok(experiment.run()?.summary());
@@ -27,7 +27,7 @@ pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary
     }
 }
 
-/// Returns the deviation of a value from the same quantity at the cycle level, in percent.
+/// Returns the deviation in percent of a value from the same quantity at the cycle level.
 ///
 /// - The deviation is 0 if neither level has a value, because pictures that are never in time have no latency.
 /// - The deviation is 0 if both values are 0.
@@ -48,7 +48,7 @@ mod tests {
     use super::deviation_percent;
 
     #[test]
-    fn what_one_level_has_and_the_other_has_not_counts_a_hundred_percent() {
+    fn a_value_that_only_one_level_has_counts_as_a_hundred_percent() {
         assert!((deviation_percent(103.0, 100.0) - 3.0).abs() < 1e-9);
         assert_eq!([deviation_percent(0.0, 0.0), deviation_percent(f64::NAN, f64::NAN)], [0.0; 2]);
         let one_sided = [(59.94, 0.0), (0.0, 59.94), (1.0, f64::NAN), (f64::NAN, 1.0)];

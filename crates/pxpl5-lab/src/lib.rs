@@ -1,12 +1,13 @@
-//! Tools for questions that need many experiments. This is the only crate that uses files and threads of the host
-//! computer, which a [`Workstation`] represents.
+//! Tools for questions that need many experiments.
+//!
+//! This is the only crate that uses files and threads of the host computer, which a [`Workstation`] represents.
 //!
 //! | question | module |
 //! |---|---|
 //! | values of the published figures in the model, with intervals | [`figures`], [`intervals`], [`pipeline_figures`] |
 //! | the interpretation of the papers that explains the figures best | [`readings`] |
 //! | effect of the host application's time, which no paper prints | [`application_time`] |
-//! | differences between the levels of modelling | [`levels`] |
+//! | differences between the levels of detail | [`levels`] |
 //! | times of primitives in executed code | [`code_times`] |
 //! | largest number of triangles drawn in time, growth of the cost | [`limit`], [`growth`] |
 //! | range of any setting in which an experiment reaches a goal | [`limit::OverQuery`] |
@@ -20,7 +21,7 @@
 //! | experiments in text files, and saved runs that can be continued | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
 //!
 //! [`registry`] lists the built-in pipelines and displays. A pipeline's entry contains its closed form, if there is
-//! one. An experiment file may use another registry.
+//! one. An experiment file may also use a registry with pipelines and displays of the caller.
 
 #![warn(missing_docs)]
 
@@ -65,7 +66,9 @@ pub use what_if::{WhatIf, what_if};
 use pxpl5_run::Registry;
 use std::sync::{Arc, LazyLock};
 
-/// Returns the registry of the built-in pipelines and displays. Some pipelines have a closed form.
+/// Returns the registry of the built-in pipelines and displays.
+///
+/// Some pipelines have a closed form.
 #[must_use]
 pub fn registry() -> Arc<Registry> {
     static OF_PAPERS: LazyLock<Arc<Registry>> = LazyLock::new(|| {
@@ -76,7 +79,6 @@ pub fn registry() -> Arc<Registry> {
     Arc::clone(&OF_PAPERS)
 }
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

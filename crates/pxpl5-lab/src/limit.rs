@@ -1,8 +1,7 @@
-//! Searches for limits: the largest number of triangles that a pipeline can draw in time.
+//! Searches for the largest number of triangles that a pipeline can draw in time.
 //!
-//! A limit is found by simulation, not by a formula. Some pipelines have a closed-form formula (the analytic level).
-//! This formula only gives hints: the number of triangles at which the search starts, and numbers that may miss the
-//! goal.
+//! The search simulates scenes of several sizes. If the pipeline has a closed form, the closed form only gives hints:
+//! the number of triangles at which the search starts, and numbers that may miss the goal.
 //!
 //! ```text
 //!   analytic level --about this many; least margin at these--> Hints
@@ -11,7 +10,7 @@
 //!
 //! A larger scene can reach a goal that a smaller scene misses. The reason is that a nearly empty clump (group of
 //! triangles) costs as many messages as a full clump. The search therefore also tries smaller numbers than the result
-//! of the bisection. The smallest number that misses counts. [`most`] states the guarantee.
+//! of the bisection. The smallest number that misses the goal determines the limit. [`most`] states the guarantee.
 
 mod over;
 mod search;
@@ -40,26 +39,25 @@ pub struct LimitQuery {
     pub config: MachineConfig,
     /// Pipeline whose limit is searched.
     pub pipeline: Arc<dyn Pipeline>,
-    /// Kind of triangles, goal, and number of fields simulated for each number of triangles.
+    /// Kind of triangles, goal, and number of simulated fields for each number of triangles.
     pub criterion: LimitCriterion,
-    /// Model that replaces the criterion's test scene, if any.
+    /// Model that replaces the test scene of `criterion`, if any.
     pub model: Option<Model>,
-    /// Level of modelling at which every number of triangles is tried.
+    /// Level of detail of all simulations.
     pub level: Level,
-    /// Flag by which another thread stops the search.
+    /// Flag with which another thread stops the search.
     pub stop: StopFlag,
 }
 
-/// A scene that a search simplifies to each number of triangles that the search tries. The largest number is the
-/// scene's own number of triangles.
+/// A scene that the search simplifies to different numbers of triangles. The scene's own number of triangles is the
+/// largest.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Settings of the model's scene. The search ignores the number of triangles in these settings.
+    /// Settings of the model's scene, whose number of triangles is ignored.
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
-    /// Decimation of `whole`. The scenes of a search, one for each number of triangles, share the first steps of the
-    /// decimation (collapses of edges).
+    /// Decimation of `whole`. Its first steps (collapses of edges) are the same for all numbers of triangles.
     decimation: Arc<Decimation>,
 }
 
@@ -74,7 +72,7 @@ impl Model {
         Ok(Self::new(choice, whole))
     }
 
-    /// Creates the model of a scene that is already loaded. The search ignores the number of triangles in `choice`.
+    /// Creates the model of a loaded scene. The number of triangles in `choice` is ignored.
     #[must_use]
     pub fn new(choice: SceneChoice, whole: Arc<Scene>) -> Self {
         let decimation = Arc::new(Decimation::new(Arc::clone(&whole)));
@@ -88,26 +86,26 @@ impl Model {
     }
 }
 
-/// Ratio of the field rate of NTSC to the rounded rate: 59.94 Hz to 60 Hz.
+/// Field rate of NTSC divided by the rounded rate: 59.94 Hz divided by 60 Hz.
 const NTSC: f64 = 0.999;
 
 /// Maximum number of triangles that a search tries.
 pub const CEILING: u32 = 1_000_000;
 
-/// Maximum number of scene sizes (numbers of triangles) for which formulas compute the margin to the goal.
+/// Maximum number of scene sizes for which the closed form computes the margin to the goal.
 const MARGINS: u32 = 1_000;
-/// Maximum number of scene sizes that a search tries because formulas predict a small margin to the goal.
+/// Maximum number of scene sizes that are tried because the closed form predicts a small margin to the goal.
 const DOUBTFUL: usize = 8;
 
-/// Estimated maximum number of scene sizes that a search simulates: twice the number of bisection steps over all sizes.
+/// Estimated maximum number of simulated scene sizes: twice the number of bisection steps over all sizes.
 pub const USUAL_SIZES: u64 = 40;
 
-/// Minimum number of pictures after the warm-up. With fewer pictures the update rate is unknown, and the goal counts as
-/// missed.
+/// Minimum number of pictures after the warm-up. With fewer pictures, the update rate is unknown, and the goal counts
+/// as missed.
 const PICTURES: usize = 4;
 
 impl LimitQuery {
-    /// Creates a query from the machine, pipeline and level of a checked experiment, with the pipeline's own criterion.
+    /// Creates a query from the machine, pipeline and level of an experiment, with the pipeline's own criterion.
     #[must_use]
     pub fn of_plan(plan: &Plan) -> Self {
         Self {
@@ -121,7 +119,7 @@ impl LimitQuery {
         }
     }
 
-    /// Creates a query with the pipeline's own criterion, which the registry states.
+    /// Creates a query with the pipeline's own criterion.
     ///
     /// # Errors
     ///
@@ -136,17 +134,18 @@ impl LimitQuery {
 
     /// Searches for the limit.
     ///
+    /// A scene that does not fit into a board's memory, or is never shown, misses the goal.
+    ///
     /// # Errors
     ///
-    /// Returns [`ExperimentError`] if the machine cannot be built or the pipeline cannot run on the machine. A scene
-    /// that does not fit into a board's memory, or is never shown, misses the goal. Returns
+    /// Returns [`ExperimentError`] if the machine cannot be built or the pipeline cannot run on the machine. Returns
     /// [`ExperimentError::Stopped`] if another thread sets the query's flag.
     pub fn search(&self) -> Result<Limit, ExperimentError> {
         self.search_with(|_, _| {})
     }
 
-    /// Searches for the limit. `progress` is called with the number of scenes that were simulated so far, and with an
-    /// estimate of the number of all scenes.
+    /// Searches for the limit. Calls `progress` with the number of simulated scenes, and with an estimate of the number
+    /// of all scenes.
     ///
     /// # Errors
     ///
@@ -162,8 +161,8 @@ impl LimitQuery {
         Ok(limit)
     }
 
-    /// Searches for the largest number of triangles. The result equals [`Limit::triangles`] of
-    /// [`search`](Self::search), but the search is shorter, because no sizes above the first miss are tried.
+    /// Returns [`Limit::triangles`] of [`search`](Self::search). This function takes less time than
+    /// [`search`](Self::search), because no sizes above the first miss are tried.
     ///
     /// # Errors
     ///
@@ -174,13 +173,13 @@ impl LimitQuery {
         Ok(triangles)
     }
 
-    /// Returns an error if `triangles`, the limit that was found, is 0 because the goal cannot be evaluated.
+    /// Returns an error if the found limit `triangles` is 0 because the goal cannot be evaluated.
     fn check_limit(&self, triangles: u32) -> Result<(), ExperimentError> {
         if triangles == 0 { self.check_rate() } else { Ok(()) }
     }
 
-    /// Returns an error if the goal is an update rate and the scene has no measurable update rate. A
-    /// pipeline that draws all directions redraws so little of some scenes that fewer than two updates occur.
+    /// Returns an error if the goal is an update rate that cannot be measured for the scene. A pipeline that draws all
+    /// directions may show fewer than two updates, because it redraws only a small part of the scene.
     fn check_rate(&self) -> Result<(), ExperimentError> {
         let (Goal::RateHz(hz), true) = (self.criterion.goal, self.pipeline.coverage() == Coverage::Surroundings) else {
             return Ok(());
@@ -208,13 +207,13 @@ impl LimitQuery {
     /// Returns the hints of the analytic level. The hints are empty if the pipeline has no closed form, or if the
     /// search itself uses the analytic level.
     ///
-    /// For a model, each number of triangles needs a decimated scene. Building this scene takes as long at the analytic
-    /// level as at any other level. The hints therefore use a test scene of small triangles in place of the model.
+    /// The hints for a model use a test scene of small triangles instead of the model. A model must be decimated to
+    /// each number of triangles, which takes as long at the analytic level as at any other level.
     fn hints(&self) -> Hints {
         if self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();
         }
-        // Small triangles stand for a model, whose sizes are expensive to build.
+        // Small triangles stand for a model, because the decimated sizes of a model are expensive to build.
         let scene = if self.model.is_some() { TestScene::Typical } else { self.criterion.scene };
         let criterion = LimitCriterion { scene, ..self.criterion };
         let analytic = Self { level: Level::Analytic, model: None, criterion, ..self.clone() };
@@ -223,8 +222,8 @@ impl LimitQuery {
         Hints { near, doubtful: doubtful.unwrap_or_default() }
     }
 
-    /// Returns numbers of triangles, up to 5 % above `near`, that reach the goal with a smaller margin than the
-    /// neighbouring numbers. The smallest margin comes first.
+    /// Returns numbers of triangles, up to 5 % above `near`, with a smaller margin to the goal than their neighbours.
+    /// The smallest margin comes first.
     fn doubtful(&self, near: u32) -> Vec<u32> {
         let most = near + near / 20;
         let step = most.div_ceil(MARGINS).max(1) as usize;
@@ -237,8 +236,8 @@ impl LimitQuery {
         least.into_iter().take(DOUBTFUL).map(|(_, triangles)| triangles).collect()
     }
 
-    /// Returns a number that is greater if the goal is easier to reach: the update rate, the negative latency, or the
-    /// negative time of the first copy. The number is only useful for comparing scene sizes.
+    /// Returns the update rate, the negative latency, or the negative time of the first copy. A greater result is
+    /// closer to the goal.
     fn margin(&self, triangles: u32) -> Option<f64> {
         let summary = self.summary(triangles).ok()?;
         match self.criterion.goal {
@@ -299,7 +298,7 @@ fn is_reached(goal: Goal, summary: &Summary) -> bool {
     }
 }
 
-/// Returns a test scene with `triangles` triangles, or with one triangle if `triangles` is 0.
+/// Returns a test scene with `triangles` triangles, but at least one triangle.
 ///
 /// # Panics
 ///

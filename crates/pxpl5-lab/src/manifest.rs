@@ -1,7 +1,7 @@
-//! The manifest of an output folder, which lists the files of the last command that wrote there.
+//! The manifest of an output folder, which lists the files of the last command that wrote into the folder.
 //!
-//! A folder may hold files of several runs and files of the user. The manifest distinguishes these files. Readers trust
-//! only files that are listed and unchanged. The next run removes all listed files that it does not write again.
+//! A folder may hold files of several runs and files of the user. The manifest distinguishes these files. Readers use
+//! only listed and unchanged files. The next run removes all listed files that it does not write again.
 
 use pxpl5_measure::program;
 use pxpl5_run::Fingerprint;
@@ -28,14 +28,13 @@ pub struct ManifestEntry {
 pub struct Manifest {
     schema: String,
     version: String,
-    /// Commit from which the writing program was built, if that program stated the commit. Manifests of earlier
-    /// programs have no commit.
+    /// Commit of the program that wrote the files, if known. Earlier programs stated no commit.
     #[serde(default)]
     commit: Option<String>,
     command: String,
     files: Vec<ManifestEntry>,
-    /// Files of the previous manifest that will be removed after this manifest is written. After a crash these files
-    /// may still exist.
+    /// Files of the previous manifest that will be removed after this manifest is written. After a crash, some of these
+    /// files may still exist.
     #[serde(default)]
     replaced: Vec<ManifestEntry>,
 }
@@ -45,7 +44,6 @@ impl ManifestEntry {
         Self { name: name.to_owned(), contents: Some(Fingerprint::of(bytes).to_string()) }
     }
 
-    /// Returns true if the contents of a file match the hash in its manifest entry.
     fn is_of(&self, bytes: &[u8]) -> bool {
         self.contents.as_ref().is_none_or(|contents| *contents == Fingerprint::of(bytes).to_string())
     }
@@ -55,8 +53,8 @@ impl Manifest {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-manifest/1";
 
-    /// Command name in the manifest of a sweep. The rows of a sweep may be the work of hours, so other commands never
-    /// replace these rows.
+    /// Command name in the manifest of a sweep. The rows of a sweep may be the work of hours, so that other commands
+    /// never replace these rows.
     pub const SWEEP: &'static str = "sweep";
 
     /// Creates an empty manifest for a command.
@@ -72,11 +70,11 @@ impl Manifest {
         }
     }
 
-    /// Reads the manifest of a folder. Returns `None` if the folder has none.
+    /// Reads the manifest of a folder. Returns `None` if the folder has no manifest.
     ///
     /// # Errors
     ///
-    /// Returns a [`FileError`] if the manifest's file exists but is not a manifest, or cannot be read.
+    /// Returns a [`FileError`] if the file cannot be read or is not a manifest.
     pub fn read(folder: &Path) -> Result<Option<Self>, FileError> {
         let path = folder.join(MANIFEST_FILE);
         let found = path.display().to_string();
@@ -127,17 +125,17 @@ impl Manifest {
         self.names().any(|listed| listed == name)
     }
 
-    /// Adds a file to the manifest, with a hash of its contents.
+    /// Adds a file with a hash of its contents.
     pub fn add(&mut self, name: &str, bytes: &[u8]) {
         self.put(ManifestEntry::of(name, bytes));
     }
 
-    /// Adds a file that still grows to the manifest, without a hash.
+    /// Adds a file that still grows, without a hash.
     pub fn add_growing(&mut self, name: &str) {
         self.put(ManifestEntry { name: name.to_owned(), contents: None });
     }
 
-    /// Adds all files of another manifest to this manifest.
+    /// Adds all files of the manifest `other`.
     pub fn add_all(&mut self, other: &Self) {
         other.files.iter().for_each(|entry| self.put(entry.clone()));
     }
@@ -149,7 +147,7 @@ impl Manifest {
         }
     }
 
-    /// Reads a file that the manifest lists. Returns `None` if the file is not listed.
+    /// Reads a file of the manifest. Returns `None` if the manifest does not list the file.
     ///
     /// # Errors
     ///
@@ -168,8 +166,8 @@ impl Manifest {
         if entry.is_of(&bytes) { Ok(Some(bytes)) } else { Err(changed("other contents")) }
     }
 
-    /// Replaces the previous manifest `before` by this manifest. Returns the old files that must be removed. An old
-    /// file is removed if the new run does not write the file, and if the file has not changed since it was written.
+    /// Replaces the previous manifest `before` by this manifest. Returns the old files that must be removed: unchanged
+    /// files that the new run does not write.
     #[must_use]
     pub fn replace(&mut self, before: &Self, folder: &Path) -> Vec<PathBuf> {
         let gone = before.files.iter().chain(&before.replaced).filter(|entry| !self.lists(&entry.name));
@@ -187,13 +185,13 @@ impl Manifest {
     }
 }
 
-/// Returns true if the name is a plain file name, without a folder, other than the manifest's own name.
+/// Returns true for a plain file name without a folder, except for the manifest's own name.
 fn is_plain(name: &str) -> bool {
     let is_one_part = Path::new(name).file_name().is_some_and(|part| part == name);
     is_one_part && !name.contains(['/', '\\']) && name != MANIFEST_FILE
 }
 
-/// Returns true if the entry's file is a regular file with unchanged contents. Returns false for files that grow.
+/// Returns true if the file exists with unchanged contents. Returns false for files that grow.
 fn is_unchanged(folder: &Path, entry: &ManifestEntry) -> bool {
     let path = folder.join(&entry.name);
     let is_file = path.symlink_metadata().is_ok_and(|found| found.is_file());
@@ -212,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_manifest_is_read_as_it_was_written_and_tells_what_has_changed() {
+    fn a_manifest_is_read_as_written_and_finds_changed_files() {
         let folder = folder("round");
         assert_eq!(Manifest::read(&folder).expect("no file is no error"), None);
         let mut manifest = Manifest::new("run");
@@ -231,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_written_again_goes_unless_its_user_has_changed_it() {
+    fn files_not_written_again_are_removed_unless_the_user_changed_them() {
         let folder = folder("gone");
         let mut before = Manifest::new("run");
         for name in ["kept", "changed", "gone", "absent"] {
@@ -243,7 +241,7 @@ mod tests {
         let mut next = Manifest::new("run");
         next.add("kept", b"new");
         assert_eq!(next.replace(&before, &folder), [folder.join("gone")]);
-        // A run that ended before it removed a file leaves the removal to the next run.
+        // If a run ended before it removed a file, the next run removes the file.
         let mut third = Manifest::new("run");
         assert_eq!(third.replace(&next, &folder), [folder.join("gone")], "`kept` has the old contents");
         fs::remove_dir_all(folder).expect("ours");

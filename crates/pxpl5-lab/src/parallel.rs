@@ -1,12 +1,10 @@
-//! Parallel execution of independent runs on all threads of this computer. Results keep the order of the inputs. A run
+//! Parallel execution of independent runs on all threads of this computer. Results have the order of the inputs. A run
 //! may start further parallel runs.
 
 use rayon::prelude::*;
 
-/// Applies `run` to every item in parallel, and returns the results in the order of the items.
-///
-/// The items are independent experiments or their settings. All cores of this computer work. A run may start further
-/// parallel runs.
+/// Applies `run` to every item on all cores of this computer, and returns the results in the order of the items. `run`
+/// may itself start parallel work.
 ///
 /// ```
 /// assert_eq!(pxpl5_lab::in_parallel(&[1, 2, 3], |n| n * n), [1, 4, 9]);
@@ -36,7 +34,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_within_runs_come_to_an_end_and_keep_their_order() {
+    fn nested_parallel_runs_finish_and_keep_their_order() {
         let tens: Vec<u64> = (0..40).collect();
         let of_tens = |ten: &u64| map(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9], |one| 10 * ten + one);
         let (all, last) = both(|| map(&tens, of_tens), || of_tens(&40));

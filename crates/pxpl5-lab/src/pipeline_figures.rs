@@ -7,15 +7,15 @@ use pxpl5_run::Outcome;
 /// A diagram of a pipeline in a paper, with the experiment that redraws it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PipelineFigure {
-    /// Name of the figure's file, without the extension.
+    /// Name of the drawing's file, without the extension.
     pub name: &'static str,
     /// Paper and figure number.
     pub source: &'static str,
-    /// Caption of the drawing: the pipeline, and the effect that the drawing shows.
+    /// Caption of the drawing: the pipeline, and the effect that is visible.
     pub shows: &'static str,
     /// Text of the experiment file.
     pub experiment: &'static str,
-    /// Number of display fields that are drawn. If `None`, the drawing function chooses the number.
+    /// Number of drawn display fields. `None` draws a default number.
     pub fields: Option<u64>,
 }
 
@@ -24,7 +24,7 @@ pub struct PipelineFigure {
 /// time per triangle. TRANSFORM, RENDER and COPY then take 15.6 ms each, as in row 5 of ACCURACY.md.
 ///
 /// TR94's figures 3 and 4 show theory. Like rows 3 and 5 of ACCURACY.md, both figures follow the rules in the text of
-/// TR94. A renderer with a finished region continues with the next region (`finished = "store"`). By default renderers
+/// TR94. A renderer with a finished region continues with another region (`finished = "store"`). By default renderers
 /// wait, which agrees with TR94's measurements.
 pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
     PipelineFigure {

@@ -3,10 +3,10 @@
 //! ```text
 //!   Reading::all() --Bench with a Reading, analytic--> Fit of each --best of them, transaction--> Readings: ranked
 //!                                                   |
-//!                                                   +--without one figure in turn--> LeaveOneOut: predicted by the others' choice
+//!                                                   +--without one figure in turn--> LeaveOneOut: its prediction
 //! ```
 //!
-//! Among hundreds of combinations some may fit a dozen figures by chance. Every figure is therefore also predicted by
+//! Among hundreds of combinations, some may fit a dozen figures by chance. Every figure is therefore also predicted by
 //! the interpretation that fits all other figures best. The result also counts the interpretations that are as good as
 //! the best within the printed digits. The text of the papers decides between these interpretations.
 //!

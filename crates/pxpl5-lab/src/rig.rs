@@ -1,12 +1,13 @@
-//! The pendulum rig in front of the emulated machine. The rig measures latency from outside, and compares the result
-//! with the system's own time stamps.
+//! The pendulum rig in front of the emulated machine.
+//!
+//! The rig measures latency from outside, and compares the result with the system's own time stamps.
 //!
 //! As in I3D95, the host starts a frame when the host detects that the pendulum passes its lowest point. Frames
-//! alternate between dark and light, and the output of a D/A converter (the D/A line) changes when the program starts a
-//! frame. Frames therefore come on demand, the pipeline is not full, and the latency contains no wait for stages of an
-//! earlier frame. Under Rendering Control the host drives the line, so SEND and EDIT belong to the rendering part of
-//! the latency. Firmware that starts frames itself, such as Slats, switches the D/A line when the firmware samples the
-//! pose of a frame.
+//! alternate between dark and light. The output of a D/A converter (the D/A line) changes when the program starts a
+//! frame. Frames therefore come on demand, the pipeline is not full, and the latency contains no wait for an earlier
+//! frame. Under Rendering Control, the host drives the D/A line, so SEND and EDIT belong to the rendering part of the
+//! latency. Under Slats and other firmware that starts frames itself, the D/A line changes when the firmware samples
+//! the pose of a frame.
 //!
 //! The traces of the simulated oscilloscope do not use the pipeline's own records of its pictures. The instants of the
 //! lowest point come from the pendulum. The light comes from the pixels that the display scans at the photodiode. The
@@ -44,7 +45,7 @@ pub struct Rig {
     pub seed: u64,
     /// Number of measured passes of the pendulum through its lowest point, at least 2.
     pub passes: usize,
-    /// Flag by which another thread stops the measurement.
+    /// Flag with which another thread stops the measurement.
     pub stop: StopFlag,
 }
 
@@ -53,7 +54,8 @@ pub struct Rig {
 pub const PASSES: usize = 24;
 
 impl Rig {
-    /// Creates a rig with `tracker` on the pendulum, and with the assumed pendulum, detection and photodiodes.
+    /// Creates a rig with `tracker` on the pendulum, and with the assumed settings of pendulum, detection and
+    /// photodiodes.
     #[must_use]
     pub fn assumed(tracker: TrackerConfig) -> Self {
         Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES, stop: StopFlag::default() }
@@ -70,12 +72,8 @@ impl Rig {
         Ok(measured)
     }
 
-    /// Measures the latency under several lines of the screen in one run, and returns the run too. Photodiodes change
-    /// nothing on the machine, so each measurement equals the measurement of a run with only this photodiode.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`Rig::measure`].
+    /// Measures the latency under several lines of the screen in one run. Also returns the run. A photodiode does not
+    /// affect the machine, so each measurement equals that of a run with only this photodiode.
     pub(crate) fn measure_lines<const N: usize>(
         &self,
         machine: &MachineConfig,
@@ -100,7 +98,6 @@ impl Rig {
         }
     }
 
-    /// Compares the light under one photodiode with the pendulum and with the system's own time stamps.
     fn compared(
         &self,
         tracker: &TrackerModel,
@@ -126,15 +123,14 @@ impl Rig {
     }
 
     /// Returns the experiment of a measurement. Each report that the pendulum is at its lowest point has a head pose:
-    /// alternately toward the lamp and away from the lamp. The experiment is long enough for the last frame to be
-    /// shown.
+    /// alternately toward the lamp and away from the lamp. The experiment is long enough to show the last frame.
     fn experiment(
         &self,
         machine: &MachineConfig,
         pipeline: Arc<dyn Pipeline>,
         sightings: &[LowPointReport],
     ) -> Result<Experiment, StudyError> {
-        // Even sightings make a light frame, odd sightings a dark frame.
+        // Sightings of the pendulum with even numbers make a light frame, and sightings with odd numbers a dark frame.
         let reports = (0..).zip(sightings).map(|(number, sighting)| TrackerReport {
             solution: number,
             measured_ps: sighting.measured_ps,
@@ -157,7 +153,7 @@ impl Rig {
     }
 }
 
-/// Returns an error for a pipeline in which a photodiode on the screen cannot detect the appearance of a frame.
+/// Returns an error for a pipeline in which a photodiode on the screen cannot detect a new frame.
 fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), StudyError> {
     let refused = |reason| {
         let definition = pipeline.due_definition();
@@ -174,12 +170,12 @@ fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), 
     Ok(())
 }
 
-/// Returns the time in picoseconds from the retrace at which a period begins to an instant within this period.
+/// Returns the time in picoseconds from the retrace at the start of a period to an instant within this period.
 fn behind_the_retrace(record: &Record, instant: Time) -> u64 {
     instant.since(record.tick(record.display().period_at(instant))).0
 }
 
-/// Returns the head pose for dark frames, in which the lamp is behind the viewer.
+/// Returns the head pose of dark frames, in which the lamp is behind the viewer.
 fn away() -> Pose {
     Pose { position: DVec3::ZERO, orientation: rotation::about_y(FRAC_PI_2) }
 }
@@ -217,15 +213,16 @@ fn lamp() -> Scene {
 /// A photodiode in the middle of a line of the screen, with a sample for each pass of the beam.
 struct Photodiode {
     line: u32,
-    /// Longest time in picoseconds from the beginning of a period to the beam's pass over the photodiode.
+    /// Longest time in picoseconds from the start of a period to the beam's pass over the photodiode.
     place_ps: u64,
-    /// Time in picoseconds of each pass of the beam over the photodiode, and true if the pixel was bright.
+    /// Time in picoseconds of each pass of the beam over the photodiode. The boolean is true if the pixel was bright.
     samples: Vec<(u64, bool)>,
-    /// Number of messages that the ring had carried by the end of each period, and true if no message was under way.
+    /// Number of messages that the ring had carried at the end of each period. The boolean is true if no message was
+    /// under way.
     ring: Vec<(u64, bool)>,
 }
 
-/// Minimum mean of red, green and blue of a pixel that counts as bright: half the value of a white wall.
+/// Minimum mean of red, green and blue of a bright pixel: half the value of a white wall.
 const LIGHT: u32 = 128;
 
 impl Photodiode {
@@ -240,8 +237,8 @@ impl Photodiode {
         if found < lines { Ok(()) } else { Err(StudyError::Photodiode { lines, found }) }
     }
 
-    /// Samples the photodiode in a period that has ended. `screen` keeps the picture of the period, so that several
-    /// photodiodes read the picture only once.
+    /// Samples the photodiode in a period that has ended. `screen` caches the picture of the period for all
+    /// photodiodes.
     fn look(&mut self, period: PeriodNumber, record: &Record, screen: &mut Option<Option<RgbImage>>) {
         let display = record.display();
         let Some(surface) = display.surfaces().first() else { return };
@@ -259,7 +256,7 @@ impl Photodiode {
         self.samples.push((at.0, is_light));
     }
 
-    /// Returns the sample of two periods ago if the ring has carried no message since then. In this case, the screen
+    /// Returns the sample of two periods ago if the ring has carried no message since then. Without messages the screen
     /// cannot have changed, so that the picture need not be read again. The display lights each line in every second
     /// period. The state of the ring is recorded one period later than the sample of the screen.
     fn unchanged(&self) -> Option<bool> {
@@ -273,8 +270,7 @@ fn brightness(picture: &RgbImage, x: u32, y: u32) -> u32 {
     picture.get_pixel(x, y).0.iter().map(|value| u32::from(*value)).sum::<u32>() / 3
 }
 
-/// Runs an experiment and samples the photodiodes. The function accepts a run that is too short to fill the pipeline
-/// with pictures.
+/// Runs an experiment and samples the photodiodes. A run that is too short to fill the pipeline is not an error.
 fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outcome, StudyError> {
     let machine = experiment.build()?;
     photodiodes.iter().try_for_each(|photodiode| photodiode.check(machine.record().display()))?;
@@ -311,8 +307,8 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<V
     if found.len() == expected { Ok(found) } else { Err(StudyError::NotShown { expected, found: found.len() }) }
 }
 
-/// Returns the time at which a program sampled the head pose for a frame and switched the D/A line. Under Rendering
-/// Control this is the time at which the host begins SEND. Under Slats this is the time at which a graphics processor
+/// Returns the time at which a program sampled the head pose of a frame and changed the D/A line. Under Rendering
+/// Control, this is the time at which the host begins SEND. Under Slats, this is the time at which a graphics processor
 /// begins a field.
 fn started(record: &Record, frame: &PictureTimes) -> Time {
     let marks = record.observation().marks.iter();
@@ -328,7 +324,7 @@ mod tests {
 
     /// Tests that one run with three photodiodes gives the same results as three runs with one photodiode each.
     #[test]
-    fn photodiodes_of_one_run_measure_what_each_measures_alone() {
+    fn one_run_with_three_photodiodes_measures_the_same_as_three_runs_with_one_photodiode() {
         let rig = Rig { passes: 4, ..Rig::assumed(TrackerConfig::optical_ceiling()) };
         let (machine, pipeline) = (MachineConfig::small_hmd(), Arc::new(RenderingControl::stereo()));
         let lines = [0, 100, 239];

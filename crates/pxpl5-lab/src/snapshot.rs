@@ -10,7 +10,7 @@
 //! therefore identical to the original run. Restoring takes as long as the original simulation up to that field
 //! (thousands of fields a second for small scenes).
 //!
-//! The file is JSON with a version and a checksum. Damaged and foreign files are refused with the reason.
+//! The file is JSON with a version and a checksum. Damaged files and other files are refused with the reason.
 
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_machine::Machine;
@@ -36,11 +36,11 @@ pub struct Snapshot {
     pub machine: String,
     /// Hash of all settings on which the trace of the whole run depends.
     pub config_hash: String,
-    /// Name of the level of modelling: `transaction` or `cycle`.
+    /// Name of the level of detail: `transaction` or `cycle`.
     pub level: String,
     /// Seed of the head motion.
     pub seed: u64,
-    /// Number of the field that begins at the instant of the checkpoint. No event of this field has happened yet.
+    /// Field that begins at the instant of the checkpoint. No event of this field has happened yet.
     pub field: PeriodNumber,
     /// Instant of the checkpoint in picoseconds.
     pub time_ps: u64,
@@ -50,7 +50,7 @@ pub struct Snapshot {
     pub events: u64,
     /// Hash of the scene's contents.
     pub scene_hash: String,
-    /// Text of the experiment file. `None` for an experiment that was built in code.
+    /// Text of the experiment file. `None` for an experiment that a program built without a file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub experiment: Option<String>,
 }
@@ -59,7 +59,7 @@ impl Snapshot {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-snapshot/1";
 
-    /// Creates a checkpoint of a machine that has just reached the retrace at which a field begins.
+    /// Creates a checkpoint of a machine that has just reached the retrace at the start of a field.
     #[must_use]
     pub fn of_machine(
         plan: &Plan,
@@ -84,7 +84,7 @@ impl Snapshot {
         }
     }
 
-    /// Creates a checkpoint of a run of an experiment that was built in code.
+    /// Creates a checkpoint of a run of an experiment that a program built without a file.
     ///
     /// The file of the checkpoint does not describe such an experiment, so [`Snapshot::resume`] needs the same
     /// experiment as its argument.
@@ -116,8 +116,8 @@ impl Snapshot {
         })
     }
 
-    /// Repeats the run of an experiment up to the saved period, and returns the run at this point. Error messages call
-    /// the checkpoint's file `file`.
+    /// Repeats the run of an experiment up to the saved field, and returns the run at this point. `file` is the name of
+    /// the checkpoint in error messages.
     ///
     /// # Errors
     ///
@@ -144,7 +144,7 @@ impl Snapshot {
         text
     }
 
-    /// Reads the text of a checkpoint's file. Error messages call the file `file`.
+    /// Reads the text of a checkpoint's file. `file` is its name in error messages.
     ///
     /// # Errors
     ///
@@ -153,7 +153,7 @@ impl Snapshot {
         let value: Value =
             serde_json::from_str(text).map_err(|error| no_snapshot(file, format!("not whole JSON: {error}")))?;
         let found = value.get("schema").and_then(Value::as_str).unwrap_or("none");
-        // A foreign file and another version get different errors.
+        // A file of another program and a file of another version get different errors.
         if !found.starts_with("pxpl5-snapshot/") {
             return Err(no_snapshot(file, format!("expected schema {}, found {found}", Self::SCHEMA)));
         }
@@ -181,12 +181,12 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns a [`FileError`] if this version cannot read the experiment, or if the checkpoint has no experiment file.
+    /// Returns a [`FileError`] if this version cannot read the experiment, or if the checkpoint holds no experiment.
     pub fn experiment(&self, file: &str) -> Result<ExperimentFile, FileError> {
         self.experiment_with(crate::registry(), file)
     }
 
-    /// Returns the saved experiment, which may name the pipelines and displays of `registry`.
+    /// Returns the saved experiment, which may use pipelines and displays of `registry`.
     ///
     /// # Errors
     ///
@@ -208,8 +208,8 @@ impl Snapshot {
         self.same("the scene's fingerprint", &self.scene_hash, Fingerprint::of_scene(scene).to_string(), file)
     }
 
-    /// Compares the trace hash and the number of events of `machine` with the values in the checkpoint. The machine
-    /// must have repeated the run up to the saved field.
+    /// Compares the trace hash and the number of events of `machine` with the checkpoint. The machine must have
+    /// repeated the run up to the saved field.
     ///
     /// # Errors
     ///
@@ -237,7 +237,6 @@ fn foreign(file: &str, reason: impl Display) -> FileError {
     FileError::because(FileErrorKind::Foreign, reason).in_file(file)
 }
 
-/// A checkpoint with its checksum, in the form that is written to the file.
 #[derive(Serialize, Deserialize)]
 struct Sealed {
     #[serde(flatten)]
@@ -323,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn another_experiment_and_a_run_within_a_period_are_refused() {
+    fn a_snapshot_of_another_experiment_or_within_a_period_is_refused() {
         let experiment = built_in_code(0.5);
         let mut stepper = experiment.stepper().expect("it begins");
         stepper.step_period();
@@ -338,14 +337,14 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_changes_nothing() {
+    fn stops_during_a_run_do_not_change_the_trace() {
         let (plan, _, stopped) = saved();
         let whole = plan.experiment(plan.load_scene().expect("built in")).run().expect("it runs");
         assert_eq!(whole.report().trace_hash, stopped);
     }
 
     #[test]
-    fn a_machine_of_another_run_is_told_apart() {
+    fn a_checkpoint_of_another_machine_is_refused() {
         let (plan, snapshot, _) = saved();
         let other = Plan { seed: 6, ..plan.clone() };
         let result = other.experiment(plan.load_scene().expect("built in")).run_stopping(
@@ -364,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn every_changed_byte_and_every_cut_is_noticed() {
+    fn every_changed_byte_and_every_truncation_is_detected() {
         let (_, snapshot, _) = saved();
         let text = snapshot.to_text();
         for at in 0..text.len() - 2 {

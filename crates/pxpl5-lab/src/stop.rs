@@ -1,22 +1,22 @@
-//! A flag by which one thread stops the work of other threads.
+//! A flag with which one thread stops the work of other threads.
 
 use pxpl5_run::{ExperimentError, Host};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A flag by which one thread stops a study and its runs on other threads. Clones share the flag.
+/// A flag with which one thread stops a study and its runs on other threads. Clones share the flag.
 ///
-/// The flag is also a [`Host`] without clock and worker threads. The host ends its runs when the flag is set.
+/// The flag is also a [`Host`] without clock and worker threads, which ends its runs when the flag is set.
 #[derive(Clone, Debug, Default)]
 pub struct StopFlag(Arc<AtomicBool>);
 
 impl StopFlag {
-    /// Requests that the work stop. Runs in progress end within a few display periods.
+    /// Requests the end of the work. Runs in progress end within a few display periods.
     pub fn stop(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Withdraws the request to stop, so that the flag can be used for further work.
+    /// Withdraws the request to stop, so that the flag can be used again.
     pub fn clear(&self) {
         self.0.store(false, Ordering::Relaxed);
     }
@@ -73,7 +73,7 @@ mod tests {
         let ended = over.search(|_, _| stop.stop());
         assert!(matches!(ended, Err(StudyError::Experiment(ExperimentError::Stopped(_)))), "{ended:?}");
 
-        // The first value runs and misses. A stopped search must not say that no value reaches the goal.
+        // The first value runs and misses the goal. A stopped search must not report that no value reaches the goal.
         let text = "pipeline = \"rendering-control\"\nscene = \"full-screen:10\"\nfields = 120\n";
         let file = ExperimentFile::parse(text, "test").expect("TOML");
         let plan = file.resolve().expect("valid");

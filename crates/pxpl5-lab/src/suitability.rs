@@ -7,12 +7,12 @@ use pxpl5_sim::Time;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Result of testing one pipeline on a machine.
+/// Result of a test of one pipeline on a machine.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Suitability {
     /// Name of the tested pipeline.
     pub pipeline: &'static str,
-    /// Reason why the machine cannot run the pipeline. `None` if the pipeline runs.
+    /// Reason why the machine cannot run the pipeline. `None` if the machine can run the pipeline.
     pub lacks: Option<String>,
 }
 
@@ -31,8 +31,8 @@ pub fn suitability(registry: &Registry, config: &MachineConfig) -> Vec<Suitabili
     registry.pipelines().iter().map(tried).collect()
 }
 
-/// Simulated time after which a missing resource has caused an error. This time suffices because programs reserve all
-/// memory before the first wait.
+/// Simulated time after which a missing resource has caused an error. This time suffices, because programs reserve all
+/// memory before their first wait.
 const BEGIN: Time = Time(1_000_000);
 
 fn begins(
@@ -77,7 +77,7 @@ mod tests {
     /// Tests that the first instant of a run and the simulation of a whole field find the same missing resources. Some
     /// of the machines lack boards or memory.
     #[test]
-    fn the_begin_of_a_run_says_what_a_whole_field_says() {
+    fn starting_a_run_finds_the_same_faults_as_running_a_field() {
         let small = |n_gps, n_renderers, memory_bytes| {
             let machine = MachineConfig { n_gps, n_renderers, ..MachineConfig::small_hmd() };
             let gp = pxpl5_gp::GpTiming { memory_bytes, ..machine.gp };
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_says_what_it_lacks() {
+    fn an_unsuitable_machine_is_refused_with_the_missing_part() {
         // Rendering Control needs a master and at least one slave. Slats binds 20 regions, four to a renderer.
         let few = MachineConfig { n_gps: 1, n_renderers: 4, ..MachineConfig::small_hmd() };
         let lacking = lacking(&few);

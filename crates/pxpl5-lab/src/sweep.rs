@@ -12,9 +12,9 @@
 //!   on the host are in times.jsonl.
 //! - Each row is appended by one write when its point is finished. At the end the rows are sorted by the number of
 //!   their point. The finished file is therefore the same, byte for byte, for every order of execution.
-//! - After a crash the last line may be incomplete. [`Store::open`] removes this line, and only the point of this line
-//!   is computed again.
-//! - A point that cannot be simulated has a row with the reason. The other points continue.
+//! - After a crash the last line may be incomplete. [`Store::open`] removes this line, and only its point is computed
+//!   again.
+//! - A point that cannot be simulated has a row with the reason. All other points continue.
 //! - Two processes never write into one folder. The second process gets an error.
 //! - Every row has the numbers of due pictures, of pictures not shown, and of evaluated pixels, even if the file
 //!   selects other quantities. Without these counts, a mean over few pictures looks like a mean over all.
@@ -65,7 +65,6 @@ use std::sync::Arc;
 pub struct Sweep {
     base: ExperimentFile,
     space: SweepSpace,
-    /// Scenes loaded so far, shared by all clones of the sweep.
     scenes: Arc<SceneCache>,
 }
 
@@ -98,20 +97,19 @@ impl Sweep {
         &self.base
     }
 
-    /// Returns the folder of the sweep's experiment file. Relative file names in the settings refer to this folder.
     fn folder(&self) -> PathBuf {
         self.base.sweep.as_ref().map(|sweep| sweep.folder.clone()).unwrap_or_default()
     }
 
-    /// Returns the parameter space, whose points are the experiments.
+    /// Returns the parameter space. Each of its points is an experiment.
     #[must_use]
     pub const fn space(&self) -> &SweepSpace {
         &self.space
     }
 }
 
-/// Returns the quantities of a row: the quantities that the experiment file selects, then the counts that are necessary
-/// to compare means ([`Measure::counts`]).
+/// Returns the quantities of a row: the quantities in the experiment file, then the counts that a comparison of means
+/// requires ([`Measure::counts`]).
 fn measures(plan: &Plan) -> Vec<Measure> {
     let mut all = plan.measure.clone();
     all.extend(Measure::counts().into_iter().filter(|count| !plan.measure.contains(count)));

@@ -8,28 +8,29 @@ use serde::Serialize;
 /// Effect of one changed resource of the machine on latency and update rate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WhatIf {
-    /// Name of the resource of which the machine gets more.
+    /// Name of the increased resource.
     pub resource: &'static str,
-    /// The setting that was changed, such as `machine.n_gps`.
+    /// Key of the changed setting, such as `machine.n_gps`.
     pub key: &'static str,
-    /// The value of the setting on the unchanged machine.
+    /// Value of the setting on the unchanged machine.
     pub from: u64,
-    /// Value of the setting on the changed machine: 10 % better, but at least one step of the setting better.
+    /// Value of the setting on the changed machine: a time divided by 1.1 and rounded up, or any other value increased
+    /// by 10 % (at least by 1).
     pub to: u64,
-    /// Mean latency in milliseconds without (first) and with (second) the change. `None` if no picture was complete.
+    /// Mean latency in milliseconds before and after the change. `None` if no picture was complete.
     pub latency_ms: [Option<f64>; 2],
-    /// Number of complete new pictures per second without (first) and with (second) the change. `None` if fewer than
-    /// two pictures were shown.
+    /// Number of complete new pictures per second before and after the change. `None` if fewer than two pictures were
+    /// shown.
     pub updates_hz: [Option<f64>; 2],
-    /// The level of modelling that gave the results: `analytic`, or the level of the run.
+    /// Level of detail of the results: `analytic`, or the level of the run.
     pub level: &'static str,
 }
 
-/// A resource of the machine, and the setting that changes the amount or the speed of the resource.
+/// A resource of the machine, and the setting for its amount or speed.
 struct Knob {
     resource: &'static str,
     key: &'static str,
-    /// True if the setting is a time, so that a smaller value is better.
+    /// True if the setting is a time, so that a faster machine has a smaller value.
     is_time: bool,
 }
 
@@ -43,7 +44,6 @@ const KNOBS: [Knob; 6] = [
 ];
 
 impl Knob {
-    /// Returns the value of this resource's setting on a machine.
     fn value(&self, config: &MachineConfig) -> Option<u64> {
         let path = self.key.strip_prefix("machine.")?;
         match path {
@@ -53,8 +53,8 @@ impl Knob {
         }
     }
 
-    /// Returns the old value of the setting, the new value, and the machine with the new value, which has 10 % more of
-    /// the resource. Returns `None` if the machine cannot have more of the resource.
+    /// Returns the old value of the setting, the new value, and the machine with 10 % more of the resource. Returns
+    /// `None` if the machine cannot have more of the resource.
     fn more(&self, config: &MachineConfig) -> Option<(u64, u64, MachineConfig)> {
         let from = self.value(config)?;
         let to = if self.is_time { from.min((from * 10).div_ceil(11)) } else { from + (from / 10).max(1) };
@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn more_is_a_tenth_and_at_least_one_step() {
+    fn a_what_if_increase_is_a_tenth_and_at_least_one_step() {
         let config = MachineConfig::preset("large").expect("a preset");
         let tried: Vec<(u64, u64)> =
             KNOBS.iter().filter_map(|knob| knob.more(&config)).map(|(from, to, _)| (from, to)).collect();

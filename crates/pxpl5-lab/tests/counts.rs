@@ -42,7 +42,7 @@ fn tolerance(a: &DuePictures, b: &DuePictures) -> f64 {
 }
 
 #[test]
-fn every_picture_due_ends_in_one_way_and_no_heavier_load_misses_less() {
+fn every_picture_due_has_one_result_and_heavier_loads_never_miss_fewer() {
     for pipeline in pipelines() {
         if pipeline == "frameless" || pipeline.starts_with("arp-") {
             let ends = [LOADS[0], LOADS[LOADS.len() - 1]];
@@ -67,7 +67,7 @@ fn every_picture_due_ends_in_one_way_and_no_heavier_load_misses_less() {
 }
 
 #[test]
-fn rates_are_those_of_the_load_and_not_of_the_length_of_the_run() {
+fn rates_do_not_depend_on_the_length_of_the_run() {
     let cases: [(&str, &[u32]); 4] = [
         ("rendering-control", &[12, 200, 800]),
         ("slats", &[100, 150, 400]),
@@ -97,7 +97,7 @@ fn with_a_head(pipeline: &str, scene: &str) -> Report {
 }
 
 #[test]
-fn where_nothing_was_complete_in_time_there_is_no_latency_no_update_and_no_error() {
+fn without_a_complete_picture_there_is_no_latency_update_or_error() {
     for (pipeline, scene) in [("jitp-scanline-racing", "mig"), ("slats", "full-screen:1000")] {
         let report = serde_json::to_value(with_a_head(pipeline, scene)).expect("JSON");
         for path in [
@@ -124,7 +124,7 @@ fn where_nothing_was_complete_in_time_there_is_no_latency_no_update_and_no_error
 }
 
 #[test]
-fn a_pipeline_without_a_closed_form_says_how_its_limit_is_found() {
+fn a_pipeline_without_a_closed_form_explains_how_its_limit_is_found() {
     let heavy = run("jitp-field", 3_000, 60).expect("fields are begun").report().too_heavy.expect("far too many");
     assert_eq!(heavy.triangles_in_time, None);
     assert!(heavy.advice.contains("`limit` finds the number of test triangles that jitp-field draws"), "{heavy}");

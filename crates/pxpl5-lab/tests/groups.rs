@@ -19,7 +19,7 @@ fn within(id: &str, [low, high]: [f64; 2]) {
 }
 
 #[test]
-fn every_row_is_written_out_with_its_experiment() {
+fn every_row_is_written_with_its_experiment() {
     for row in ROWS.iter() {
         println!(
             "{:<4} {:>12.4} {:>12.4} {:<12} {:?} % {:?} {:?}",
@@ -46,7 +46,7 @@ fn just_in_time_pixels_have_the_errors_of_the_paper() {
 /// Tests the number of transforms. 240 visible lines need 240 transforms of every triangle's corners, compared with one
 /// transform per field.
 #[test]
-fn line_by_line_takes_240_times_the_transforms() {
+fn one_transform_per_line_needs_240_times_the_transforms_of_one_transform_per_field() {
     within("J5", [239.99, 240.01]);
 }
 
@@ -64,7 +64,7 @@ fn a_renderer_draws_as_many_triangles_as_its_programs_clocks_allow() {
 /// Tests the i860's rate. The peak is two operations per clock at 40 MHz. The loop's own instructions keep the measured
 /// rate below the peak.
 #[test]
-fn the_i860_comes_near_its_peak_and_not_beyond() {
+fn the_i860_reaches_between_78_and_80_million_operations_per_second() {
     within("R7", [78.0, 79.99]);
 }
 
@@ -80,15 +80,15 @@ fn the_fifo_and_the_senders_channels_move_the_rate_of_the_machine() {
 /// Tests the interval of the rig's total latency. The beam takes 239 lines of 63.56 us from the first line of a field
 /// to the last. In this test nothing else changes the latency.
 #[test]
-fn the_rigs_total_moves_with_the_photodiode() {
+fn the_interval_of_the_total_latency_of_the_rig_is_the_scan_time_between_the_photodiode_lines() {
     let [low, high] = row("R6").interval.expect("varied");
     assert!((high - low - 239.0 * 0.063_556).abs() < 0.01, "{low} to {high}");
 }
 
-/// Tests the wait for the kernel. A report waits at most for one poll: 30 ms are 1.798 fields. The mean wait is half of
-/// this time.
+/// Tests the wait for the host's operating system, which polls every 30 ms. A report waits at most for one poll: 30 ms
+/// are 1.798 fields. The mean wait is half of this time.
 #[test]
-fn polling_adds_at_most_a_look_and_half_of_it_in_the_mean() {
+fn polling_adds_at_most_one_poll_and_half_a_poll_on_average() {
     within("T1", [1.75, 1.799]);
     let mean = row("T1").details.iter().find(|detail| detail.name == "mean of all reports").expect("stated");
     assert!((mean.value - 0.899).abs() < 0.05, "{}", mean.value);

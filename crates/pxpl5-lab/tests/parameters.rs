@@ -32,7 +32,7 @@ fn hash(plan: &Plan) -> String {
 }
 
 #[test]
-fn every_number_of_the_machine_set_to_its_own_value_is_the_same_machine() {
+fn setting_each_machine_parameter_to_its_own_value_changes_nothing() {
     let machine = Registry::of_papers().machine_of(MachineConfig::small_hmd());
     for Parameter { path, value, .. } in machine.parameters().into_iter().filter(|parameter| !parameter.read_only) {
         let mut same = machine.clone();
@@ -43,10 +43,10 @@ fn every_number_of_the_machine_set_to_its_own_value_is_the_same_machine() {
 }
 
 #[test]
-fn every_number_of_an_experiment_set_to_its_own_value_is_the_same_experiment() {
+fn setting_each_key_of_an_experiment_to_its_own_value_changes_nothing() {
     for tracker in TRACKERS {
         let tracker = format!("head.tracker={tracker}");
-        // A parameter of the filter that is set is used as given and is not tuned.
+        // A parameter of the filter that the user has set is not tuned.
         let head = ["head.motion=pan:40", &tracker, "head.filter=given"];
         let plain = plan(&head);
         for Parameter { path, value, .. } in plain.parameters().into_iter().filter(|parameter| !parameter.read_only) {
@@ -57,7 +57,7 @@ fn every_number_of_an_experiment_set_to_its_own_value_is_the_same_experiment() {
 }
 
 #[test]
-fn every_read_only_number_says_that_it_is() {
+fn every_read_only_parameter_is_refused_as_read_only() {
     let listed = plan(&[]).parameters().into_iter().chain(tracking_parameters());
     let read_only: Vec<Parameter> = listed.filter(|parameter| parameter.read_only).collect();
     assert!(read_only.iter().any(|parameter| parameter.path == "i860.chip.page_bytes"));
@@ -69,7 +69,7 @@ fn every_read_only_number_says_that_it_is() {
 }
 
 #[test]
-fn every_table_of_the_i860_is_listed_and_its_last_part_is_the_numbers_name() {
+fn the_tables_of_the_i860_are_set_by_paths_that_end_with_the_name_of_the_parameter() {
     let mut machine = MachineConfig::slats();
     machine.set("i860.dram.page_bytes", 2_048).expect("the memory's");
     assert_eq!((machine.i860.dram.page_bytes, machine.i860.freezes), (2_048, MachineConfig::slats().i860.freezes));
@@ -107,7 +107,7 @@ fn a_slower_memory_makes_a_run_of_code_slower() {
 /// Tests that the configured clocks apply to all blocks of code: those whose clocks are cached, and those that are
 /// counted each time.
 #[test]
-fn what_is_memoised_has_the_clocks_of_the_same_memory() {
+fn memoised_and_counted_code_give_the_same_trace_for_any_memory_timing() {
     let plan = plan(&["level=cycle", "i860.dram.first_hit=80", "i860.freezes.load_use=3"]);
     let experiment = plan.experiment(plan.load_scene().expect("built in")).pixels(Pixels::Off);
     let counted = experiment.clone().without(pxpl5_machine::Optimization::RepeatedCode).run().expect("it is small");
@@ -124,7 +124,7 @@ fn head_to_light_ms(latency_ms: u64) -> f64 {
 }
 
 #[test]
-fn a_tracker_that_is_later_makes_head_to_light_longer_by_as_much() {
+fn a_later_tracker_lengthens_head_to_light_by_the_same_time() {
     let longer = head_to_light_ms(50) - head_to_light_ms(20);
     assert!((longer - 30.0).abs() < 1.0, "{longer} ms for 30 ms");
 }
@@ -140,7 +140,7 @@ fn tracking_ms(settings: &[&str]) -> f64 {
 /// Tests the wait for a poll. Reports wait for half a polling period on average. If one poll finds several reports, the
 /// newest waits for less.
 #[test]
-fn the_kernels_poll_delays_the_fastrak_too() {
+fn the_polling_of_the_operating_system_delays_the_fastrak() {
     let patched = tracking_ms(&["head.tracker=fastrak"]);
     let [usual, longer] = ["20", "100"].map(|poll| {
         let poll = format!("tracking.host.poll={poll}");
@@ -182,7 +182,7 @@ fn an_impossible_tracker_parameter_is_refused_with_the_expected_range() {
 }
 
 #[test]
-fn a_file_written_out_has_the_numbers_of_its_tracker() {
+fn a_written_file_has_the_parameters_of_its_tracker() {
     let first = plan(&["head.motion=pan:40", "head.tracker=fastrak", "tracking.host.byte_bits=11"]);
     let text = first.settings().to_string();
     let second = ExperimentFile::parse(&text, "written").and_then(|file| file.resolve()).expect("it reads itself");

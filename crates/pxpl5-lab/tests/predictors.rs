@@ -43,7 +43,7 @@ fn shown(name: &str, all: &Predictors) {
 }
 
 #[test]
-fn on_a_still_head_a_tuned_filter_costs_nothing_against_no_prediction() {
+fn on_a_still_head_a_tuned_filter_adds_no_error() {
     let still = || Still(Pose::IDENTITY);
     for (name, experiment) in [
         ("rendering-control", experiment(RenderingControl::stereo(), still())),
@@ -53,8 +53,8 @@ fn on_a_still_head_a_tuned_filter_costs_nothing_against_no_prediction() {
         shown(name, &all);
         let none = mean(&all, PredictorKind::None);
         let kalman = mean(&all, PredictorKind::Kalman);
-        // Each picture shows one report, and 60 independent reports come each second. The lengths of their errors
-        // without prediction deviate by at most their mean.
+        // Each picture shows one report, and 60 independent reports come each second. Without prediction, the standard
+        // deviation of the errors' lengths is at most their mean.
         let independent =
             all.of(PredictorKind::None).and_then(|one| one.error.as_ref()).expect("evaluated").by_field.len() / 2;
         let tolerance = 3.0 / (independent as f64).sqrt();
@@ -66,14 +66,14 @@ fn on_a_still_head_a_tuned_filter_costs_nothing_against_no_prediction() {
 }
 
 #[test]
-fn the_report_says_for_what_a_filter_was_tuned_and_the_interval_is_the_pipelines_own() {
+fn the_report_names_the_tuning_of_a_filter_and_uses_the_interval_of_the_pipeline() {
     let outcome = experiment(RenderingControl::stereo(), Pan::at(60.0)).run().expect("it runs");
     let head = outcome.report().head.expect("there is a head");
     let training = head.training.expect("tuned");
     let interval_ms = training.interval_ps as f64 * 1e-9;
     println!("interval {interval_ms} ms, budget {:?}", head.end_to_end);
-    // A frame is seen for two fields and drawn for the middle of both: half a field after the light of its picture's
-    // middle.
+    // A frame is visible for two fields and is predicted for the middle of both. This instant is half a field after the
+    // light of the picture's middle.
     let expected_ms = head.end_to_end.total_ms + 1001.0 / 60.0 / 2.0;
     assert!((interval_ms - expected_ms).abs() <= 1.0, "{interval_ms} {expected_ms}");
     assert_ne!(training.seed, 1, "not on the noise that is evaluated");
@@ -84,7 +84,7 @@ fn the_report_says_for_what_a_filter_was_tuned_and_the_interval_is_the_pipelines
 }
 
 #[test]
-fn numbers_that_are_given_are_not_tuned() {
+fn parameters_set_by_the_user_are_not_tuned() {
     let file = |more: &str| {
         let text = format!(
             "pipeline = \"slats\"\nscene = \"room\"\nfields = 40\nhead.motion = \"pan:50\"\nhead.tracker = \"fastrak\"\n{more}"

@@ -19,8 +19,9 @@ fn with_frame_lines(lines: u64) -> Report {
 }
 
 #[test]
-fn on_a_display_of_625_or_1051_lines_rendering_control_misses_no_retrace_either() {
-    // A field of 625 lines takes 19.9 ms, and one of 1051 lines 33.4 ms. COPY of both eyes takes 31.2 ms on each.
+fn rendering_control_misses_no_retrace_of_a_display_with_625_or_1051_lines() {
+    // A field of 625 lines takes 19.9 ms, and a field of 1051 lines takes 33.4 ms. COPY of both eyes takes 31.2 ms on
+    // each display.
     for (lines, fields_of_two_copies) in [(525, 2), (625, 2), (1_051, 1)] {
         let due = with_frame_lines(lines).due.expect("frames are due");
         assert_eq!(due.periods_a_picture, fields_of_two_copies, "{lines} lines");
@@ -47,7 +48,7 @@ fn partial(error: ExperimentError) -> (Option<u64>, String, Box<Outcome>) {
 }
 
 #[test]
-fn a_run_in_which_nothing_was_shown_keeps_what_it_saw_and_says_how_long_it_must_be() {
+fn a_run_that_showed_nothing_keeps_its_results_and_names_the_length_needed() {
     let plan = ExperimentFile::parse(
         "pipeline = \"rendering-control\"\nscene = \"full-screen:12\"\npixels = \"off\"\nfields = 60",
         "test",
@@ -73,7 +74,7 @@ fn a_run_in_which_nothing_was_shown_keeps_what_it_saw_and_says_how_long_it_must_
 }
 
 #[test]
-fn without_a_closed_form_the_message_only_asks_for_more() {
+fn without_a_closed_form_the_message_asks_for_a_longer_run() {
     let error = experiment(slow(), "full-screen:12", 60).run().expect_err("too short");
     let (needed, message, _) = partial(error);
     assert_eq!(needed, None);
@@ -81,7 +82,7 @@ fn without_a_closed_form_the_message_only_asks_for_more() {
 }
 
 #[test]
-fn a_frame_that_takes_two_hundred_fields_is_one_picture_of_a_hundred_that_are_due() {
+fn if_a_frame_takes_two_hundred_fields_each_frame_counts_as_one_of_a_hundred_due_pictures() {
     let form = registry().pipeline("rendering-control").expect("known").closed_form.map(|form| form.estimates);
     let short = experiment(slow(), "full-screen:12", 60).with_estimates(form);
     let needed = partial(short.run().expect_err("too short")).0.expect("it has a closed form");
@@ -99,7 +100,7 @@ fn a_frame_that_takes_two_hundred_fields_is_one_picture_of_a_hundred_that_are_du
 }
 
 #[test]
-fn slats_that_is_always_late_has_shown_nothing_and_says_what_would_do() {
+fn if_slats_is_always_late_no_picture_is_shown_and_the_report_names_a_size_that_fits() {
     let plan = ExperimentFile::parse(
         "pipeline = \"slats\"\nscene = \"full-screen:1000\"\nfields = 60\npixels = \"off\"",
         "test",

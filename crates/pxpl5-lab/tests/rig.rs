@@ -1,5 +1,5 @@
-//! Tests of the pendulum rig in front of the machine. Outside and inside measurements agree, and each reveals a fault
-//! of the other.
+//! Tests of the pendulum rig in front of the machine. The measurements outside and inside the machine agree, and each
+//! measurement reveals faults of the other.
 
 use pphigs::FrameView;
 use pxpl5_lab::StudyError;
@@ -34,7 +34,7 @@ fn ms(seconds: f64) -> f64 {
 }
 
 #[test]
-fn outside_and_inside_agree_within_a_report_and_the_photodiodes_place() {
+fn external_and_internal_latencies_differ_at_most_by_a_report_interval_and_the_photodiode_delay() {
     let trackers = [TrackerConfig::ideal(), TrackerConfig::fastrak(), TrackerConfig::optical_ceiling()];
     for pipeline in ["rendering-control", "slats", "jitp-field-racing"] {
         for tracker in &trackers {
@@ -74,7 +74,7 @@ fn pipelines_without_frames_are_refused_with_the_reason() {
 }
 
 #[test]
-fn from_outside_a_field_of_slats_takes_a_field_and_the_photodiodes_place() {
+fn the_external_latency_of_slats_is_a_field_plus_the_delay_of_the_photodiode_line() {
     // One processor begins TRANSFORM at the retrace. Several processors would need a message first.
     let measured = rig(TrackerConfig::fastrak(), 6).measure(&MachineConfig::slats(), named("slats"));
     let measured = measured.expect("two triangles");
@@ -154,7 +154,7 @@ impl PictureRules for Faulty {
 }
 
 #[test]
-fn an_error_of_one_side_is_found_by_the_other() {
+fn an_error_of_one_measurement_is_found_by_the_other() {
     let with = |fault| {
         let faulty = Faulty { inner: RenderingControl::stereo(), fault };
         measure(TrackerConfig::fastrak(), Arc::new(faulty), 4)

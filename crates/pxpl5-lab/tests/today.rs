@@ -25,7 +25,7 @@ fn number(plan: &Plan, path: &str) -> u64 {
 }
 
 #[test]
-fn a_display_by_numbers_is_a_panel_of_these_numbers() {
+fn a_display_described_by_numbers_is_a_panel_with_these_numbers() {
     let plan = plan(
         "display = { width = 800, height = 600, hz = 75, interlace = false, scan = \"global\", direction = \"up\", active = 0.9, \
          persistence_ms = 1.5, response_ms = 0.2, ports = 2, bits = 18 }\n",
@@ -53,14 +53,14 @@ fn a_display_by_numbers_is_a_panel_of_these_numbers() {
 }
 
 #[test]
-fn numbers_stand_on_a_preset_that_is_named() {
+fn numbers_override_a_named_preset() {
     let plan = plan("display = { preset = \"oled-90\", persistence_ms = 1 }\n");
     assert_eq!((plan.display(), number(&plan, "oled-90.persistence_us")), ("oled-90", 1_000));
     assert_eq!((number(&plan, "oled-90.width"), number(&plan, "oled-90.refresh_hz")), (1_080, 90));
 }
 
 #[test]
-fn numbers_of_a_display_that_cannot_be_are_refused_with_the_key_and_the_range() {
+fn impossible_numbers_of_a_display_are_refused_with_key_and_range() {
     for (text, expected) in [
         ("display = { width = 0 }", "display.width: expected a number from 1 to 16384 px, found 0"),
         ("display = { hz = 5000 }", "display.hz: expected a number from 1 to 1000 Hz, found 5000"),
@@ -89,9 +89,9 @@ fn numbers_of_a_display_that_cannot_be_are_refused_with_the_key_and_the_range() 
 
 /// Each number of a display is valid at both ends of its range, and refused one step beyond each end.
 #[test]
-fn numbers_of_a_display_are_valid_up_to_their_limits_and_refused_beyond_with_key_range_and_value() {
+fn numbers_of_a_display_are_valid_up_to_their_limits_and_refused_beyond_them() {
     let whole = |least: &str, greatest: &str| format!("a number from {least} to {greatest}");
-    // Key, other numbers, both ends, a step beyond both ends, and the range in the error.
+    // A row has the key, other numbers, both ends of the range, a step beyond both ends, and the range in the error.
     for (key, others, [least, greatest], [below, above], expected) in [
         ("width", "height = 100, ", ["1", "16384"], ["0", "16385"], whole("1", "16384")),
         ("height", "width = 100, ", ["1", "16384"], ["0", "16385"], whole("1", "16384")),
@@ -140,9 +140,8 @@ fn numbers_of_a_display_are_valid_up_to_their_limits_and_refused_beyond_with_key
     }
 }
 
-/// A pipeline either draws for a progressive panel or says by its name what it needs.
 #[test]
-fn every_pipeline_draws_for_a_panel_or_names_itself_and_its_need() {
+fn every_pipeline_draws_for_a_panel_or_names_the_missing_requirement() {
     let mut refused = Vec::new();
     for entry in pxpl5_run::Registry::of_papers().pipelines() {
         let text =
@@ -162,7 +161,7 @@ fn every_pipeline_draws_for_a_panel_or_names_itself_and_its_need() {
 }
 
 #[test]
-fn a_pipeline_that_needs_interlace_says_so_by_name() {
+fn a_pipeline_that_needs_interlace_is_refused_with_its_name() {
     for pipeline in ["slats", "frameless", "jitp-field"] {
         let text =
             format!("pipeline = \"{pipeline}\"\nscene = \"full-screen:2\"\ndisplay = \"oled-90\"\nfields = 20\n");
@@ -184,7 +183,7 @@ fn raster(text: &str) -> Raster {
 }
 
 #[test]
-fn a_device_has_a_way_of_moving_how_often_and_a_latency() {
+fn a_device_has_a_kind_of_reprojection_a_rate_and_a_latency() {
     assert_eq!(raster(""), Raster::Plain);
     assert_eq!(raster("head.raster = \"vdrt\""), Raster::Vdrt);
     let usual = Raster::Reprojected(Reprojection { by: Warp::Rotation, every: Every::Field, latency_us: 2_000 });
@@ -199,7 +198,7 @@ fn a_device_has_a_way_of_moving_how_often_and_a_latency() {
 }
 
 #[test]
-fn numbers_of_a_device_without_one_and_depth_of_faces_are_refused() {
+fn reprojection_settings_without_a_device_and_depth_reprojection_of_faces_are_refused() {
     let head = format!("{RC}head.motion = \"pan:10\"\n");
     let found = refusal(&format!("{head}head.reprojection.every = \"line\"\n"));
     assert!(

@@ -1,5 +1,3 @@
-//! Names of boards, and descriptions of their events.
-
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
 use std::fmt;
@@ -84,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_board_is_known_by_the_name_that_it_prints() {
+    fn a_board_is_parsed_from_the_name_that_it_prints() {
         for board in [Board::Host, Board::Gp(12), Board::Renderer(0), Board::Display(1), Board::Ring] {
             assert_eq!(board.to_string().parse(), Ok(board));
             assert_eq!(board.to_string().replace(' ', "").parse(), Ok(board));
@@ -93,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_happens_is_told_with_its_time_and_board() {
+    fn events_are_reported_with_time_and_board() {
         let happening = EventDescription { time: Time(7), board: Board::Renderer(3), what: "copy command begins" };
         assert_eq!(happening.to_string(), format!("{} renderer 3: copy command begins", Time(7)));
     }
@@ -104,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn other_names_are_refused_with_what_was_expected() {
+    fn unknown_names_are_refused_with_the_expected_names() {
         let spaces = [" host", "host ", "ring ", " gp 3", "gp 3 ", "gp  3"];
         let others = ["", "gp", "host 3", "ring0", "GP -1", "renderer x", "7", "display 99999999999999999999999"];
         for wrong in spaces.into_iter().chain(others) {

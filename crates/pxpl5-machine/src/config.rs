@@ -1,5 +1,3 @@
-//! Configuration of a machine: boards, displays and all timing parameters.
-
 use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
@@ -124,7 +122,6 @@ impl MachineConfig {
         all.filter(|parameter| parameter.value != parameter.info.papers || !self.is_implied(parameter)).collect()
     }
 
-    /// Returns true for parameters of pipelines and of the i860, which names of experiments may omit.
     fn is_implied(&self, parameter: &Parameter) -> bool {
         let table = parameter.path.rsplit_once('.').map(|(table, _)| table);
         let of_i860 = self.i860.tables().map(|(name, _)| name);
@@ -303,7 +300,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ring_whose_channels_full_fifos_can_hold_is_refused_with_the_nearest_possible_value() {
+    fn a_ring_is_refused_if_full_fifos_can_block_all_of_its_channels() {
         let machine = |channels: u64, fifo_channels: u64, renderers: u64| {
             let mut machine = MachineConfig::small_hmd();
             machine.set("ring.channels", channels).expect("in range");
@@ -351,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn an_override_of_a_table_that_the_preset_has_not_is_what_differs_from_the_papers() {
+    fn an_override_of_a_table_missing_from_the_preset_is_listed_as_a_difference() {
         let mut config = MachineConfig::small_hmd();
         config.add_firmware_table("extra", Box::new(Numbers::PAPERS));
         assert!(config.overrides().is_empty(), "{:?}", config.overrides());
@@ -366,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_no_source_allows_is_told_with_range_and_source() {
+    fn a_value_outside_its_range_is_reported_with_range_and_source() {
         let mut config = MachineConfig::small_hmd();
         assert!(config.out_of_range().is_empty());
         config.set("gp.triangle_ns", 3).expect("within the limits");
@@ -385,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn no_preset_is_warned_of() {
+    fn no_preset_causes_a_warning() {
         for preset in crate::PRESETS {
             let config = MachineConfig::preset(preset.name).expect("it is listed");
             assert!(config.out_of_range().is_empty(), "{}: {:?}", preset.name, config.out_of_range());
@@ -393,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn no_renderer_is_refused_with_what_was_expected() {
+    fn a_machine_without_renderers_is_refused_with_the_expected_number() {
         let config = MachineConfig { n_renderers: 0, ..MachineConfig::small_hmd() };
         let error = config.check().expect_err("none");
         assert_eq!(error.to_string(), "n_renderers must be 1 to 1000, found 0");

@@ -1,5 +1,3 @@
-//! The events in a machine's queue.
-
 use crate::board::{Board, EventDescription};
 use crate::ports::Ports;
 use pxpl5_gp::GpEvent;
@@ -13,13 +11,11 @@ use pxpl5_wire::display::DisplayEvent;
 #[derive(Debug)]
 pub(crate) enum Event {
     Ring(RingEvent),
-    /// An output of the ring, such as a delivered message.
     FromRing(RingOutput),
     Gp(usize, GpEvent),
     Renderer(usize, RendererEvent),
     /// Messages arrive at the first display on a host line, a connection that bypasses the ring.
     HostLine(usize),
-    /// An event that a display scheduled for itself.
     Display(usize, DisplayEvent),
     /// A display begins a period.
     Tick(usize, PeriodNumber),
@@ -28,7 +24,8 @@ pub(crate) enum Event {
 }
 
 impl Event {
-    /// Returns true for events of displays, host lines and clocks. Such events occur even while all programs wait.
+    /// Returns true for events that occur even while all programs wait: events of displays, of clocks, and of host
+    /// lines (connections that bypass the ring).
     pub(crate) const fn is_of_displays(&self) -> bool {
         matches!(self, Self::Edge | Self::Tick(..) | Self::Display(..) | Self::HostLine(_))
     }

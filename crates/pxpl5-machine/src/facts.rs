@@ -3,12 +3,14 @@
 use pxpl5_gp::Mark;
 use pxpl5_wire::{Body, Message, RegionPixels, SurfaceId};
 
-/// Returns the numbers for a ring message: event code (1 announced, 2 delivered), sender, receiver and length.
+/// Returns the numbers that add a ring message to the trace hash: event code (1 announced, 2 delivered), sender,
+/// receiver and length.
 pub(crate) fn facts(kind: u64, message: &Message) -> [u64; 4] {
     [kind, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)]
 }
 
-/// Returns the numbers for a message on a host line, a connection from the host to a display that bypasses the ring.
+/// Returns the numbers that add a message on a host line to the trace hash. A host line is a connection from the host
+/// to a display that bypasses the ring.
 pub(crate) fn host_line_facts(port: usize, body: &Body) -> Vec<u64> {
     match body {
         Body::Words(words) => [8, port as u64].into_iter().chain(words.iter().map(|word| u64::from(*word))).collect(),
@@ -19,16 +21,16 @@ pub(crate) fn host_line_facts(port: usize, body: &Body) -> Vec<u64> {
     }
 }
 
-/// Returns the numbers for a time stamp at the start or end of a stage.
+/// Returns the numbers that add the start or the end of a stage to the trace hash.
 pub(crate) fn mark_facts(mark: &Mark) -> [u64; 6] {
     let surface = surface_fact(mark.surface);
     [4, u64::from(mark.node.0), mark.picture.0, surface, mark.stage as u64, mark.edge as u64]
 }
 
-/// Returns the number for a surface: 0 or 1 for the first two surfaces, 2 for no surface. From the third surface on,
-/// the number is the index plus 1.
+/// Returns the number of a surface in the trace hash: 0 or 1 for the first two surfaces, 2 for no surface. From the
+/// third surface on, the number is the index plus 1.
 ///
-/// The numbers come from versions with at most two surfaces, and published hashes depend on them.
+/// The numbers come from versions with at most two surfaces, and published hashes depend on the numbers.
 fn surface_fact(surface: Option<SurfaceId>) -> u64 {
     match surface {
         None => 2,
@@ -45,13 +47,13 @@ mod tests {
     use pxpl5_wire::{CommandList, NodeId, PictureNumber};
 
     #[test]
-    fn a_message_is_told_by_its_ports_and_its_length() {
+    fn a_message_is_described_by_its_ports_and_length() {
         let message = Message { source: NodeId(3), destination: NodeId(70), words: 9, body: Body::Words([7].into()) };
         assert_eq!(facts(2, &message), [2, 3, 70, 9]);
     }
 
     #[test]
-    fn what_a_line_brings_is_told_by_its_port_and_its_words() {
+    fn a_message_on_the_host_line_is_described_by_its_port_and_its_words() {
         assert_eq!(host_line_facts(6, &Body::Words([5, 4].into())), [8, 6, 5, 4]);
         let list = CommandList { runs: Vec::new(), context: 0, copies: Vec::new(), content: None };
         assert_eq!(host_line_facts(6, &Body::Commands(list)), [10, 6]);
@@ -60,7 +62,7 @@ mod tests {
     /// Tests the number of a surface in the trace hash. Published hashes depend on these numbers: 0 and 1 for the first
     /// two surfaces, 2 for no surface, then 3 and up.
     #[test]
-    fn marks_are_told_with_their_surfaces_as_ever() {
+    fn the_surfaces_of_marks_keep_their_numbers_in_the_trace_hash() {
         let surfaces = [Some(0), Some(1), None, Some(2), Some(3)];
         for (number, surface) in (0..).zip(surfaces) {
             let mark = Mark {

@@ -1,5 +1,3 @@
-//! Connections from the host to a display that bypass the ring.
-
 use pxpl5_sim::Time;
 use pxpl5_wire::Body;
 use std::fmt::Debug;

@@ -44,7 +44,6 @@ pub use record::{Attachment, Record};
 pub use run_error::{Blocked, RunError};
 pub use traffic::{Traffic, Transfer};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

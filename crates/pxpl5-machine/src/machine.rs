@@ -48,10 +48,9 @@ pub struct Machine {
     /// True if boards run at every edge of their clock, because the optimization `IdleBoards` is disabled.
     every_edge: bool,
     failure: Option<RunError>,
-    /// Number of events in the current period of the first display, without the events of displays, host lines and
-    /// clocks.
+    /// Number of events in the current period of the first display, except events of displays, clocks, and host lines
+    /// (connections that bypass the ring).
     work_events: u64,
-    /// Number of successive idle periods of the first display. [`DEADLOCK_TICKS`] defines an idle period.
     idle_ticks: u64,
     now: Time,
 }
@@ -66,7 +65,8 @@ struct Contexts {
 
 /// Number of idle periods of the first display after which a machine with waiting programs counts as deadlocked.
 ///
-/// In an idle period, only displays, host lines and clocks have events, and no other board has a pending event.
+/// In an idle period, only displays, clocks and [host lines](HostLine) have events, and no other board has a pending
+/// event.
 pub const DEADLOCK_TICKS: u64 = 120;
 
 /// Number of events that the start of a period causes on the first graphics processor: the retrace signal, and a poll
@@ -137,8 +137,8 @@ impl Machine {
         self.pixels = Some(worker);
     }
 
-    /// Makes the graphics processors execute i860 code, whose clocks then determine the times of their work. The call
-    /// has an effect only if the configuration has a code version.
+    /// Makes the graphics processors execute i860 code. The clocks of this code then determine the times of the
+    /// processors' work. The call has an effect only if the configuration has a code version.
     ///
     /// Call this method before loading programs.
     pub fn run_code(&mut self) {
@@ -280,8 +280,6 @@ impl Machine {
         self.failure.clone().map_or(Ok(taken), Err)
     }
 
-    /// Removes the next event from the queue and returns its time. Returns `None` if the event is not before `end`, or
-    /// if the machine has failed.
     fn takes_event_before(&mut self, end: Time) -> Option<Time> {
         if self.failure.is_some() {
             return None;
@@ -315,7 +313,6 @@ impl Machine {
         }
     }
 
-    /// Lets every processor and the arbiter of the ring check for work, and schedules the next clock edge.
     fn edge(&mut self, now: Time) {
         (0..self.processors.len()).for_each(|board| self.gp_event(now, board, GpEvent::Poll));
         self.ring_event(now, RingEvent::Arbitrate);
@@ -349,7 +346,6 @@ impl Machine {
         }
     }
 
-    /// Returns true if a program, a renderer or a message waits for another board.
     fn waits_for_a_board(&self) -> bool {
         self.processors.iter().any(GpBoard::waits_for_a_board)
             || self.record.renderers.iter().any(|renderer| renderer.blocked().is_some())
@@ -362,7 +358,7 @@ impl Machine {
         self.idle_ticks
     }
 
-    /// Returns true if only displays, host lines and clocks have pending events.
+    /// Returns true if only displays, clocks and [host lines](HostLine) have pending events.
     ///
     /// The start of a display period can still end the wait of a program.
     #[must_use]
@@ -374,7 +370,7 @@ impl Machine {
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         let Record { ports, renderers, ring, .. } = &self.record;
-        // Programs. A program that waits for a message does not state the sender of the message.
+        // Programs that wait. A program that waits for a message does not state the sender of the message.
         let processors = self.processors.iter().enumerate().filter_map(|(port, processor)| {
             let waits_for = processor.blocked()?.to_owned();
             Some(Blocked { board: Board::of_processor(port), waits_on: None, waits_for })
@@ -385,7 +381,7 @@ impl Machine {
             let waits_for = format!("frame buffer at node {} to take region {}", frame_buffer.0, region.0);
             Some(Blocked { board: Board::Renderer(number), waits_on: Some(ports.board(frame_buffer)), waits_for })
         });
-        // Messages.
+        // Messages that wait on the ring.
         let messages = ring.waiting().into_iter().map(|message| Blocked {
             board: ports.board(message.source),
             waits_on: message.waits_on().map(|node| ports.board(node)),
@@ -472,7 +468,6 @@ impl Machine {
     }
 
     fn gp_event(&mut self, now: Time, board: usize, event: GpEvent) {
-        // Let the processor handle the event.
         let Self { processors, contexts: Contexts { gp: context, .. }, queue, .. } = self;
         let processor = &mut processors[board];
         processor.handle(event, context.at(now));
@@ -497,7 +492,6 @@ impl Machine {
 
     fn renderer_event(&mut self, now: Time, board: usize, event: RendererEvent) {
         let Self { record, contexts: Contexts { renderer: context, .. }, queue, pixels, .. } = self;
-        // Let the renderer handle the event.
         record.renderers[board].handle(event, context.at(now));
         let drawn = record.renderers[board].drain_drawn().map(|region| (board, region));
         record.observation.drawn.extend(drawn);

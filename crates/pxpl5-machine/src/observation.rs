@@ -34,7 +34,7 @@ impl Arrival {
 pub struct Swap {
     /// The surface whose visible buffer changes.
     pub surface: SurfaceId,
-    /// The port of the display that swapped. A surface may have several ports.
+    /// The ring port whose visible buffer changes. A surface may have several ports.
     pub port: NodeId,
     /// Number of earlier swaps at this port.
     pub number: u64,
@@ -138,7 +138,8 @@ impl Observation {
 
     /// Returns the period in which each frame was first visible on all of the first `surfaces` surfaces.
     ///
-    /// The key counts the swaps of each surface from 0. Frames with discarded swaps are missing.
+    /// A key of the map is the number of a swap, which counts from 0 on each surface. Frames with discarded swaps are
+    /// missing.
     #[must_use]
     pub fn frames(&self, surfaces: usize) -> BTreeMap<u64, PeriodNumber> {
         let of = |surface| self.swaps_of(surface).map(|swap| (swap.number, swap.tick));
@@ -206,7 +207,9 @@ impl Observation {
     }
 }
 
-/// A region that arrived after its deadline, which is the instant at which the display needs its pixels.
+/// A region that arrived after its deadline.
+///
+/// The deadline is the instant when the display needs the pixels of the region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct LateRegion {
     /// The display period for which the region was drawn.
@@ -257,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shown_stays_known_however_long_ago_it_was_swapped_in() {
+    fn the_displayed_frame_is_kept_however_old_it_is() {
         let mut observation = stereo();
         observation.discard_before(Time(1_000_000), tick);
         let left: Vec<(SurfaceId, u64)> = observation.swaps.iter().map(|swap| (swap.surface, swap.number)).collect();
@@ -283,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stage_lasts_from_the_first_board_that_begins_to_the_last_that_ends() {
+    fn a_stage_lasts_from_the_begin_on_the_first_board_to_the_end_on_the_last_board() {
         let marks = [(30, 1), (20, 1), (25, 2), (35, 1)].map(|(time, picture)| mark(time, picture, StageEdge::Begin));
         let ends = [(40, 1), (60, 1), (50, 1)].map(|(time, picture)| mark(time, picture, StageEdge::End));
         let arrivals = vec![arrival(1, 1, 70, 90), arrival(0, 1, 65, 80), arrival(1, 1, 68, 85)];
@@ -307,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_at_the_instant_stays_and_room_for_as_much_again() {
+    fn discarding_keeps_records_at_and_after_the_instant() {
         let mut observation = stereo();
         observation.marks = (0..1_000).map(|n| mark(n, n, StageEdge::Begin)).collect();
         observation.arrivals = (0..1_000).map(|n| arrival(0, n / 2, n, n)).collect();

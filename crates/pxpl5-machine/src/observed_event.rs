@@ -51,7 +51,7 @@ pub enum ObservedKind {
         /// The surface that shows the region.
         surface: SurfaceId,
     },
-    /// A display now shows another buffer of a surface.
+    /// A display has changed the buffer that it shows for a surface.
     Swapped {
         /// The surface whose visible buffer changed.
         surface: SurfaceId,

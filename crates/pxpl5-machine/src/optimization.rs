@@ -1,5 +1,3 @@
-//! Optimizations of the simulator that change no result.
-
 /// A shortcut of the simulator that an experiment can disable (`Experiment::without`).
 ///
 /// No optimization changes a time or a visible pixel. The test `tests/optimizations.rs` repeats runs with each
@@ -11,7 +9,8 @@ pub enum Optimization {
     /// If disabled, every processor and the arbiter of the ring check for work at every edge of the boards' 40 MHz
     /// clock. Renderers and frame buffers always sleep, because the end of a command is known when the command arrives.
     IdleBoards,
-    /// The ring computes the end of a message at its start. If disabled, every word on every channel is an event.
+    /// The ring computes the end of a message when the message starts. If disabled, every word on every channel is an
+    /// event.
     Transfers,
     /// The pixels of regions without primitives are computed once and reused.
     ///

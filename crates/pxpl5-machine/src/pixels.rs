@@ -1,5 +1,3 @@
-//! Interface to a worker that computes pixels during a run. The computation takes no simulated time.
-
 use pxpl5_wire::PixelSource;
 use std::fmt::Debug;
 use std::sync::Arc;

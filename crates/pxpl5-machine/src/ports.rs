@@ -1,5 +1,3 @@
-//! Assignment of boards to ports of the ring.
-
 use crate::board::Board;
 use crate::config::MachineConfig;
 use pxpl5_wire::NodeId;
@@ -36,7 +34,6 @@ impl Ports {
         self.displays.first().map_or(&[], Vec::as_slice)
     }
 
-    /// Returns the index of the display that has the port `node`, and the index of the port within this display.
     pub(crate) fn of_display(&self, node: NodeId) -> Option<(usize, usize)> {
         let has_node = |nodes: &Vec<NodeId>| nodes.binary_search(&node).ok();
         self.displays.iter().enumerate().find_map(|(display, nodes)| Some((display, has_node(nodes)?)))

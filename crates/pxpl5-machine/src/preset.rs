@@ -1,5 +1,3 @@
-//! The built-in machines, by name.
-
 use crate::config::MachineConfig;
 use pxpl5_framebuffer::FrameBufferConfig;
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, HostTiming};
@@ -23,7 +21,9 @@ pub struct Preset {
     code: CodeVersion,
 }
 
-/// The built-in machines. Machines described in the papers come first.
+/// The built-in machines.
+///
+/// Machines described in the papers come first.
 pub const PRESETS: [Preset; 7] = [
     Preset {
         name: "small-hmd",

@@ -1,5 +1,3 @@
-//! The boards of a machine, and all observations of a run.
-
 use crate::board::Board;
 use crate::config::MachineConfig;
 use crate::observation::{Observation, Shown, StageSpan};
@@ -18,7 +16,7 @@ use std::sync::Arc;
 ///
 /// The pipeline's programs write the data. The pipeline's results read the data with [`Record::attached`].
 pub trait Attachment: Any + Debug + Send + Sync {
-    /// Discards the data that only discarded observations need. By default, all data is kept.
+    /// Discards the data that belong only to discarded observations. By default, all data is kept.
     fn discard(&self, _record: &Record) {}
 }
 
@@ -65,7 +63,8 @@ impl Record {
         &self.renderers
     }
 
-    /// Returns the displays with their state at the end of the run. The first display is the sync generator.
+    /// Returns the displays with their state at the end of the run. The clock of the first display defines the periods
+    /// of the run.
     #[must_use]
     pub fn displays(&self) -> &[Box<dyn Display>] {
         &self.displays
@@ -124,8 +123,8 @@ impl Record {
     /// Returns the pictures that a double-buffered port has shown, in the order of swaps.
     ///
     /// The picture of a swap is the newest picture of which a region arrived before the swap. No region of the next
-    /// picture can have arrived, because the other buffer is not free yet. Pictures with discarded observations are
-    /// missing.
+    /// picture can have arrived before the swap, because the port's second buffer becomes free only at the swap.
+    /// Pictures with discarded observations are missing.
     #[must_use]
     pub fn shown_by(&self, port: NodeId) -> Vec<Shown> {
         // Sort the arrivals at this port by time.

@@ -1,5 +1,3 @@
-//! Errors that stop a run.
-
 use crate::board::Board;
 use pxpl5_gp::Fault;
 use pxpl5_ring::RingError;
@@ -59,7 +57,9 @@ fn waits(blocked: &[Blocked]) -> String {
     blocked.iter().map(|wait| format!(" {wait};")).collect()
 }
 
-/// A board that waits in a deadlock. The text is `BOARD waits for CONDITION`.
+/// A board that waits in a deadlock.
+///
+/// The text is `BOARD waits for CONDITION`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Blocked {
     /// The board that waits.

@@ -87,8 +87,8 @@ impl Traffic {
         self.transfers.extend(announced.map(|transfer| Transfer { end, ..transfer }));
     }
 
-    /// Records a message whose words arrive without a gap. The first word arrived before `end` by the time of all
-    /// words. `word` is the time of one word.
+    /// Records a message whose words arrive without a gap. `end` is the arrival of the last word, and `word` is the
+    /// time of one word.
     pub(crate) fn deliver(&mut self, message: &Message, end: Time, word: Span) {
         let begin = Time(end.0.saturating_sub((word * u64::from(message.words)).0));
         self.transfers.push(transfer(message, begin, end));
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn discarded_records_leave_the_state_that_they_led_to() {
+    fn discarding_records_keeps_the_state_after_them() {
         let transfer = |end| Transfer {
             source: NodeId(1),
             destination: NodeId(2),
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn words_come_one_after_the_other_up_to_the_end_of_a_message() {
+    fn words_of_a_message_arrive_in_sequence_until_its_end() {
         let mut traffic = Traffic::default();
         traffic.deliver(&message(4), Time(1_000), Span(50));
         assert_eq!((traffic.transfers[0].begin, traffic.transfers[0].end), (Time(800), Time(1_000)));
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_at_the_instant_stays_with_the_state_before_it() {
+    fn discarding_keeps_records_from_the_instant_on_and_the_last_state_before_the_instant() {
         let busy_channels = vec![(Time(10), 1), (Time(15), 2), (Time(20), 1)];
         let mut traffic = Traffic { busy_channels, fifo_changes: vec![(0, Time(20), 5)], ..Traffic::default() };
         traffic.discard_before(Time(20));
@@ -175,7 +175,7 @@ mod tests {
 
     proptest::proptest! {
         #[test]
-        fn channels_are_noted_when_their_number_changes(
+        fn busy_channels_are_recorded_when_their_number_changes(
             told in proptest::collection::vec((0u64..3, 0u32..3), 1..20),
         ) {
             let mut traffic = Traffic::default();

@@ -90,13 +90,13 @@ pub(crate) struct BudgetSum {
     stages_ms: [Samples; STAGES],
     /// Poses of recent and future pictures, by the number of the view.
     ///
-    /// Poses are copied because a head discards old poses, and because later pictures may use the last pose of a silent
-    /// tracker.
+    /// Poses are copied for two reasons. A head discards old poses, and later pictures may use the last pose of a
+    /// tracker that has failed.
     poses: Poses,
 }
 
-/// Number of poses that are kept in addition to the pose of the newest picture. These older poses are needed because a
-/// display memory that is rarely drawn shows older views than a display memory that is often drawn.
+/// Number of poses that are kept in addition to the pose of the newest picture. A rarely drawn display memory still
+/// shows a view for one of these older poses.
 const OLDER_POSES: usize = 64;
 
 /// Head poses that a pipeline requested. The key of a pose is the number of the view that is drawn for the pose.
@@ -108,7 +108,7 @@ impl BudgetSum {
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let window_from = run.window.map(|window| window.first_period);
         if self.window_from != window_from {
-            // The window has moved: everything summed so far lies before it.
+            // The window has moved. All sums so far belong to periods before the window.
             self.window_from = window_from;
             self.stages_ms = std::array::from_fn(|_| Samples::keeping(run.samples));
         }
@@ -133,7 +133,6 @@ impl BudgetSum {
     }
 }
 
-/// Returns the head poses for which views were drawn, as far as the run has not discarded these poses.
 pub(crate) fn poses(run: &FinalResults<'_>) -> Poses {
     run.head.map(|head| head.sampled()).unwrap_or_default().into_iter().map(|s| (s.number, s)).collect()
 }

@@ -1,5 +1,4 @@
-//! Ray casting into the scene. Finds the scene point that a pixel shows, and the position of this point at another
-//! time.
+//! Ray casting into the scene. Finds the scene point that a pixel shows, and the position of this point at any time.
 
 use glam::{DMat4, DVec3};
 use pxpl5_scene::{Frame, Hinge, HmdConfig, Scene, Structure};
@@ -30,7 +29,6 @@ pub(crate) struct Contents {
 
 #[derive(Debug)]
 struct Body {
-    /// Index of the structure in the scene.
     structure: usize,
     hinge: Option<Hinge>,
     patches: Vec<Patch>,
@@ -46,7 +44,6 @@ struct Patch {
     triangles: Vec<[DVec3; 3]>,
 }
 
-/// Number of triangles in a [`Patch`].
 const PATCH: usize = 32;
 
 /// A ray with the points `origin + t * direction`, where `t` is the depth in metres.
@@ -71,8 +68,7 @@ impl Contents {
         self.nearest(origin, direction, objects_at, |_| true).map(|(_, content)| content)
     }
 
-    /// Returns the nearest hit, and its depth, among some structures of the scene. A structure takes part if its entry
-    /// in `structures` is true.
+    /// Returns the nearest hit, and its depth, among the structures whose entry in `structures` is true.
     pub(crate) fn hit_among(
         &self,
         origin: DVec3,
@@ -103,7 +99,6 @@ impl Contents {
         nearest.1.map(|content| (nearest.0, content))
     }
 
-    /// Returns the position of a scene point in world coordinates at a time.
     pub(crate) fn place(&self, content: &Content, at: Time) -> DVec3 {
         let body = content.body.and_then(|body| self.bodies.get(body));
         body.map_or(content.point, |body| body.model(at).transform_point3(content.point))
@@ -124,12 +119,12 @@ impl Body {
         }
     }
 
-    /// Returns the matrix from the structure's coordinates to world coordinates at a time.
     fn model(&self, at: Time) -> DMat4 {
         self.hinge.map_or(DMat4::IDENTITY, |hinge| hinge.model(at.0).as_dmat4())
     }
 
-    /// Returns the smallest depth, between `near` and `far`, at which a ray hits the structure.
+    /// Returns the smallest depth, between `near` and `far`, at which a ray hits the structure. All depths are in
+    /// metres.
     fn met(&self, ray: &Ray, (near, far): (f64, f64)) -> Option<f64> {
         let patches = self.patches.iter().filter(|patch| ray.passes(patch.centre, patch.radius));
         let of_triangles =
@@ -152,7 +147,7 @@ impl Patch {
 }
 
 impl Ray {
-    /// Returns true if the ray's line passes within `radius` of a point.
+    /// Returns true if the ray, extended to a whole line, passes within `radius` of the point `centre`.
     fn passes(&self, centre: DVec3, radius: f64) -> bool {
         let way = centre - self.origin;
         let along = way.dot(self.direction);
@@ -176,7 +171,6 @@ impl Ray {
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| ac.dot(across) / determinant)
     }
 
-    /// Returns the depth at which the ray enters a sphere.
     fn meets_sphere(&self, centre: DVec3, radius: f64) -> Option<f64> {
         let way = centre - self.origin;
         let squared = self.direction.length_squared();
@@ -196,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_meets_what_every_triangle_one_by_one_says() {
+    fn a_ray_meets_the_same_triangle_as_a_test_of_every_triangle() {
         let (contents, scene) = contents("mig");
         let (centre, radius) = scene.bounding_sphere();
         let eye = centre.as_dvec3() + DVec3::Z * 3.0 * f64::from(radius);
@@ -223,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn of_some_structures_only_those_are_met() {
+    fn a_ray_meets_only_the_selected_structures() {
         let (contents, scene) = contents("mig");
         let (centre, radius) = scene.bounding_sphere();
         let eye = centre.as_dvec3() + DVec3::Z * 3.0 * f64::from(radius);
@@ -242,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_triangle_is_met_inside_its_sides_at_the_depth_of_its_plane() {
+    fn a_ray_hits_a_triangle_only_inside_its_edges_at_the_depth_of_its_plane() {
         let triangle = [DVec3::new(0.0, 0.0, -3.0), DVec3::new(2.0, 0.0, -3.0), DVec3::new(0.0, 1.0, -3.0)];
         let origin = DVec3::new(0.5, 0.25, 1.0);
         for i in -20..=20 {
@@ -261,7 +255,7 @@ mod tests {
     /// Tests the distance of a line from a sphere's centre against the smallest distance among 20,001 points of the
     /// line.
     #[test]
-    fn a_line_passes_a_centre_at_its_least_distance_and_enters_a_sphere_on_its_surface() {
+    fn a_ray_passes_a_sphere_at_the_smallest_distance_and_enters_a_sphere_at_its_surface() {
         let centre = DVec3::new(0.5, -1.0, -6.0);
         for i in -10..=10 {
             for j in -10..=10 {
@@ -285,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_patch_lies_in_a_sphere_around_the_middle_of_its_box() {
+    fn the_bounding_sphere_of_a_patch_is_centred_on_its_bounding_box_and_contains_all_corners() {
         let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
         let triangles =
             [[corner(1.0, 2.0, 3.0), corner(4.0, 2.5, 3.1), corner(2.0, 7.0, 3.2)], [corner(3.0, 3.0, -5.0); 3]];
@@ -296,14 +290,14 @@ mod tests {
     }
 
     #[test]
-    fn a_sphere_is_met_where_it_begins() {
+    fn a_ray_hits_a_sphere_at_its_nearest_point() {
         let ray = Ray { origin: DVec3::ZERO, direction: DVec3::NEG_Z };
         assert_eq!(ray.meets_sphere(DVec3::NEG_Z * 5.0, 2.0), Some(3.0));
         assert_eq!(ray.meets_sphere(DVec3::new(2.1, 0.0, -5.0), 2.0), None);
     }
 
     #[test]
-    fn what_is_fixed_to_the_head_is_no_content() {
+    fn a_ray_does_not_hit_objects_fixed_to_the_head() {
         let (contents, _) = contents("full-screen:4");
         assert_eq!(contents.met(DVec3::ZERO, DVec3::NEG_Z, Time::ZERO), None);
     }

@@ -28,7 +28,7 @@ pub struct PathPart {
     pub share_of_board: Option<f64>,
 }
 
-/// The chain of waits of the last complete pictures of a run.
+/// The waits of the last complete pictures of a run, from the screen back to the start of TRANSFORM.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CriticalPath {
     /// Number of pictures that were followed: the last complete pictures of the result window, at most
@@ -44,8 +44,9 @@ pub struct CriticalPath {
     pub chain: Vec<String>,
 }
 
-/// Largest number of pictures whose chains of waits are followed back from the screen to TRANSFORM. A long run discards
-/// old records, but keeps all records of its last 24 pictures.
+/// Largest number of pictures whose chains of waits are followed back from the screen to TRANSFORM.
+///
+/// A long run discards old records, but keeps all records of its last 24 pictures.
 pub const PICTURES_FOLLOWED: usize = 24;
 
 const LINKS_PRINTED: usize = 16;
@@ -97,7 +98,6 @@ impl CriticalPath {
     }
 }
 
-/// Sums the waits for one resource over all chains. Returns `None` if no chain contains a wait for the resource.
 fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPart> {
     let of = || chains.iter().flatten().filter(|step| step.resource == resource);
     let span: Span = of().map(Step::span).sum();
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_add_up_and_the_largest_limits() {
+    fn the_shares_of_a_critical_path_add_up_and_the_largest_share_is_the_limit() {
         let renderer = Some(Board::Renderer(3));
         let chain = vec![
             step(Resource::Retrace, None, 90, 100),
@@ -198,14 +198,14 @@ mod tests {
     }
 
     #[test]
-    fn no_board_is_named_where_several_share_the_part() {
+    fn no_board_is_named_if_several_share_the_part() {
         let half = |number, from, to| step(Resource::Renderers, Some(Board::Renderer(number)), from, to);
         let path = CriticalPath::of_chains(&[vec![half(0, 50, 100), half(1, 0, 50)]]).expect("a picture");
         assert_eq!(path.limited_by, "execution of commands in the renderers, 100 % of the latency");
     }
 
     #[test]
-    fn links_of_one_kind_are_joined() {
+    fn adjacent_links_of_one_kind_are_joined_in_the_text_of_a_critical_path() {
         let port = Some(Board::Display(0));
         let chain = vec![
             step(Resource::Ports, port, 20, 30),
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_said_of_no_picture() {
+    fn without_a_picture_there_is_no_critical_path() {
         assert_eq!(CriticalPath::of_chains(&[]), None);
     }
 }

@@ -1,5 +1,5 @@
-//! Moves a picture with depth to another pose. The picture's pixels form a mesh in space. The cells of this mesh are
-//! drawn as seen from the new pose.
+//! Changes a picture with depth to a new pose of the head. The picture's pixels form a mesh in space. The cells of this
+//! mesh are drawn as seen from the new pose.
 //!
 //! No crate for warping images is used. `imageproc` maps pictures by one homography, and supports neither depth nor the
 //! rows of a field.
@@ -17,7 +17,7 @@ use tracking::view::Hmd;
 pub struct DepthPicture {
     width: u32,
     height: u32,
-    /// Depth along the axis of the view in metres, row after row.
+    /// Depth of each pixel along the axis of the view, in metres, row after row.
     depths: Vec<f32>,
     /// Smallest and largest depth of the picture's pixels in metres, except depths of 0 (rows that do not belong to the
     /// field).
@@ -43,25 +43,25 @@ impl DepthPicture {
 }
 
 /// Largest ratio of the depths of two neighbouring pixels that belong to the same surface of an object. At a larger
-/// ratio, a near surface ends between the two pixels and hides content of a far surface. The ratio is assumed, with a
-/// range of 1.02 to 1.2. For comparison, the depth of a floor that is seen at an angle of 5 degrees changes by a factor
-/// of 1.03 from row to row.
+/// ratio, a near surface ends between the two pixels and hides content of a far surface.
+///
+/// The ratio is assumed, with a range of 1.02 to 1.2. For comparison, take a floor that is seen at an angle of 5
+/// degrees. Its depth changes by a factor of 1.03 from row to row.
 const SAME_SURFACE: f32 = 1.1;
 
 /// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that vector
-/// instructions can compute several pixels together.
+/// instructions can compute several pixels at once.
 #[derive(Debug, Default)]
 struct SeenRow {
     /// Positions on the screen, horizontally in pixels and vertically in rows of the field.
     x: Vec<f32>,
     row: Vec<f32>,
-    /// Depth of each pixel's content, seen from the new pose.
     depth: Vec<f32>,
     /// Depth of each pixel's content, seen from the old pose. Infinity if the content is behind the eye of the new
     /// pose.
     old_depth: Vec<f32>,
-    /// First column at or to the right of `x`, limited to the columns of the screen. The list `next_row` has the first
-    /// row at or below `row`, limited to the rows that are drawn.
+    /// For each pixel, the first column of the screen at or to the right of `x`. The list `next_row` has the first
+    /// drawn row at or below `row`.
     next_column: Vec<i32>,
     next_row: Vec<i32>,
 }
@@ -74,8 +74,8 @@ impl SeenRow {
     }
 }
 
-/// Depths and new positions of all pairs of pixels in two neighbouring rows of the picture. A pair is a pixel and the
-/// pixel directly below. For each pair, the lists have the smaller and the larger depth, column and row.
+/// Depths and new positions of two neighbouring rows of the picture, pair by pair. A pair is a pixel and the pixel
+/// directly below. For each pair, the lists have the smaller and the larger depth, column and row.
 #[derive(Debug, Default)]
 struct Pairs {
     near: Vec<f32>,
@@ -105,7 +105,6 @@ fn larger<T: PartialOrd + Copy>(out: &mut Vec<T>, a: &[T], b: &[T]) {
     out.extend(a.iter().zip(b).map(|(a, b)| if a > b { *a } else { *b }));
 }
 
-/// A picture and the view for which the picture was drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drawing<'a> {
     pub(crate) picture: &'a RgbImage,
@@ -147,7 +146,6 @@ impl Drawing<'_> {
         &self.depths.depths[begin..begin + self.picture.width() as usize]
     }
 
-    /// Computes the positions at which the pixels of a row of the field are seen from the new pose `now`.
     fn see_row(&self, now: &Pose, row: u32, target: &Target, out: &mut SeenRow) {
         let to_new = now.orientation.conjugate();
         let turn = to_new * self.drawn_for.orientation;
@@ -223,9 +221,9 @@ impl Drawing<'_> {
 struct Target {
     width: u32,
     rows: Range<u32>,
-    /// Depth of the nearest content found so far, for each pixel.
     depths: Vec<f32>,
-    /// Source pixel of the nearest content found so far, for each pixel: column plus width times row of the field.
+    /// Source of the nearest content found so far, for each pixel: the source's column plus width times its row of the
+    /// field.
     sources: Vec<u32>,
 }
 
@@ -240,7 +238,6 @@ impl Target {
         Self { width, rows, depths: vec![f32::INFINITY; size], sources: vec![NOTHING; size] }
     }
 
-    /// Draws the cells of the mesh between the row `upper_row` of the picture and the row below `upper_row`.
     fn draw_cells(&mut self, upper_row: u32, rows: [&SeenRow; 2], pairs: &Pairs) {
         let count = pairs.near.len();
         let first = upper_row * self.width;
@@ -248,7 +245,7 @@ impl Target {
         let [top, bottom] = [&pairs.rows[0][..count], &pairs.rows[1][..count]];
         let [near, far] = [&pairs.near[..count], &pairs.far[..count]];
         for x in 1..count {
-            // Corners behind the eye have no finite depth, and are no surface.
+            // Corners behind the eye have no finite depth and belong to no surface.
             let farthest = far[x - 1].max(far[x]);
             let is_surface = farthest < f32::INFINITY && farthest <= near[x - 1].min(near[x]) * SAME_SURFACE;
             if !is_surface {
@@ -259,9 +256,9 @@ impl Target {
                 }
                 continue;
             }
-            // The cell is the box around its corners, because views of one head a few milliseconds apart roll by
-            // little. The cell covers pixels from its left and upper sides up to, and without, its right and lower
-            // sides.
+            // The cell is the box around its corners. This is exact enough, because views of one head a few
+            // milliseconds apart roll by small angles only. The cell covers pixels from its left and upper sides up to
+            // its right and lower sides, without the latter sides.
             let columns = left[x - 1].min(left[x])..right[x - 1].max(right[x]);
             for row in top[x - 1].min(top[x])..bottom[x - 1].max(bottom[x]) {
                 for column in columns.clone() {
@@ -320,7 +317,7 @@ impl Target {
         }
     }
 
-    /// Copies the colour of each pixel's source to the moved picture. Returns the number of pixels without a source.
+    /// Copies the colour of each pixel's source to the moved picture. Returns the number of pixels that have no source.
     fn copy(&self, drawing: &Drawing<'_>, out: &mut RgbImage) -> u64 {
         let width = self.width as usize;
         let pixels = drawing.picture.as_raw();
@@ -356,7 +353,7 @@ fn next(position: f32, least: f32, greatest: f32) -> i32 {
     before + i32::from((before as f32) < inside)
 }
 
-/// Moves a whole picture from the pose for which the picture was drawn to another pose, by the depths of the picture's
+/// Changes a whole picture from the pose for which it was drawn to the pose `now`, by the depths of the picture's
 /// pixels.
 ///
 /// Each pixel of the result shows the nearest content that falls on this pixel. A pixel is black if its content lies
@@ -413,7 +410,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_whole_number_lies_at_or_after_a_position_within_the_limits() {
+    fn the_next_integer_is_at_or_after_a_position_within_the_limits() {
         for (position, expected) in
             [(3.0, 3), (3.001, 4), (-7.5, 2), (2.0, 2), (9.5, 9), (1e30, 9), (f32::NEG_INFINITY, 2), (f32::NAN, 2)]
         {
@@ -422,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_depths_and_views_of_different_sizes_are_not_moved() {
+    fn pictures_depths_and_views_must_have_equal_sizes() {
         let depths = DepthPicture::from_fn(640, 479, |_, _| 1.0);
         let [pose, view] = [Pose::IDENTITY, Pose::IDENTITY];
         assert!(reproject_with_depth(&places(), &depths, &Hmd::unc(), &pose, &view).is_none());
@@ -431,7 +428,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_move_every_pixel_stays_whatever_its_depth() {
+    fn without_movement_every_pixel_stays_at_any_depth() {
         let (picture, empty) = moved(|x, y| 0.5 + (x * 7 + y * 13) as f32 % 10.0, &Pose::IDENTITY);
         assert_eq!(empty, 0);
         assert_eq!(picture, places());
@@ -440,7 +437,7 @@ mod tests {
     /// Tests that a rotation of the head moves a picture as the homography does, for any depth. Pixels may differ by
     /// one column or row.
     #[test]
-    fn a_turn_gives_the_picture_of_the_homography() {
+    fn a_rotation_gives_the_picture_of_the_homography() {
         let now = Pose::facing(rotation::from_yaw_pitch_roll(0.05, -0.02, 0.01));
         let (expected, beyond) =
             reproject(&places(), &Hmd::unc(), Warp::Rotation, &Pose::IDENTITY, &now).expect("the size");
@@ -461,7 +458,7 @@ mod tests {
     /// is the focal length in pixels. To the right of a near plane, f t (1 / near - 1 / far) columns stay empty. The
     /// near plane hid this part of the far plane.
     #[test]
-    fn a_step_moves_planes_by_f_t_by_z_and_opens_the_difference() {
+    fn a_translation_moves_a_plane_by_f_t_over_z_pixels_and_leaves_a_gap_beside_a_near_plane() {
         let focal = Hmd::unc().focal_px();
         let (near, far) = (1.0_f32, 4.0_f32);
         for step in [0.004_f64, 0.01, 0.03] {
@@ -473,7 +470,7 @@ mod tests {
                 let expected = f64::from(x) + shift(if is_near(from[0], from[1]) { near } else { far });
                 assert!((f64::from(from[0]) - expected).abs() <= 1.0 && from[1] == y, "{step}: {x} {y} {from:?}");
             }
-            // Beside the near plane on its right, and at the right edge of the picture.
+            // The empty columns lie to the right of the near plane, and at the right edge of the picture.
             let expected = (shift(near) - shift(far)) * 200.0 + shift(far) * 480.0;
             let rounding = f64::from(200 + 480);
             assert!((empty as f64 - expected).abs() <= rounding, "{step}: {empty} for {expected}");
@@ -483,7 +480,7 @@ mod tests {
     /// Tests a picture that grows as the head moves ahead, and a floor that slants away from the eye. No pixel inside
     /// the picture may stay empty.
     #[test]
-    fn surfaces_that_grow_or_lean_have_no_cracks() {
+    fn surfaces_that_come_nearer_or_slant_have_no_empty_pixels_inside() {
         let floor = |_: u32, y: u32| 1.6 * Hmd::unc().focal_px() as f32 / (y as f32 + 60.0);
         for now in [Pose::at(DVec3::NEG_Z * 0.1), Pose::at(DVec3::new(0.0, 0.03, -0.05))] {
             let (found, _) = moved(floor, &now);
@@ -496,7 +493,7 @@ mod tests {
 
     /// Tests that strips with equal poses together give the same picture as one move of the whole picture.
     #[test]
-    fn strips_of_one_pose_make_the_whole_picture_of_this_pose_in_frames_and_fields() {
+    fn strips_with_equal_poses_give_the_same_picture_as_one_move_of_the_whole_picture() {
         let now = Pose {
             position: DVec3::new(0.02, -0.03, -0.04),
             orientation: rotation::from_yaw_pitch_roll(0.03, 0.04, -0.05),

@@ -4,8 +4,8 @@ use crate::percentiles::Percentiles;
 use pxpl5_run::Samples;
 use std::collections::BTreeMap;
 
-/// Number of leading fraction bits of a number that select the bin in which the number is counted. A bin is an interval
-/// of numbers. The width of a bin is at most 1/1024 of the numbers in the bin.
+/// Number of leading fraction bits by which a number is assigned to a bin. A bin is an interval of numbers, whose width
+/// is at most 1/1024 of the numbers in it.
 const FRACTION_BITS: u32 = 10;
 const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
 
@@ -18,8 +18,8 @@ const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
 pub(crate) struct Distribution {
     samples: Samples,
     limit: usize,
-    /// Number of values in each bin. The key holds the leading bits of the values. The map is empty until more than
-    /// `limit` values were added.
+    /// Number of values in each bin, by the leading bits of the values. The map is empty until more than `limit` values
+    /// were added.
     bins: BTreeMap<u64, u64>,
 }
 
@@ -38,7 +38,6 @@ impl Distribution {
         self.samples.push(value);
     }
 
-    /// Returns the numbers that were added first, at most `limit` numbers.
     pub(crate) fn kept(&self) -> &[f64] {
         &self.samples
     }
@@ -92,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn up_to_the_limit_percentiles_are_those_of_the_numbers_bit_for_bit() {
+    fn percentiles_are_exact_up_to_the_limit_of_stored_numbers() {
         let mut all = Distribution::keeping(1_000);
         numbers(1_000).for_each(|value| all.push(value));
         assert_eq!(all.percentiles(), Percentiles::of(numbers(1_000)));
@@ -100,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_it_they_are_a_2048th_beside_them_at_most() {
+    fn beyond_the_limit_percentiles_have_relative_errors_of_at_most_a_2048th() {
         for limit in [0, 1, 999] {
             let mut counted = Distribution::keeping(limit);
             numbers(1_000).for_each(|value| counted.push(value));
@@ -118,7 +117,7 @@ mod tests {
     /// Tests that the percentiles of a histogram are middles of bins. The bins are 1/1024 wide between 1 and 2, and
     /// 4/1024 wide between 4 and 8.
     #[test]
-    fn a_bin_stands_for_its_middle() {
+    fn the_percentile_of_a_histogram_is_the_middle_of_a_bin() {
         for (value, middle) in [(1.0, 1.0 + 1.0 / 2_048.0), (1.000_9, 1.0 + 1.0 / 2_048.0), (6.0, 6.0 + 4.0 / 2_048.0)]
         {
             let mut counted = Distribution::keeping(0);
@@ -128,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn of_nothing_there_is_no_number() {
+    fn an_empty_distribution_has_no_statistics() {
         assert_eq!(Distribution::keeping(0).percentiles().n, 0);
         assert!(Distribution::keeping(5).percentiles().mean.is_nan());
     }

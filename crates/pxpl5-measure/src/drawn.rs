@@ -1,11 +1,8 @@
-//! The pose and the time for which a pixel was drawn.
-
 use glam::DVec2;
 use pxpl5_sim::Time;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// The pose for which a view was drawn, and the time for which moving objects were placed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment {
     pub(crate) pose: Pose,
@@ -16,13 +13,11 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    /// Returns true if two views with the poses and times `self` and `other` give the same picture.
     pub(crate) fn is_same_picture(&self, other: &Self) -> bool {
         self.pose == other.pose && self.objects_at == other.objects_at
     }
 }
 
-/// The pose or the poses for which a displayed pixel was drawn.
 #[derive(Clone, Debug)]
 pub(crate) enum Drawn {
     View(Moment),
@@ -43,7 +38,7 @@ pub(crate) enum Drawn {
 #[derive(Clone, Debug)]
 pub(crate) struct FacesSeen {
     /// For each display memory, in ascending order: the eye's pose in this memory, turned to the latched direction, and
-    /// a flag for each structure of the scene. The flag is true if the memory holds the structure.
+    /// a flag for each structure of the scene. A flag is true if the memory holds the structure.
     pub(crate) memories: Vec<(Moment, Arc<[bool]>)>,
     /// Instant for which the latched direction was predicted.
     pub(crate) aimed_at: Time,
@@ -71,7 +66,7 @@ mod tests {
     use glam::DQuat;
 
     #[test]
-    fn what_is_drawn_between_two_moments_is_drawn_for_its_part_of_the_time_between_them() {
+    fn a_pixel_between_two_poses_is_drawn_for_the_interpolated_pose() {
         let moment = |at: u64| Moment { pose: Pose::facing(DQuat::IDENTITY), objects_at: Time(at), measured_at: None };
         let light = Time(9_000);
         for (part, expected) in [(0.0, 1_000), (0.25, 1_500), (0.5, 2_000), (1.0, 3_000)] {

@@ -1,4 +1,4 @@
-//! Sums of pixel errors, updated during a run or computed after the run.
+//! Sums of pixel errors, updated during a run or computed after it.
 
 use crate::distribution::Distribution;
 use crate::errors::{CENTRE, FieldMisregistration, PixelErrors, Showing, grid, lattice};
@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use tracking::view::{Misregistration, RasterOffset};
 
-/// Sums of the pixel errors of a run's pictures, for one display mode (the way in which a display shows pictures).
+/// Sums of the pixel errors of a run's pictures, for one display mode (as drawn, shifted, moved or delayed).
 #[derive(Debug, Default)]
 pub(crate) struct ErrorSum {
     /// Display mode of the pictures. `None` uses the mode of the head's display.
@@ -37,14 +37,13 @@ impl ErrorSum {
         Self { showing: Some(showing), without, ..Self::default() }
     }
 
-    /// Evaluates the display periods whose results can no longer change.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let Some(head) = run.head else { return };
         let showing = self.showing.unwrap_or_else(|| head.head().raster().into());
         let judging = self.judging.get_or_insert_with(|| Evaluation::begin(run, head, showing, self.without));
         let window_from = run.window.map(|window| window.first_period);
         if self.window_from != window_from {
-            // The window has moved: everything summed so far lies before it.
+            // The window has moved. All sums so far belong to periods before the window.
             self.window_from = window_from;
             self.collected = None;
         }
@@ -70,7 +69,6 @@ impl ErrorSum {
     }
 }
 
-/// State of the evaluation of a run's pixels.
 #[derive(Debug)]
 struct Evaluation {
     evaluator: Evaluator,
@@ -84,7 +82,6 @@ struct Evaluation {
     next: PeriodNumber,
 }
 
-/// Display mode of the pixels under evaluation.
 #[derive(Debug)]
 enum Content {
     Plain,
@@ -92,9 +89,7 @@ enum Content {
     /// current field, if the field has an offset.
     ShiftedRaster(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
-    /// A device moves pictures to the newest pose of the head.
     Reprojected(Reprojector),
-    /// A video of the real world is delayed with the pictures. Video and pictures show the measured pose of the head.
     DelayedVideo,
 }
 
@@ -152,7 +147,7 @@ impl Evaluation {
         }
     }
 
-    /// Returns the periods of the result window whose results can no longer change and that are not evaluated yet.
+    /// Returns the next periods of the result window to evaluate. Their results can no longer change.
     fn fields(&mut self, run: &FinalResults<'_>) -> impl Iterator<Item = PeriodNumber> + Clone + use<> {
         let fields = run.periods_from(self.next);
         self.next = self.next.max(run.until);
@@ -257,7 +252,7 @@ impl Evaluation {
     fn error_of(&self, pixel: Pixel, drawn: &Drawn) -> Option<Misregistration> {
         let place = middle(pixel.place[0], pixel.place[1]);
         if matches!(self.content, Content::DelayedVideo) {
-            // The camera moves with the head. Its picture is shown with the picture that was drawn for the same
+            // The camera moves with the head. The picture of the camera is shown with the drawn picture for the same
             // measurement of the head.
             let moment = self.evaluator.moment(drawn);
             let content = self.evaluator.content(drawn, place);
@@ -307,7 +302,6 @@ impl Evaluation {
         error
     }
 
-    /// Adds the distance that the content of a pixel moves across the screen while the pixel is lit.
     fn smear(&self, seen: &Seen, pixel: Pixel, light: &PixelLight, eye: &mut EyeSum) {
         let Seen::Complete(drawn) = seen else { return };
         if !light.is_instant() {
@@ -328,8 +322,8 @@ impl Evaluation {
     /// Checks at many screen positions of a field if the content for a position lies beyond the edge of the drawn
     /// picture. Such a position stays empty.
     ///
-    /// If pictures are moved with depth, this method does nothing, because the evaluation of the pixel errors makes the
-    /// same check.
+    /// If pictures are moved with depth, this method does nothing, because the evaluation of the pixel errors includes
+    /// this check.
     fn look_for_edges(&self, run: &FinalResults<'_>, field: PeriodNumber, eye: &mut EyeSum) {
         let display = run.record.display();
         let view = &self.evaluator.view;
@@ -372,13 +366,12 @@ struct Collected {
     grid: [Distribution; 2],
     centre: [Distribution; 2],
     fields_kept: usize,
-    /// Numbers of pixels by result, and the errors of each field.
     errors: PixelErrors,
     eye: EyeSum,
 }
 
-/// Limit of the number of pixel errors that are kept individually, divided by the limit of the number of kept fields.
-/// For [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields, the kept errors take 4 MiB in pixels and 4 MiB in degrees.
+/// Number of pixel errors that are kept individually, for each field that is kept. For
+/// [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields, the kept errors take 4 MiB in pixels and 4 MiB in degrees.
 const KEPT_OF_GRID: usize = 8;
 
 impl Collected {
@@ -388,7 +381,6 @@ impl Collected {
         Self { grid, centre: both(fields), fields_kept: fields, errors: PixelErrors::default(), eye }
     }
 
-    /// Adds the pixel errors of a field that begins at the instant `begin`.
     fn take(
         &mut self,
         field: PeriodNumber,
@@ -424,7 +416,6 @@ impl Collected {
     }
 }
 
-/// Adds an error in pixels to the first distribution, and in degrees to the second.
 fn push([pixels, degrees]: &mut [Distribution; 2], error: &Misregistration) {
     pixels.push(error.pixels);
     degrees.push(error.degrees);
@@ -462,7 +453,7 @@ mod tests {
 
     /// Tests that the number of views in memory does not grow during a run that discards records.
     #[test]
-    fn what_is_held_of_a_run_does_not_grow_with_it() {
+    fn the_memory_of_the_observer_does_not_grow_with_the_run() {
         for (name, scene, fields) in [
             ("slats", "sphere:10", 1_000),
             ("rendering-control", "sphere:10", 1_000),
@@ -484,7 +475,7 @@ mod tests {
     /// Tests an observer that stores three fields one by one and counts five. In field n, the middle pixel has an error
     /// of n pixels and n/8 degrees.
     #[test]
-    fn so_many_fields_are_kept_one_by_one_and_all_of_them_counted() {
+    fn a_limited_number_of_fields_is_kept_and_all_are_counted() {
         let mut collected = Collected::keeping(3, EyeSum::keeping(3, false, None));
         for field in 1..=5 {
             let error = Misregistration { offset_px: DVec2::ZERO, pixels: field as f64, degrees: field as f64 / 8.0 };

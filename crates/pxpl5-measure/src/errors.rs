@@ -9,7 +9,7 @@ use pxpl5_wire::display::Display;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Errors of one field (one display period).
+/// Pixel errors of one field (one display period).
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FieldMisregistration {
     /// Number of the display period in which the errors were evaluated.
@@ -24,8 +24,8 @@ pub struct FieldMisregistration {
     pub centre_px: f64,
 }
 
-/// Prints the name that this type had when report hashes were first published, because the hash of a report covers this
-/// text.
+/// Prints the name that this type had when hashes of reports were first published. The hash of a report covers this
+/// text, so the printed name must not change.
 impl fmt::Debug for FieldMisregistration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { field, time_s, mean_px, centre_px } = self;
@@ -58,7 +58,7 @@ pub struct PixelErrors {
     pub empty: u64,
     /// Number of pixels from pictures that were not complete in time.
     pub incomplete: u64,
-    /// Number of pixels that still showed a picture from before the result window, such as a picture from the warm-up.
+    /// Number of pixels that still showed a picture from before the result window, for example from the warm-up.
     pub before: u64,
     /// Errors of each field, in the order of time.
     ///
@@ -77,7 +77,6 @@ pub struct PixelErrors {
 /// middle.
 const GRID: u32 = 5;
 
-/// Index of the middle pixel in the grid of evaluated pixels.
 pub(crate) const CENTRE: usize = (GRID * GRID / 2) as usize;
 
 /// Returns the evaluated pixels of a display period in the order of the scan, with the times at which the pixels are
@@ -89,10 +88,9 @@ pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32
     pixels
 }
 
-/// Numbers of columns and rows of the positions that are checked against the edge of the picture.
+/// Numbers of columns and rows of the screen positions that are checked for content beyond the edge of the picture.
 const LATTICE: (u32, u32) = (16, 12);
 
-/// Returns the pixels of the grid [`LATTICE`] in a display period, with the times at which the pixels are lit.
 pub(crate) fn lattice(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
     spread(display, period, LATTICE)
 }
@@ -127,7 +125,7 @@ pub enum Showing {
     /// Pictures are shown as drawn, in front of a video of the real world that has the same delay (I3D95, 2.1).
     ///
     /// Pictures and video show the instant at which the head's pose was measured, so only the tracker's error remains.
-    /// The video is later than the real world by the time from this measurement until the pixels are lit.
+    /// The delay lasts from this measurement until the pixels are lit.
     DelayedVideo,
 }
 

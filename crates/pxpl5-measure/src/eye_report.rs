@@ -6,8 +6,9 @@ use pxpl5_run::{KEPT_SAMPLES, Reprojection};
 use pxpl5_sim::Time;
 use serde::Serialize;
 
-/// Smear of the lit pixels, and results of a device that moves pictures. The report exists if pixels are lit for more
-/// than an instant, or if a device moves pictures.
+/// Smear of the lit pixels, and results of a device that moves pictures.
+///
+/// The report exists if pixels are lit for more than an instant, or if a device moves pictures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EyeReport {
     /// Distance that the content of a pixel moves across the screen while the pixel is lit, in pixels. `None` if pixels
@@ -38,8 +39,7 @@ pub struct ReprojectionReport {
     pub disoccluded_share: Option<f64>,
 }
 
-/// A device that moves pictures: the setting of the device, and the numbers of pixels and poses per second that the
-/// device needs on the display.
+/// Setting of a device that moves pictures, and the numbers of pixels and poses per second that it needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Device {
     pub(crate) setting: Reprojection,
@@ -59,8 +59,8 @@ pub(crate) struct EyeSum {
 }
 
 impl EyeSum {
-    /// Creates empty sums that keep up to `limit` smears and pose ages individually. `smears` is true if pixels are lit
-    /// for more than an instant.
+    /// Creates empty sums. Percentiles of smears and of pose ages are exact for up to `limit` values each, which stay
+    /// in memory. `smears` is true if pixels are lit for more than an instant.
     pub(crate) fn keeping(limit: usize, smears: bool, device: Option<Device>) -> Self {
         // The limit is the same in every run. Beyond the limit, numbers are summed in another way, which can change the
         // last digit of a mean.
@@ -69,19 +69,17 @@ impl EyeSum {
         Self { smear, device, age_ms: Distribution::keeping(limit), looked_at: 0, beyond: 0, hidden: 0 }
     }
 
-    /// Adds a smear: the distance in pixels that a pixel's content moves while the pixel is lit.
     pub(crate) fn smeared(&mut self, px: f64) {
         self.smear.iter_mut().for_each(|smear| smear.push(px));
     }
 
-    /// Adds the time from the measurement of a pose until a pixel is lit.
     pub(crate) fn pose(&mut self, measured_at: Option<Time>, light: Time) {
         if let Some(measured_at) = measured_at {
             self.age_ms.push((light.0 as f64 - measured_at.0 as f64) * 1e-9);
         }
     }
 
-    /// Counts a pixel whose content the evaluation has searched in the picture.
+    /// Counts a pixel after the evaluation has searched the picture for the pixel's content.
     pub(crate) fn looked_at(&mut self, is_beyond: bool, is_hidden: bool) {
         self.looked_at += 1;
         self.beyond += u64::from(is_beyond);

@@ -15,8 +15,8 @@ pub struct FacesReport {
     pub face_texels: u64,
     /// Times at which the display reads the orientation of the head: once for each field, line or pixel.
     pub latch: Latch,
-    /// Time from the latching of an orientation until the first pixel that uses this orientation is lit, in
-    /// nanoseconds.
+    /// Time in nanoseconds from the reading (latching) of an orientation until the first pixel with this orientation is
+    /// lit.
     pub pipeline_ns: f64,
     /// Number of head orientations that the display accepted.
     pub matrix_loads: u64,

@@ -11,7 +11,6 @@ use crate::turn_observer::{RotationLatencySum, Turns};
 use pxpl5_run::{Cause, Outcome};
 
 impl HeadResults {
-    /// Returns the results of the run's [`HeadSum`](crate::HeadSum), or `None` if no such observer observed the run.
     fn from_observer(outcome: &Outcome) -> Option<&Self> {
         outcome.observed()
     }
@@ -121,9 +120,6 @@ impl Turns {
 }
 
 impl Steps {
-    /// Returns the latencies from a step (translation) of the head until the content of each display memory is lit.
-    ///
-    /// The result is empty if the run discarded its records without a streaming observer.
     pub(crate) fn of(outcome: &Outcome) -> Vec<Self> {
         if let Some(said) = HeadResults::from_observer(outcome) {
             return said.steps.clone();

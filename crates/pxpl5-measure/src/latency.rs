@@ -3,14 +3,14 @@
 use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
 use std::fmt;
 
-/// Returns the latency parts of the complete pictures in the result window. Pictures whose records were discarded
-/// ([`pxpl5_run::Keep`]) are left out.
+/// Returns the latency parts of the complete pictures in the result window.
+///
+/// Pictures whose records were discarded ([`pxpl5_run::Keep`]) are left out.
 #[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
     outcome.latency_parts()
 }
 
-/// Returns the statistics of each latency part in milliseconds, over all complete pictures in the result window.
 pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<LatencyPartStatistics> {
     let parts = LATENCY_PARTS.iter().zip(&outcome.tally().parts_ms);
     let named = parts.map(|(part, ms): (_, &Samples)| LatencyPartStatistics {
@@ -33,8 +33,8 @@ pub struct LatencyPartStatistics {
     pub statistics: DefinedStatistics,
 }
 
-/// Prints the name that this type had when report hashes were first published, because the hash of a report covers this
-/// text.
+/// Prints the name that this type had when hashes of reports were first published. The hash of a report covers this
+/// text, so the printed name must not change.
 impl fmt::Debug for LatencyPartStatistics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, in_published_latency, statistics } = self;
@@ -44,8 +44,9 @@ impl fmt::Debug for LatencyPartStatistics {
     }
 }
 
-/// Latency of one surface, or of a pair of surfaces, until the end of COPY, until the swap, or until the pixels are
-/// lit.
+/// Latency of one surface or of a pair of surfaces.
+///
+/// The latency ends at the end of COPY, at the swap, or when the pixels are lit.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct SurfaceStatistics {
     /// Label of the surface (`left`, `right`), or `pair`. The latency of a pair lasts from the first TRANSFORM until

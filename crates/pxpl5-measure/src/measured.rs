@@ -1,4 +1,4 @@
-//! Measurements as methods of an outcome.
+//! Measurements of a run, as methods of the run's outcome.
 
 use crate::Report;
 use crate::errors::PixelErrors;
@@ -30,7 +30,7 @@ pub trait Measured {
     /// are left out.
     fn latency_parts(&self) -> Vec<LatencyParts>;
 
-    /// Returns the latencies of each eye and of the pair of eyes. Empty if the eyes share one TRANSFORM.
+    /// Returns the latencies of each eye and of the pair of eyes. The result is empty if the eyes share one TRANSFORM.
     fn latency_by_surface(&self) -> Vec<SurfaceStatistics>;
 
     /// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.

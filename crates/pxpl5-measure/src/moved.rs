@@ -1,5 +1,3 @@
-//! Content of the screen's pixels after a device has moved pictures.
-
 use crate::content::Content;
 use crate::drawn::Drawn;
 use crate::registration::{Evaluator, Warped, middle};
@@ -13,7 +11,6 @@ use pxpl5_wire::PeriodNumber;
 use tracking::Pose;
 use tracking::view::Hmd;
 
-/// Content of a pixel of the screen after a device has moved the picture.
 #[derive(Clone, Debug)]
 pub(crate) enum Moved {
     /// The pixel shows content of a picture, with the pose for which the picture was drawn.
@@ -26,8 +23,8 @@ pub(crate) enum Moved {
     Hidden,
 }
 
-/// Largest number of iterations in the search for the picture position that a pixel shows. An iteration is needed
-/// because the pose depends on the position if parts of a picture have different poses.
+/// Largest number of iterations in the search for the picture position that a pixel shows. If parts of a picture have
+/// different poses, the pose depends on the position and the position on the pose.
 const STEPS: usize = 4;
 
 /// Returns the content of a pixel that is lit from the time `at` on, after the picture has been moved to the pose

@@ -3,8 +3,9 @@
 use pxpl5_run::number_or_nan;
 use serde::{Deserialize, Serialize};
 
-/// Count, mean, percentiles and maximum of a set of numbers. For an empty set, all numbers except the count are NaN
-/// (null in JSON).
+/// Count, mean, percentiles and maximum of a set of numbers.
+///
+/// For an empty set, all numbers except the count are NaN (null in JSON).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Percentiles {
     /// Number of numbers in the set.
@@ -51,13 +52,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn percentiles_of_one_to_a_hundred() {
+    fn percentiles_of_the_numbers_1_to_100_are_exact() {
         let p = Percentiles::of((1..=100).rev().map(f64::from));
         assert_eq!((p.n, p.mean, p.p50, p.p90, p.p99, p.max), (100, 50.5, 50.0, 90.0, 99.0, 100.0));
     }
 
     #[test]
-    fn of_nothing_there_is_no_number() {
+    fn an_empty_list_has_no_percentile() {
         let Percentiles { n, mean, p50, p90, p99, max } = Percentiles::of(std::iter::empty());
         assert_eq!(n, 0);
         assert!([mean, p50, p90, p99, max].iter().all(|number| number.is_nan()));

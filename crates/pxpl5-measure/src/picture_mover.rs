@@ -14,7 +14,6 @@ use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The pictures of a run, and the device that moves these pictures.
 #[derive(Debug)]
 pub(crate) struct PictureMover<'a> {
     run: FinalResults<'a>,
@@ -22,7 +21,7 @@ pub(crate) struct PictureMover<'a> {
     evaluator: Evaluator,
     shown: Shown,
     setting: Reprojection,
-    /// The depths that were computed last, kept because successive fields often show the same picture.
+    /// The depths that were computed last. They are kept because successive fields often show the same picture.
     latest: RefCell<Option<(Moment, Rows, Arc<DepthPicture>)>>,
 }
 
@@ -47,7 +46,6 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Returns the newest pose of the head for each part of a field. All pixels of a part are moved to the same pose.
     fn reprojector(&self, screen: &RgbImage, field: PeriodNumber) -> Reprojector {
         let display = self.run.record.display();
         let mut reprojector = Reprojector::new(&self.head, self.setting, None);
@@ -57,7 +55,7 @@ impl<'a> PictureMover<'a> {
         reprojector
     }
 
-    /// Writes the moved rows of a field in pieces, because the pieces of a row can show different pictures.
+    /// Writes the moved rows of a field in pieces, because pieces of one row can show different pictures.
     fn move_pieces(&self, reprojector: &Reprojector, screen: &RgbImage, field: PeriodNumber, out: &mut RgbImage) {
         let display = self.run.record.display();
         for y in Rows::lit(display, field).of(screen.height()) {
@@ -67,8 +65,8 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Returns ranges of pixels in a row, so that all pixels of a range move to one pose. A range covers a region, or a
-    /// single pixel if each column has its own pose.
+    /// Returns ranges of pixels in a row. All pixels of a range move to one pose. A range covers a region, or a single
+    /// pixel if each column has its own pose.
     fn pieces(&self, display: &dyn Display, width: u32) -> impl Iterator<Item = Range<u32>> + use<> {
         let sideways = matches!(display.light().scan, ScanOrder::Right | ScanOrder::Left);
         let length = if sideways && self.setting.every == Every::Line { 1 } else { REGION_SIZE };
@@ -211,7 +209,7 @@ mod tests {
     /// Tests a picture that is moved with its depths against rays into the scene. The two pictures may differ at the
     /// edges of objects, and elsewhere by one pixel because of rounding.
     #[test]
-    fn a_mesh_with_depth_shows_what_rays_from_both_poses_find() {
+    fn a_moved_mesh_with_depth_agrees_with_rays_from_both_poses() {
         let registry = Registry::of_papers();
         let pipeline = (registry.pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
         let motion = Arc::new(SlidingTurn);

@@ -14,7 +14,9 @@ use pxpl5_run::{Outcome, Pixels};
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 
-/// Returns two pictures next to each other, the left eye on the left. The result is as high as the taller picture.
+/// Returns two pictures next to each other, the left eye on the left.
+///
+/// The result is as high as the taller picture.
 #[must_use]
 pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> RgbImage {
     let mut both = RgbImage::new(left.width() + right.width(), left.height().max(right.height()));
@@ -43,8 +45,9 @@ pub fn picture(outcome: &Outcome, surface: impl Into<SurfaceId>) -> Option<RgbIm
     }
 }
 
-/// Returns the picture that a viewer sees at the end of a display period. If `offsets` is set, the rows are shifted by
-/// these offsets.
+/// Returns the picture that a viewer sees at the end of a display period.
+///
+/// If `offsets` is set, the rows are shifted by these offsets.
 ///
 /// Returns a black picture for a surface that does not exist.
 #[must_use]
@@ -66,7 +69,6 @@ pub fn screen(
     shifted
 }
 
-/// Returns a black picture of the size of the display's first surface.
 fn blank(display: &dyn Display) -> RgbImage {
     display.surfaces().first().map_or_else(RgbImage::default, |surface| RgbImage::new(surface.width, surface.height))
 }

@@ -58,7 +58,9 @@ const ERROR_PX: &str = "distance between a pixel and the right place of its cont
 
 const PATH: &str = "share of the latency that waits for this resource, 0 to 1, over the last complete pictures of the window; the shares of all resources add up to 1";
 
-/// All quantities by name. Quantities that need a simulated run have no value at the analytic level.
+/// All quantities that can be measured, by name.
+///
+/// Quantities that need a simulated run have no value at the analytic level.
 pub static QUANTITIES: [Quantity; 57] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().told().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().told().sd),
@@ -188,7 +190,6 @@ pub static QUANTITIES: [Quantity; 57] = [
     of_run("critical_path.other", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Other))),
 ];
 
-/// Returns the number that `count` reads from the result of the due pictures, or NaN if no picture was due.
 fn of_due(summary: &Summary, count: fn(&DuePictures) -> u64) -> f64 {
     summary.due.map_or(f64::NAN, |due| count(&due) as f64)
 }
@@ -302,7 +303,6 @@ impl Results {
     }
 }
 
-/// Returns the mean time of a stage over the pictures in the result window. `None` if no picture has this stage.
 fn stage_ms(outcome: &Outcome, stage: Stage) -> Option<f64> {
     let (_, samples) = outcome.tally().stage_ms.iter().find(|(of, _)| *of == stage)?;
     Some(samples.statistics().mean)

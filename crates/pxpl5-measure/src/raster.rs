@@ -1,5 +1,5 @@
-//! Raster offset of VDRT: the display shifts the picture during scan-out. The shift corrects the error of the head pose
-//! for which the picture was drawn.
+//! Raster offset of Breglia's display VDRT: the display shifts the picture during scan-out. The shift corrects the
+//! error of the head pose for which the picture was drawn.
 
 use crate::picture_mover::PictureMover;
 use crate::rows::Rows;
@@ -34,7 +34,7 @@ impl std::fmt::Debug for Vdrt<'_> {
 }
 
 impl<'a> Vdrt<'a> {
-    /// Creates the shifted raster of a display. The raster offsets come from head poses that `estimator` predicts.
+    /// Creates a raster that `display` shifts. The raster offsets come from head poses that `estimator` predicts.
     #[must_use]
     pub const fn new(estimator: Estimator, display: &'a dyn Display) -> Self {
         Self { estimator, display }
@@ -66,8 +66,9 @@ pub(crate) fn offset(
     RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
 }
 
-/// The corrections that a display applies to the pictures of a run. The corrections are a raster offset for every
-/// field, or a device that moves pictures to the newest pose.
+/// The corrections that a display applies to the pictures of a run.
+///
+/// The corrections are a raster offset for every field, or a device that moves pictures to the newest pose.
 #[derive(Clone, Debug)]
 pub struct RasterOffsets<'a> {
     display: &'a dyn Display,
@@ -77,7 +78,6 @@ pub struct RasterOffsets<'a> {
 
 #[derive(Clone, Debug)]
 enum MovedBy<'a> {
-    /// The raster offset of every field, or `None` for a field without an offset.
     Offsets(Vec<Option<RasterOffset>>),
     Device(Rc<PictureMover<'a>>),
 }
@@ -123,7 +123,7 @@ impl<'a> RasterOffsets<'a> {
 
     /// Copies the rows that a field lights from `screen` to `shifted`, moved by the field's offset in whole pixels.
     ///
-    /// Pixels to which no pixel moves become black. A field without an offset is copied unchanged.
+    /// Pixels beyond the edge of the moved rows become black. A field without an offset is copied unchanged.
     pub fn shift_rows(&self, screen: &RgbImage, field: PeriodNumber, shifted: &mut RgbImage) {
         if let MovedBy::Device(mover) = &self.moved_by {
             mover.move_rows(screen, field, shifted);

@@ -1,4 +1,5 @@
-//! Pixel error: the distance between a pixel and the correct position of its content at the time when the pixel is lit.
+//! The evaluation of pixel errors: rays into the scene give the content of a pixel, and a projection gives its right
+//! place.
 
 use crate::content::{Content, Contents};
 use crate::reproject::direction;
@@ -18,7 +19,7 @@ pub(crate) struct Evaluator {
     head: Arc<HeadViews>,
     /// The scene's primitives. Empty if the experiment evaluates errors at a fixed distance.
     contents: Contents,
-    /// Distance at which content is assumed on rays that hit nothing, in metres.
+    /// Distance, in metres, at which a ray that hits nothing is assumed to meet content.
     distance_m: f64,
 }
 
@@ -30,7 +31,6 @@ impl Evaluator {
         Self { view, head: Arc::clone(head), contents, distance_m: head.distance_m() }
     }
 
-    /// Returns the direction of a picture position in head coordinates, scaled to a depth of 1 m.
     fn direction(&self, place: DVec2) -> DVec3 {
         direction(&self.view, place)
     }
@@ -61,7 +61,6 @@ impl Evaluator {
         })
     }
 
-    /// Returns the point of the scene that the pixel at the position `place` shows.
     pub(crate) fn content(&self, drawn: &Drawn, place: DVec2) -> Content {
         match drawn {
             Drawn::View(moment) => self.met(moment, place),
@@ -97,8 +96,8 @@ impl Evaluator {
         self.error_between(place, content, at, at)
     }
 
-    /// Returns the distance from the position `place` to the correct position of `content`. The correct position has
-    /// the head at the time `head_at` and moving objects at the time `objects_at`.
+    /// Returns the distance from the position `place` to the correct position of `content`. The correct position is
+    /// seen from the head at the time `head_at`, with moving objects at the time `objects_at`.
     pub(crate) fn error_between(
         &self,
         place: DVec2,
@@ -114,10 +113,8 @@ impl Evaluator {
     }
 }
 
-/// Content at a screen position, after a picture with depth was moved to another pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Warped {
-    /// The visible content, with its position in the picture.
     Seen(Content, DVec2),
     /// No content, because the content lies beyond the edge of the drawn picture.
     Beyond,
@@ -129,8 +126,8 @@ pub(crate) enum Warped {
 const NEARER: f64 = 1e-4;
 
 impl Evaluator {
-    /// Returns the content at the screen position `place` after each pixel of a picture was moved to the pose `now` by
-    /// its depth.
+    /// Returns the content at the screen position `place`, after each pixel of a picture was moved by its depth to the
+    /// pose `now`.
     pub(crate) fn warped(&self, drawn: &Moment, now: &Pose, place: DVec2) -> Warped {
         let ahead = now.orientation * self.direction(place);
         let met = self.contents.met(now.position, ahead, drawn.objects_at);
@@ -159,8 +156,8 @@ impl Evaluator {
         (way.is_finite() && way > 0.0).then(|| Content::fixed(now.position + ahead * way))
     }
 
-    /// Returns the pose and time for which a pixel was drawn. A pixel that is interpolated between two views gets an
-    /// interpolated pose and time.
+    /// Returns the pose and time for which a pixel was drawn. A pixel that is interpolated between two views gets a
+    /// pose and a time between theirs.
     pub(crate) fn moment(&self, drawn: &Drawn) -> Moment {
         match drawn {
             Drawn::View(moment) | Drawn::ShiftedRaster(moment, _) => *moment,
@@ -169,8 +166,7 @@ impl Evaluator {
         }
     }
 
-    /// Returns the smear of a content, which is the distance that the content moves across the screen between two
-    /// times, in pixels.
+    /// Returns the distance that a content moves across the screen between two times (its smear), in pixels.
     ///
     /// Returns `None` if the content is behind the eye.
     pub(crate) fn way_px(&self, content: &Content, from: Time, to: Time) -> Option<f64> {
@@ -228,7 +224,6 @@ impl<'a> Registration<'a> {
     }
 }
 
-/// Returns the position of a pixel's middle in the picture, in pixels.
 pub(crate) fn middle(x: u32, y: u32) -> DVec2 {
     DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
 }
@@ -238,12 +233,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_middle_of_a_pixel_is_half_a_pixel_beyond_its_corner() {
+    fn the_centre_of_a_pixel_is_half_a_pixel_beyond_its_corner() {
         assert_eq!(middle(0, 7), DVec2::new(0.5, 7.5));
     }
 
     #[test]
-    fn between_two_moments_objects_and_head_are_the_same_part_of_the_way() {
+    fn between_two_poses_head_and_objects_are_interpolated_at_the_same_instant() {
         let moment = |at: u64| Moment { pose: Pose::at(DVec3::X * at as f64), objects_at: Time(at), measured_at: None };
         for (part, expected) in [(0.0, 1_000), (0.25, 1_500), (1.0, 3_000)] {
             let Moment { pose, objects_at, .. } = between(&moment(1_000), &moment(3_000), part);

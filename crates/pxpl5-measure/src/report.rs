@@ -79,7 +79,7 @@ pub struct Report {
     /// Latency of each eye and of the pair, in milliseconds: to the end of COPY, to the swap, and until the pixels are
     /// lit.
     ///
-    /// Empty if the eyes share one TRANSFORM.
+    /// The list is empty if the eyes share one TRANSFORM.
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
     /// Number of complete pictures shown in the whole run, including the warm-up.
     pub shown: u64,
@@ -89,8 +89,8 @@ pub struct Report {
     /// Number of pictures that were due in the result window, counted by result (shown, late, incomplete or missed).
     /// `None` if no picture was due.
     pub due: Option<DuePictures>,
-    /// Definition of the pictures due: the time at which a picture is due, the time by which the picture must be shown,
-    /// and the pictures that count.
+    /// Definition of the due pictures: the time at which a picture is due, the latest time for its display, and the
+    /// pictures that are counted.
     pub due_definition: String,
     /// Number of pictures due that were not shown: late, incomplete or missed.
     pub missed_retraces: Option<u64>,
@@ -115,8 +115,8 @@ pub struct Report {
     /// Results of an address recalculation display. `None` for any other display.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arp: Option<FacesReport>,
-    /// Head-mounted display before the viewer's eyes. A display with cube faces around the head uses other optics
-    /// instead, which belong to its own settings.
+    /// Head-mounted display before the viewer's eyes. A display with cube faces around the head does not use this
+    /// display, but has settings for its own optics.
     pub hmd: HmdConfig,
     /// Share of time in which each kind of board was busy. `None` if the machine has not run.
     pub utilisation: Option<Utilisation>,
@@ -181,8 +181,8 @@ impl HeadReport {
 }
 
 impl Report {
-    /// Returns the number of lines of regions that were overwritten before the display showed these lines. `None` if
-    /// the display does not count such lines.
+    /// Returns the number of lines that were overwritten before the display showed them. `None` if the display does not
+    /// count such lines.
     #[must_use]
     pub fn lines_never_shown(&self) -> Option<u64> {
         let counter = self.display_counters.iter().find(|counter| counter.name == Counter::LINES_NEVER_SHOWN);
@@ -274,9 +274,8 @@ impl Report {
         report
     }
 
-    /// Adds the statistics of this report to the trace hash.
-    ///
-    /// The trace hash alone does not cover the order of summation, which changes floating-point sums.
+    /// Adds the statistics of this report to the trace hash. Otherwise the hash would not depend on the order of
+    /// summation, which changes floating-point sums.
     fn hash_statistics(&mut self, mut hash: TraceHash) {
         let latencies = (&self.latency_fields, &self.latency_ms, &self.latency_parts_ms, &self.latency_by_eye_ms);
         let pictures =
@@ -296,8 +295,8 @@ impl Report {
     }
 }
 
-/// Computes the hash of a text in the same way as the trace hash of one event. The event has the time zero, the number
-/// 9 as its kind, and the bytes of the text.
+/// Computes the hash of a text like the trace hash of one event. This event has time zero, kind 9 and the bytes of the
+/// text.
 ///
 /// The text is not stored, because the text of a long run would be large.
 struct HashedText(u64);
@@ -331,7 +330,7 @@ mod tests {
 
     /// Tests a program that asks a display with the buffers 0 and 1 for buffer 2, `asks` times.
     #[test]
-    fn displays_say_what_they_could_not_use_and_nothing_else() {
+    fn a_report_has_a_fault_of_the_display_only_if_a_program_causes_a_fault() {
         for asks in [0, 1, 3] {
             let mut machine = Machine::new(&MachineConfig::small_hmd(), 1, Layout::slats()).expect("a preset");
             let (processor, display) = (machine.ports().gps[0], machine.ports().display()[0]);
@@ -353,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_in_pieces_is_hashed_as_one_record() {
+    fn a_text_written_in_parts_is_hashed_as_one_record() {
         let text = "latency 33.4, pictures 12";
         let mut record = TraceHash::default();
         record.record(Time::ZERO, &[9].into_iter().chain(text.bytes().map(u64::from)).collect::<Vec<u64>>());

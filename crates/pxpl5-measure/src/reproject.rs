@@ -1,4 +1,4 @@
-//! Moves pictures to another pose: computes the source of each pixel, and copies the pixels.
+//! Moves pictures to a new pose of the head: computes the source of each pixel, and copies the pixels.
 
 use crate::rows::Rows;
 use glam::{DQuat, DVec2, DVec3};
@@ -8,16 +8,15 @@ use std::ops::Range;
 use tracking::Pose;
 use tracking::view::{Hmd, RasterOffset};
 
-/// Returns the direction of a picture position in head coordinates, scaled to a depth of 1 m.
 pub(crate) fn direction(view: &Hmd, place: DVec2) -> DVec3 {
     let from_centre = (place - view.centre_px()) / view.focal_px();
     DVec3::new(from_centre.x, -from_centre.y, -1.0)
 }
 
-/// The mapping from screen positions to positions in a picture that was drawn for another pose. Depth is ignored.
+/// The mapping from positions on the screen to positions in a picture that was drawn for an earlier pose. Depth is
+/// ignored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Move {
-    /// The whole picture is shifted by the offset, in pixels.
     Shift(DVec2),
     /// The view is rotated. The rotation converts directions from the head's newest axes to the head's axes for which
     /// the picture was drawn.
@@ -46,7 +45,7 @@ impl Move {
     }
 }
 
-/// Writes some pixels of a row. Each pixel is copied from the position in the source picture that `place` returns.
+/// Writes some pixels of a row. Each pixel is copied from the position that `place` returns, in the source picture.
 ///
 /// Pixels without a source become black. Returns the number of these pixels.
 pub(crate) fn fill_row(
@@ -77,7 +76,6 @@ pub(crate) fn fill_row(
     empty
 }
 
-/// Writes the pixels `xs` of the row `y` of a moved picture. Returns the number of pixels without a source.
 pub(crate) fn move_row(
     source: &RgbImage,
     rows: Rows,
@@ -106,7 +104,7 @@ pub(crate) fn move_row(
     }
 }
 
-/// Moves a whole picture from the pose for which it was drawn to another pose, by a shift or a rotation.
+/// Moves a whole picture from the pose `drawn_for` to the pose `now`, by a shift or a rotation.
 ///
 /// Each pixel of the result is the nearest pixel of the picture. Pixels without a source are black. Returns the result
 /// and the number of these black pixels, or `None` if the picture and the view differ in size. [`Warp::Depth`] is
@@ -141,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_move_every_pixel_stays_and_none_is_empty() {
+    fn without_movement_every_pixel_stays_and_none_is_empty() {
         let picture = places(640, 480);
         for by in [Warp::Shift, Warp::Rotation] {
             let pose = Pose::facing(rotation::from_yaw_pitch_roll(0.4, -0.2, 0.1));
@@ -152,7 +150,7 @@ mod tests {
     /// Tests a head that turns to the left by the angle a. Column x then shows the old column f tan(atan(x / f) - a).
     /// Columns are counted from the middle, and f is the focal length in pixels.
     #[test]
-    fn under_a_turn_columns_come_from_where_the_tangents_say() {
+    fn a_rotation_of_the_head_moves_each_column_according_to_its_tangent() {
         let view = Hmd::unc();
         let (f, angle) = (view.focal_px(), 0.05_f64);
         let now = Pose::facing(rotation::about_y(angle));

@@ -1,4 +1,4 @@
-//! Poses to which a device moves pictures. Each part of a scan (field, strip or line) uses the newest pose.
+//! Poses to which a device moves pictures. Each part of a scan (field, strip or line) has its own newest pose.
 
 use crate::rows::Rows;
 use pxpl5_run::{Cause, Estimator, Every, HeadViews, Reprojection};
@@ -10,7 +10,6 @@ use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// The newest pose of the head for one part of a scan (field, strip or line).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NewestPose {
     /// Pose of the head, predicted for the middle of the time in which the part of the scan is lit.
@@ -25,7 +24,6 @@ pub(crate) struct Reprojector {
     pub(crate) setting: Reprojection,
     estimator: Estimator,
     head: Arc<HeadViews>,
-    /// Newest poses for the parts of the latest field, by the index of the part (field, strip or line).
     poses: BTreeMap<u32, NewestPose>,
 }
 
@@ -68,7 +66,7 @@ impl Reprojector {
     }
 }
 
-/// Returns the index of the part of a scan (field, strip or line) that contains a pixel.
+/// Returns the index of the part of a scan that contains a pixel. `every` is the kind of parts: field, strip or line.
 fn part(display: &dyn Display, every: Every, [x, y]: [u32; 2]) -> u32 {
     let along = match display.light().scan {
         ScanOrder::Down | ScanOrder::Up => y,

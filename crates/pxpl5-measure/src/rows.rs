@@ -3,7 +3,6 @@
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Display;
 
-/// The rows that a display period lights: the first row, and the distance from each row to the next row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Rows {
     pub(crate) first: u32,
@@ -18,23 +17,21 @@ impl Rows {
         Self { first, distance }
     }
 
-    /// Returns the lit rows of a picture with `height` rows.
     pub(crate) fn of(self, height: u32) -> impl Iterator<Item = u32> + Clone {
         (self.first..height).step_by(self.distance as usize)
     }
 
-    /// Returns the number of lit rows of a picture with `height` rows.
     pub(crate) const fn count(self, height: u32) -> u32 {
         height.saturating_sub(self.first).div_ceil(self.distance)
     }
 
-    /// Returns the row of the picture at index `number` of the lit rows, counted from 0.
+    /// Returns row `number` of the lit rows, counted from 0, as a row of the picture.
     pub(crate) const fn row(self, number: u32) -> u32 {
         self.first + number * self.distance
     }
 
-    /// Returns the lit row of the group of rows that contains `row`. In an interlaced picture, a group is an even row
-    /// and the odd row below it.
+    /// Returns the lit row beside `row`. In an interlaced picture, each even row belongs together with the odd row
+    /// below it, and only one of the two is lit.
     pub(crate) const fn beside(self, row: u32) -> u32 {
         row / self.distance * self.distance + self.first
     }
@@ -45,7 +42,6 @@ impl Rows {
         (y - 0.5 - f64::from(self.first)) / f64::from(self.distance)
     }
 
-    /// Returns the lit row that is nearest to a vertical position of a picture with `height` rows.
     pub(crate) fn nearest(self, y: f64, height: u32) -> u32 {
         let last = (height - 1 - self.first) / self.distance;
         self.row((self.number_at(y).round().max(0.0) as u32).min(last))
@@ -60,7 +56,7 @@ mod tests {
     const ODD: Rows = Rows { first: 1, distance: 2 };
 
     #[test]
-    fn positions_have_their_nearest_row_in_the_same_field() {
+    fn a_position_belongs_to_the_nearest_row_of_the_same_field() {
         for (y, rows, expected) in [(10.5, EVEN, 10), (11.4, EVEN, 10), (11.6, EVEN, 12), (10.5, ODD, 11)] {
             assert_eq!(rows.nearest(y, 480), expected, "{y} {rows:?}");
         }

@@ -5,7 +5,7 @@ use pxpl5_run::{FinalResults, region_at};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// Arrivals of regions on a run's first surface. These arrivals give the region that a pixel shows at any time.
+/// Arrivals of regions on a run's first surface. The region that a pixel shows at any time follows from these arrivals.
 #[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
@@ -14,12 +14,11 @@ pub(crate) struct Screen {
     swaps: Vec<(PeriodNumber, u64)>,
 }
 
-/// Arrivals of regions in one buffer, for one division of the screen into regions. The arrivals are sorted by region
-/// and time.
+/// Arrivals of regions in one buffer, for one division of the screen into regions, sorted by region and time.
 #[derive(Debug)]
 struct Cut {
-    /// Copy target of the first arrival, which identifies the buffer and the division of the screen. The region and the
-    /// picture in this target are ignored.
+    /// Copy target of the first arrival. All arrivals have the same buffer and the same division of the screen. The
+    /// region and the picture in this target are ignored.
     of: CopyTarget,
     regions: Vec<Vec<(Time, PictureNumber)>>,
 }
@@ -55,7 +54,7 @@ impl Screen {
 
     fn arrive(&mut self, arrival: &Arrival) {
         let target = arrival.target;
-        // Find the division that the region belongs to, or add a new one.
+        // Find the division of the picture into regions to which this region belongs, or add a new division.
         let place = self.cuts.iter().position(|cut| Cut::key(&cut.of) == Cut::key(&target)).unwrap_or_else(|| {
             self.cuts.push(Cut { of: target, regions: vec![Vec::new(); target.grid.regions() as usize] });
             self.cuts.len() - 1
@@ -73,7 +72,6 @@ impl Screen {
         }
     }
 
-    /// Returns the copy targets (buffer, region and picture) of all arrivals that have not been discarded.
     pub(crate) fn targets(&self) -> impl Iterator<Item = CopyTarget> {
         self.cuts.iter().flat_map(|cut| {
             let regions = (0..).map(RegionId).zip(&cut.regions);
@@ -85,7 +83,6 @@ impl Screen {
         })
     }
 
-    /// Returns the region that a pixel of a field shows at the instant `at`, or `None` before the first arrival.
     pub(crate) fn shown(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<CopyTarget> {
         // Buffer 0 is shown first, and every swap shows the other buffer.
         let before = self.swaps.partition_point(|swap| swap.0 <= field);
@@ -118,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pixel_shows_the_newest_picture_of_its_region_that_has_arrived() {
+    fn a_pixel_shows_the_newest_arrived_picture_of_its_region() {
         let targets = [7, 8, 9].map(|picture| target(Lines::Frame, picture));
         let screen = screen([10, 20, 30].into_iter().zip(targets));
         let shown = |x, y, at| screen.shown(x, y, PeriodNumber(0), Time(at));
@@ -132,13 +129,13 @@ mod tests {
     fn a_line_shows_its_own_field() {
         let odd = target(Lines::Field(FieldParity::Odd), 7);
         let screen = screen([(10, odd)]);
-        // Row 128 of a field, of 256: line 257 of the frame.
+        // Row 128 of an odd field of 256 rows is line 257 of the frame.
         assert_eq!(screen.shown(128, 257, PeriodNumber(0), Time(10)), Some(odd));
         assert_eq!(screen.shown(128, 256, PeriodNumber(0), Time(10)), None);
     }
 
     #[test]
-    fn every_swap_shows_the_other_buffer_beginning_with_the_second() {
+    fn every_swap_shows_the_other_buffer_starting_with_the_second_buffer() {
         let [first, second] = [0, 1].map(|buffer| CopyTarget { buffer, ..target(Lines::Frame, buffer.into()) });
         let mut screen = screen([(10, first), (10, second)]);
         screen.swaps = vec![(PeriodNumber(3), 0), (PeriodNumber(5), 1), (PeriodNumber(6), 2)];
@@ -148,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn covered_regions_are_discarded_and_no_others() {
+    fn only_regions_covered_before_the_instant_are_discarded() {
         let targets = [7, 8, 9, 10].map(|picture| target(Lines::Frame, picture));
         let mut screen = screen([10, 20, 30, 40].into_iter().zip(targets));
         for (instant, left) in [(9, 0), (19, 0), (20, 1), (35, 2), (99, 3)] {

@@ -11,7 +11,7 @@ use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// The picture at a pixel, classified for the evaluation of pixel errors.
+/// The kind of picture at a pixel, which decides if the pixel error is evaluated.
 #[derive(Clone, Debug)]
 pub(crate) enum Seen {
     /// The pixel shows nothing yet, or its source is unknown.
@@ -20,32 +20,29 @@ pub(crate) enum Seen {
     Incomplete,
     /// The pixel belongs to a complete picture that was shown before the result window.
     Before,
-    /// The pixel belongs to a picture shown within the result window, complete and in time.
+    /// The pixel belongs to a complete picture that was shown in time and within the result window.
     Complete(Drawn),
 }
 
-/// The views of a run and the contents of its screen, updated during the run.
 #[derive(Debug)]
 pub(crate) struct Shown {
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
-    /// Pictures that were complete in time, with the first period that showed each picture. `None` for pictures during
-    /// the warm-up.
+    /// Pictures that were complete in time, with the first period that showed each picture. The period is `None` for
+    /// pictures during the warm-up.
     complete: BTreeMap<PictureNumber, Option<PeriodNumber>>,
     /// Number of pictures of the run that were added, including incomplete pictures.
     pictures: usize,
     /// The result window. The pixels of pictures outside the result window are not evaluated.
     ///
-    /// `None` for pipelines without due pictures. All pictures of such a pipeline are evaluated, until the next picture
-    /// covers them.
+    /// `None` for pipelines without due pictures. All pictures of such a pipeline are evaluated.
     window: Option<ResultWindow>,
     moments: BTreeMap<ViewNumber, Viewed>,
-    /// State of the display memories. `None` if the display is not an address recalculation display.
     faces: Option<LatchedFaces>,
 }
 
-/// The pose and time for which a view was drawn, and the arrival time of the last tracker report that the host had
-/// received.
+/// The pose and time for which a view was drawn. `known` is the arrival time of the last tracker report that the host
+/// had then received.
 #[derive(Clone, Copy, Debug)]
 struct Viewed {
     known: Time,
@@ -53,7 +50,6 @@ struct Viewed {
 }
 
 impl Shown {
-    /// Creates the state for a run from which no records were added yet.
     pub(crate) fn begin(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         Self {
             screen: Screen::default(),
@@ -66,14 +62,13 @@ impl Shown {
         }
     }
 
-    /// Creates the state from all records of a run that remain in memory.
     pub(crate) fn of_run(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         let mut shown = Self::begin(run, head);
         shown.take(run, head);
         shown
     }
 
-    /// Adds the pictures, the arrivals of regions and the views of the run that can no longer change.
+    /// Adds final results of the run: pictures, arrivals of regions, and views. Final results can no longer change.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>, head: &HeadViews) {
         self.screen.take(run);
         self.views.extend(run.pictures.iter().map(|times| (times.picture, times.view)));
@@ -113,8 +108,8 @@ impl Shown {
         self.screen.targets().count() + self.views.len() + self.complete.len() + self.moments.len() + of_faces
     }
 
-    /// Returns the views whose pictures are on the screen at `instant` or may still be shown, without the views that
-    /// were made after `instant`.
+    /// Returns the views whose pictures are on the screen at `instant` or may still be shown later. Views that were
+    /// made after `instant` are left out.
     ///
     /// For an address recalculation display, the result has the views of all updates whose records are in memory.
     fn still_seen(&self, run: &FinalResults<'_>, instant: Time) -> BTreeSet<ViewNumber> {
@@ -145,7 +140,7 @@ impl Shown {
     }
 
     /// Replaces the poses of the views `of` by the poses that the run would have had without the cause of error
-    /// `without`. All other views show nothing afterwards.
+    /// `without`. Views that are not in `of` show nothing afterwards.
     pub(crate) fn replace_poses(&mut self, head: &Arc<HeadViews>, of: &BTreeSet<ViewNumber>, without: Cause) {
         let mut estimator = Estimator::new(head, Some(without));
         let mut sampled: Vec<SampledPose> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
@@ -179,7 +174,7 @@ impl Shown {
         run.pipeline.source(run.record, target, &self.views, run.aim)
     }
 
-    /// Returns the view or views from which the pixel (`x`, `y`) was drawn. The pixel is lit at the instant `at`.
+    /// Returns the view or views for which the pixel (`x`, `y`) was drawn. The pixel is lit at the instant `at`.
     /// Returns `None` before the first region has arrived.
     pub(crate) fn drawn(
         &self,

@@ -8,8 +8,8 @@ use pxpl5_wire::PeriodNumber;
 /// Names of the parts of the latency after a step (translation) of the head, in the order of time.
 const PARTS: [&str; 4] = ["before_due", "draw", "age", "scan"];
 
-/// A streaming observer of the latencies from a step (translation) of the head until the content of each display memory
-/// is lit.
+/// A streaming observer of latencies. A latency lasts from a step (translation) of the head until the content of a
+/// display memory is lit.
 ///
 /// The observer adds one latency for each display memory and each display period after the memory's first update.
 #[derive(Debug, Default)]
@@ -18,11 +18,10 @@ pub(crate) struct StepSum {
     memories: Vec<OfMemory>,
 }
 
-/// Latencies of the content of one display memory, in milliseconds.
 #[derive(Debug, Default)]
 struct OfMemory {
-    /// The display period that first shows the display memory's newest update, and the instant at which the latency of
-    /// this update begins.
+    /// The display period that first shows the display memory's newest update, and the instant at which this update's
+    /// latency begins.
     begin: Option<(PeriodNumber, Time)>,
     total: Samples,
     parts: [f64; PARTS.len()],
@@ -34,7 +33,6 @@ pub(crate) struct Steps {
     /// Latency over all display periods since the display memory's first update, in milliseconds. `None` before the
     /// first update.
     pub(crate) latency_ms: Option<Statistics>,
-    /// Means of the parts of the latency, in milliseconds.
     pub(crate) parts_ms: Vec<(&'static str, f64)>,
 }
 
@@ -97,7 +95,6 @@ impl OfMemory {
     }
 }
 
-/// Returns the instant at which the pose for a display memory's picture was measured. `None` without a tracked head.
 fn measured_at(run: &FinalResults<'_>, shown: &ShownUpdate) -> Option<Time> {
     let sampled = run.head?.sampled();
     sampled.iter().find(|sampled| sampled.number == shown.note.view)?.measured_at

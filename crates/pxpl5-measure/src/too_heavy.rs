@@ -4,8 +4,9 @@ use pxpl5_run::{DuePictures, Experiment};
 use serde::Serialize;
 use std::fmt;
 
-/// Warning that the load was too heavy ([`DuePictures::is_too_heavy`]), with the number of triangles that the pipeline
-/// can show in time.
+/// Warning that the load was too heavy ([`DuePictures::is_too_heavy`]).
+///
+/// The warning states how many triangles the pipeline can show in time.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TooHeavy {
     /// Number of pictures that were due.
@@ -14,8 +15,7 @@ pub struct TooHeavy {
     pub not_shown: u64,
     /// Number of triangles and spheres in the scene.
     pub triangles: u64,
-    /// Number of primitives to which the scene must be decimated so that the pipeline shows the scene in time. The
-    /// pipeline's closed form gives this number.
+    /// Number of primitives to which the scene must be decimated for pictures in time, by the pipeline's closed form.
     ///
     /// `None` if the pipeline has no closed form, or if the closed form predicts that the whole scene is in time.
     pub triangles_in_time: Option<u64>,
@@ -50,7 +50,6 @@ fn advice(pipeline: &str, triangles_in_time: Option<u64>) -> String {
     }
 }
 
-/// Returns `s` for counts that need a plural noun, and an empty text for 1.
 const fn ending(count: u64) -> &'static str {
     if count == 1 { "" } else { "s" }
 }

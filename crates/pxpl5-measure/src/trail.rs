@@ -9,14 +9,12 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, NodeId, PictureNumber, SurfaceId};
 use std::collections::{BTreeMap, HashMap};
 
-/// A part of a latency, during which the picture waited for one resource.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Step {
     pub(crate) resource: Resource,
     pub(crate) board: Option<Board>,
     pub(crate) from: Time,
     pub(crate) to: Time,
-    /// Description of the work that the picture waited for, as text.
     pub(crate) what: String,
 }
 
@@ -36,25 +34,24 @@ struct StageWork {
     end: Time,
 }
 
-/// Times that differ by less than this span count as one instant (assumed). A signal or a hop of the ring takes a few
-/// cycles. A region's transfer takes 780 us (TR94).
+/// Times that differ by less than this duration count as one instant (assumed). A signal or a hop of the ring takes a
+/// few cycles. A region's transfer takes 780 us (TR94).
 const NEAR: Span = Span::from_us(20);
 
-/// A display port counts as busy if it was free for less than 1/`SLACK` of the time that a region's transfer takes
-/// (assumed). Without this rule, the token would count as the cause whenever port and token become free at nearly the
+/// A display port counts as busy if it was free for less than 1/`SLACK` of the time of a region's transfer (assumed).
+/// Without this rule, the token would count as the cause of a wait whenever port and token become free at nearly the
 /// same time.
 const SLACK: u64 = 4;
 
-/// Largest number of earlier arrivals of regions in which the search for the cause of a wait looks (assumed). This
-/// number covers several pictures of 40 regions.
+/// Largest number of earlier arrivals of regions among which the cause of a wait is searched (assumed). This number
+/// covers several pictures of 40 regions.
 const ARRIVALS_SEARCHED: usize = 512;
 
 /// Largest number of steps that are followed for one picture. The part of the latency before these steps is assigned to
 /// [`Resource::Other`].
 const MOST_STEPS: usize = 20_000;
 
-/// The work of a run, sorted by end time. The list begins with the earliest work that the followed pictures can have
-/// waited for.
+/// The work of a run from a chosen instant on, sorted by end time.
 pub(crate) struct Trail<'a> {
     record: &'a Record,
     message: Span,
@@ -65,7 +62,6 @@ pub(crate) struct Trail<'a> {
     of_target: HashMap<CopyTarget, Vec<usize>>,
     of_renderer: BTreeMap<usize, Vec<usize>>,
     surface_of_port: BTreeMap<NodeId, SurfaceId>,
-    /// EDIT, TRANSFORM and SEND stages on each board.
     stages: Vec<StageWork>,
     /// Earliest start of RENDER on any renderer, for each picture and surface.
     render_begins: BTreeMap<(PictureNumber, Option<SurfaceId>), Time>,
@@ -73,22 +69,22 @@ pub(crate) struct Trail<'a> {
     swaps: Vec<Time>,
 }
 
-/// Current position while the events that led to a picture are followed backwards. The number in a variant is an index
-/// in the list `arrivals`, `drawn` or `stages`.
+/// Current position while a picture is followed backwards through the events before it. The number in a variant is
+/// called `index` below.
 #[derive(Clone, Copy, Debug)]
 enum At {
-    /// The position is the start of a region's transfer to a display.
+    /// Start of the transfer of the region `arrivals[index]` to a display.
     Arrival(usize),
-    /// The position is the end of the commands of the region `drawn[index]` on a renderer.
+    /// End of the commands of the region `drawn[index]` on a renderer.
     Drawn(usize),
-    /// The position is the end of a stage on a board, or an instant within the stage.
+    /// End of the stage `stages[index]` on a board, or an instant within the stage.
     Stage(usize),
-    /// The position is the start of the latency, where the path ends.
+    /// Start of the latency, where the path ends.
     Begin,
 }
 
-/// Steps found so far, from the end of the latency backwards. Each step ends at the instant at which the step before it
-/// in the list begins.
+/// Steps found so far, from the end of the latency backwards. Each step ends where the preceding step of the list
+/// begins.
 struct Way {
     steps: Vec<Step>,
     cursor: Time,
@@ -116,7 +112,6 @@ impl Way {
 }
 
 impl<'a> Trail<'a> {
-    /// Collects the records of a run from the instant `earliest` on.
     pub(crate) fn of(record: &'a Record, earliest: Time) -> Self {
         let observation = record.observation();
         let mut arrivals: Vec<&Arrival> = observation.arrivals.iter().filter(|a| a.last_part_at >= earliest).collect();
@@ -151,7 +146,7 @@ impl<'a> Trail<'a> {
         trail
     }
 
-    /// Collects the stages of each board. Each stage is joined from the record of its start and the record of its end.
+    /// Collects the stages of each board. The records of a stage's start and of its end are joined into one stage.
     fn take_marks(&mut self, earliest: Time) {
         let mut open: BTreeMap<(NodeId, PictureNumber, Option<SurfaceId>, Stage), Time> = BTreeMap::new();
         let mut ends: BTreeMap<(PictureNumber, Option<SurfaceId>), Time> = BTreeMap::new();
@@ -223,12 +218,12 @@ impl<'a> Trail<'a> {
         way.charge(Resource::Retrace, Some(Board::Display(0)), from, || "retrace".to_owned());
     }
 
-    /// Returns the number of regions that had arrived at displays by the instant `at`.
     fn arrivals_by(&self, at: Time) -> usize {
         self.arrivals.partition_point(|arrival| arrival.last_part_at <= at)
     }
 
-    /// Assigns the time of a region's transfer to resources. Returns the earlier work whose end let the transfer begin.
+    /// Assigns the time of a region's transfer to resources. Returns the earlier work whose end allowed the transfer to
+    /// begin.
     fn before_arrival(&self, way: &mut Way, place: usize) -> At {
         let arrival = self.arrivals[place];
         let begin = arrival.begins_at(self.message);
@@ -265,7 +260,8 @@ impl<'a> Trail<'a> {
         self.before_late_copy(way, place, place_drawn)
     }
 
-    /// Finds the reason for a late copy command: no frame buffer was free, or another eye was copied first.
+    /// Finds the reason for a late copy command. Either no frame buffer was free, or the picture of another eye was
+    /// copied first.
     fn before_late_copy(&self, way: &mut Way, place: usize, place_drawn: usize) -> At {
         let (_, region) = self.drawn[place_drawn];
         let arrived = self.arrival_before(place, region.copy_at, |_| true);
@@ -318,8 +314,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Returns the index in the list `drawn` of the region that was drawn last for `target`. Only regions whose copy
-    /// command had started by the instant `by` are considered.
+    /// Returns the index, in the list `drawn`, of the region that was drawn last for `target`. A region counts only if
+    /// its copy command had started by the instant `by`.
     fn drawn_for(&self, target: &CopyTarget, by: Time) -> Option<usize> {
         self.of_target.get(target)?.iter().copied().rfind(|place| self.drawn[*place].1.copy_at <= by)
     }
@@ -363,8 +359,8 @@ impl<'a> Trail<'a> {
         self.to_transform(way, picture, surface)
     }
 
-    /// Continues at the earlier work on the same renderer for which the region's commands had to wait. This work is the
-    /// commands of the previous region, or a copy that waited for room in the backing store.
+    /// Continues at the earlier work on the same renderer for which the region's commands had to wait. The earlier work
+    /// is the previous region's commands, or a copy that waited for room in the backing store.
     fn before_next_region(&self, way: &mut Way, place: usize) -> At {
         let (renderer, region) = self.drawn[place];
         let held = Span(way.cursor.0.saturating_sub(region.copy_at.0));
@@ -388,8 +384,8 @@ impl<'a> Trail<'a> {
         own.checked_sub(1).map(|before| of[before])
     }
 
-    /// Returns the part of the time from `from` to `to` in which at least one graphics processor executed TRANSFORM for
-    /// a picture.
+    /// Returns the time between `from` and `to` in which at least one graphics processor executed TRANSFORM for a
+    /// picture.
     fn transform_beside(&self, picture: PictureNumber, surface: Option<SurfaceId>, from: Time, to: Time) -> Span {
         let of = self.transforms(picture, surface);
         let begin = of.iter().map(|work| work.begin).min().unwrap_or(to).max(from);
@@ -423,7 +419,7 @@ impl<'a> Trail<'a> {
         At::Stage(found)
     }
 
-    /// Assigns the time of a stage to resources. Returns the earlier work whose end let the stage begin.
+    /// Assigns the time of a stage to resources. Returns the earlier work whose end allowed the stage to begin.
     fn before_stage(&self, way: &mut Way, place: usize) -> At {
         let work = self.stages[place];
         let board = self.record.ports().board(work.node);
@@ -453,7 +449,6 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Returns the region whose commands ended last in a RENDER stage.
     fn last_drawn(&self, (end, picture, surface): (Time, PictureNumber, Option<SurfaceId>)) -> At {
         let is_of = |region: &DrawnRegion| {
             let own = self.surface_of_port.get(&region.target.frame_buffer).copied();

@@ -14,7 +14,7 @@ pub struct RotationPart {
     pub statistics: Statistics,
 }
 
-/// Collects the rotation latency of the middle pixel of every field of the result window, in milliseconds.
+/// Statistics of the rotation latency of the middle pixel, over all fields of the result window, in milliseconds.
 #[derive(Debug, Default)]
 pub(crate) struct RotationLatencySum {
     next: PeriodNumber,
@@ -24,8 +24,6 @@ pub(crate) struct RotationLatencySum {
     parts: Vec<Samples>,
 }
 
-/// Rotation latencies that a [`RotationLatencySum`] has collected. Empty without a tracker, or if the display is not an
-/// address recalculation display.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns {
     pub(crate) latency_ms: Option<Statistics>,
@@ -35,7 +33,7 @@ pub(crate) struct Turns {
 impl RotationLatencySum {
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let window_from = run.window.map(|window| window.first_period);
-        // The window has moved: everything summed so far lies before it.
+        // The window has moved. All sums so far belong to periods before the window.
         if self.parts.is_empty() || self.window_from != window_from {
             self.window_from = window_from;
             self.total = Samples::keeping(run.samples);

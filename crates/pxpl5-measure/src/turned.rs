@@ -19,8 +19,8 @@ pub(crate) struct LatchedFaces {
     turns: RefCell<Turns>,
 }
 
-/// Predicted orientations of the head. The key of an orientation has two times. The first is the time up to which the
-/// host used tracker reports. The second is the instant for which the host predicted.
+/// Predicted orientations of the head, stored by two times. The first is the time up to which the host used tracker
+/// reports. The second is the instant for which the host predicted.
 struct Turns {
     estimator: Estimator,
     /// Time of the last report passed to the estimator, which accepts reports only in ascending order.
@@ -35,7 +35,6 @@ impl fmt::Debug for LatchedFaces {
 }
 
 impl LatchedFaces {
-    /// Creates the state for a run, or returns `None` if the run's display is not an address recalculation display.
     pub(crate) fn begin(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Option<Self> {
         let history = FaceHistory::held(run.record)?;
         let latched = OrientationTiming::of_run(run)?;
@@ -43,12 +42,11 @@ impl LatchedFaces {
         Some(Self { history, latched, head: Arc::clone(head), without: None, turns })
     }
 
-    /// Replaces the history by the display updates that the run still has in memory.
+    /// Replaces the list of display updates by the updates that the run still has in memory.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         self.history = FaceHistory::held(run.record).unwrap_or_default();
     }
 
-    /// Discards orientations that were predicted from tracker reports before an instant.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         self.turns.get_mut().known.retain(|(report, _), _| *report >= instant);
     }
@@ -58,13 +56,12 @@ impl LatchedFaces {
         self.turns.borrow().known.len()
     }
 
-    /// Switches to the head orientations that the run would have had without one cause of error.
+    /// Replaces the head's orientations by the orientations that the run would have had without one cause of error.
     pub(crate) fn disable_cause(&mut self, cause: Cause) {
         self.without = Some(cause);
         self.turns = RefCell::new(Turns::new(&self.head, self.without));
     }
 
-    /// Returns the views that the display memories show in a field.
     pub(crate) fn views_at(&self, field: PeriodNumber) -> Vec<ViewNumber> {
         self.history.at(field).map(|shown| shown.note.view).collect()
     }

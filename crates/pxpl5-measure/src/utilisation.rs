@@ -62,7 +62,8 @@ pub struct GpUtilisation {
     pub work: f64,
     /// Mean share of time for the software that receives and sends messages.
     pub messages: f64,
-    /// Mean share of time for handing over bins in return for tokens.
+    /// Mean share of time for sending bins to renderers. A graphics processor sends a bin when it has the token of the
+    /// bin's region.
     pub tokens: f64,
 }
 
@@ -91,7 +92,7 @@ pub struct RingUtilisation {
 /// Shares of time for which the ring ports of displays were busy, 0 to 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PortUtilisation {
-    /// Mean and maximum of the busy shares over all ports.
+    /// Mean and maximum over all ports of the share of time for which a port was busy.
     pub busy: Shares,
     /// Share of time for which each port was busy.
     pub each: Vec<PortShare>,
@@ -107,13 +108,15 @@ pub struct PortShare {
 }
 
 impl Utilisation {
-    /// Returns the busy shares of the boards over a finished run. Returns `None` for a machine that has not run.
+    /// Returns the shares of time for which the boards were busy in a finished run. Returns `None` for a machine that
+    /// has not run.
     #[must_use]
     pub fn of(record: &Record) -> Option<Self> {
         Self::until(record, record.elapsed(), record.processors_used())
     }
 
-    /// Returns the busy shares of the boards from the start of a run up to now. Returns `None` at time zero.
+    /// Returns the shares of time for which the boards were busy from the start of a run up to now. Returns `None` at
+    /// time zero.
     ///
     /// The time of a message on the ring is added when the message ends.
     #[must_use]
@@ -121,8 +124,8 @@ impl Utilisation {
         Self::until(run.record(), run.now(), &run.machine().processors_used(run.now()))
     }
 
-    /// Returns the busy shares of the boards from the start of the machine to an instant. `used` is the CPU time of the
-    /// host and of each graphics processor up to this instant.
+    /// Returns the shares of time for which the boards were busy from the start of the machine to an instant. `used` is
+    /// the CPU time of the host and of each graphics processor up to this instant.
     fn until(record: &Record, time: Time, used: &[GpUse]) -> Option<Self> {
         let (host, gps) = used.split_first()?;
         let mean = |spans: &mut dyn Iterator<Item = Span>| mean_share(spans, time);
@@ -202,7 +205,6 @@ impl fmt::Display for Utilisation {
     }
 }
 
-/// Formats shares as text: the mean, the busiest board, and the number of idle boards.
 fn shares_text(shares: &Shares, board: &str) -> String {
     let idle = if shares.idle > 0 { format!(", {} idle", shares.idle) } else { String::new() };
     format!("mean {}, {board} {} {}{idle}", percent(shares.mean), shares.busiest, percent(shares.max))
@@ -241,7 +243,7 @@ mod tests {
     /// Tests a busy time that exceeds the time of the run. A message counts at its end, so it may end a few
     /// microseconds after the run.
     #[test]
-    fn no_share_is_above_one() {
+    fn the_busy_share_of_a_board_is_at_most_one() {
         assert_eq!(share(Span(101), Time(100)), 1.0);
     }
 }

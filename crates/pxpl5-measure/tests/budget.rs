@@ -86,7 +86,7 @@ fn stages_from_head_to_light_add_up() {
 }
 
 #[test]
-fn without_a_head_nothing_was_measured() {
+fn without_a_head_no_stage_is_measured() {
     let outcome = run(&(Arc::new(Slats::split()) as Arc<dyn Pipeline>), None, 60);
     let budget = Budget::of(&outcome);
     assert!(budget.n == 0 && budget.total_ms.is_nan() && budget.tracking_ms.is_nan());
@@ -100,7 +100,7 @@ fn without_a_head_nothing_was_measured() {
 /// Noise contributes nothing, and latency contributes most. Each contribution equals the whole minus the error without
 /// the cause.
 #[test]
-fn causes_of_an_error_add_up_to_it() {
+fn the_parts_of_an_error_by_cause_add_up_to_the_error() {
     let slats = Arc::new(Slats::split()) as Arc<dyn Pipeline>;
     let late = TrackerConfig::ideal().with_latency_ps(40 * PS_PER_MS);
     let outcome = run(&slats, Some(head(Slide::right_at(1.0), late, PredictorKind::None)), 90);

@@ -9,6 +9,7 @@ use pxpl5_measure::{Measured, PixelErrors, Showing};
 use pxpl5_run::{Aim, Cause, Experiment, Head, Outcome, PipelineSettings, Pixels, Registry, SampledPose};
 use pxpl5_scene::builtin;
 use pxpl5_wire::ViewNumber;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -17,7 +18,6 @@ use tracking::predict::{PredictorConfig, PredictorKind};
 use tracking::tracker::TrackerConfig;
 use tracking::{Pose, SettingSink};
 
-/// Number of fields of a run.
 const FIELDS: u64 = 45;
 
 /// Duration of an NTSC line.
@@ -54,8 +54,8 @@ fn aimed_between(aim: Aim, field: u64, first: f64, last: f64) -> f64 {
 
 /// Returns the pixels that use the same load of the orientation register, with a latch per pixel.
 ///
-/// The host sends nine words per load, one load after the other. It starts anew with each line, which has room for
-/// eight loads.
+/// The host sends nine words per load, one load after the other. The loads start again with each line, which has room
+/// for eight loads.
 fn of_one_load(x: u64) -> (u64, u64) {
     let pixels = ORIENTATION_S / (LINE_S / 780.0);
     let load = (x as f64 / pixels).floor().min(7.0);
@@ -99,7 +99,7 @@ impl Run {
     fn new(pipeline: &'static str, aim: Aim, motion: impl Motion + Send + Sync + 'static) -> Self {
         let registry = Registry::of_papers();
         let built = (registry.pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
-        // The closed form needs a given baseline, so the predictor is not tuned.
+        // The closed form needs the baseline of the predictor, so the predictor is not tuned.
         let tracker = TrackerConfig::ideal();
         let predictor = PredictorConfig::for_tracker(PredictorKind::ConstantVelocity, &tracker);
         let head = Head::predicted_by(Arc::new(motion), tracker, predictor, 1);
@@ -147,8 +147,9 @@ impl Run {
 
     /// Returns the content of a pixel that an address recalculation display shows.
     ///
-    /// Faces are rotated by the newest orientation in the register. It is predicted for the aim within its field, line,
-    /// or group of pixels per load. A load is in the register at the latch of its first pixel, or slightly earlier.
+    /// Faces are rotated by the newest orientation in the register. The orientation is predicted for the aim within its
+    /// field, line, or group of pixels per load. A load is in the register at the latch of its first pixel, or slightly
+    /// earlier.
     fn content_of_faces(&self, field: u64, row: u64, x: u64) -> Content {
         let stages =
             if ["arp-full", "arp-ideal"].iter().any(|one| self.pipeline.starts_with(one)) { 24.0 } else { 26.0 };
@@ -246,21 +247,21 @@ fn pipelines() -> Vec<&'static str> {
 }
 
 #[test]
-fn under_a_pan_nothing_but_scan_out_is_left_at_every_pipeline_and_aim() {
+fn with_ideal_prediction_a_pan_leaves_only_the_scan_out_error_in_every_pipeline() {
     // At this low speed, the error of interpolation on the screen is negligible relative to the scan-out of a line. The
     // interpolation error grows with the square of the speed and is 0.34 px at 200 deg/s.
     const DEG_PER_S: f64 = 0.02;
-    for pipeline in pipelines() {
+    pipelines().par_iter().for_each(|pipeline| {
         for (_, aim) in Aim::ALL {
             let run = Run::new(pipeline, aim, Pan::at(DEG_PER_S));
             let turned = |content: &Content, at: f64| DEG_PER_S.to_radians() * (at - content.drawn_for);
             run.check(run.expected(turned), 1e-3);
         }
-    }
+    });
 }
 
 #[test]
-fn a_fast_pan_too_where_a_picture_is_drawn_for_one_instant() {
+fn a_fast_pan_leaves_only_the_scan_out_error_of_pictures_drawn_for_one_instant() {
     const DEG_PER_S: f64 = 200.0;
     for pipeline in pipelines().into_iter().filter(|name| !name.contains("dual")) {
         let run = Run::new(pipeline, Aim::Middle, Pan::at(DEG_PER_S));
@@ -273,7 +274,7 @@ fn a_fast_pan_too_where_a_picture_is_drawn_for_one_instant() {
 #[derive(Clone, Copy, Debug)]
 struct Shaking;
 
-/// So small that the square of the speed is negligible (see above).
+/// Amplitude so small that the square of the speed is negligible.
 const AMPLITUDE_DEG: f64 = 0.1;
 const HZ: f64 = 0.5;
 
@@ -298,7 +299,7 @@ impl Motion for Shaking {
 }
 
 #[test]
-fn a_sinusoid_is_wrong_by_its_distance_from_a_straight_line_and_by_scan_out() {
+fn the_error_of_a_sinusoid_is_its_distance_from_a_straight_line_plus_scan_out() {
     // The predictor's line passes through the newest report and the fourth report before it, 4 ms apart.
     const BASELINE_S: f64 = 0.004;
     for pipeline in pipelines() {
@@ -312,8 +313,8 @@ fn a_sinusoid_is_wrong_by_its_distance_from_a_straight_line_and_by_scan_out() {
         if pipeline.contains("dual") {
             continue;
         }
-        // With prediction turned off as a cause, the exact motion replaces it. Between two views the motion is not a
-        // straight line.
+        // If prediction is removed as a cause of the error, the exact motion replaces it. Between two views the motion
+        // is not a straight line.
         let scanned = |content: &Content, at: f64| yaw(at) - yaw(content.drawn_for);
         let errors = PixelErrors::without(&run.outcome, Showing::Plain, Cause::Prediction);
         run.check_errors(&errors, run.expected(scanned), 1e-3);
@@ -321,7 +322,7 @@ fn a_sinusoid_is_wrong_by_its_distance_from_a_straight_line_and_by_scan_out() {
 }
 
 #[test]
-fn blocks_of_frameless_rendering_are_drawn_for_the_middle_of_the_time_in_which_they_are_seen() {
+fn frameless_rendering_draws_blocks_for_the_middle_of_their_display_time() {
     let run = Run::new("frameless", Aim::Middle, Pan::at(20.0));
     let pass_s = 1.0 / run.outcome.report().updates_hz.expect("two passes");
     let early = |(field, row, x)| beam(field, row, x) - run.content(field, row, x).drawn_for;

@@ -19,7 +19,7 @@ const FOCAL_PX: f64 = 554.256_258_422_040_8;
 /// A pixel that lights t later shows content at distance z with an error of f v t / z pixels. The same holds for faces
 /// that are drawn in no time, and for a picture without content.
 #[test]
-fn under_a_slide_a_pixel_is_off_by_the_way_since_the_first_of_its_field() {
+fn the_error_of_a_translation_grows_from_the_first_pixel_of_the_field() {
     let speed = 1.0;
     let distance_m = 2.0;
     let faces = FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(FacePolicy::Full) };
@@ -49,7 +49,7 @@ fn under_a_slide_a_pixel_is_off_by_the_way_since_the_first_of_its_field() {
 /// The estimator accepts reports only in ascending order. A request for an earlier pixel must still give the same
 /// result.
 #[test]
-fn errors_are_the_same_in_whatever_order_they_are_asked_for() {
+fn errors_do_not_depend_on_the_order_of_requests() {
     let pipeline =
         FacePipeline { source: FaceSource::Ideal, latch: Latch::Line, ..FacePipeline::new(FacePolicy::Full) };
     let config = pipeline.adapt(MachineConfig::small_hmd());

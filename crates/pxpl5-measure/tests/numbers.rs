@@ -38,7 +38,7 @@ fn value(results: &Results, name: &str) -> Option<f64> {
 
 /// A running machine has the same utilisation and critical path at its end as the report of the finished run.
 #[test]
-fn a_run_so_far_has_at_its_end_the_shares_of_the_report() {
+fn at_the_end_of_a_run_the_partial_shares_equal_the_shares_in_the_report() {
     for pipeline in ["rendering-control", "slats"] {
         let registry = Registry::of_papers();
         let pipeline = (registry.pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
@@ -59,7 +59,7 @@ fn a_run_so_far_has_at_its_end_the_shares_of_the_report() {
 }
 
 #[test]
-fn every_quantity_is_the_number_of_that_name_in_the_report() {
+fn every_quantity_equals_the_number_of_that_name_in_the_report() {
     let results = Results::of_run(run("rendering-control", "sphere:10", 60));
     let (_, report) = results.run.as_ref().expect("a run");
     let due = report.due.expect("pictures are due");
@@ -121,7 +121,7 @@ fn parts_of_a_picture_add_up() {
 }
 
 #[test]
-fn what_a_run_has_not_is_no_number() {
+fn missing_results_are_null() {
     let results = Results::of_run(run("slats", "sphere:10", 60));
     for name in ["eye_ms", "eye_latency_ms.mean", "rotation_ms"] {
         assert_eq!(value(&results, name), None, "{name}");
@@ -132,7 +132,7 @@ fn what_a_run_has_not_is_no_number() {
 }
 
 #[test]
-fn a_quantity_is_found_by_its_whole_name_and_a_wrong_one_is_answered_by_the_nearest() {
+fn a_quantity_is_found_by_its_full_name_and_a_wrong_name_gives_the_nearest() {
     for quantity in &QUANTITIES {
         let measure = Measure::named(quantity.name).expect("listed");
         assert_eq!((measure.name(), measure.definition()), (quantity.name, quantity.definition));
@@ -149,7 +149,7 @@ fn a_quantity_is_found_by_its_whole_name_and_a_wrong_one_is_answered_by_the_near
 }
 
 #[test]
-fn a_load_that_is_too_heavy_is_told_with_what_would_do() {
+fn a_load_that_is_too_heavy_is_reported_with_a_size_that_fits() {
     let outcome = run("jitp-scanline", "mig", 40);
     let report = outcome.report();
     let heavy = report.too_heavy.expect("too many triangles for a line's time");
@@ -170,7 +170,7 @@ fn a_load_that_is_too_heavy_is_told_with_what_would_do() {
 /// The report states the number of primitives that would be in time. It does so only if a formula exists and the number
 /// is smaller than the scene.
 #[test]
-fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
+fn a_size_that_fits_is_named_only_if_it_is_smaller_than_the_scene() {
     fn all(experiment: &Experiment) -> u64 {
         (experiment.scene().triangles().len() + experiment.scene().spheres().len()) as u64
     }
@@ -209,7 +209,7 @@ fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
 }
 
 #[test]
-fn the_hash_of_a_report_is_of_what_happened_and_of_what_is_said_of_it() {
+fn the_hash_of_a_report_covers_events_and_settings() {
     let outcome = run("slats", "sphere:10", 40);
     let report = outcome.report();
     assert!(report.trace_hash.len() == 16 && report.trace_hash.chars().all(|digit| digit.is_ascii_hexdigit()));
@@ -284,8 +284,8 @@ fn a_display_with_faces_is_reported_with_its_memory() {
     let whole = faces.rotation_latency_ms.expect("a head").mean;
     let parts: f64 = faces.rotation_latency_parts_ms.iter().map(|part| part.statistics.mean).sum();
     assert!(whole > 0.0 && (whole - parts).abs() < 1e-9, "{whole} {parts}");
-    // Translation has the same latency up to the retrace before which the ideal renderer draws, so it is at most a
-    // field older.
+    // The ideal renderer draws before each retrace. Up to this retrace, translation has the same latency, so a step is
+    // older by at most a field.
     let step = memory.translation_latency_ms.expect("updates were shown").mean;
     let parts: f64 = memory.translation_latency_parts_ms.iter().map(|(_, mean)| mean).sum();
     assert!(
@@ -296,7 +296,7 @@ fn a_display_with_faces_is_reported_with_its_memory() {
 
 /// The first point shows the pose of the start. Each field until the end has one point.
 #[test]
-fn a_latency_alone_has_a_point_each_field_from_its_first_picture_on() {
+fn a_latency_curve_has_a_point_for_each_field_from_the_first_picture() {
     let curve = LatencyCurve::of(&Pan::at(40.0), 90, 2, 3.0);
     let times: Vec<f64> = curve.points.iter().map(|point| point.0).collect();
     assert_eq!((curve.latency_ms, times.len() as f64), (90, ((2.0 - 0.09) * FIELD_HZ).ceil()));
@@ -327,7 +327,7 @@ impl Motion for Stopping {
 }
 
 #[test]
-fn what_is_drawn_late_goes_on_moving_for_its_latency_after_the_head_has_stopped() {
+fn the_picture_moves_for_the_latency_after_the_head_has_stopped() {
     let curve = LatencyCurve::of(&Stopping, 90, 2, 3.0);
     for (time, pixels) in &curve.points {
         assert_eq!(*pixels > 1e-6, *time < 1.0 + 0.09, "{time}: {pixels}");
@@ -335,7 +335,7 @@ fn what_is_drawn_late_goes_on_moving_for_its_latency_after_the_head_has_stopped(
 }
 
 #[test]
-fn pictures_stand_side_by_side_the_lower_one_on_black() {
+fn pictures_are_joined_side_by_side_on_black() {
     let left = RgbImage::from_pixel(2, 3, Rgb([1, 2, 3]));
     let right = RgbImage::from_pixel(4, 1, Rgb([4, 5, 6]));
     let both = side_by_side(&left, &right);

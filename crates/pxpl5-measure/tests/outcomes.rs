@@ -22,7 +22,7 @@ fn run(pipeline: &str, fields: u64, pixels: Pixels) -> Outcome {
 }
 
 #[test]
-fn statistics_of_parts_are_those_of_the_pictures_one_by_one() {
+fn statistics_of_stages_equal_those_of_the_single_pictures() {
     let outcome = run("rendering-control", 60, Pixels::Off);
     let parts = Measured::latency_parts(&outcome);
     let report = outcome.report();
@@ -38,7 +38,7 @@ fn statistics_of_parts_are_those_of_the_pictures_one_by_one() {
 
 /// The latency of a pair lasts from the start of the first eye's TRANSFORM to the event of the later eye.
 #[test]
-fn a_pair_takes_as_long_as_its_eyes_and_longer() {
+fn the_latency_of_a_stereo_pair_is_at_least_the_latency_of_each_eye() {
     let outcome = run("rendering-control", 60, Pixels::Off);
     let latencies = outcome.latency_by_surface();
     assert_eq!(latencies, outcome.report().latency_by_eye_ms);
@@ -58,7 +58,7 @@ fn a_pair_takes_as_long_as_its_eyes_and_longer() {
 }
 
 #[test]
-fn stages_are_those_of_the_machine_and_no_number_before_there_is_a_picture() {
+fn stages_equal_those_of_the_machine_and_are_null_before_the_first_picture() {
     let results = |fields| Results::of_run(run("rendering-control", fields, Pixels::Off));
     let value = |results: &Results, name: &str| Measure::named(name).expect("a quantity").of(results);
     let [long, short] = [results(60), results(3)];
@@ -71,7 +71,7 @@ fn stages_are_those_of_the_machine_and_no_number_before_there_is_a_picture() {
 }
 
 #[test]
-fn the_viewer_sees_what_his_display_shows_and_nothing_without_pixels() {
+fn the_outcome_has_the_picture_of_the_display_and_without_pixels_no_picture() {
     let outcome = run("rendering-control", 14, Pixels::All);
     for eye in Eye::BOTH {
         let picture = outcome.picture(eye).expect("pixels are on");
@@ -84,7 +84,7 @@ fn the_viewer_sees_what_his_display_shows_and_nothing_without_pixels() {
 }
 
 #[test]
-fn a_surface_that_is_not_there_is_black() {
+fn a_missing_surface_is_black() {
     let outcome = run("rendering-control", 14, Pixels::All);
     let nowhere = screen(outcome.record(), SurfaceId(9), PeriodNumber(12), None);
     assert_eq!(nowhere.dimensions(), (640, 480));
@@ -92,7 +92,7 @@ fn a_surface_that_is_not_there_is_black() {
 }
 
 #[test]
-fn lines_never_shown_are_the_counter_of_that_name() {
+fn the_reported_number_of_lines_never_shown_is_the_counter_with_this_name() {
     let mut report = run("slats", 4, Pixels::Off).report();
     let counter = |name, count| Counter { name, count };
     report.display_counters = vec![counter("swaps", 3), counter(Counter::LINES_NEVER_SHOWN, 7), counter("more", 5)];

@@ -105,21 +105,21 @@ fn check(axis: DVec3, field: u64, from: impl Fn(u64, u64, f64) -> [f64; 2]) {
 }
 
 #[test]
-fn under_a_pan_every_pixel_comes_from_where_the_turn_has_moved_it_from() {
+fn during_a_pan_a_shifted_raster_takes_every_pixel_from_its_rotated_column() {
     for field in [20, 21] {
         check(DVec3::Y, field, |row, x, shift| [x as f64 - shift, row as f64]);
     }
 }
 
 #[test]
-fn under_a_nod_every_row_comes_from_half_as_many_rows_of_its_field() {
+fn during_a_nod_the_rows_of_a_field_move_by_half_as_many_rows_as_the_frame() {
     for field in [20, 21] {
         check(DVec3::X, field, |row, x, shift| [x as f64, row as f64 - shift / 2.0]);
     }
 }
 
 #[test]
-fn before_anything_is_shown_rows_stay_and_behind_the_run_there_is_no_offset() {
+fn before_the_first_picture_rows_are_not_shifted_and_after_the_run_no_offset_exists() {
     let outcome = run(DVec3::Y, Raster::Vdrt);
     let offsets = RasterOffsets::of(&outcome).expect("it is shifted");
     let screen = places();
@@ -154,7 +154,7 @@ fn mean_px(drawn_at: impl Fn(f64, f64) -> f64) -> f64 {
 }
 
 #[test]
-fn a_flat_raster_leaves_what_a_shift_is_no_turn() {
+fn a_shifted_raster_leaves_the_difference_between_shift_and_rotation() {
     let plain = mean_px(|right, _| right);
     let shifted = mean_px(|right, angle| right - focal_px() * angle.tan());
     assert!(shifted < plain / 5.0, "{shifted} of {plain}");
@@ -167,14 +167,14 @@ fn a_flat_raster_leaves_what_a_shift_is_no_turn() {
 
 /// The ideal reference is drawn for every pixel's own instant, so an exactly predicted rotation leaves no error.
 #[test]
-fn an_ideal_view_of_a_steady_turn_has_no_error() {
+fn an_ideal_view_of_a_steady_rotation_has_no_error() {
     let errors = PixelErrors::shown(&run(DVec3::Y, Raster::Plain), Showing::Ideal);
     assert_eq!(errors.evaluated, 25 * (FIELDS - WARM_UP_PERIODS));
     assert!(errors.pixels.max < 1e-6 && errors.degrees.max < 1e-6, "{errors:?}");
 }
 
 #[test]
-fn errors_by_field_are_those_of_all_pixels_at_the_time_of_their_retraces() {
+fn every_evaluated_field_has_errors_of_all_its_pixels_and_the_time_of_its_retrace() {
     let errors = run(DVec3::Y, Raster::Plain).pixel_errors().expect("a head");
     let fields: Vec<u64> = errors.by_field.iter().map(|error| error.field.0).collect();
     assert_eq!(fields, (WARM_UP_PERIODS..FIELDS).collect::<Vec<_>>());
@@ -199,7 +199,7 @@ fn errors_by_field_are_those_of_all_pixels_at_the_time_of_their_retraces() {
 /// It turns by at least 145 degrees until the first pixel of a picture is lit, and by less than 240 degrees until the
 /// last pixel is lit. All content is then behind the eye, which sees 30 degrees to each side.
 #[test]
-fn what_is_behind_the_eye_when_it_lights_has_no_error_and_is_counted() {
+fn a_point_behind_the_eye_when_its_pixel_lights_is_counted_without_an_error() {
     let fields = 45;
     let late = TrackerConfig::ideal().with_latency_ps(100 * PS_PER_MS);
     let head = Head::new(Arc::new(Pan::at(1_450.0)), late, PredictorKind::None, 1).expect("in range");

@@ -83,7 +83,7 @@ fn aim(field: u64) -> f64 {
 /// Returns the instant for which the pose of a part of a field is predicted, in seconds: halfway between the lighting
 /// of its first and last pixel.
 fn middle_of(every: Every, field: u64, row: u64) -> f64 {
-    // Lines of a frame, of which a field lights every second.
+    // The number of the line in the frame. A field lights every second line.
     let line = 2 * row + field % 2;
     let [from, to] = match every {
         Every::Field => [0, 239],
@@ -124,7 +124,7 @@ fn turned_px(rate: f64, every: Every) -> f64 {
 }
 
 #[test]
-fn a_rotation_cancels_a_turn_but_for_what_the_head_turns_between_its_pose_and_light() {
+fn after_reprojection_the_error_is_the_rotation_from_the_pose_of_the_device_to_the_light() {
     let outcome = fields(head(Turning(2.0)), "full-screen:2");
     for by in [Warp::Rotation, Warp::Depth] {
         for every in [Every::Field, Every::Strip, Every::Line] {
@@ -140,7 +140,7 @@ fn a_rotation_cancels_a_turn_but_for_what_the_head_turns_between_its_pose_and_li
 }
 
 #[test]
-fn a_shift_is_a_rotation_in_the_middle_of_the_picture_alone() {
+fn a_shift_equals_a_rotation_only_in_the_middle_of_the_picture() {
     let outcome = fields(head(Turning(2.0)), "full-screen:2");
     let shift = PixelErrors::shown(&outcome, device(Warp::Shift, Every::Line));
     let turn = PixelErrors::shown(&outcome, device(Warp::Rotation, Every::Line));
@@ -151,7 +151,7 @@ fn a_shift_is_a_rotation_in_the_middle_of_the_picture_alone() {
 /// The expected share covers 16 x 12 positions of each field whose source lies beyond the edge: `f tan(atan(x / f) -
 /// a)`, with x from the middle.
 #[test]
-fn the_empty_share_is_what_the_turn_brings_from_beyond_the_edge() {
+fn the_empty_share_is_the_part_rotated_in_from_beyond_the_edge() {
     const RATE: f64 = 8.0;
     let outcome = fields(head(Turning(RATE)), "full-screen:2");
     let found = EyeReport::shown(&outcome, device(Warp::Rotation, Every::Line)).expect("a device");
@@ -171,7 +171,7 @@ fn the_empty_share_is_what_the_turn_brings_from_beyond_the_edge() {
     assert_eq!(found.looked_at, all);
     assert_eq!(found.empty_share, Some(beyond as f64 / all as f64));
     assert!(beyond > 0 && beyond < all / 10);
-    // Nothing is known of what is hidden without depth.
+    // Without depths, the hidden parts of the scene are unknown.
     assert_eq!(found.disoccluded_share, None);
     let pixels_per_s = 640.0 * 240.0 * 60_000.0 / 1_001.0;
     assert!((found.pixels_per_s / pixels_per_s - 1.0).abs() < 1e-6, "{}", found.pixels_per_s);
@@ -181,7 +181,7 @@ fn the_empty_share_is_what_the_turn_brings_from_beyond_the_edge() {
 /// The content lies on a plane at a distance z before the head, which slides along the plane. In a time t, the content
 /// moves by f v t / z.
 #[test]
-fn without_depth_a_slide_leaves_f_v_t_by_z_and_with_it_what_a_line_takes() {
+fn without_depth_reprojection_leaves_the_error_of_a_translation_and_with_depth_only_a_line_time() {
     const M_PER_S: f64 = 0.5;
     const DISTANCE_M: f64 = 2.0;
     let slide = head(Slide::right_at(M_PER_S)).evaluated_at(DISTANCE_M).expect("in range");
@@ -211,21 +211,21 @@ fn on_panel(config: PanelConfig, rate: f64) -> Outcome {
 /// Returns the error, in pixels, in the middle of a picture that is lit `seconds` after the instant for which it was
 /// drawn.
 fn off_px(seconds: f64, rate: f64) -> f64 {
-    // The middle of the middle pixel.
+    // The position of the middle of the middle pixel.
     let [seen_right, seen_up] = after(0.5, -0.5, rate * seconds, focal_px(128.0));
     (seen_right - 0.5).hypot(seen_up + 0.5)
 }
 
 #[test]
-fn a_global_display_is_right_everywhere_and_a_rolling_one_in_the_middle_of_its_scan() {
+fn a_global_display_is_correct_everywhere_and_a_rolling_one_in_the_middle_of_its_scan() {
     const RATE: f64 = 1.0;
     let [rolling, global] = [0, 1].map(|scan| {
         let outcome = on_panel(PanelConfig { scan, ..PanelConfig::PAPERS }, RATE);
         outcome.pixel_errors().expect("a head")
     });
     assert!(global.evaluated > 0 && global.pixels.max < 1e-3, "{}", global.pixels.max);
-    // A pixel lights by its number in the scan, of 96 lines of 128; the picture is drawn for half of the number of the
-    // last one.
+    // A pixel lights at an instant proportional to its number in the scan of 96 lines of 128 pixels. The picture is
+    // drawn for half of the last pixel's number.
     let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
     let pixels = places(96).flat_map(|y| places(128).map(move |x| (x, y)));
     let expected = mean(pixels.map(|(x, y)| {
@@ -238,7 +238,7 @@ fn a_global_display_is_right_everywhere_and_a_rolling_one_in_the_middle_of_its_s
 }
 
 #[test]
-fn persistence_moves_the_centre_of_light_by_half_and_smears_by_the_way_of_all_of_it() {
+fn persistence_delays_the_centre_of_light_by_half_and_smears_over_its_whole_time() {
     const RATE: f64 = 1.0;
     for (persistence_us, response_us) in [(4_000, 0), (20_000, 0), (2_000, 1_000)] {
         let config = PanelConfig { scan: 1, persistence_us, response_us, ..PanelConfig::PAPERS };
@@ -248,7 +248,7 @@ fn persistence_moves_the_centre_of_light_by_half_and_smears_by_the_way_of_all_of
         let centre = off_px(p / 2.0 + r, RATE);
         assert!((errors.centre_px.mean - centre).abs() < 1e-3, "{} for {centre}", errors.centre_px.mean);
         let smear = EyeReport::shown(&outcome, Showing::Plain).and_then(|eye| eye.smear_px).expect("it smears");
-        // v t in the middle, and by the tangents more towards the edge: 1 + tan^2 of up to 24 degrees.
+        // The error is v t in the middle. Towards the edge it grows with the tangent: by up to 1 + tan^2(24 degrees).
         let width = (p * p + 12.0 * r * r).sqrt();
         let in_the_middle = 2.0 * focal_px(128.0) * (RATE * width / 2.0).tan();
         let mean_factor = smear.mean / in_the_middle;
@@ -258,7 +258,7 @@ fn persistence_moves_the_centre_of_light_by_half_and_smears_by_the_way_of_all_of
 }
 
 #[test]
-fn a_display_of_instants_has_no_smear_and_a_plain_raster_no_report() {
+fn a_plain_raster_without_persistence_has_no_report_of_the_eye() {
     let outcome = fields(head(Turning(1.0)), "full-screen:2");
     assert_eq!(EyeReport::shown(&outcome, Showing::Plain), None);
     assert_eq!(outcome.report().eye, None);
@@ -267,7 +267,7 @@ fn a_display_of_instants_has_no_smear_and_a_plain_raster_no_report() {
 
 /// VDRT is reported as a device. No pixel is empty, because its picture counts as drawn beyond the edge of the screen.
 #[test]
-fn vdrt_is_one_setting_and_its_errors_stay_what_they_are() {
+fn vdrt_is_reported_as_a_reprojection_device_without_empty_pixels() {
     assert_eq!(Raster::Vdrt.reprojection(), Some(Reprojection::VDRT));
     let outcome = fields(head(Turning(2.0)).with_raster(Raster::Vdrt), "full-screen:2");
     let eye = outcome.report().eye.expect("a device").reprojection.expect("a device");
@@ -278,7 +278,7 @@ fn vdrt_is_one_setting_and_its_errors_stay_what_they_are() {
 
 /// With delayed video, only the tracker's error remains. An ideal tracker has no error, for any latency.
 #[test]
-fn delayed_video_has_no_error_before_an_ideal_tracker_and_lags_by_all_of_the_latency() {
+fn delayed_video_has_no_error_with_an_ideal_tracker_of_any_latency() {
     let late = TrackerConfig::ideal().with_latency_ps(50_000_000_000);
     let head = Head::new(Arc::new(Turning(2.0)), late, PredictorKind::None, 1).expect("in range");
     let outcome = fields(head, "full-screen:2");
@@ -301,7 +301,7 @@ fn alike(a: [u8; 3], b: [u8; 3]) -> bool {
 }
 
 #[test]
-fn an_ideal_picture_that_is_turned_is_the_ideal_picture_of_the_turned_head() {
+fn rotating_an_ideal_picture_gives_the_ideal_picture_of_the_rotated_head() {
     let outcome = fields(head(Turning(1.0)), "gallery");
     let views = outcome.head().expect("a head");
     let [before, now] = [Time(300_000_000_000), Time(350_000_000_000)];
@@ -328,7 +328,7 @@ fn an_ideal_picture_that_is_turned_is_the_ideal_picture_of_the_turned_head() {
 /// A device with depth, one pose per line and no latency must be as accurate as the reference, which draws every pixel
 /// for its own instant.
 #[test]
-fn an_ideal_machine_that_is_reprojected_at_every_line_is_the_ideal_but_for_what_was_hidden() {
+fn reprojection_with_depth_at_every_line_has_errors_only_at_hidden_parts() {
     let sliding = head(Slide::right_at(1.0));
     let outcome = fields(sliding, "gallery");
     let setting = Reprojection { by: Warp::Depth, every: Every::Line, latency_us: 0 };
@@ -343,7 +343,7 @@ fn an_ideal_machine_that_is_reprojected_at_every_line_is_the_ideal_but_for_what_
 }
 
 #[test]
-fn a_panel_that_is_global_takes_one_pose_a_period() {
+fn a_global_panel_takes_one_pose_for_each_period() {
     let config = PanelConfig { scan: 1, ..PanelConfig::PAPERS };
     let display = config.build(&[pxpl5_wire::NodeId(1)]).expect("it can be built");
     assert_eq!(display.light().scan, pxpl5_wire::display::ScanOrder::Global);

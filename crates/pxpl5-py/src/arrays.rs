@@ -1,16 +1,13 @@
-//! Conversion to arrays of numbers, for any value that `numpy.asarray` accepts. Lists, arrays of any element type and
-//! the arrays of this package itself are accepted.
+//! Converters of values from Python to arrays of numbers. They accept each value that `numpy.asarray` accepts, such as
+//! lists, arrays and the arrays of this package.
 
 use crate::errors::wrong_setting;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::Borrowed;
 use pyo3::prelude::*;
 
-/// Returns a value as an array of shape (n, columns) with real numbers.
-///
-/// # Errors
-///
-/// Raises `SettingError` with the name, the expected and the found shape or type.
+/// Returns a value as an array of shape (n, columns) with real numbers. Otherwise raises `SettingError` with the
+/// expected and the found shape or type.
 pub(crate) fn reals2<'py>(
     name: &str,
     value: &Bound<'py, PyAny>,
@@ -22,10 +19,7 @@ pub(crate) fn reals2<'py>(
 }
 
 /// Returns a value as an array of shape (n, columns) with integers. Real numbers without a fraction count as integers.
-///
-/// # Errors
-///
-/// Raises `SettingError` with the name, the expected and the found shape or type.
+/// Otherwise raises `SettingError` with the expected and the found shape or type.
 pub(crate) fn wholes2<'py>(
     name: &str,
     value: &Bound<'py, PyAny>,
@@ -45,11 +39,8 @@ pub(crate) fn wholes2<'py>(
     Ok(array.call_method1("astype", ("int64",))?.extract()?)
 }
 
-/// Returns a value as an array of shape (n,) with real numbers.
-///
-/// # Errors
-///
-/// Raises `SettingError` with the name, the expected and the found shape or type.
+/// Returns a value as an array of shape (n,) with real numbers. Otherwise raises `SettingError` with the expected and
+/// the found shape or type.
 pub(crate) fn reals1<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray1<'py, f64>> {
     let array = numbers(name, value)?;
     let shape: Vec<usize> = array.getattr("shape")?.extract()?;
@@ -59,7 +50,6 @@ pub(crate) fn reals1<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyR
     Ok(array.call_method1("astype", ("float64",))?.extract()?)
 }
 
-/// Converts a value to a NumPy array, and checks that the elements are numbers of any type.
 fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let numpy = value.py().import("numpy")?;
     let array = numpy.call_method1("asarray", (value,)).map_err(|error| {
@@ -80,8 +70,8 @@ fn kind(array: &Bound<'_, PyAny>) -> PyResult<char> {
     array.getattr("dtype")?.getattr("kind")?.extract()
 }
 
-/// Checks that an array has two dimensions and `columns` columns. An empty array of one dimension becomes an array
-/// without rows.
+/// Returns an array with two dimensions and `columns` columns. An empty array of one dimension becomes an array without
+/// rows.
 fn as_rows<'py>(name: &str, array: &Bound<'py, PyAny>, columns: usize) -> PyResult<Bound<'py, PyAny>> {
     let shape: Vec<usize> = array.getattr("shape")?.extract()?;
     match shape[..] {
@@ -91,7 +81,6 @@ fn as_rows<'py>(name: &str, array: &Bound<'py, PyAny>, columns: usize) -> PyResu
     }
 }
 
-/// Returns a shape as Python writes it.
 fn shape_text(shape: &[usize]) -> String {
     let sizes: Vec<String> = shape.iter().map(usize::to_string).collect();
     if sizes.len() == 1 { format!("({},)", sizes[0]) } else { format!("({})", sizes.join(", ")) }
@@ -113,7 +102,8 @@ impl<'py> FromPyObject<'_, 'py> for Count {
 }
 
 impl Count {
-    /// Returns the number as `u32`. A greater number becomes the greatest `u32`, an index that no picture or slice has.
+    /// Returns the number as `u32`. A greater number becomes the greatest `u32`, which is no valid index of a picture
+    /// or slice.
     pub(crate) fn small(self) -> u32 {
         u32::try_from(self.0).unwrap_or(u32::MAX)
     }

@@ -9,7 +9,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-/// Progress of a long computation, and a flag that stops the computation.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
     done: AtomicU64,
@@ -18,7 +17,6 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Stores that `done` of `of` steps are finished.
     pub(crate) fn report(&self, done: u64, of: u64) {
         self.of.store(of, Ordering::Relaxed);
         self.done.fetch_max(done, Ordering::Relaxed);
@@ -28,7 +26,6 @@ impl Progress {
         self.stopped.stop();
     }
 
-    /// Returns the flag that is set after a call of [`Self::stop`].
     pub(crate) fn stop_flag(&self) -> StopFlag {
         self.stopped.clone()
     }
@@ -38,19 +35,15 @@ impl Progress {
     }
 }
 
-/// Time between two checks for new progress and Ctrl-C.
 pub(crate) const LOOK: Duration = Duration::from_millis(50);
 
-/// Runs `work` on a separate thread. `callback` receives the number of finished steps and the total number of steps.
-/// The callback is called at most twenty times a second, and only when the progress has changed.
+/// Runs `work` on a separate thread. `callback` gets the number of finished steps and the number of all steps. The
+/// callback is called at most twenty times a second, and only after a change.
 ///
 /// Ctrl-C or an exception of the callback asks the work to stop. If `waits` is true, the exception is raised after the
 /// work has stopped. If `waits` is false, the exception is raised immediately, and the result of the work is discarded.
 ///
-/// # Errors
-///
-/// Raises `KeyboardInterrupt`, any exception of the callback, or `RunError` if the work panics because of a bug in the
-/// emulator.
+/// A panic of the work, which is a bug of the emulator, raises `RunError`.
 pub(crate) fn attended<T: Send + 'static>(
     py: Python<'_>,
     callback: Option<&Bound<'_, PyAny>>,
@@ -102,7 +95,6 @@ fn end<T>(results: &mut Receiver<T>) -> Option<T> {
     results.recv().ok()
 }
 
-/// Calls the callback if the progress has changed since its last call.
 fn tell(callback: Option<&Bound<'_, PyAny>>, progress: &Progress, watch: &mut Option<(u64, u64)>) -> PyResult<()> {
     let now = (progress.done.load(Ordering::Relaxed), progress.of.load(Ordering::Relaxed));
     let Some(callback) = callback.filter(|_| now.1 > 0 && *watch != Some(now)) else { return Ok(()) };

@@ -9,19 +9,15 @@ use pythonize::pythonize;
 use serde_json::json;
 use std::collections::BTreeMap;
 
-/// Converts a serializable value of the library to a Python object. A number that was not measured becomes None,
-/// because JSON has null for such a number.
+/// Converts a serializable value of the library to a Python object. A number that was not measured becomes None.
 pub(crate) fn python<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
     // JSON has no NaN: a number without a finite value becomes null.
     let value = serde_json::to_value(value).map_err(wrong_setting)?;
     Ok(pythonize(py, &value)?)
 }
 
-/// Converts a Python number to the value of a setting. An integer stays an integer.
-///
-/// # Errors
-///
-/// Raises `SettingError` with the path of the parameter, the expected and the found value.
+/// Converts a Python number to the value of a setting. An integer stays an integer. Any other value raises
+/// `SettingError` with the path of the parameter.
 fn number(path: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if let Ok(whole) = value.extract::<u64>() {
         return Ok(Value::Whole(whole));
@@ -69,8 +65,7 @@ pub(crate) fn machine_parameters<'py>(
     )
 }
 
-/// Converts parameters to JSON objects with path, value, unit, provenance (where the number comes from), range, source
-/// and read_only.
+/// Converts parameters to JSON objects with path, value, unit, provenance, range, source and read_only.
 pub(crate) fn described(parameters: &[Parameter]) -> Vec<serde_json::Value> {
     parameters.iter().map(described_one).collect()
 }

@@ -1,4 +1,4 @@
-//! The command `pxpl5` within the package, and the version of the package.
+//! The command `pxpl5` in the Python package, and the version of the package.
 
 use crate::errors::wrong_setting;
 use pyo3::prelude::*;

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use std::fmt::Display;
 
-/// Returns the exception with the class name `name` from `pxpl5._errors`. The exception has the message of an error.
+/// Returns an exception of the class `name` from `pxpl5._errors`, with the message of `error`.
 pub(crate) fn raised(name: &str, error: &impl Display) -> PyErr {
     Python::attach(|py| {
         let class = py.import("pxpl5._errors").and_then(|module| module.getattr(name));
@@ -14,23 +14,18 @@ pub(crate) fn raised(name: &str, error: &impl Display) -> PyErr {
     })
 }
 
-/// Returns the exception for an invalid setting, name, file or array, with the message of an error.
 pub(crate) fn wrong_setting(error: impl Display) -> PyErr {
     raised("SettingError", &error)
 }
 
-/// Returns the exception for a run that ended early, or for a machine that cannot continue, with the message of an
-/// error.
 pub(crate) fn failed_run(error: impl Display) -> PyErr {
     raised("RunError", &error)
 }
 
-/// Returns the exception for a sweep whose folder cannot be used, with the message of an error.
 pub(crate) fn failed_sweep(error: impl Display) -> PyErr {
     raised("SweepError", &error)
 }
 
-/// Returns the exception for i860 source text that cannot be assembled, with the message of an error.
 pub(crate) fn not_assembled(error: impl Display) -> PyErr {
     raised("AssemblyError", &error)
 }

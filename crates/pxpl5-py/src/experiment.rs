@@ -208,7 +208,7 @@ impl Experiment {
 }
 
 impl Experiment {
-    /// Returns the experiment with a host computer that Python can stop, and the flag with which Python stops the run.
+    /// Returns the experiment on a host computer that Python can stop, and the flag with which Python stops the run.
     fn on_host(&self, workstation: Workstation) -> (Native, Arc<Progress>) {
         let watch = Arc::new(Progress::default());
         let host = StoppableHost { workstation, watch: Arc::clone(&watch), functions: self.functions.clone() };
@@ -247,7 +247,6 @@ fn run(
     native.clone().host(host).run_stopping(&stops, at).map_err(Box::new)
 }
 
-/// The host computer for a run, which lets Python stop the run.
 struct StoppableHost {
     workstation: Workstation,
     watch: Arc<Progress>,

@@ -13,7 +13,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Greatest number of computed pictures that wait for Python to read them.
+/// Maximum number of computed pictures that wait for Python.
 const WAITING: usize = 4;
 
 /// An iterator over the pictures of a run, one for each display period. A separate thread runs the experiment.
@@ -30,7 +30,7 @@ impl Frames {
         let (sender, pictures) = sync_channel(WAITING);
         let thread = std::thread::Builder::new().name("pxpl5-frames".to_owned()).stack_size(STACK_BYTES);
         let started = thread.spawn(move || {
-            // The run ends when the receiver of the pictures has gone.
+            // The run ends when the receiver of the pictures no longer exists.
             let result = film.each(|_, picture| sender.send(Ok(picture)).is_ok());
             if let Err(error) = result {
                 let _ = sender.send(Err(error));
@@ -59,7 +59,7 @@ impl Frames {
             py.check_signals().inspect_err(|_| self.progress.stop())?;
             match found {
                 Ok(Ok(picture)) => {
-                    // A motion or a policy that has raised has no pictures.
+                    // If a motion or a policy has raised an exception, there are no more pictures.
                     self.checks.check().inspect_err(|_| self.progress.stop())?;
                     *self.pictures.lock().unwrap_or_else(PoisonError::into_inner) = Some(pictures);
                     return Picture::of(py, picture, Vec::new()).map(Some);
@@ -83,7 +83,6 @@ fn next<T>(pictures: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
     pictures.recv_timeout(Duration::from_millis(50))
 }
 
-/// Writes a film on a separate thread and returns its bytes (animated PNG).
 pub(crate) fn film_bytes(
     py: Python<'_>,
     film: Film,

@@ -1,4 +1,4 @@
-//! The Python functions that a run calls on its own thread, and the exceptions that the functions raise.
+//! The Python functions that a run calls on its own thread, and their exceptions.
 
 use crate::motion::CallableMotion;
 use crate::policy::Asked;
@@ -7,19 +7,18 @@ use std::sync::Arc;
 
 #[derive(Clone, Default)]
 pub(crate) struct PythonFunctions {
-    /// Function that computes the head's motion. `None` if no Python function computes the motion.
     pub(crate) motion: Option<Arc<CallableMotion>>,
     pub(crate) policy: Option<Arc<Asked>>,
 }
 
 impl PythonFunctions {
-    /// Raises the exception that one of the Python functions has raised during the run, if there is one.
+    /// Raises the exception that a Python function has raised during the run, if any.
     pub(crate) fn check(&self) -> PyResult<()> {
         self.motion.iter().try_for_each(|called| called.check())?;
         self.policy.iter().try_for_each(|asked| asked.check())
     }
 
-    /// Returns true if one of the Python functions has raised an exception that is not yet reported.
+    /// Returns true if a Python function has raised an exception that is not yet reported.
     pub(crate) fn has_raised(&self) -> bool {
         self.motion.as_ref().is_some_and(|called| called.has_raised())
             || self.policy.as_ref().is_some_and(|asked| asked.has_raised())

@@ -50,7 +50,6 @@ pub(crate) fn figure<'py>(
     python(py, &row(&figure.row(measured)))
 }
 
-/// Returns the settings for figures whose measurement ends when `watch` is stopped.
 fn bench(level: Level, watch: &Progress) -> Bench {
     Bench::new(level).with_stop(watch.stop_flag())
 }
@@ -320,7 +319,6 @@ pub(crate) fn rig<'py>(
     )
 }
 
-/// The recorded measurement of the speed and error of each level of modelling, as JSON.
 const LEVELS: &str = include_str!("../../pxpl5-cli/src/levels.json");
 
 /// Compares the levels of modelling by error and speed. Without ``experiments`` the result is the measurement that is

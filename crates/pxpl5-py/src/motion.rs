@@ -32,7 +32,7 @@ pub(crate) struct Motion {
 
 /// The origin of a motion, from which the Python module `pickle` rebuilds the motion.
 enum Origin {
-    /// A name, which also contains all numbers of the motion.
+    /// The name of the motion, which contains all its numbers, for example `pan:200`.
     Name,
     /// The text of a recording, with the user's names of the columns and the behaviour after the last sample.
     Text { text: Vec<u8>, columns: BTreeMap<String, String>, end: Option<String> },
@@ -185,7 +185,7 @@ impl Motion {
 }
 
 impl Motion {
-    /// Raises the exception that the motion's Python function has raised since the last check, if there is one.
+    /// Raises the exception that the motion's Python function has raised since the last check, if any.
     pub(crate) fn check(&self) -> PyResult<()> {
         match &self.called {
             Some(called) => called.check(),
@@ -231,7 +231,7 @@ impl CallableMotion {
     }
 }
 
-/// Greatest time of a pose in seconds, limited because times in picoseconds have 64 bits.
+/// Greatest time of a pose in seconds. The limit is due to times in picoseconds with 64 bits.
 const MAX_TIME_S: f64 = 1.8e7;
 
 /// Largest allowed difference between 1 and the length of a quaternion from Python. Quaternions may therefore be
@@ -266,8 +266,8 @@ impl Moving for CallableMotion {
     }
 }
 
-/// Number of samples of a Python motion that go into the hash of the experiment. The samples are an eighth of a second
-/// apart. In the hash, the samples represent the function, whose code cannot be hashed.
+/// Number of samples of a Python motion in the hash of the experiment, an eighth of a second apart. The samples stand
+/// for the function, whose code cannot be hashed.
 const SAMPLES: u64 = 512;
 const SAMPLE_PS: u64 = 125_000_000_000;
 
@@ -284,8 +284,7 @@ fn end_named(name: Option<&str>) -> PyResult<End> {
     found.ok_or_else(|| wrong_setting(format!("end: expected {}, found {name}", names.join(" or "))))
 }
 
-/// Converts arrays to text in the project's own format for recorded motions. Reading the text gives exactly the same
-/// numbers.
+/// Converts arrays to text in the project's own format for recorded motions, from which the same numbers are read.
 fn own_format(
     times_s: &ArrayView1<'_, f64>,
     positions: &ArrayView2<'_, f64>,

@@ -33,8 +33,8 @@ impl Outcome {
         Self { outcome: Mutex::new(Some(outcome)), results: OnceLock::new(), measures: measures.to_vec() }
     }
 
-    /// Returns the results, which are computed at the first call. If the scene is too heavy for the machine, the
-    /// computation also searches for a number of triangles that can be drawn in time. This search can take some time.
+    /// Returns the results, which are computed at the first call. If the scene is too heavy for the machine, this call
+    /// also searches for a number of triangles that can be drawn in time.
     fn results(&self, py: Python<'_>) -> PyResult<&Results> {
         py.detach(|| {
             if self.results.get().is_none() {
@@ -53,8 +53,8 @@ impl Outcome {
         run.ok_or_else(|| wrong_setting("the analytic level has no events"))
     }
 
-    /// Returns the value that the function `at` reads from the outcome of the run. In contrast to `results`, this
-    /// method does not compute the report of the run.
+    /// Returns a value that `at` reads from the outcome of the run. Unlike `results`, this method does not compute the
+    /// report of the run.
     fn look<T: Send>(&self, py: Python<'_>, at: impl Fn(&pxpl5::Outcome) -> T + Send + Sync) -> PyResult<T> {
         let looked = py.detach(|| {
             let outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
@@ -66,7 +66,6 @@ impl Outcome {
         }
     }
 
-    /// Returns the identifier of the surface with a label (`left`, `right`) or a number.
     fn surface(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceId> {
         let (outcome, _) = self.run(py)?;
         let all: Vec<(SurfaceId, &str)> =
@@ -81,7 +80,6 @@ impl Outcome {
     }
 }
 
-/// Returns the outcome of a run, or raises the exception for its error.
 pub(crate) fn outcome_of_run(
     py: Python<'_>,
     result: Result<pxpl5::Outcome, Box<ExperimentError>>,
@@ -93,7 +91,7 @@ pub(crate) fn outcome_of_run(
     }
 }
 
-/// Converts an error of the library to an exception. The exception has the values that were measured until the error.
+/// Converts an error of the library to an exception, which has the values that were measured until the error.
 pub(crate) fn exception(py: Python<'_>, error: ExperimentError, measures: &[Measure]) -> PyErr {
     let text = error.to_string();
     let (name, partial, needed) = match error {
@@ -381,7 +379,6 @@ impl Outcome {
     }
 }
 
-/// Returns column `i` of the table of pictures. The values of the column come from `rows`.
 fn column_of(i: usize, column: &pxpl5::views::results::Column, rows: &[Vec<Option<u64>>]) -> Column {
     let values = rows.iter().map(|row| row[i].map(u64::cast_signed)).collect();
     Column::whole(&column.name, &column.definition, values)
@@ -391,10 +388,8 @@ fn numbers(stages: &[pxpl5::StageSpan], of: impl Fn(&pxpl5::StageSpan) -> Option
     stages.iter().map(of).collect()
 }
 
-/// Number of bits in the memory of one pixel.
 const BITS: usize = 208;
 
-/// Number of columns, and also of rows, in the pixel array of a renderer.
 const SIDE: usize = 128;
 
 /// Returns all bits of a renderer's pixel memory, each as one byte.

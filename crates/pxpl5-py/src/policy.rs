@@ -9,8 +9,8 @@ use pyo3::types::PyDict;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-/// A policy, which is a Python function that assigns regions to renderers. `raised` holds an exception that the
-/// function has raised and that is not yet reported.
+/// A Python function that assigns regions to renderers. `raised` holds an exception of the function that is not yet
+/// reported.
 pub(crate) struct Asked {
     policy: Py<PyAny>,
     name: String,
@@ -23,18 +23,16 @@ impl Asked {
         Self { policy, name: name.unwrap_or_else(|_| "callable".to_owned()), raised: Mutex::default() }
     }
 
-    /// Returns true if the policy has raised an exception that is not yet reported.
     pub(crate) fn has_raised(&self) -> bool {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
-    /// Raises the exception that the policy has raised, if there is one.
+    /// Raises the exception that the policy has raised, if any.
     pub(crate) fn check(&self) -> PyResult<()> {
         let raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner).take();
         raised.map_or(Ok(()), Err)
     }
 
-    /// Calls the policy with a dictionary that describes the frame, and converts the answer to assignments.
     fn ask(&self, py: Python<'_>, frame: &PolicyFrame) -> PyResult<Vec<RegionAssignment>> {
         let about = PyDict::new(py);
         about.set_item("frame", frame.frame.0)?;
@@ -55,7 +53,7 @@ impl Asked {
     }
 }
 
-/// Greatest number of characters that an error message shows of an invalid answer of the policy.
+/// Maximum number of characters of an invalid answer in an error message.
 const MAX_SHOWN: usize = 80;
 
 impl fmt::Debug for Asked {
@@ -69,8 +67,8 @@ impl RegionPolicy for Asked {
         &self.name
     }
 
-    /// Returns the assignments of regions to renderers that the Python function gives. After an exception of the
-    /// function, the result is `None`, and the run ends at the next field.
+    /// Returns the assignments of regions to renderers from the Python function. After an exception of the function,
+    /// the result is `None`, and the run ends at the next field.
     fn assign(&self, frame: &PolicyFrame) -> Option<Vec<RegionAssignment>> {
         let answer = Python::attach(|py| self.ask(py, frame));
         answer.map_err(|error| *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error)).ok()

@@ -85,7 +85,6 @@ pub(crate) struct Processor {
 }
 
 impl Processor {
-    /// Returns the address that `place` denotes. `place` is a label of the program or an address.
     fn place(&self, place: &Bound<'_, PyAny>) -> PyResult<u32> {
         let Ok(name) = place.extract::<String>() else { return place.extract() };
         self.program.symbol(&name).ok_or_else(|| {
@@ -98,7 +97,6 @@ impl Processor {
     }
 }
 
-/// Largest memory that a processor can have, in bytes: 1 GiB.
 const MOST_MEMORY: usize = 1 << 30;
 
 #[pymethods]
@@ -265,5 +263,5 @@ impl Processor {
     }
 }
 
-/// Number of instructions between two checks for Ctrl-C. Executing this number takes some tens of milliseconds.
+/// Number of instructions between two checks for Ctrl-C, which take some tens of milliseconds.
 const PIECE: u64 = 2_000_000;

@@ -266,7 +266,7 @@ fn balls(array: Option<ArrayView2<'_, f64>>) -> PyResult<Vec<(Vec3, f32)>> {
     Ok(array.rows().into_iter().map(ball).collect())
 }
 
-/// Converts a row of four numbers to the centre and radius of a sphere.
+/// Converts a row of x, y, z and radius to a sphere.
 fn ball(row: ArrayView1<'_, f64>) -> (Vec3, f32) {
     (Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32), row[3] as f32)
 }
@@ -323,7 +323,7 @@ fn ball_around(positions: &[Vec3], balls: &[(Vec3, f32)]) -> (Vec3, f32) {
     (middle, all.map(|(centre, radius)| centre.distance(middle) + radius).fold(0.0, f32::max))
 }
 
-/// Moves the centre of the scene to the origin, and scales the scene to the radius to which model files are scaled.
+/// Moves the centre of the scene to the origin, and scales the scene to the radius of scaled model files.
 fn fit_into_view(positions: &mut [Vec3], balls: &mut [(Vec3, f32)]) {
     let (middle, radius) = ball_around(positions, balls);
     if radius <= 0.0 || !radius.is_finite() {
@@ -337,7 +337,7 @@ fn fit_into_view(positions: &mut [Vec3], balls: &mut [(Vec3, f32)]) {
     }
 }
 
-/// The parts of a scene that are not arrays, in the form that the module `pickle` stores.
+/// The parts of a scene that are not arrays, as `pickle` stores them.
 #[derive(Serialize, Deserialize)]
 struct Rest {
     name: String,
@@ -351,8 +351,8 @@ struct Rest {
     warnings: Vec<String>,
 }
 
-/// A structure of a scene, as `pickle` stores the structure. A range is a pair of the first index and the index after
-/// the last index.
+/// A structure of a scene, as `pickle` stores it. A range is a pair of the first index and the index after the last
+/// index.
 #[derive(Serialize, Deserialize)]
 struct StructureState {
     name: String,
@@ -364,7 +364,7 @@ struct StructureState {
     culls_back_faces: bool,
 }
 
-/// A hinge (axis of rotation) of a structure, as `pickle` stores the hinge. The units are those of [`Hinge`].
+/// A hinge (axis of rotation) of a structure, as `pickle` stores it. The units are those of [`Hinge`].
 #[derive(Serialize, Deserialize)]
 struct HingeState {
     point: [f32; 3],

@@ -1,4 +1,4 @@
-//! Settings of an experiment by path, such as the settings of an experiment file.
+//! Settings of an experiment by path, as in an experiment file.
 
 use crate::errors::wrong_setting;
 use pxpl5::{ExperimentFile, Plan};
@@ -72,7 +72,6 @@ impl Settings {
 }
 
 impl Settings {
-    /// Checks the settings and returns the experiment that they describe.
     pub(crate) fn plan(&self) -> PyResult<Plan> {
         self.file.resolve().map_err(wrong_setting)
     }

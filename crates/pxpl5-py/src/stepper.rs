@@ -15,13 +15,12 @@ use serde_json::{Value, json};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel, sync_channel};
 use std::sync::{Mutex, PoisonError};
 
-/// Work for the thread of the machine. After [`Stepper::finish`], the job gets `None` in place of the machine.
+/// Work for the thread of the machine. After [`Stepper::finish`], the job gets `None` instead of the machine.
 type Job = Box<dyn FnOnce(&mut Option<Native>) + Send>;
 
 /// A thread that owns a machine and executes jobs on it, one after the other.
 pub(crate) struct MachineThread {
     jobs: Mutex<Sender<Job>>,
-    /// Flag that another thread sets to end a long job early.
     stop: StopFlag,
 }
 
@@ -42,7 +41,7 @@ impl MachineThread {
                     return;
                 }
             };
-            // The caller may have gone meanwhile. The loop then ends at once.
+            // If the caller no longer waits, the loop ends at once.
             let _ = sender.send(Ok(()));
             received.iter().for_each(|job: Job| job(&mut stepper));
         });
@@ -51,7 +50,6 @@ impl MachineThread {
         Ok(begun.map(|()| Self { jobs: Mutex::new(jobs), stop }))
     }
 
-    /// Executes a job on the thread of the machine and returns the result of the job.
     fn ask<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -116,7 +114,6 @@ fn run_to(stepper: &mut Native, time: Time, stop: &StopFlag) -> Pause {
     }
 }
 
-/// Returns the reason for the end of a step in words.
 fn pause_text(pause: &Pause) -> String {
     match pause {
         Pause::Reached => "reached".to_owned(),
@@ -126,7 +123,7 @@ fn pause_text(pause: &Pause) -> String {
     }
 }
 
-/// Reads the name of a board, such as `host`, `gp 3`, `renderer 0`, `display 0` or `ring`.
+/// Parses the name of a board, such as `host`, `gp 3`, `renderer 0`, `display 0` or `ring`.
 fn board_named(name: &str) -> PyResult<Board> {
     let (kind, number) = name.rsplit_once(' ').map_or((name, None), |(kind, number)| (kind, number.parse().ok()));
     match (kind.to_lowercase().as_str(), number) {
@@ -149,7 +146,8 @@ pub(crate) struct Stepper {
 }
 
 impl Stepper {
-    /// Executes a step of the run on the thread of the machine. Returns the reason for the end of the step in words.
+    /// Executes a step of the run on the thread of the machine, and returns the reason for the end of the step in
+    /// words.
     fn step(
         &self,
         py: Python<'_>,
@@ -298,7 +296,7 @@ impl Stepper {
     }
 }
 
-/// Returns the state of a processor as JSON. Times are in picoseconds.
+/// Returns the state of a processor as JSON, with times in picoseconds.
 fn processor_state(snapshot: &pxpl5::snapshots::GpSnapshot) -> Value {
     let programs: Vec<Value> = snapshot
         .programs
@@ -331,7 +329,7 @@ fn processor_state(snapshot: &pxpl5::snapshots::GpSnapshot) -> Value {
     })
 }
 
-/// Returns the state of a renderer as JSON. Times are in picoseconds.
+/// Returns the state of a renderer as JSON, with times in picoseconds.
 fn renderer_state(snapshot: pxpl5::snapshots::RendererSnapshot) -> Value {
     json!({
         "fifo_words": snapshot.fifo_words,

@@ -1,4 +1,4 @@
-//! Sweeps, which run an experiment at many points of a space of settings, and the folder that stores their rows.
+//! Sweeps, which run an experiment at many points of a space of settings, and the folder with their rows.
 
 use crate::attended::attended;
 use crate::catalogue::python;

@@ -18,8 +18,7 @@ use std::sync::Arc;
 
 pub(crate) struct Column {
     pub(crate) name: String,
-    /// Description of the column's values with their unit. The description becomes the metadata `about` of the Arrow
-    /// field.
+    /// Description of the column's values with their unit, for the metadata `about` of the Arrow field.
     pub(crate) about: String,
     pub(crate) values: ArrayRef,
 }
@@ -46,7 +45,6 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Creates a table from columns of equal length.
     pub(crate) fn of(columns: Vec<Column>) -> PyResult<Self> {
         // A batch without columns needs its own constructor, because no column has the number of rows.
         if columns.is_empty() {
@@ -365,14 +363,13 @@ impl Table {
     }
 }
 
-/// Greatest number of rows that a notebook shows.
 const SHOWN_ROWS: usize = 40;
 
 pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Returns a value of a column as text. Real numbers have four significant digits, and a missing value has no text.
+/// Formats a value of a column. Real numbers have four significant digits, and a missing value has no text.
 fn text(column: &ArrayRef, row: usize) -> String {
     if column.is_null(row) {
         return String::new();

@@ -25,7 +25,7 @@ fn edge(p: [i32; 2], q: [i32; 2]) -> Linear {
     Linear { a: -dy, b: dx, c: dy * p[0] - dx * p[1] }
 }
 
-/// Returns a colour component that changes slowly over the region, from `level` (0 to 255) at its left top pixel.
+/// Returns a colour component that changes slowly over the region, from `level` (0 to 255) at its upper left pixel.
 const fn component(level: i32) -> Linear {
     Linear { a: 311, b: -277, c: level << COLOUR_FRACTION_BITS }
 }

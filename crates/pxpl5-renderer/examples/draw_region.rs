@@ -74,7 +74,7 @@ struct FlatSphere {
 impl FlatSphere {
     fn body(&self) -> SphereBody {
         let [x, y] = [self.centre[0] + f64::from(LEFT) - 0.5, self.centre[1] + f64::from(TOP) - 0.5];
-        // The root at the middle is 4000, so 4000^2 = r^2 scale / 2^shift.
+        // The root at the middle of the sphere is 4000, so 4000^2 = r^2 scale / 2^shift.
         let shift = 10_u8;
         let r = self.radius;
         let scale = 4000.0_f64.powi(2) * 1024.0 / (r * r);

@@ -1,4 +1,4 @@
-//! The interface of all pixel arrays, and the results of executing instructions.
+//! The interface of all pixel arrays, and the results of executed instructions.
 
 use crate::isa::{DecodeErrorKind, Operand};
 use pxpl5_wire::{CommandContent, CopyTarget, REGION_SIZE, Word};
@@ -7,13 +7,17 @@ use std::sync::Arc;
 /// Pixels of the array: 128 x 128 (F89).
 pub const PIXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
 
-/// One bit of every pixel. The bit of pixel (x, y) is bit `x % 64` of word `2 y + x / 64`.
+/// One bit of every pixel.
+///
+/// The bit of pixel (x, y) is bit `x % 64` of word `2 y + x / 64`.
 pub type Plane = [u64; PIXELS / 64];
 
 pub const EMPTY_PLANE: Plane = [0; PIXELS / 64];
 
-/// A 128 x 128 array of one-bit processors with 208 bits of memory each. A pixel's bit in the *Enable* register allows
-/// or forbids writes to the memory of this pixel.
+/// A 128 x 128 array of one-bit processors with 208 bits of memory each.
+///
+/// Each pixel has one bit in the *Enable* register. An instruction writes only to the memory of pixels whose Enable bit
+/// is set.
 ///
 /// All implementations give the same result after every instruction: the same bits of pixel memory and of Enable, and
 /// the same [`Executed`].
@@ -72,11 +76,11 @@ pub struct Executed {
     pub instructions: u32,
     /// Number of clocks during which the array was busy.
     pub clocks: u64,
-    /// Pixels sent to frame buffers, one entry for each output instruction.
+    /// Pixels sent to frame buffers, one entry for each executed output instruction.
     pub outputs: Vec<OutputRegion>,
 }
 
-/// The pixels that an output instruction sends.
+/// Pixels that one output instruction sends to a frame buffer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputRegion {
     /// Destination of the pixels: the frame buffer, the region and the picture.
@@ -85,7 +89,6 @@ pub struct OutputRegion {
     pub pixels: Arc<[Word]>,
 }
 
-/// An instruction that cannot be executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position}: {kind}")]
 pub struct ArrayFault {
@@ -94,15 +97,13 @@ pub struct ArrayFault {
     pub kind: FaultKind,
 }
 
-/// Reason why an instruction cannot be executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FaultKind {
-    /// The words do not encode an instruction.
     #[error("{0}")]
     Illegal(DecodeErrorKind),
-    /// A bit field of pixel memory extends beyond the end of pixel memory. The bit field's address is relative to the
-    /// selected context, the part of pixel memory that holds one region.
+    /// An operand or the destination extends beyond the end of pixel memory. Its address is relative to the selected
+    /// context, the part of pixel memory that holds one region.
     #[error("{} bits at {base} + {} reach beyond pixel memory", .operand.width, .operand.address)]
     FieldOutOfRange {
         /// The bit field as encoded in the instruction: address relative to the context's first bit, and width in bits.

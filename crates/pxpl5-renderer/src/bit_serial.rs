@@ -27,15 +27,15 @@ use tile::{EMPTY, FULL, HEIGHT, TILES, Tile, TilePlane, WIDTH};
 /// Pixel array of 208 bit planes, an Enable plane and serial adders, like the hardware.
 ///
 /// The array counts a clock whenever a bit plane moves. The count is therefore an independent test of the formulas in
-/// [`crate::isa::timing`]. The array is the reference model unless [`Self::skipping`] was called.
+/// [`crate::isa::timing`]. The array is the reference model unless [`Self::skipping`] is called.
 #[derive(Clone, Debug)]
 pub struct BitSerial {
     layout: Layout,
     vectors: PresentVectors,
     controller: Controller,
     tiles: Vec<Tile>,
-    /// Stored bit planes of all tiles in each block of the backing store. `None` if nothing was stored in the block
-    /// yet.
+    /// One entry for each block of the backing store: the stored bit planes of all tiles, or `None` for an unused
+    /// block.
     backing: Vec<Option<Vec<TilePlane>>>,
     clock: u64,
     faults: u64,
@@ -44,14 +44,15 @@ pub struct BitSerial {
 }
 
 impl BitSerial {
-    /// Creates an array of zeros. Only [`PixelArray::read_colour`] uses `layout`, to find the bit field of the colour.
+    /// Creates an array whose memory is all zero. Only [`PixelArray::read_colour`] uses `layout`, to find the bit field
+    /// of the colour.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
     }
 
-    /// Creates an array of zeros that computes with the vector instructions `vectors`. If the computer lacks these
-    /// instructions, the array uses portable code.
+    /// Creates an array whose memory is all zero. The array computes with the vector instructions `vectors`, or with
+    /// portable code if the computer lacks these instructions.
     #[must_use]
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
@@ -97,7 +98,8 @@ impl BitSerial {
     }
 
     fn instruction(&mut self, instruction: &ArrayInstruction, executed: &mut Executed) -> Result<(), FaultKind> {
-        // Instructions that move no bits are executed here. The functions for Enable and for fields execute the others.
+        // Execute the instructions that move no bits here. The functions for Enable and for bit fields execute the
+        // others.
         match *instruction {
             ArrayInstruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);
@@ -155,7 +157,8 @@ impl BitSerial {
             tile.clock = 0;
             tile.field_instruction(&self.controller, instruction)?;
         }
-        // All tiles work in step, so one tile gives the number of clocks of all tiles. A skipped tile counts no clocks.
+        // All tiles take the same number of clocks, so tile 0 gives the number. The skipping mode uses a formula
+        // instead, because skipped tiles count no clocks.
         self.clock += if self.skipping { instruction.bit_clocks().into() } else { self.tiles[0].clock };
         Ok(())
     }

@@ -16,36 +16,32 @@ use pxpl5_wire::{
 use std::collections::VecDeque;
 use std::sync::{Arc, OnceLock};
 
-/// An event of a renderer board.
 #[derive(Clone, Debug)]
 pub enum RendererEvent {
-    /// A message begins to arrive. The event must be scheduled in phase `Arrive`.
+    /// The first word of a message arrives. The event must be scheduled in phase `Arrive`.
     Announce {
         /// Message with commands for the FIFO. Words that are not commands are discarded and counted as illegal.
         message: Message,
-        /// Time at which the message's first word is on the channel.
         first_word_at: Time,
     },
     /// The controller starts a copy command, which copies a region to a frame buffer.
     CopyBegins,
-    /// The colours of the region that the renderer copies are now complete in the backing store.
+    /// The colours of the region to copy are now complete in the backing store.
     Stored,
-    /// The ring has delivered the last pixel of the region that the renderer copies. The event must be scheduled in
-    /// phase `Arrive`.
+    /// The last pixel of a copied region has arrived at its frame buffer. The event must be scheduled in phase
+    /// `Arrive`.
     Sent,
 }
 
-/// An output of a renderer board.
 #[derive(Debug)]
 pub enum RendererOutput {
     /// The renderer has accepted an announced message. The sender needs the time at which the last word of the message
     /// enters the FIFO.
     Accept {
         /// Time at which the last word of the message is in the FIFO. Each word takes one word time of the channel,
-        /// plus the wait for room in the FIFO.
+        /// plus the time that it waits for room in the FIFO.
         last_word_at: Time,
     },
-    /// A message for the ring.
     Send {
         /// The pixels of a region, or the acknowledgement of a copy.
         message: Message,
@@ -61,7 +57,7 @@ pub enum RendererOutput {
 pub struct RendererStats {
     /// Number of commands received, including copies and unknown commands.
     pub commands: u64,
-    /// Number of words of commands received. Additional words with which the ring transports messages do not count.
+    /// Number of words of received commands. The words that the ring adds to transport messages do not count.
     pub words: u64,
     /// Number of regions whose last pixel has arrived at a frame buffer.
     pub regions_copied: u64,
@@ -69,9 +65,8 @@ pub struct RendererStats {
     pub illegal_commands: u64,
 }
 
-/// One renderer board. The FIFO and the controller run in simulated time. The pixels of regions are pixel jobs.
-///
-/// A pixel job is a stored computation, which runs only when the pixels are read.
+/// One renderer board. The simulation computes the times of the FIFO and the controller by events. The pixels of a
+/// region are computed only when they are read.
 #[derive(Debug)]
 pub struct Renderer {
     node: NodeId,
@@ -84,16 +79,15 @@ pub struct Renderer {
     caches_empty_regions: bool,
     logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
-    /// Copy command whose region is being sent to a frame buffer. `None` if no region is being sent.
     copying: Option<CopyOrder>,
-    /// Copies through the backing store whose regions are still in pixel memory. The transfer of the first of these
-    /// regions to the backing store can be in progress.
+    /// Copies that go through the backing store, but whose regions are still in pixel memory. The first of these
+    /// regions can be on its way to the backing store.
     unstored: VecDeque<PendingCopy>,
     storing: bool,
-    /// Copies whose regions are in the backing store. Each copy waits until an earlier transfer to a frame buffer ends,
-    /// or until a command releases the region.
+    /// Copies whose regions are in the backing store. Each copy waits for the end of an earlier transfer to a frame
+    /// buffer, or for a command that releases the region.
     stored: VecDeque<PendingCopy>,
-    /// Command lists received so far. `None` until [`Renderer::watch_fifo`] is called.
+    /// Command lists received so far. `None` unless [`Renderer::watch_fifo`] was called.
     sent: Option<SentLists>,
     /// Regions whose copy commands have started since the last call of `drain_drawn`.
     drawn: Vec<DrawnRegion>,
@@ -104,44 +98,42 @@ pub struct Renderer {
 /// A region that a renderer has drawn, with the times of the region's commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawnRegion {
-    /// Frame buffer that receives the region, and the region's place in the picture.
+    /// Frame buffer that receives the region, and the place of the region in the picture.
     pub target: CopyTarget,
-    /// Number of words of the message that transfers the region's pixels to the frame buffer.
+    /// Length, in words, of the message that transfers the pixels of the region to the frame buffer.
     pub words: u32,
-    /// Time at which the controller finished its work on the previous region.
+    /// Time at which the controller finished its work on the region before this region.
     pub begun_at: Time,
-    /// Time at which the last command before the copy command ended. From this time on, the controller waited for the
-    /// copy command.
+    /// End of the last command before the copy command. From this time on, the controller waited for the copy command.
     pub finished_at: Time,
     /// Start time of the copy command. This time is later than `finished_at` if the copy command arrived later.
     pub copy_at: Time,
-    /// Time since `begun_at` in which the controller executed commands. In the remaining time, the controller waited
-    /// for commands.
+    /// Time since `begun_at` in which the controller executed commands. In the rest of the time, it waited for
+    /// commands.
     pub executed: Span,
 }
 
-/// Command lists sent to a region context (the part of pixel memory that holds one region) since the last clear of this
-/// context.
+/// Command lists that a region context has received since its last clear. A region context is the part of pixel memory
+/// that holds one region.
 #[derive(Clone, Debug, Default)]
 struct ContextLog {
     cleared: bool,
-    /// Command lists of the context. Copied regions also use these lists to compute their pixels later.
+    /// Lists that change pixels. Copied regions share these lists, to compute their pixels later.
     lists: Arc<Vec<CommandContent>>,
 }
 
 impl ContextLog {
-    /// Removes all lists from the log. Jobs that compute copied regions keep their own references to the lists.
+    /// Empties the log. Copied regions keep their own references to the lists.
     fn clear(&mut self) {
         self.cleared = true;
         match Arc::get_mut(&mut self.lists) {
             Some(lists) => lists.clear(),
-            // Reserve as much room as before: the next picture's region has a similar number of lists.
+            // Reserve as much room as before, because the next region has a similar number of lists.
             None => self.lists = Arc::new(Vec::with_capacity(self.lists.len())),
         }
     }
 }
 
-/// A received copy command, and the job that computes the pixels of the region to copy.
 #[derive(Debug)]
 struct PendingCopy {
     order: CopyOrder,
@@ -153,7 +145,8 @@ struct PendingCopy {
 impl Renderer {
     /// Creates a renderer at ring port `node`.
     ///
-    /// `word` is the word time of a channel. `cycle` is the time that a signal takes to leave the board.
+    /// `word` is the time that a channel needs for one word. `cycle` is the time that a signal takes to leave the
+    /// board.
     #[must_use]
     pub fn new(node: NodeId, timing: RendererTiming, word: Span, cycle: Span, pool: Arc<ArrayPool>) -> Self {
         let fifo = InputFifo::new(timing.fifo_words as u32, word);
@@ -179,7 +172,7 @@ impl Renderer {
         }
     }
 
-    /// Handles one event at time `context.now()`. The function adds the resulting events and outputs to `context`.
+    /// Handles one event at time `context.now()`. The resulting events and outputs go to `context`.
     pub fn handle(&mut self, event: RendererEvent, context: &mut Context<RendererEvent, RendererOutput>) {
         match event {
             RendererEvent::Announce { message, first_word_at } => self.announce(message, first_word_at, context),
@@ -203,7 +196,7 @@ impl Renderer {
         self.report(progress, context);
     }
 
-    /// Records a received message for [`Self::array_at`], if [`Self::watch_fifo`] was called.
+    /// Records a received message for [`Self::array_at`]. Does nothing unless [`Self::watch_fifo`] was called.
     fn note(&mut self, message: &Message, now: Time) {
         let first_word = self.stats.words;
         self.stats.words += u64::from(message.words);
@@ -277,7 +270,7 @@ impl Renderer {
     fn copy(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
         // Copy commands execute in the order in which their lists arrived.
         let Some(copy) = self.copies.pop_front() else {
-            // A copy command without an order addresses no frame buffer, so it ends at once.
+            // Without an order, the frame buffer of a copy command is unknown, so the command ends at once.
             self.stats.illegal_commands += 1;
             let progress = self.fifo.resume(context.now());
             return self.report(progress, context);
@@ -299,7 +292,8 @@ impl Renderer {
         }
     }
 
-    /// Releases a region that waits in the backing store. A release of an unknown region counts as an illegal command.
+    /// Permits a region to leave the backing store. If the store does not hold the region, the command counts as
+    /// illegal.
     fn release(&mut self, target: CopyTarget, context: &mut Context<RendererEvent, RendererOutput>) {
         let kept = self.stored.iter_mut().chain(&mut self.unstored);
         let found = kept.filter(|copy| !copy.is_released).find(|copy| copy.order.target == target);
@@ -312,8 +306,8 @@ impl Renderer {
         self.transfer_next(context);
     }
 
-    /// Moves a finished region's colours to the backing store when the store has room. If the copy includes depths, the
-    /// depths move as a second block.
+    /// Moves the colours of a finished region to the backing store when the store has room. If the copy includes
+    /// depths, the depths move as a second block.
     ///
     /// The controller continues when the move is complete.
     fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
@@ -330,7 +324,7 @@ impl Renderer {
         if self.storing {
             return;
         }
-        // This comparison is the only use of the capacity, so a larger store changes nothing if it never fails.
+        // No other line uses the capacity. If this test never fails, a larger store gives the same result.
         if held + blocks > self.timing.backing_regions() {
             self.waited_for_room = true;
             return;
@@ -396,26 +390,25 @@ impl Renderer {
         self.store_next(context);
     }
 
-    /// Returns true if a finished region has waited for room in the backing store. If the result is false, a larger
-    /// backing store would change nothing.
+    /// Returns true if a finished region has ever waited for room in the backing store. If false, a larger backing
+    /// store would change nothing.
     #[must_use]
     pub const fn waited_for_room(&self) -> bool {
         self.waited_for_room
     }
 
-    /// Returns the board's counters.
     #[must_use]
     pub const fn stats(&self) -> RendererStats {
         self.stats
     }
 
-    /// Returns the time that the board has spent so far to execute commands, without copies.
+    /// Returns the time that the board has spent on commands so far, without copies.
     #[must_use]
     pub const fn busy(&self) -> Span {
         self.fifo.busy()
     }
 
-    /// Returns the time until `now` in which the board has executed commands, without copies. `now` must not be earlier
+    /// Returns the time until `now` that the board has spent on commands, without copies. `now` must not be earlier
     /// than the last handled event.
     #[must_use]
     pub fn busy_at(&self, now: Time) -> Span {
@@ -428,7 +421,7 @@ impl Renderer {
         self.fifo.blocked_at(now)
     }
 
-    /// Removes and returns the regions whose copy commands have started, in the order of these starts.
+    /// Removes and returns the regions whose copy commands have started, in the order of the starts.
     pub fn drain_drawn(&mut self) -> impl Iterator<Item = DrawnRegion> + '_ {
         self.drawn.drain(..)
     }
@@ -453,13 +446,13 @@ impl Renderer {
         Some(array)
     }
 
-    /// Turns off two optimizations of the simulation. From this call on, pixels of regions without primitives are
-    /// computed instead of cached, and commands that touch no pixel are executed as well.
+    /// Turns off two optimizations. From this call on, the board always computes the pixels of regions without
+    /// primitives, and also executes commands that touch no pixel.
     pub const fn draw_every_region(&mut self) {
         self.caches_empty_regions = false;
     }
 
-    /// Starts the record of words that enter and leave the FIFO.
+    /// Starts to record the words that enter and leave the FIFO.
     pub fn watch_fifo(&mut self) {
         self.fifo.watch();
         self.sent.get_or_insert_default();
@@ -494,13 +487,13 @@ impl Renderer {
 
     /// Returns the changes of the number of words in the FIFO since the last call. The changes are not sorted by time.
     ///
-    /// The arrival of a complete command increases the number. The start of a command decreases the number. A change in
-    /// the future is a prediction from the messages that have arrived so far.
+    /// The number increases when a complete command has arrived, and decreases when a command starts. Changes in the
+    /// future are predictions from the messages that have arrived so far.
     pub fn take_fifo_changes(&mut self) -> Vec<(Time, i64)> {
         self.fifo.take_changes()
     }
 
-    /// If a copy blocks the board, returns the region to copy and the frame buffer that receives the region.
+    /// Returns the region to copy and its frame buffer if a copy blocks the board.
     #[must_use]
     pub fn blocked(&self) -> Option<CopyTarget> {
         Some(self.copying.filter(|_| self.fifo.is_blocked())?.target)

@@ -1,6 +1,6 @@
 //! Commands: fixed-length programs of array instructions, which the graphics processors send.
 //!
-//! A command holds typed operands. The command's program follows from the operands and the [`Layout`]. The first
+//! A command holds typed operands. The operands and the [`Layout`] determine the command's program. The first
 //! instruction of a drawing command is *enable all*, whose label is the command's kind. The array ignores the label.
 //! [`Command::decode`] and the fast pixel array recognize the command by the label.
 //!
@@ -11,15 +11,15 @@
 //! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, where nearer is smaller. A pixel passes if the new depth is
 //!   **strictly less** than the stored depth. A layout with a narrower Z stores and compares the upper bits of the
 //!   depth.
-//! - Colour component: `(e >> COLOUR_FRACTION_BITS) & 255`. Values outside 0 to 255 wrap, so senders keep triangles
-//!   inside this range. Spheres are limited to 0 .. 255.
-//! - Normal component: `(e >> NORMAL_FRACTION_BITS)` in 12 bits, two's complement, with wrap-around.
+//! - Colour component: `(e >> COLOUR_FRACTION_BITS) & 255` for the expression `e`. Values outside 0 to 255 wrap around,
+//!   so senders keep the colours of triangles in this range. Sphere commands limit colours to 0 .. 255.
+//! - Normal component: the low 12 bits of `e >> NORMAL_FRACTION_BITS`, as a two's complement number.
 //!
 //! # Words and clocks
 //!
 //! | kind | words | clocks | published or assumed clocks |
 //! |---|---|---|---|
-//! | triangle (Gouraud) | 30 | 258 | 267 at 150,000 a second (TR94); the published steps need 256 |
+//! | triangle (Gouraud) | 30 | 258 | 267 at 150,000 triangles a second (TR94); the published steps need 256 |
 //! | Phong triangle | 32 | 292 | the same rate; the published steps need 262 to 292, with 28 for the object's colour |
 //! | sphere | 53 | 810 (748 for Slats) | assumed "a little dearer than a triangle"; see [`SphereCommand`] |
 //! | Phong sphere | 38 | 504 | the same |
@@ -46,30 +46,22 @@ use crate::isa::{ArrayInstruction, DecodeError, DecodeErrorKind, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// The kind of a command. The numeric value of the kind is the opcode in [`pxpl5_wire::CommandRun`].
+/// The kind of a command for a renderer.
+///
+/// The numeric value of the kind is the opcode in [`pxpl5_wire::CommandRun`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum CommandKind {
-    /// Selects the region of the following commands, and the context (part of pixel memory) that holds it (see
-    /// [`SelectRegion`]).
+    /// Selects the region of the following commands, and the context (part of pixel memory) that holds it.
     SelectRegion = 1,
-    /// Clears colour and Z (see [`Clear`]).
     Clear = 2,
-    /// Draws a triangle with interpolated colour (see [`TriangleCommand`]).
     Triangle = 3,
-    /// Draws a triangle with normals (see [`PhongTriangleCommand`]).
     PhongTriangle = 4,
-    /// Draws a sphere with interpolated colour (see [`SphereCommand`]).
     Sphere = 5,
-    /// Draws a sphere with normals (see [`PhongSphereCommand`]).
     PhongSphere = 6,
-    /// Shades all pixels of a region after the last primitive of the region (see [`Shade`]).
     Shade = 7,
-    /// Copies the region to a frame buffer (see [`CopyRegion`]).
     CopyRegion = 8,
-    /// Stores 32 bits of every pixel in the backing store (see [`StoreBacking`]).
     StoreBacking = 9,
-    /// Loads 32 bits of every pixel from the backing store (see [`LoadBacking`]).
     LoadBacking = 10,
     /// Waits until the backing store is idle.
     WaitBacking = 11,
@@ -91,7 +83,6 @@ impl CommandKind {
         Self::WaitBacking,
     ];
 
-    /// Returns the kind with this opcode, or `None` if the opcode is unknown.
     #[must_use]
     pub const fn from_opcode(opcode: u8) -> Option<Self> {
         match opcode {
@@ -100,7 +91,6 @@ impl CommandKind {
         }
     }
 
-    /// Returns the opcode in [`pxpl5_wire::CommandRun`].
     #[must_use]
     pub const fn opcode(self) -> u8 {
         self as u8
@@ -122,7 +112,7 @@ impl CommandKind {
         }
     }
 
-    /// Returns the number of clocks during which the command's program keeps the array busy.
+    /// Returns the number of clocks for which the array executes the program of a command of this kind.
     ///
     /// # Errors
     /// Returns [`Unsupported`] if the layout lacks a bit field that the program needs.
@@ -137,18 +127,15 @@ impl CommandKind {
 #[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
     pub kind: CommandKind,
-    /// Name of the layout that does not have the bit field, from `ContextPlan::name`.
+    /// Name of the layout, from `ContextPlan::name`.
     pub layout: &'static str,
     /// Description of the missing bit field, or of the missing bits of scratch memory.
     pub missing: &'static str,
 }
 
-/// A command with its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// Selects the region of the following commands, and the context (part of pixel memory) that holds it.
     SelectRegion(SelectRegion),
-    /// Clears colour and Z.
     Clear(Clear),
     /// Draws a triangle with interpolated colour (Gouraud).
     Triangle(TriangleCommand),
@@ -158,19 +145,14 @@ pub enum Command {
     Sphere(SphereCommand),
     /// Draws a sphere whose pixels are shaded after the last primitive of the region.
     PhongSphere(PhongSphereCommand),
-    /// Shades all pixels of a region after the last primitive of the region.
     Shade(Shade),
     CopyRegion(CopyRegion),
-    /// Stores 32 bits of every pixel in the backing store.
     StoreBacking(StoreBacking),
-    /// Loads 32 bits of every pixel from the backing store.
     LoadBacking(LoadBacking),
-    /// Waits until the backing store is idle.
     WaitBacking,
 }
 
 impl Command {
-    /// Returns the command's kind.
     #[must_use]
     pub const fn kind(&self) -> CommandKind {
         match self {
@@ -188,7 +170,7 @@ impl Command {
         }
     }
 
-    /// Returns the command's program of array instructions.
+    /// Returns the program of array instructions for this command.
     ///
     /// # Errors
     /// Returns [`Unsupported`] if the layout lacks a bit field that the program needs.
@@ -241,14 +223,13 @@ impl Command {
         let program = decode_range(&words[..end], position)?;
         let command = Self::from_program(kind, &program, layout)
             .ok_or_else(|| not_the_command(words, position, kind.opcode()))?;
-        // The operands do not determine the other words in the list, so compare the whole program.
+        // The operands determine the whole program, so compare all its words with the words in the list.
         match command.program(layout) {
             Ok(expected) if expected == program => Ok((command, length)),
             _ => Err(not_the_command(words, position, kind.opcode())),
         }
     }
 
-    /// Returns a command of the kind `kind` whose operands are all zero.
     pub(crate) fn blank(kind: CommandKind) -> Self {
         match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::default()),
@@ -265,8 +246,8 @@ impl Command {
         }
     }
 
-    /// Extracts the operands from the program of a command. Only the operands are read, so the caller must compare the
-    /// rest of the program with the expected program.
+    /// Extracts the operands from the program of a command. The function ignores the rest of the program, so the caller
+    /// must compare the rest with the expected program.
     fn from_program(kind: CommandKind, program: &[ArrayInstruction], layout: &Layout) -> Option<Self> {
         Some(match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::read(program, layout)?),
@@ -284,8 +265,8 @@ impl Command {
     }
 }
 
-/// Returns the error for instructions that begin with the label of a kind of command, but differ from the program of
-/// this kind. `label` is the opcode of the kind.
+/// Returns the error for instructions that begin like the program of a command, but differ from this program later.
+/// `label` is the opcode of the command's kind, which the first instruction contains.
 fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
     DecodeError { position, word: words[position], kind: DecodeErrorKind::NotTheCommand(label) }
 }
@@ -319,7 +300,7 @@ fn decode_range(words: &[Word], from: usize) -> Result<Vec<ArrayInstruction>, De
     Ok(out)
 }
 
-/// Returns the bit field of the normal's component 0 (x), 1 (y) or 2 (z).
+/// Returns the bit field for one component of the normal: 0 (x), 1 (y) or 2 (z).
 fn normal(layout: &Layout, component: u8) -> Result<Operand, MissingField> {
     layout.normal(component).ok_or(MissingField("a normal"))
 }

@@ -1,9 +1,9 @@
-//! Conformance suite for pixel arrays. Two arrays execute the same lists of instructions and must be equal in every bit
-//! after each list.
+//! Conformance suite for pixel arrays. Two arrays execute the same lists of instructions, and must be equal in every
+//! bit after each list.
 //!
-//! [`crate::BitSerial`] is the reference model. A test of another array calls [`instructions`] and [`commands`] once.
-//! The test also calls [`random_round`] with the round numbers 0, 1, 2 and so on. A failing round can be repeated with
-//! its round number alone.
+//! [`crate::BitSerial`] is the reference model. To compare an array with the reference model, a test calls
+//! [`instructions`] and [`commands`] once. The test then calls [`random_round`] for the rounds 0, 1, 2 and so on. The
+//! number of a failing round is enough to repeat the round.
 
 mod random;
 
@@ -25,8 +25,8 @@ pub struct Mismatch {
     pub difference: String,
 }
 
-/// Executes a list of instructions on both arrays, then compares the results of the arrays, the Enable registers, and
-/// all 208 bits of all pixels.
+/// Executes a list of instructions on both arrays. Then compares the returned results, the Enable registers, and all
+/// 208 bits of all pixels.
 ///
 /// # Errors
 /// Returns the first [`Mismatch`].
@@ -70,7 +70,7 @@ fn difference(what: &str, expected: &Plane, found: &Plane) -> Option<String> {
     Some(format!("{what} of pixel ({x}, {y}) is not {bit}; {pixels} pixels differ"))
 }
 
-/// Fills both arrays with the same random bits. In some bit planes all bits are zero, or all bits are one.
+/// Fills both arrays with the same random bits. Some bit planes are all zeros or all ones.
 pub fn scramble(random: &mut Random, a: &mut impl PixelArray, b: &mut impl PixelArray) {
     for bit in 0..MEMORY_BITS as usize {
         let plane = noise(random);
@@ -197,8 +197,8 @@ fn corner_expressions() -> Vec<ArrayInstruction> {
     out
 }
 
-/// Returns a coefficient that tests overflow. The coefficient has bits above the 48 bits of a quadratic expression's
-/// value, and its lowest bit is set.
+/// Returns a coefficient that tests overflow. The coefficient has bits above bit 47, the highest bit of a quadratic
+/// expression's value, and its lowest bit is set.
 const fn beyond_48_bits(v: i32) -> i64 {
     (v as i64) << 17 | 1
 }
@@ -219,8 +219,8 @@ fn uses(expression: Expression) -> Vec<ArrayInstruction> {
     usages.into_iter().map(|usage| ArrayInstruction::Evaluate { expression, usage }).collect()
 }
 
-/// Widths, in bits, of the destination and the two operands of tested instructions. Operands are as wide as the
-/// destination, narrower, or wider.
+/// Widths in bits of the destination and the two operands of tested instructions. The operands are as wide as the
+/// destination, narrower or wider.
 const WIDTHS: [[u8; 3]; 7] = [[8, 8, 8], [5, 12, 9], [20, 7, 11], [1, 1, 1], [64, 64, 64], [64, 3, 33], [2, 40, 1]];
 
 fn corner_fields() -> Vec<ArrayInstruction> {
@@ -289,7 +289,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn corner_instructions_are_legal_for_every_opcode_but_those_tested_by_commands() {
+    fn corner_instructions_cover_every_opcode_that_the_command_tests_do_not_cover() {
         let mut legal = BTreeSet::new();
         for instruction in corner_instructions() {
             let mut words = Vec::new();

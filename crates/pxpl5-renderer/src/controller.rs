@@ -1,11 +1,10 @@
-//! The controller of the array: it selects the context (part of pixel memory) and the region, stores coefficients, and
+//! The controller of the array. It selects the region and the context (part of pixel memory), stores coefficients, and
 //! checks operands.
 
 use crate::array::{ArrayFault, FaultKind};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, MEMORY_BITS, Operand, QUADRATIC_BITS};
 use pxpl5_wire::{Linear, Quadratic, Word};
 
-/// A bit field of pixel memory with its absolute address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FieldBits {
     pub(crate) first: usize,
@@ -32,7 +31,7 @@ pub(crate) struct Controller {
     quadratic: Quadratic,
 }
 
-/// A linear or quadratic expression in the coordinates of the array: the array's upper left pixel is (0, 0).
+/// A linear or quadratic expression in coordinates of the array: the array's upper left pixel is (0, 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LocalExpression {
     Linear(Linear),
@@ -55,8 +54,10 @@ impl Controller {
         Ok((instruction, used))
     }
 
-    /// Stores the coefficients of an expression, and returns the expression with the array's upper left pixel as
-    /// origin. An expression without coefficients uses the stored coefficients of the last linear or quadratic
+    /// Stores the coefficients of `expression`, and converts it to coordinates of the array (origin at the array's
+    /// upper left pixel).
+    ///
+    /// If `expression` has no coefficients, the function uses the stored coefficients of the last linear or quadratic
     /// expression.
     pub(crate) fn latch(&mut self, expression: &Expression) -> LocalExpression {
         match expression {
@@ -71,25 +72,26 @@ impl Controller {
         }
     }
 
-    /// Returns the column and row, within the picture, of the array's upper left pixel.
+    /// Returns the column and the row of the array's upper left pixel in the picture.
     pub(crate) fn origin(&self) -> [i32; 2] {
         [self.left.into(), self.top.into()]
     }
 
-    /// Moves the origin of a linear expression from the picture's upper left pixel to the array's upper left pixel.
+    /// Converts an expression from coordinates of the picture to coordinates of the array. The origins are the upper
+    /// left pixels of the picture and of the array.
     #[inline(always)]
     pub(crate) fn localise(&self, e: &Linear) -> Linear {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
     }
 
-    /// Stores the linear coefficients that a command has used last, so that a later instruction can reuse the
-    /// coefficients. The array calls this function for commands that it executes in one step.
+    /// Stores linear coefficients, which a later instruction can reuse. Arrays call this function for commands that
+    /// they execute in one step instead of instruction by instruction.
     pub(crate) fn hold(&mut self, linear: Linear) {
         self.linear = linear;
     }
 
-    /// Stores the quadratic coefficients that a command has used last, so that a later instruction can reuse the
-    /// coefficients. The array calls this function for commands that it executes in one step.
+    /// Stores quadratic coefficients, which a later instruction can reuse. Arrays call this function for commands that
+    /// they execute in one step instead of instruction by instruction.
     pub(crate) fn hold_quadratic(&mut self, quadratic: Quadratic) {
         self.quadratic = quadratic;
     }
@@ -106,8 +108,8 @@ impl Controller {
         }
     }
 
-    /// Returns the bits of pixel memory to which an operand refers in the selected context (the part of pixel memory
-    /// that holds one region).
+    /// Returns the bits of pixel memory to which an operand refers in the selected context (part of pixel memory for
+    /// one region).
     ///
     /// # Errors
     /// Returns [`FaultKind::FieldOutOfRange`] if the bit field ends beyond pixel memory.
@@ -125,8 +127,8 @@ impl Controller {
         }
     }
 
-    /// Checks all operands of an instruction. Each bit field must lie in pixel memory, and the bit fields may overlap
-    /// only as the instruction allows.
+    /// Checks all operands of an instruction. Each bit field must lie in pixel memory. Only some instructions allow bit
+    /// fields that overlap.
     pub(crate) fn check(&self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
         // Shifts can work in place. Products and roots must not overlap their operands.
         match *instruction {
@@ -192,7 +194,7 @@ const fn overlap(destination: &FieldBits, operand: &FieldBits) -> FaultKind {
 }
 
 impl LocalExpression {
-    /// Returns the expression's value at column `x` and row `y`. A linear value is sign-extended from 32 bits, and a
+    /// Returns the expression's value at column `x` and row `y`. A linear value is sign-extended from 32 bits, a
     /// quadratic value from 48 bits.
     pub(crate) fn at(&self, x: i32, y: i32) -> i64 {
         match self {

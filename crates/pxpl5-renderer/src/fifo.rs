@@ -1,21 +1,21 @@
-//! The input FIFO and the controller that empties it. Times of commands are computed by formulas, without an event for
-//! each command.
+//! The input FIFO and the controller that executes its commands. Formulas give the times of commands, so a command
+//! needs no event.
 //!
 //! Rules (the rules that the papers do not state are assumed):
 //!
-//! - A word enters the channel once the FIFO has room for this word. Each word takes one word time on the channel.
+//! - A word enters the channel as soon as the FIFO has room for this word. Each word takes one word time on the
+//!   channel.
 //! - A command starts when all its words have arrived and the previous command has ended.
 //! - The words of a command leave the FIFO when the command starts.
 //! - A *blocking* command (copy of a region) ends when [`InputFifo::resume`] is called. No later command starts before
 //!   its end.
 //!
-//! A SIMD array takes the same time for any data. All start and end times therefore follow from the arrival times, and
-//! a command needs no event.
+//! A SIMD array takes the same time for any data. All start and end times therefore follow from the arrival times.
 
 use pxpl5_sim::{Span, Time};
 use std::collections::VecDeque;
 
-/// Consecutive commands with an equal number of words and equal execution time.
+/// Consecutive commands of equal length and equal execution time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CommandBatch {
     pub(crate) words_each: u32,
@@ -24,7 +24,7 @@ pub(crate) struct CommandBatch {
     pub(crate) span_each: Option<Span>,
 }
 
-/// Times at which the FIFO's state will change. These times are computed when words arrive or when a copy ends.
+/// Future times at which the state of the FIFO changes. They are computed when words arrive or a copy ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
     /// Time at which the last word of the arriving message enters the FIFO. `None` while this time is unknown.
@@ -45,8 +45,8 @@ struct HeldCommand {
 /// An interval is at least as long as the transfer of a command's words over the channel.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
-    /// Index of the first word that must wait for the start of this sequence's first command, because the FIFO is full
-    /// before. Words are counted from 0 since the start of the simulation.
+    /// Index of the first word for which the FIFO has no room before the first of these commands starts. Words are
+    /// counted from 0 since the start of the simulation.
     made_room_for: u64,
     left_at: Time,
     count: u64,
@@ -55,8 +55,8 @@ struct Departure {
 }
 
 impl Departure {
-    /// Returns the index, within this sequence, of the command whose start makes room for word `word`. If the sequence
-    /// makes no room for this word, the function returns the last index.
+    /// Returns the index, among these commands, of the command whose start makes room for word `word`. Returns the last
+    /// index if none of the commands makes room for this word.
     ///
     /// `word` must be at least `made_room_for`.
     const fn last_for(&self, word: u64) -> u64 {
@@ -77,18 +77,17 @@ impl Departure {
     }
 }
 
-/// Start times of past commands. A start time is kept as long as the arrival of a later word can depend on it.
+/// Start times of past commands. A start time is kept while the arrival of a later word can depend on it.
 #[derive(Debug, Default)]
 struct StartTimes(VecDeque<Departure>);
 
 impl StartTimes {
-    /// Returns the time at which the words with indices `first` to `last` have all entered the FIFO. The result is at
-    /// least `soonest`.
+    /// Returns the time at which the last of the words `first` to `last` enters the FIFO, but at least `soonest`.
     ///
     /// Each word waits until the FIFO has room for this word, and then takes one word time on the channel. `first` must
-    /// be at least the `first` of the previous call. In a sequence of commands that start at equal intervals, only the
-    /// last command that makes room matters. The words that earlier commands admit have then already passed, because an
-    /// interval is at least as long as the transfer of a command's words.
+    /// be at least the `first` of the previous call. Of several commands that start at equal intervals, only the last
+    /// command that makes room determines the result. An interval is at least as long as the transfer of a command's
+    /// words, so the words after earlier starts have already entered.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.discard_before(first);
@@ -114,7 +113,6 @@ impl StartTimes {
     }
 }
 
-/// The FIFO and the controller that empties the FIFO. Sizes are in words, and times are simulated times.
 #[derive(Debug)]
 pub(crate) struct InputFifo {
     depth: u64,
@@ -127,62 +125,60 @@ pub(crate) struct InputFifo {
     left: StartTimes,
     words_left: u64,
     waiting: VecDeque<HeldCommand>,
-    /// Time from which the controller can start another command. `None` while a blocking command (the copy of a region)
-    /// runs.
+    /// Time from which the controller can start the next command. `None` while a blocking command (the copy of a
+    /// region) runs.
     free_at: Option<Time>,
     busy: Span,
     /// Total time for which blocking commands (copies of regions) have occupied the controller.
     blocked: Span,
     last_block: Block,
-    /// Start and end of the last interval in which the controller waited for commands.
+    /// Start and end of the latest interval in which the controller waited for commands.
     last_wait: (Time, Time),
-    /// Record of the words that enter and leave the FIFO. `None` if this record is off.
     watched: Option<Watched>,
 }
 
-/// Longest execution time of a command that only selects the region to copy (6 clocks of 40 MHz, 150 ns).
+/// Longest time in which a command can select the region to copy without drawing. The selection takes 6 clocks of 40
+/// MHz, 150 ns.
 ///
 /// If at most this time lies between a wait of the controller and a copy command, the region was already drawn before
 /// the wait. Work that takes longer counts as drawing.
 const SELECTION: Span = Span::from_ns(1_000);
 
-/// Times of the last blocking command (copy of a region) and of the commands before it.
+/// Times of the latest blocking command (copy of a region), and of the commands before it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Block {
-    /// End time of the previous blocking command. From this time on, the controller could execute the commands between
-    /// the two blocking commands.
+    /// End of the previous blocking command. From this time on, the controller could execute the commands between the
+    /// two blocking commands.
     pub(crate) begun_at: Time,
-    /// Time at which the drawing before this blocking command ended. A wait before the copy command, and the selection
-    /// of the region after this wait, do not count as drawing.
+    /// Time at which the drawing before this blocking command ended. A wait for the copy command does not count as
+    /// drawing, and neither does the selection of the region after the wait.
     pub(crate) finished_at: Time,
-    /// Start time of this blocking command.
     pub(crate) start: Time,
-    /// Execution time of the commands between the previous blocking command and this command.
+    /// Sum of the execution times of the commands between the previous blocking command and this command.
     pub(crate) executed: Span,
-    /// Execution time of all commands before this command, since the start of the simulation.
+    /// Sum of the execution times of all commands before this command, since the start of the simulation.
     busy: Span,
-    /// Time of the latest end of a blocking command.
+    /// End of the latest completed blocking command.
     resumed_at: Time,
 }
 
-/// Record of the words that enter and leave the FIFO. The times of the record can lie in the future.
+/// Record of the words that enter and leave the FIFO. Its times can lie in the future.
 #[derive(Debug, Default)]
 struct Watched {
-    /// Changes of the number of words in the FIFO since the last [`InputFifo::take_changes`]. Each entry has a time,
-    /// and the number of words that enter (positive) or leave (negative).
+    /// Changes of the number of words in the FIFO since the last [`InputFifo::take_changes`]: the time, and the number
+    /// of words that enter (positive) or leave (negative).
     changes: Vec<(Time, i64)>,
     entered: Course,
     left: Course,
 }
 
-/// A number of words that grows with simulated time, for example the words that have entered the FIFO. Entries before
+/// A count of words that grows with simulated time, for example the words that have entered the FIFO. Entries before
 /// the last call of `discard_before` are removed.
 #[derive(Debug, Default)]
 struct Course {
-    /// The growth of the number of words, in the order of time. Each entry has a time and the number of words from this
-    /// time on.
+    /// Steps of the count, in the order of time. Each step has its time, and the count from this time on.
     steps: VecDeque<(Time, u64)>,
-    /// The number of words before the first entry of `steps`.
+    /// Count before the first entry of `steps`.
     before: u64,
     after: u64,
 }
@@ -205,12 +201,12 @@ impl Course {
     }
 }
 
-/// Numbers of words that have entered and left a FIFO since the start of the simulation.
+/// Numbers of words that have entered and left the FIFO since the start of the simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct WordsPassed {
-    /// Number of words in commands that have arrived completely.
+    /// Words of commands that have arrived completely.
     pub(crate) entered: u64,
-    /// Number of words in commands that have started.
+    /// Words of commands that have started.
     pub(crate) started: u64,
 }
 
@@ -235,22 +231,21 @@ impl InputFifo {
         }
     }
 
-    /// Adds commands to the next message. Commands must be added in the order of their words in the message. A call of
-    /// [`Self::message`] then computes the arrival of the message.
+    /// Adds commands to the message that [`Self::message`] announces next, in the order of their words in the message.
     pub(crate) fn take(&mut self, work: CommandBatch) {
         self.in_transit.push_back(work);
     }
 
-    /// Computes the arrival of a message that consists of all commands [added](Self::take) since the previous message.
+    /// Computes the arrival of a message. The message consists of the commands that calls of `take` have added
+    /// since the previous message.
     ///
-    /// The first word of the message is on the channel at time `begins`.
+    /// `begins` is the time at which the first word of the message is on the channel.
     pub(crate) fn message(&mut self, begins: Time) -> Progress {
         self.last_word_at = self.last_word_at.max(begins);
         self.transit_known = false;
         self.advance()
     }
 
-    /// Ends the running blocking command (the copy of a region) at time `now`.
     pub(crate) fn resume(&mut self, now: Time) -> Progress {
         self.free_at = Some(now);
         self.blocked += now.since(self.last_block.start);
@@ -258,26 +253,26 @@ impl InputFifo {
         self.advance()
     }
 
-    /// Returns the total execution time of all received commands, without blocking commands.
+    /// Returns the sum of the execution times of all received commands, without blocking commands.
     pub(crate) const fn busy(&self) -> Span {
         self.busy
     }
 
-    /// Returns the total execution time until `now`, without blocking commands. `now` must not be earlier than the last
-    /// handled event. The function assumes that all received but unfinished commands run without a gap from `now` on.
+    /// Returns the time until `now` that the controller has spent on commands, without blocking commands. `now` must
+    /// not be earlier than the last handled event. The function assumes that the controller executes all unfinished
+    /// commands from `now` on without a gap.
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let ahead = self.free_at.map_or(0, |free_at| free_at.0.saturating_sub(now.0));
         Span(self.busy.0.saturating_sub(ahead))
     }
 
-    /// Returns the total time until `now` for which blocking commands have occupied the controller.
+    /// Returns the time until `now` for which blocking commands have occupied the controller.
     pub(crate) fn blocked_at(&self, now: Time) -> Span {
         let goes_on = self.free_at.is_none().then(|| now.0.saturating_sub(self.last_block.start.0));
         self.blocked + Span(goes_on.unwrap_or(0))
     }
 
-    /// Returns the last blocking command (copy of a region). The times of the result are valid once this command has
-    /// started.
+    /// Returns the last blocking command (copy of a region). Its times are valid only after the start of the command.
     pub(crate) const fn last_block(&self) -> Block {
         self.last_block
     }
@@ -286,8 +281,8 @@ impl InputFifo {
         self.watched.get_or_insert_default();
     }
 
-    /// Returns the numbers of words that have entered and left the FIFO by `now`. Returns `None` if these numbers are
-    /// not recorded. `now` must not be earlier than the last handled event.
+    /// Returns the numbers of words that have entered and left the FIFO by `now`, or `None` if recording is off. `now`
+    /// must not be earlier than the last handled event.
     pub(crate) fn passed(&self, now: Time) -> Option<WordsPassed> {
         let watched = self.watched.as_ref()?;
         Some(WordsPassed { entered: watched.entered.at(now), started: watched.left.at(now) })
@@ -304,7 +299,7 @@ impl InputFifo {
         self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }
 
-    /// Returns true if a non-blocking command runs at time `now`. The function uses only the commands received so far.
+    /// Returns true if a non-blocking command runs at time `now`, according to the commands received so far.
     pub(crate) fn is_executing(&self, now: Time) -> bool {
         self.free_at.is_some_and(|free_at| free_at > now)
     }
@@ -316,7 +311,7 @@ impl InputFifo {
     fn advance(&mut self) -> Progress {
         let mut progress = Progress { accepted: None, blocks: self.start_waiting() };
         while let Some(work) = self.in_transit.pop_front() {
-            // Without a blocking command or an observer, all commands of the batch are computed at once.
+            // Without a blocking command or a record of words, compute all commands of the batch at once.
             let words = work.words_each;
             let span = work.span_each;
             if let (Some(free_at), Some(span_each), None) = (self.free_at, span, &self.watched)
@@ -327,7 +322,7 @@ impl InputFifo {
                 self.run_freely(work, free_at, span_each);
                 continue;
             }
-            // Otherwise words can wait for room, so each command is computed alone.
+            // Otherwise words can wait for room, so compute each command alone.
             for entered in 0..work.count {
                 let Some(complete) = self.arrival(words) else {
                     self.in_transit.push_front(CommandBatch { count: work.count - entered, ..work });
@@ -350,12 +345,12 @@ impl InputFifo {
         progress
     }
 
-    /// Computes the times of all commands of a batch in one step. The results equal the results of
-    /// [`InputFifo::arrival`] and [`InputFifo::start`], called for each command.
+    /// Computes the times of all commands of a batch in one step. Calls of [`InputFifo::arrival`] and
+    /// [`InputFifo::start`] for each command would give the same results.
     ///
-    /// `free_at` is the end of the command before the batch, and `span` the time of each command. No observer may
-    /// record the FIFO ([`InputFifo::watch`]). Each command must fit in the FIFO, must not block, and must take at
-    /// least as long as the transfer of its words. The words of each command then arrive while the previous command
+    /// `free_at` is the end of the command before the batch, and `span` is the execution time of each command.
+    /// Recording ([`InputFifo::watch`]) must be off. Each command must fit in the FIFO, must not block, and must take
+    /// at least as long as the transfer of its words. The words of each command then arrive while the previous command
     /// executes. Each command after the first therefore starts at the end of the previous command.
     fn run_freely(&mut self, work: CommandBatch, free_at: Time, span: Span) {
         debug_assert!(
@@ -385,7 +380,7 @@ impl InputFifo {
         self.busy += span * count;
     }
 
-    /// Records an interval in which the controller waited for commands. Does nothing if the interval is empty.
+    /// Records an interval in which the controller waited for commands, unless the interval is empty.
     #[inline]
     fn note_wait(&mut self, from: Time, to: Time) {
         if to > from {
@@ -393,8 +388,8 @@ impl InputFifo {
         }
     }
 
-    /// Returns the time at which the `words` words that arrive next have all entered the FIFO. Returns `None` while
-    /// this time depends on the end of a blocking command (copy of a region).
+    /// Returns the time at which the next `words` words have all entered the FIFO. Returns `None` while this time
+    /// depends on the end of a blocking command (copy of a region).
     fn arrival(&mut self, words: u32) -> Option<Time> {
         let first = self.words_in;
         let last = self.words_in + u64::from(words) - 1;
@@ -406,7 +401,7 @@ impl InputFifo {
     }
 
     /// Starts the waiting commands in order, up to and including the first blocking command (copy of a region). Returns
-    /// the start time of the blocking command, or `None` if no blocking command has started.
+    /// the start time of the blocking command, or `None` if none has started.
     fn start_waiting(&mut self) -> Option<Time> {
         while let Some(free_at) = self.free_at {
             let command = self.waiting.pop_front()?;
@@ -418,8 +413,8 @@ impl InputFifo {
         None
     }
 
-    /// Starts a command that has arrived completely. If a blocking command runs, the function puts the new command into
-    /// the queue instead. Returns the start time if the new command blocks.
+    /// Starts a command that has arrived completely, or puts it into the queue while a blocking command runs. Returns
+    /// the start time if the new command starts and is a blocking command.
     fn start_or_wait(&mut self, command: HeldCommand) -> Option<Time> {
         match self.free_at {
             Some(free_at) => self.start(command, free_at),
@@ -430,12 +425,12 @@ impl InputFifo {
         }
     }
 
-    /// Starts a command that has arrived completely. The start time is `free_at` or the arrival, whichever is later.
-    /// Returns the start time if the command blocks.
+    /// Starts a command that has arrived completely, at `free_at` or at its arrival, whichever is later. Returns the
+    /// start time if the command is a blocking command.
     fn start(&mut self, command: HeldCommand, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);
-        // The words of a copy command arrive after the words of the selection. This wait is not a wait for the commands
-        // of the region.
+        // The words of a copy command arrive after the words that select its region. A wait between the two is not a
+        // wait for the commands of the region.
         if command.span.is_some() {
             self.note_wait(free_at, start);
         }
@@ -542,7 +537,7 @@ mod tests {
         }
 
         #[test]
-        fn runs_are_the_same_as_single_commands(count in 1u32..60, words in 1u32..40, ns in 0u64..9_000) {
+        fn a_run_takes_the_time_of_its_single_commands(count in 1u32..60, words in 1u32..40, ns in 0u64..9_000) {
             let mut runs = InputFifo::new(448, WORD);
             let mut singles = InputFifo::new(448, WORD);
             let run = CommandBatch { words_each: words, count, span_each: Some(Span::from_ns(ns)) };
@@ -554,7 +549,7 @@ mod tests {
     }
 
     #[test]
-    fn behind_a_copy_words_enter_until_the_fifo_is_full_and_no_further() {
+    fn words_behind_a_copy_enter_until_the_fifo_is_full() {
         let mut fifo = InputFifo::new(100, WORD);
         let copy = CommandBatch { words_each: 10, count: 1, span_each: None };
         let triangle = CommandBatch { words_each: 30, count: 1, span_each: Some(Span::from_ns(6_675)) };
@@ -570,7 +565,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_clump_behind_a_copy_what_has_no_room_comes_in_behind_it() {
+    fn the_rest_of_a_clump_enters_the_fifo_after_the_copy() {
         let mut fifo = InputFifo::new(100, WORD);
         let copy = CommandBatch { words_each: 10, count: 1, span_each: None };
         let clump = CommandBatch { words_each: 30, count: 5, span_each: Some(Span::from_ns(6_675)) };
@@ -585,7 +580,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_no_commands_is_none() {
+    fn a_run_of_zero_commands_changes_no_time() {
         let run = |count, ns| CommandBatch { words_each: 29, count, span_each: Some(Span::from_ns(ns)) };
         let accepted = |runs: &[CommandBatch]| {
             let mut fifo = InputFifo::new(100, WORD);
@@ -596,7 +591,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thirty_triangle_clump_stalls_its_sender_by_what_the_fifo_cannot_hold() {
+    fn a_clump_of_thirty_triangles_stalls_its_sender_until_its_last_word_fits_into_the_fifo() {
         // 30 commands have 29 words and take 6.675 us each. The first command starts when its 29 words have entered
         // (1.45 us). Word k >= 448 waits for the start of the command with word k - 448. The last word (869) therefore
         // waits for the start of command floor((869 - 448) / 29) = 14 at 1.45 + 14 x 6.675 us. This start makes room

@@ -1,17 +1,18 @@
 //! The instruction set of the renderer's controller.
 //!
 //! No list of the machine's instructions is public. F89, TR94 and LK publish only the principles. Bit-serial
-//! instructions arrive in ring messages. An Enable register masks pixels. A tree evaluates linear and quadratic
-//! expressions in all pixels together. Each pixel has 208 bits of memory. A backing store moves 32-bit blocks in the
-//! background. Mnemonics, encodings and operand rules below are **assumed**. These instructions are the smallest set
-//! that can execute the published program of a triangle and the shading at the end of a region.
+//! instructions arrive in ring messages. An Enable register decides which pixels an instruction changes. A tree
+//! evaluates linear and quadratic expressions in all pixels together. Each pixel has 208 bits of memory. A backing
+//! store moves 32-bit blocks in the background. Mnemonics, encodings and operand rules below are **assumed**. These
+//! instructions are the smallest set that can execute the published program of a triangle, and the shading of a region
+//! after its last primitive.
 //!
 //! # Words
 //!
 //! The first word of an instruction is `opcode << 24 | modifier << 16 | operand`. An operand encodes a *bit field* of
-//! pixel memory in 16 bits. Bit 15 is set if the bit field is signed. Bit 14 is set if the address is relative to the
-//! context's base. Bits 13..8 are width - 1. Bits 7..0 are the address of the least significant bit. Unused bits must
-//! be zero.
+//! pixel memory in 16 bits. Bit 15 is set if the bit field is signed. Bit 14 is set if the address counts from the
+//! first bit of the selected context (the part of pixel memory with the region). Bits 13..8 are width - 1. Bits 7..0
+//! are the address of the least significant bit. Unused bits must be zero.
 //!
 //! | opcode | instruction | words | bit clocks | effect |
 //! |---|---|---|---|---|
@@ -49,7 +50,7 @@
 //!
 //! # Rules
 //!
-//! - Enable masks writes to pixel memory and sources of the backing store, unless the table says *every*.
+//! - An instruction writes only to enabled pixels, unless the table contains the word *every*.
 //! - Results are taken modulo 2^w. An operand narrower than the result is sign-extended if its *signed* bit is set,
 //!   otherwise zero-extended. A comparison, minimum or maximum needs operands of equal signedness.
 //! - Linear expressions are evaluated modulo 2^32, and quadratic expressions modulo 2^48. Both are in two's complement.
@@ -76,27 +77,25 @@ pub const MEMORY_BITS: u32 = 208;
 /// Width in bits of a linear expression's value. Assumed: one word for each coefficient.
 pub const LINEAR_BITS: u32 = 32;
 
-/// Width in bits of a quadratic expression's value. Assumed: 16 fraction bits, and spheres of up to 2^15 pixels.
+/// Width in bits of a quadratic expression's value. Assumed: 16 fraction bits, and spheres with a radius of up to 2^15
+/// pixels.
 pub const QUADRATIC_BITS: u32 = 48;
 
 /// Number of 32-bit blocks of each pixel in the backing store: 4,096 bits per pixel (F89).
 pub const BACKING_BLOCKS: u8 = 128;
 
-/// An expression that the evaluator delivers to all pixels.
+/// An expression that the evaluator computes for all pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expression {
-    /// A linear expression with its coefficients.
     Linear(Linear),
-    /// A quadratic expression with its coefficients.
     Quadratic(Quadratic),
-    /// The most recent linear expression again, with the coefficients that the evaluator has stored.
+    /// The last linear expression, whose coefficients the evaluator has stored.
     LinearAgain,
-    /// The most recent quadratic expression again, with the coefficients that the evaluator has stored.
+    /// The last quadratic expression, whose coefficients the evaluator has stored.
     QuadraticAgain,
 }
 
 impl Expression {
-    /// Returns the number of bits of the expression's value.
     #[must_use]
     pub const fn bits(&self) -> u32 {
         match self {
@@ -105,7 +104,6 @@ impl Expression {
         }
     }
 
-    /// Returns true if the expression is quadratic.
     #[must_use]
     pub const fn is_quadratic(&self) -> bool {
         matches!(self, Self::Quadratic(_) | Self::QuadraticAgain)
@@ -115,45 +113,34 @@ impl Expression {
 /// The operation that pixels perform with the bits of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExpressionUse {
-    /// Disables pixels where the expression is negative.
     DisableNegative,
-    /// Stores the bits of the expression in a bit field of pixel memory, from bit `shift` of the expression on.
+    /// Stores bits `shift` to `shift + w - 1` of the expression in `field`, which has w bits.
     Load {
-        /// Bit field of pixel memory that receives the bits of the expression.
         field: Operand,
-        /// Number of lowest bits of the expression that are ignored.
         shift: u8,
     },
-    /// Adds the bits of the expression to a bit field of pixel memory, from bit `shift` of the expression on.
+    /// Adds bits `shift` to `shift + w - 1` of the expression to `field`, which has w bits.
     Add {
-        /// Bit field of pixel memory to which the bits of the expression are added.
         field: Operand,
-        /// Number of lowest bits of the expression that are ignored.
         shift: u8,
     },
-    /// Compares the bits of the expression from bit `shift` on with a bit field of pixel memory, as unsigned numbers.
-    /// Disables the pixels in which the number from the expression is not less than the bit field.
+    /// Disables the pixels in which bits `shift` to `shift + w - 1` of the expression are not less than `field`, as
+    /// unsigned numbers. `field` has w bits.
     DisableNotLess {
-        /// Bit field of pixel memory with which the bits of the expression are compared.
         field: Operand,
-        /// Number of lowest bits of the expression that are ignored.
         shift: u8,
     },
-    /// Computes the expression minus `subtrahend << left_shift`, and stores the bits of this difference from bit
-    /// `shift` on.
+    /// Computes the expression minus `subtrahend << left_shift`. Stores bits `shift` to `shift + w - 1` of the result
+    /// in `field`, which has w bits.
     LoadMinus {
-        /// Bit field of pixel memory that receives the bits of the difference.
         field: Operand,
-        /// Number of lowest bits of the difference that are ignored.
         shift: u8,
-        /// Bit field of pixel memory to subtract, sign-extended if it is signed, otherwise zero-extended.
         subtrahend: Operand,
-        /// Left shift of the subtrahend before the subtraction, in bits.
         left_shift: u8,
     },
 }
 
-/// An operation on two bit fields a and b of pixel memory, with a result of w bits.
+/// An operation on two bit fields a and b of pixel memory. The bit field of the result has w bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArithmeticOp {
     /// a + b, modulo 2^w.
@@ -164,11 +151,8 @@ pub enum ArithmeticOp {
     Multiply,
     /// a / b, rounded down. The remainder replaces a.
     Divide,
-    /// Bitwise a AND b.
     And,
-    /// Bitwise a OR b.
     Or,
-    /// Bitwise a XOR b.
     Xor,
     /// The smaller of a and b, which are both signed or both unsigned.
     Minimum,
@@ -179,153 +163,126 @@ pub enum ArithmeticOp {
 /// A comparison of a with b. Pixels for which the comparison is false are disabled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Test {
-    /// True if a < b.
     Less,
-    /// True if a >= b.
     NotLess,
-    /// True if a = b.
     Equal,
-    /// True if a and b differ.
     NotEqual,
 }
 
-/// One instruction of the controller. E is the Enable register of a pixel.
+/// One instruction of the controller. E is the Enable bit of a pixel.
+///
+/// An [`Operand`] is a bit field of pixel memory. Signed operands are sign-extended, and unsigned operands are
+/// zero-extended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrayInstruction {
     /// Enables every pixel: E := 1.
     EnableAll {
-        /// A number that the array ignores. If the instruction is the first of a command, the number is the opcode of
-        /// the command's kind.
+        /// A number that the array ignores. In the first instruction of a command, it is the opcode of the command's
+        /// kind.
         label: u8,
     },
     /// Disables every pixel: E := 0.
     EnableNone,
     /// Inverts the Enable register in every pixel: E := not E.
     EnableInvert,
-    /// Loads the Enable register from a bit field of one bit.
+    /// E := the bit in a bit field of one bit.
     EnableLoad(Operand),
-    /// Stores the Enable register in a bit field of one bit, in every pixel.
+    /// Stores E in a bit field of one bit, in every pixel.
     EnableStore(Operand),
     /// Disables the pixels in which a bit field of one bit is 0: E := E AND bit.
     EnableAnd(Operand),
     /// Selects the region for the following instructions, and the context (part of pixel memory) that holds it.
     Select {
-        /// First bit of the context (the part of pixel memory that holds the region). This number is added to the
-        /// addresses of relative operands.
+        /// First bit of the context (part of pixel memory). This number is added to the addresses of relative operands.
         context_base: u8,
-        /// Screen x of the array's left column.
+        /// x coordinate of the array's left column on the screen, in pixels.
         left: u16,
-        /// Screen y of the array's top row.
+        /// y coordinate of the array's top row on the screen, counted in drawn lines.
         top: u16,
     },
-    /// Evaluates an expression in all pixels.
     Evaluate {
-        /// Expression to evaluate, with new coefficients or with the coefficients of an earlier expression.
         expression: Expression,
-        /// Operation that each pixel performs with the bits of the expression, for example a comparison.
         usage: ExpressionUse,
     },
     /// Computes destination := source >> by. A shift by 0 copies the source.
     ShiftRight {
-        /// Bit field of pixel memory that receives the result.
         destination: Operand,
-        /// Bit field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Number of bits to shift, 0 to 63.
         by: u8,
     },
-    /// Computes destination := source << by in every enabled pixel.
+    /// Computes destination := source << by.
     ShiftLeft {
-        /// Bit field of pixel memory that receives the result.
         destination: Operand,
-        /// Bit field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Number of bits to shift, 0 to 63.
         by: u8,
     },
     /// Computes destination := source limited to 0 .. 2^w - 1, for a destination of w bits.
     Saturate {
-        /// Bit field of pixel memory that receives the result.
         destination: Operand,
-        /// Bit field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
     },
     /// Computes destination := floor(sqrt(radicand)). The remainder replaces the radicand.
     SquareRoot {
-        /// Bit field of pixel memory that receives the root. The bit field has 1 to 32 bits.
+        /// Operand of 1 to 32 bits.
         destination: Operand,
-        /// Bit field of pixel memory with the radicand. The bit field has twice as many bits as the root.
+        /// Operand with twice as many bits as the root.
         radicand: Operand,
     },
-    /// Computes destination := a op b in every enabled pixel, for the operation `op`.
+    /// Computes destination := a op b, for the operation `op`.
     Arithmetic {
         op: ArithmeticOp,
-        /// Bit field of pixel memory that receives the result.
         destination: Operand,
-        /// First operand: a bit field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         a: Operand,
-        /// Second operand: a bit field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         b: Operand,
     },
     /// Compares two bit fields, and disables the pixels for which the comparison is false.
     Compare {
-        /// Comparison of two numbers in each pixel. A pixel is disabled if the comparison is false.
         test: Test,
-        /// First operand: a bit field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         a: Operand,
-        /// Second operand: a bit field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         b: Operand,
     },
     /// Compares a bit field with a constant, and disables the pixels for which the comparison is false. The constant
     /// has the width and signedness of the bit field.
     CompareConstant {
-        /// Comparison of two numbers in each pixel. A pixel is disabled if the comparison is false.
         test: Test,
         a: Operand,
-        /// Constant. A bit field of less than 32 bits uses its low bits. For a bit field of more than 32 bits, the
-        /// constant is sign-extended if the bit field is signed, otherwise zero-extended.
+        /// A bit field of less than 32 bits uses the low bits of this constant. For a bit field of more than 32 bits,
+        /// the constant is sign-extended or zero-extended, like the bit field.
         value: u32,
     },
     /// Computes destination := value. For a destination of more than 32 bits, the value is sign-extended if the
     /// destination is signed, otherwise zero-extended.
     LoadConstant {
-        /// Bit field of pixel memory that receives the constant.
         destination: Operand,
-        /// Constant that every enabled pixel stores.
         value: u32,
     },
     /// Multiplies a bit field by a constant: destination := source * factor.
     MultiplyConstant {
-        /// Bit field of pixel memory that receives the product.
         destination: Operand,
-        /// Bit field of pixel memory to multiply, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
-        /// Factor in two's complement. Only its low `factor_bits` bits are used.
+        /// Factor in two's complement, of which only the low `factor_bits` bits are used.
         factor: i32,
         /// Number of bits of the factor, including its sign.
         factor_bits: u8,
     },
     /// Stores 32 bits of every pixel in a block of the backing store. The array continues during the transfer.
     StoreBlock {
-        /// Bit field of 32 bits of pixel memory whose content is stored.
         field: Operand,
         /// Block of the backing store, 0 to 127.
         block: u8,
     },
     /// Loads 32 bits of every pixel from a block of the backing store. The array continues during the transfer.
     LoadBlock {
-        /// Bit field of 32 bits of pixel memory that receives the content of the block.
         field: Operand,
         /// Block of the backing store, 0 to 127.
         block: u8,
     },
-    /// Waits until all transfers of the backing store have ended.
     Wait,
-    /// Sends a colour of 24 bits, from each pixel of the region, to a frame buffer.
+    /// Sends the 24 bits of `field`, from each pixel of the region, to a frame buffer.
     Output {
-        /// Bit field of pixel memory with the colour, 24 bits.
         field: Operand,
-        /// Frame buffer, region and lines that receive the pixels.
         target: CopyTarget,
     },
 }

@@ -1,4 +1,4 @@
-//! Pixels of one region. The pixels are computed only when they are read.
+//! Computation of the pixels of a region, which runs only when the pixels are read.
 
 use crate::{Command, Lanes, Layout, OutputRegion, PixelArray};
 use pxpl5_wire::format::Z_BITS;
@@ -8,22 +8,19 @@ use std::fmt;
 use std::slice::Iter;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// A pool of pixel arrays. A thread uses one array of the pool while the thread computes pixels.
+/// A pool of pixel arrays. Each thread that computes pixels takes one array from the pool.
 pub struct ArrayPool {
     layout: Layout,
     idle: Mutex<Vec<ArrayAndWords>>,
-    /// Cached pixels of regions without primitives. The cache key contains the size and the command words of a region.
     empty_regions: Mutex<HashMap<EmptyRegion, Arc<[Word]>>>,
 }
 
-/// The pixel array and the word buffer that one thread uses to compute pixels.
 struct ArrayAndWords {
     array: Lanes,
-    /// Buffer for the words of command lists. The thread reuses the buffer to avoid allocations.
     words: Vec<Word>,
 }
 
-/// Cache key of a region without primitives. The key contains all data that affect the pixels of the region.
+/// Cache key of a region without primitives. It contains all data that affect the pixels of the region.
 #[derive(Debug, PartialEq, Eq, Hash)]
 struct EmptyRegion {
     words: Vec<Word>,
@@ -41,7 +38,7 @@ impl fmt::Debug for ArrayPool {
 }
 
 impl ArrayPool {
-    /// Creates a pool. The arrays of the pool divide pixel memory as `layout` states.
+    /// Creates a pool, whose arrays divide pixel memory as `layout` states.
     #[must_use]
     pub fn new(layout: Layout) -> Arc<Self> {
         Arc::new(Self { layout, idle: Mutex::default(), empty_regions: Mutex::default() })
@@ -59,8 +56,7 @@ impl ArrayPool {
         result
     }
 
-    /// Returns the pixels of a region without primitives. The pixels come from the cache if the same region was drawn
-    /// before.
+    /// Returns the pixels of a region without primitives, from the cache if the same region was drawn before.
     fn empty_region(&self, region: EmptyRegion, draw: impl FnOnce() -> Arc<[Word]>) -> Arc<[Word]> {
         if let Some(pixels) = self.kept_empty_regions().get(&region) {
             return Arc::clone(pixels);
@@ -79,21 +75,19 @@ impl ArrayPool {
     }
 }
 
-/// A computation of a region's pixels that has not run yet. The job holds all command lists sent to a region context
-/// (part of pixel memory) since the last clear of this context.
+/// A computation of a region's pixels that has not run yet. It holds all command lists that a region context (part of
+/// pixel memory) has received since its last clear.
 #[derive(Debug)]
 pub(crate) struct PixelJob {
     pub(crate) pool: Arc<ArrayPool>,
     pub(crate) lists: Arc<Vec<CommandContent>>,
-    /// True if the first command list overwrites the region's content in pixel memory, so that older content has no
-    /// effect.
+    /// True if the first command list overwrites the old content of the region in pixel memory.
     pub(crate) cleared: bool,
-    /// True if commands that touch no pixel are left out and regions without primitives are cached. These are two
-    /// optimizations.
+    /// True if two optimizations are on: commands that touch no pixel are left out, and regions without primitives are
+    /// cached.
     pub(crate) saves: bool,
-    /// Frame buffer and region that receive the pixels.
     pub(crate) target: CopyTarget,
-    /// Content of each pixel to send: colour, or colour and depth.
+    /// Data of each pixel that are sent: colour, or colour and depth.
     pub(crate) content: CopyContent,
     pub(crate) done: OnceLock<Arc<[Word]>>,
 }
@@ -114,10 +108,9 @@ impl PixelJob {
         })
     }
 
-    /// Returns the cache key of a region whose commands are `words`. The caller must ensure that none of these commands
-    /// draws a primitive.
+    /// Returns the cache key of a region with the commands `words`. None of these commands may draw a primitive.
     ///
-    /// Returns `None` if some words are not a command, or if depths are copied too.
+    /// Returns `None` if some words are not a command, or if the copy includes depths.
     fn as_empty_region(&self, words: &[Word]) -> Option<EmptyRegion> {
         let mut kept = Vec::new();
         let mut at = 0;
@@ -137,7 +130,6 @@ impl PixelJob {
         [width, height]
     }
 
-    /// Executes `words`, then the command lists in `lists`, and returns the region's pixels.
     fn draw(&self, array: &mut Lanes, words: &mut Vec<Word>, lists: Iter<'_, CommandContent>) -> Arc<[Word]> {
         // If the context was not cleared, pixels without drawing are black.
         if !self.cleared {
@@ -174,8 +166,8 @@ impl PixelJob {
     /// Returns the depths of the region's pixels as 24-bit numbers, from 0 at the near plane to 2^24 - 1 at the far
     /// plane.
     ///
-    /// A layout with a narrower Z does not store the low bits of the depth. These bits are set to 1 at the far plane
-    /// and to 0 at other pixels.
+    /// A layout with a narrower Z does not store the low bits of the depth. At the far plane, these bits are all 1 in
+    /// the result. At other depths, they are all 0.
     fn depths(&self, array: &Lanes) -> Vec<Word> {
         let [width, height] = self.size();
         let missing = Z_BITS - u32::from(self.pool.layout.plan().z.width);
@@ -193,7 +185,6 @@ impl PixelSource for PixelJob {
 
 const DEPTH_FARTHEST: Word = (1 << Z_BITS) - 1;
 
-/// Pixels of a copied region while the computation of pixels is off. All these pixels are zero.
 #[derive(Debug)]
 pub(crate) struct NoPixels {
     pub(crate) words: u32,
@@ -255,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_region_is_drawn_once_whatever_picture_it_is_for_and_again_for_another_colour() {
+    fn an_empty_region_is_drawn_once_for_each_background_colour() {
         let pool = ArrayPool::new(Layout::rendering_control_phong());
         let [first, second, other] = [(0x10_20_30, 4), (0x10_20_30, 5), (0x10_20_31, 6)]
             .map(|(colour, picture)| cleared(&pool, colour, picture));

@@ -1,5 +1,5 @@
-//! Fast pixel array that computes with whole numbers instead of single bits. The results of the array equal
-//! [`crate::BitSerial`] bit for bit.
+//! Fast pixel array that computes with whole numbers instead of single bits. Its results equal the results of
+//! [`crate::BitSerial`] in every bit.
 
 mod bounds;
 mod columns;
@@ -40,8 +40,8 @@ pub struct Lanes {
     templates: Templates,
     controller: Controller,
     columns: PixelColumns,
-    /// Indices of the columns (arrays of words) of the context that was used last. A context is the part of pixel
-    /// memory that holds one region. `None` if no context was used.
+    /// Columns (arrays of words) of the context that was used last. A context is the part of pixel memory that holds
+    /// one region.
     selected: Option<ContextColumns>,
     enable: Enable,
     backing: Vec<Option<Box<[u64]>>>,
@@ -50,15 +50,15 @@ pub struct Lanes {
 }
 
 impl Lanes {
-    /// Creates an array in which all bits are zero. The array recognizes the commands of `layout`, and executes these
-    /// commands faster than single instructions.
+    /// Creates an array in which all bits are zero. The array recognizes the commands of `layout`, and executes them
+    /// faster than single instructions.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
     }
 
-    /// Creates an array of zeros that computes with the vector instructions `vectors`. If the computer lacks these
-    /// instructions, the array uses portable code.
+    /// Creates an array whose memory is all zero. The array computes with the vector instructions `vectors`, or with
+    /// portable code if the computer lacks these instructions.
     #[must_use]
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
@@ -111,7 +111,7 @@ impl Lanes {
     /// Returns the depths of the upper left `width` x `height` pixels of the selected context (region in pixel memory),
     /// row by row.
     ///
-    /// A depth has as many bits as the layout's bit field Z.
+    /// A depth has as many bits as Z has in the layout.
     pub(crate) fn read_depth(&self, width: u32, height: u32) -> Arc<[Word]> {
         let depth = self.controller.bits(self.layout.plan().z);
         depth.map_or_else(|_| Arc::default(), |field| self.colour(field, width, height))
@@ -120,9 +120,7 @@ impl Lanes {
 
 struct Drawing<'a> {
     array: &'a mut Lanes,
-    /// Words of commands that were collected, but not executed yet.
     words: &'a mut Vec<Word>,
-    /// Regions copied so far, or the fault that ended the drawing.
     outputs: Result<Vec<OutputRegion>, ArrayFault>,
 }
 
@@ -152,7 +150,6 @@ impl CommandSink for Drawing<'_> {
     }
 }
 
-/// Returns the upper left `width` x `height` pixels of the array.
 fn rectangle(pixels: &[Word], width: u32, height: u32) -> Arc<[Word]> {
     const WIDTH: usize = REGION_SIZE as usize;
     let width = WIDTH.min(width as usize);
@@ -227,7 +224,7 @@ mod tests {
     ];
 
     #[test]
-    fn every_command_that_draws_is_recognised_as_a_whole() {
+    fn every_drawing_command_is_executed_as_a_whole() {
         for layout in [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()] {
             let mut lanes = Lanes::new(&layout);
             for kind in WHOLE {
@@ -373,19 +370,19 @@ mod tests {
     }
 
     #[test]
-    fn triangles_without_words_leave_the_pixels_of_their_commands() {
+    fn triangles_without_words_draw_the_pixels_of_their_commands() {
         let covered = covered_alike(40, SomeTriangles::random);
         assert!(covered > 10_000, "{covered}");
     }
 
     #[test]
-    fn slim_triangles_without_words_leave_the_pixels_of_their_commands() {
+    fn slim_triangles_without_words_draw_the_pixels_of_their_commands() {
         let covered = covered_alike(200, SomeTriangles::slim);
         assert!(covered > 1_000, "{covered}");
     }
 
     #[test]
-    fn a_fault_names_its_word_is_counted_and_ends_the_list() {
+    fn a_faulty_word_is_named_and_counted_and_ends_the_list() {
         let mut lanes = Lanes::new(&Layout::slats());
         let mut words = Vec::new();
         Command::blank(CommandKind::Clear).encode(&Layout::slats(), &mut words).unwrap();

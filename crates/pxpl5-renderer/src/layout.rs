@@ -6,31 +6,31 @@ use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
-/// A division of pixel memory into bit fields that was not checked yet.
+/// An unchecked division of pixel memory into bit fields. [`Layout::new`] checks it.
 ///
-/// Addresses of a context's bit fields are relative to the context's first bit, which is bit `i * context_bits` for
-/// context `i`. The address of the scratch is absolute, and all contexts share this bit field. Sharing is safe, because
-/// no command needs data that an earlier command has left in the scratch.
+/// The addresses of a context's bit fields count from the first bit of the context. Context `i` begins at bit `i *
+/// context_bits` of pixel memory. The address of the scratch memory is absolute, and all contexts share it. Sharing is
+/// safe, because no command reads data that an earlier command has left in the scratch memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContextPlan {
     /// Name of the layout in error messages.
     pub name: &'static str,
-    /// Number of contexts. Each context holds one region in pixel memory.
+    /// Number of contexts. Each context is the part of pixel memory that holds one region.
     pub contexts: u8,
-    /// Number of bits of pixel memory for each context, which holds one region.
+    /// Number of bits of pixel memory that each context has.
     pub context_bits: u8,
     /// Bit field of the colour in each context: 24 bits, 0xRRGGBB.
     pub colour: Operand,
     /// Bit field of the depth in each context, 8 to 24 bits. A smaller depth is nearer.
     pub z: Operand,
-    /// Bit field of the normal in each context: x, y and z in this order, 12 bits each, two's complement. `None` if the
-    /// layout does not support Phong shading.
+    /// Bit field of the normal in each context: x, y and z, with 12 bits each, two's complement. `None` if the layout
+    /// does not support Phong shading.
     pub normal: Option<Operand>,
     /// Bit field for temporary values of sphere and shading commands.
     pub scratch: Option<Operand>,
 }
 
-/// A division of pixel memory into bit fields that do not overlap.
+/// A checked division of pixel memory into bit fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout(ContextPlan);
 
@@ -76,8 +76,8 @@ impl Layout {
     /// Returns the layout of Slats: four regions, each with 24 bits of colour and 20 bits of Z. All regions share 32
     /// bits of scratch memory.
     ///
-    /// TR94 publishes four contexts (regions) in 208 bits. Four equal parts of 52 bits would leave no room for the
-    /// scratch memory of a sphere (30 bits). A context needs the scratch memory only while a command runs, so all
+    /// TR94 publishes four contexts (regions) in 208 bits. Four equal parts of 52 bits leave no room for the scratch
+    /// memory that a sphere needs (30 bits). A context needs the scratch memory only while a command runs, so all
     /// contexts can share it. To make room for the scratch memory, Z has 4 bits less (assumed).
     #[must_use]
     pub const fn slats() -> Self {
@@ -91,11 +91,11 @@ impl Layout {
         Self(SLATS_QUARTERS)
     }
 
-    /// Checks the bit fields of `plan` and creates the layout.
+    /// Checks the bit fields of `plan`, and creates the layout.
     ///
     /// # Errors
     /// Returns a [`SettingError`] if a bit field has a wrong width, or if bit fields overlap or extend beyond pixel
-    /// memory. The text of the second error draws the bit ranges.
+    /// memory. In the latter case, the error text contains a drawing of the bit ranges.
     pub fn new(plan: ContextPlan) -> Result<Self, SettingError> {
         check_widths(&plan)?;
         let ranges = ranges(&plan);
@@ -110,13 +110,13 @@ impl Layout {
         )))
     }
 
-    /// Returns the bit fields of the layout as a plan, from which a similar layout can be made.
+    /// Returns the bit fields as a plan, from which a caller can make a similar layout.
     #[must_use]
     pub const fn plan(&self) -> &ContextPlan {
         &self.0
     }
 
-    /// Returns the first bit of context `context` (a region) in pixel memory.
+    /// Returns the address of the first bit of context `context` in pixel memory.
     #[must_use]
     pub const fn context_base(&self, context: u8) -> u8 {
         context.wrapping_mul(self.0.context_bits)
@@ -128,7 +128,7 @@ impl Layout {
         self.0.colour.part((2 - index) * COLOUR_BITS as u8, COLOUR_BITS as u8)
     }
 
-    /// Returns the number of low bits of a depth expression that the layout does not store.
+    /// Returns the number of low bits of a depth expression that pixel memory does not hold.
     #[must_use]
     pub const fn z_shift(&self) -> u8 {
         (Z_FRACTION_BITS + Z_BITS) as u8 - self.0.z.width
@@ -142,8 +142,8 @@ impl Layout {
         Some(all.part(index * NORMAL_BITS as u8, NORMAL_BITS as u8).signed())
     }
 
-    /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch bit field has only 30 to 35 bits.
-    /// Returns `None` if the scratch bit field is smaller.
+    /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch memory has only 30 to 35 bits.
+    /// Returns `None` if the scratch memory is smaller.
     #[must_use]
     pub fn root_bits(&self) -> Option<u8> {
         match self.0.scratch?.width {
@@ -163,11 +163,10 @@ impl Layout {
 /// A named range of bits in pixel memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldRange {
-    /// Name of the range in error messages: `scratch`, or the context and the bit field, for example `context 0 z`.
+    /// Name in error messages: `scratch`, or the context and the bit field, for example `context 0 z`.
     pub name: String,
     /// First bit in pixel memory, 0 to 207.
     pub first: u32,
-    /// Length of the range in bits.
     pub width: u32,
 }
 
@@ -183,7 +182,8 @@ fn check_widths(plan: &ContextPlan) -> Result<(), SettingError> {
     plan.normal.map_or(Ok(()), |normal| check_width("normal", "36", 36..=36, normal))
 }
 
-/// Checks the width of a bit field against `allowed`. `expected` describes the allowed widths in the error text.
+/// Returns an error if the width of a bit field is not in `allowed`. `expected` describes the allowed widths in the
+/// error text.
 fn check_width(
     field: &'static str,
     expected: &'static str,
@@ -217,8 +217,7 @@ fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
     out
 }
 
-/// Returns one entry for each bit range in `ranges`: a text that describes the range's error, or `None` if the range
-/// has no error.
+/// Returns one entry for each range in `ranges`: an error text, or `None` if the range has no error.
 fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     let mut out: Vec<_> = (0..ranges.len()).map(|i| conflict(&ranges[i], &ranges[..i])).collect();
     let whole = u32::from(plan.contexts) * u32::from(plan.context_bits);
@@ -229,8 +228,7 @@ fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     out
 }
 
-/// Returns the error text of a bit range that overlaps one of the ranges `before` or extends beyond pixel memory.
-/// Returns `None` if neither is true.
+/// Returns an error text if a bit range overlaps one of the ranges `before`, or extends beyond pixel memory.
 fn conflict(range: &FieldRange, before: &[FieldRange]) -> Option<String> {
     if range.end() > MEMORY_BITS {
         return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));
@@ -243,8 +241,8 @@ const fn overlap(a: &FieldRange, b: &FieldRange) -> bool {
     a.first < b.end() && b.first < a.end()
 }
 
-/// Returns a text drawing with one line for each bit field: bit range, a bar with one character for each four bits,
-/// name, and error text.
+/// Returns a drawing as text, with one line for each bit field. A line has the bit range, a bar with one character for
+/// each four bits, the name, and the error text.
 fn draw(ranges: &[FieldRange], conflicts: &[Option<String>]) -> String {
     let mut out = String::new();
     for (range, conflict) in ranges.iter().zip(conflicts) {
@@ -274,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_overlap_where_they_have_a_bit_in_common() {
+    fn bit_ranges_overlap_if_they_share_a_bit() {
         let bits = |range: &FieldRange| range.first..range.first + range.width;
         let all: Vec<_> = (0..9).flat_map(|first| (1..5).map(move |width| range(first, width))).collect();
         for a in &all {
@@ -286,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drawing_has_a_mark_for_each_four_bits_of_which_a_field_has_one() {
+    fn a_drawing_of_a_layout_has_a_mark_for_every_four_bits_in_use() {
         let ranges = [range(0, 4), range(5, 2), range(7, 6), range(200, 8)];
         let drawn = draw(&ranges, &[const { None }; 4]);
         for (range, line) in ranges.iter().zip(drawn.lines()) {
@@ -299,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn contexts_take_their_bits_each_and_there_is_one() {
+    fn a_layout_needs_at_least_one_context_and_separate_bits_for_each_context() {
         let whole = |contexts, context_bits| {
             let plan = ContextPlan { contexts, context_bits, ..SLATS };
             conflicts(&plan, &[range(0, 4)])[0].clone()
@@ -314,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn the_three_layouts_fit() {
+    fn the_three_layouts_fit_into_pixel_memory() {
         for plan in [RENDERING_CONTROL_PHONG, SLATS, SLATS_QUARTERS] {
             Layout::new(plan).unwrap();
         }
@@ -329,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_that_does_not_fit_is_drawn_with_its_bit_ranges() {
+    fn the_error_of_a_layout_with_overlapping_fields_draws_the_bit_ranges() {
         let plan = ContextPlan { scratch: Some(Operand::absolute(172, 32)), ..SLATS };
         let text = Layout::new(plan).unwrap_err().to_string();
         assert!(text.contains("172-203"), "{text}");
@@ -345,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_width_is_named() {
+    fn the_error_of_a_bit_field_with_a_wrong_width_names_the_field() {
         let plan = ContextPlan { z: Operand::context(24, 28), ..SLATS };
         let error = Layout::new(plan).expect_err("28 bits");
         assert_eq!(error.to_string(), "z has 28 bits, expected 8 to 24");

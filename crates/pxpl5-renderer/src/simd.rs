@@ -15,10 +15,10 @@ mod x86;
 use pxpl5_wire::REGION_SIZE;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Distance in memory, in words, from a pixel to the pixel below it.
+/// Distance, in words of memory, from a pixel to the pixel below it.
 const ROW: usize = REGION_SIZE as usize;
 
-/// Number of adjacent pixels in each group of a vector that covers several rows. The next group lies one row below.
+/// Number of adjacent pixels in each row, for a vector that covers several rows.
 pub(crate) const FOUR: usize = 4;
 
 static MOST: AtomicU8 = AtomicU8::new(Vectors::Avx512 as u8);
@@ -27,7 +27,7 @@ static MOST: AtomicU8 = AtomicU8::new(Vectors::Avx512 as u8);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Vectors {
-    /// Only the vector instructions that every processor of the compiler's target has.
+    /// Only the instructions that every processor of the compiler's target has.
     Portable,
     /// WebAssembly with simd128: two vectors of four 32-bit numbers.
     Simd128,
@@ -38,7 +38,7 @@ pub enum Vectors {
 }
 
 impl Vectors {
-    /// All vector units, from the slowest to the fastest. The discriminant of a unit is the unit's index in this array.
+    /// All vector units, from the slowest to the fastest. The discriminant of each unit is its index in this array.
     const ALL: [Self; 4] = [Self::Portable, Self::Simd128, Self::Avx2, Self::Avx512];
 
     /// Returns all vector units that the running computer has, from the slowest to the fastest.
@@ -47,15 +47,15 @@ impl Vectors {
         Self::ALL.into_iter().filter(|vectors| vectors.present()).collect()
     }
 
-    /// Returns the fastest vector unit that the running computer has and that [`Vectors::at_most`] allows.
+    /// Returns the fastest vector unit that the running computer has, up to the limit of [`Vectors::at_most`].
     #[must_use]
     pub fn best() -> Self {
         let most = MOST.load(Ordering::Relaxed) as usize;
         Self::ALL[..=most].iter().rev().copied().find(|vectors| vectors.present()).unwrap_or(Self::Portable)
     }
 
-    /// Sets the fastest vector unit that new pixel arrays of this process choose by default. Existing arrays keep their
-    /// units.
+    /// Makes this vector unit the fastest unit that new pixel arrays of this process choose by default. Existing arrays
+    /// do not change.
     ///
     /// The tests in `tests/hashes.rs` use this limit to run whole experiments on each unit.
     pub fn at_most(self) {
@@ -84,17 +84,16 @@ impl Vectors {
     }
 }
 
-/// A vector unit that was checked to be present in the running computer.
+/// A vector unit that the running computer certainly has, because a constructor has checked this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PresentVectors(Vectors);
 
 impl PresentVectors {
-    /// Returns the vector unit `wanted` if the running computer has this unit, otherwise [`Vectors::Portable`].
+    /// Returns the vector unit `wanted` if the running computer has it, otherwise [`Vectors::Portable`].
     pub(crate) fn or_portable(wanted: Vectors) -> Self {
         Self(if wanted.present() { wanted } else { Vectors::Portable })
     }
 
-    /// Runs the loop `kernel` in the version that is compiled for this vector unit.
     #[inline]
     pub(crate) fn run<K: VectorKernel>(self, kernel: K) -> K::Output {
         match self.0 {
@@ -111,8 +110,8 @@ impl PresentVectors {
     }
 }
 
-/// A loop that is compiled once for each vector unit. The method `run` must be `#[inline(always)]`. Otherwise, the
-/// compiler does not use the unit's instructions in `run`.
+/// A loop that is compiled once for each vector unit. Its method `run` must be `#[inline(always)]`. Otherwise, the
+/// compiler does not use the instructions of the unit.
 pub(crate) trait VectorKernel {
     type Output;
     fn run<V: SimdVector>(self) -> Self::Output;
@@ -132,20 +131,19 @@ fn avx512<K: VectorKernel>(kernel: K) -> K::Output {
 
 /// A vector of 32-bit integers. The loops use vectors explicitly, because compilers do not vectorize short loops.
 pub(crate) trait SimdVector: Copy {
-    /// Number of integers in a vector. The number is a divisor of 128.
+    /// Number of integers in a vector, a divisor of 128.
     const LANES: usize;
-    /// One truth value for each lane of a vector.
     type Mask: Copy;
 
     fn splat(value: i32) -> Self;
     /// Returns the numbers first, first + step, first + 2 step and so on, modulo 2^32.
     fn ramp(first: i32, step: i32) -> Self;
-    /// Returns groups of [four](FOUR) numbers. A group consists of n, n + step, n + 2 step and n + 3 step. The first
-    /// group has n = `first`, and n grows by `down` from group to group.
+    /// Returns groups of [four](FOUR) numbers: n, n + step, n + 2 step and n + 3 step. n is `first` in the first group,
+    /// and grows by `down` from group to group.
     fn ramp_of_fours(first: i32, step: i32, down: i32) -> Self;
-    /// Loads the first integers of `from`, one for each lane. `from` must have at least [`Self::LANES`] integers.
+    /// Loads the first [`Self::LANES`] integers of `from`, which must not be shorter.
     fn load(from: &[u32]) -> Self;
-    /// Loads groups of [four](FOUR) pixels, one group from the start of each row. `from` begins at the first row.
+    /// Loads groups of [four](FOUR) pixels, one group from each row. `from` begins with the first group.
     fn load_fours(from: &[u32]) -> Self;
     /// Loads 64-bit words. The low half of each word fills one lane, and the high half fills the next lane.
     fn load_words(from: &[u64]) -> Self;
@@ -153,9 +151,9 @@ pub(crate) trait SimdVector: Copy {
     fn store_words(self, to: &mut [u64]);
     /// Sets lane i to all ones if bit i of `bits` is set, else to zero.
     fn spread(bits: u64) -> Self;
-    /// Sets each lane to all ones if bit `t` (0 to 31) of this lane is set, else to zero.
+    /// Sets each lane to all ones if its bit `t` (0 to 31) is set, else to zero.
     fn bit(self, t: u32) -> Self;
-    /// Returns the sign bits of all lanes: bit i is the sign of lane i.
+    /// Returns the signs of all lanes. Bit i of the result is the sign bit of lane i.
     fn signs(self) -> u32;
     fn add(self, other: Self) -> Self;
     fn or(self, other: Self) -> Self;
@@ -167,13 +165,11 @@ pub(crate) trait SimdVector: Copy {
     fn shift_left(self, by: u32) -> Self;
     /// Returns a mask that is true in the lanes where `self` >= 0 and `new` < `old`. All numbers are signed.
     fn passes(self, new: Self, old: Self) -> Self::Mask;
-    /// Returns true if any lane of either mask is true.
     fn any_of(a: Self::Mask, b: Self::Mask) -> bool;
-    /// Overwrites the words of `to` in the lanes where the mask is true. `old` must be equal to the words of `to`
-    /// before the call.
+    /// Overwrites the words of `to` in the lanes where the mask is true. `old` must equal the current words of `to`.
     fn store(self, mask: Self::Mask, old: Self, to: &mut [u32]);
-    /// Overwrites the pixels that [`SimdVector::load_fours`] reads, in the lanes where the mask is true. `old` must be
-    /// equal to these pixels before the call.
+    /// Overwrites the pixels that [`SimdVector::load_fours`] reads, in the lanes where the mask is true. `old` must
+    /// equal the current pixels.
     fn store_fours(self, mask: Self::Mask, old: Self, to: &mut [u32]);
     /// Stores one byte for each lane: 255 if the mask is true in this lane, else 0.
     fn store_mask(mask: Self::Mask, to: &mut [u8]);
@@ -183,8 +179,8 @@ pub(crate) trait SimdVector: Copy {
 #[derive(Clone, Copy)]
 pub(crate) struct PortableVector([i32; 8]);
 
-/// Table of masks for four lanes, indexed by a number of four bits. Lane i is all ones if bit i of the number is set.
-/// Processors without AVX2 need this table, because they cannot shift each lane by its own count.
+/// Masks for four lanes, indexed by a number of four bits. Lane i is all ones if bit i of the number is set. Processors
+/// without AVX2 need this table, because they cannot shift each lane by its own count.
 const FOUR_LANES: [[i32; 4]; 16] = {
     let mut out = [[0; 4]; 16];
     let mut bits = 0;
@@ -294,7 +290,7 @@ impl SimdVector for PortableVector {
 
     #[inline(always)]
     fn shift_right(self, by: u32) -> Self {
-        // The processor's scalar shift uses the count modulo 32. The shift of a vector unit uses the whole count.
+        // A scalar shift of the processor uses the count modulo 32. A shift of a vector unit uses the whole count.
         if by < 32 { self.map(|v| (v as u32 >> by) as i32) } else { Self::splat(0) }
     }
 
@@ -359,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn every_unit_shifts_by_every_count_and_leaves_zeros_from_32_on() {
+    fn every_vector_unit_shifts_by_every_count_and_counts_from_32_on_give_zero() {
         let values: [u32; 16] = std::array::from_fn(|k| 0x9E37_79B9_u32.wrapping_mul(k as u32 * 2 + 1) | 0x8000_0001);
         // The counts are all values of a byte, and larger counts whose lowest bits are small.
         for by in (0..=255).chain([256, 1 << 16, 1 << 31, (1 << 31) + 1, u32::MAX]) {
@@ -486,7 +482,7 @@ mod tests {
     }
 
     #[test]
-    fn every_unit_does_what_numbers_do_one_by_one() {
+    fn every_vector_unit_equals_scalar_arithmetic() {
         let mut random = crate::conformance::Random::new(40);
         for round in 0..200 {
             // Some numbers are equal or small.
@@ -505,7 +501,7 @@ mod tests {
     }
 
     #[test]
-    fn a_unit_that_is_absent_is_the_portable_one_and_the_best_is_the_last_that_is_allowed() {
+    fn an_absent_vector_unit_is_replaced_by_portable_code_and_the_best_allowed_unit_is_chosen() {
         let available = Vectors::available();
         assert_eq!(available.first(), Some(&Vectors::Portable));
         assert!(cfg!(target_arch = "wasm32") || !available.contains(&Vectors::Simd128));

@@ -1,4 +1,4 @@
-//! Snapshots of a renderer during a run.
+//! Snapshots of renderers (copies of their state) during a run.
 
 use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear, words_before_copy};
 use crate::{Lanes, Layout, PixelArray};
@@ -9,26 +9,25 @@ use std::collections::VecDeque;
 /// A snapshot of a renderer board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RendererSnapshot {
-    /// Number of words in the input FIFO. Only words of complete commands count. `None` unless
+    /// Number of words of complete commands in the input FIFO. `None` unless
     /// [`Renderer::watch_fifo`](crate::Renderer::watch_fifo) was called.
     pub fifo_words: Option<u32>,
-    /// Capacity of the FIFO in words.
     pub fifo_depth_words: u32,
     /// True while the controller executes a copy command.
     pub stands_at_copy: bool,
-    /// The copy whose region is being sent to a frame buffer. `None` if no region is being sent.
+    /// Copy whose region is being sent to a frame buffer.
     pub copying: Option<CopyOrder>,
     /// True while the controller executes commands other than copies.
     pub executing: bool,
-    /// Region that the most recently started commands draw. The region becomes `None` when its copy command starts. It
-    /// is also `None` without [`Renderer::watch_fifo`](crate::Renderer::watch_fifo), or if the sender of the commands
-    /// does not state the region.
+    /// Region that the most recently started commands draw. `None` after the start of the copy command, or if the
+    /// commands do not contain the region. Always `None` unless [`Renderer::watch_fifo`](crate::Renderer::watch_fifo)
+    /// was called.
     pub drawing: Option<RegionPlace>,
-    /// Number of finished regions that are in the backing store, or that wait in pixel memory for the transfer to the
-    /// backing store.
+    /// Number of finished regions in the backing store, including regions that wait for their transfer to the backing
+    /// store.
     pub stored_regions: usize,
-    /// Time spent executing commands since the start of the simulation, without copies. A received command counts
-    /// immediately, even before its execution.
+    /// Execution time of all commands received since the start of the simulation, without copies. A command counts as
+    /// soon as it is received.
     pub busy: Span,
 }
 
@@ -40,26 +39,26 @@ impl RendererSnapshot {
     }
 }
 
-/// Received command lists whose commands affect pixel memory, or will affect it when they start.
+/// Received command lists that affect pixel memory now, or that will affect it when they start.
 #[derive(Debug, Default)]
 pub(crate) struct SentLists(VecDeque<SentList>);
 
 #[derive(Debug)]
 struct SentList {
     context: usize,
-    /// Number of words that the renderer received before this list, since the start of the simulation.
+    /// Number of words that the renderer had received before this list.
     first_word: u64,
-    /// Index of the first word of the clear command at the beginning of the list, counted since the start of the
-    /// simulation. `None` if the list does not begin with a clear command.
+    /// Index of the first word of the clear command at the start of the list. Words are counted from the start of the
+    /// simulation. `None` if the list does not start with a clear command.
     clear: Option<u64>,
-    /// Index of the first word of the copy command that ends the region, counted since the start of the simulation.
-    /// `None` until this command is received.
+    /// Index of the first word of the copy command that ends the region. Words are counted from the start of the
+    /// simulation. `None` until the renderer receives this command.
     copy: Option<u64>,
     content: CommandContent,
 }
 
 impl SentLists {
-    /// Adds the command list of a received message. `started` is the number of words in commands that have started.
+    /// Adds the command list of a received message. `started` is the number of words of commands that have started.
     pub(crate) fn add(&mut self, message: &Message, first_word: u64, started: u64) {
         let Body::Commands(list) = &message.body else { return };
         let context = usize::from(list.context) % MAX_CONTEXTS;
@@ -76,8 +75,8 @@ impl SentLists {
         open.for_each(|list| list.copy = Some(first_word + before));
     }
 
-    /// Returns the region that the last started command list draws. `started` is the number of words in commands that
-    /// have started. Returns `None` if the copy command of the region has started.
+    /// Returns the region that the last started command list draws, or `None` after the start of the region's copy
+    /// command. `started` is the number of words of commands that have started.
     pub(crate) fn drawing(&self, started: u64) -> Option<RegionPlace> {
         let last = self.0.iter().rfind(|list| list.first_word < started)?;
         let is_copied = last.copy.is_some_and(|copy| copy < started);
@@ -90,8 +89,8 @@ impl SentLists {
         self.0.retain(|list| list.first_word >= cleared[list.context]);
     }
 
-    /// Returns the index of the first word of the latest list whose clear command has started, among the lists of a
-    /// context. Earlier lists of the context no longer affect pixels. Returns 0 if no clear command has started.
+    /// Returns the index of the first word of the latest list in `context` whose clear command has started, or 0
+    /// without such a list. Earlier lists of the context no longer affect pixels.
     fn cleared_at(&self, context: usize, started: u64) -> u64 {
         let of_context = self.0.iter().filter(|list| list.context == context);
         of_context
@@ -101,7 +100,7 @@ impl SentLists {
             .unwrap_or(0)
     }
 
-    /// Returns the pixel array after the commands in the first `started` words. Returns `None` if these commands
+    /// Returns the pixel array after the commands in the first `started` words. Returns `None` if these commands have
     /// changed no pixel.
     pub(crate) fn executed(&self, started: u64, layout: &Layout) -> Option<Lanes> {
         let mut lists = self.0.iter().filter(|list| list.first_word < started).peekable();

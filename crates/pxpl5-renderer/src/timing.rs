@@ -1,7 +1,8 @@
 //! All numbers of the renderer board: times, rates and sizes.
 //!
-//! The clocks of a command are the clocks of its program in the layout of Rendering Control ([`CommandKind::clocks`]).
-//! A test checks this equality. The table has the clocks as separate numbers, so that experiments can change them.
+//! The table contains an execution time in clocks for each command. By default, this time equals the sum of the clocks
+//! of the instructions in the command's program, in the layout of Rendering Control ([`CommandKind::clocks`]). A test
+//! checks this equality. The times are nevertheless separate numbers of the table, so that experiments can change them.
 
 use crate::command::CommandKind;
 use pxpl5_sim::{Clock, Cycles, Span};
@@ -45,7 +46,7 @@ impl RendererTiming {
         Clock::from_hz(self.clock_hz).map_or(Span::ZERO, |clock| clock.span(Cycles(self.backing_block_clocks)))
     }
 
-    /// Returns the number of finished regions that the backing store can hold (128 with the default values).
+    /// Returns the number of finished regions for which the backing store has room: 128 with the default values.
     #[must_use]
     pub const fn backing_regions(&self) -> u64 {
         match self.backing_bits.checked_div(self.kept_bits) {
@@ -54,8 +55,8 @@ impl RendererTiming {
         }
     }
 
-    /// Returns the execution time of one command. Returns `None` for the copy of a region, because the end of a copy
-    /// depends on the frame buffer that receives the region.
+    /// Returns the execution time of one command. Returns `None` for the copy of a region, because the duration of a
+    /// copy depends on the frame buffer.
     #[must_use]
     pub fn span(&self, kind: CommandKind) -> Option<Span> {
         let clocks = match kind {

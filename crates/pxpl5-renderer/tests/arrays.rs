@@ -61,7 +61,7 @@ fn sends_what_its_planes_hold(mut array: impl PixelArray, layout: &Layout) {
 }
 
 #[test]
-fn arrays_send_what_their_planes_hold() {
+fn arrays_send_the_contents_of_their_bit_planes() {
     for layout in layouts() {
         sends_what_its_planes_hold(BitSerial::new(&layout), &layout);
         sends_what_its_planes_hold(Lanes::new(&layout), &layout);
@@ -100,7 +100,7 @@ fn draws_what_it_executes(mut drawing: impl PixelArray, mut executing: impl Pixe
 }
 
 #[test]
-fn lists_leave_and_send_the_same_drawn_or_executed() {
+fn drawing_a_command_list_gives_the_same_pixels_as_executing_the_list() {
     for layout in layouts() {
         draws_what_it_executes(BitSerial::new(&layout), BitSerial::new(&layout), &layout);
         draws_what_it_executes(Lanes::new(&layout), Lanes::new(&layout), &layout);

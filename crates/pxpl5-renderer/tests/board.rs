@@ -17,7 +17,7 @@ const BLOCK: Span = Span(51_000_000);
 const COPY_WORDS: Span = Span(9 * 50_000);
 
 #[test]
-fn commands_take_their_words_on_the_channel_and_then_their_clocks() {
+fn commands_take_the_time_of_their_words_and_then_their_clocks() {
     let mut bench = Bench::new();
     bench.announce(BEGIN, list(&[run(CommandKind::Triangle, 3)], &[]));
     bench.run();
@@ -27,7 +27,7 @@ fn commands_take_their_words_on_the_channel_and_then_their_clocks() {
 }
 
 #[test]
-fn words_that_are_no_command_are_counted_and_take_no_clocks() {
+fn invalid_words_are_counted_and_take_no_clocks() {
     let mut bench = Bench::new();
     bench.message(BEGIN, 4, Body::Words([1, 2, 3, 4].into()));
     bench.announce(BEGIN, list(&[CommandRun { opcode: 77, words_each: 2, count: 5 }], &[]));
@@ -38,7 +38,7 @@ fn words_that_are_no_command_are_counted_and_take_no_clocks() {
 }
 
 #[test]
-fn a_region_leaves_in_whole_messages_of_which_the_last_one_is_told_back() {
+fn a_region_leaves_in_whole_messages_and_the_last_one_is_acknowledged() {
     // The region has 100 x 100 pixels.
     for (content, words, parts) in [(CopyContent::Colour, 10_000, 10), (CopyContent::ColourAndDepth, 20_000, 20)] {
         let mut bench = Bench::new();
@@ -79,7 +79,7 @@ fn the_board_that_ordered_a_copy_is_notified_when_the_last_pixel_has_arrived() {
 }
 
 #[test]
-fn what_stands_behind_a_copy_from_pixel_memory_waits_for_its_last_pixel() {
+fn commands_behind_a_copy_from_pixel_memory_wait_for_its_last_pixel() {
     let mut bench = Bench::new();
     let copy = run(CommandKind::CopyRegion, 1);
     let orders = [1, 2].map(|region| order(region, CopyPath::FromPixelMemory, CopyContent::Colour));
@@ -108,7 +108,7 @@ fn departures(bench: &Bench) -> Vec<Time> {
 }
 
 #[test]
-fn a_region_in_the_backing_store_leaves_beside_the_commands_that_follow() {
+fn a_region_in_the_backing_store_leaves_during_the_following_commands() {
     for (content, blocks) in [(CopyContent::Colour, 1), (CopyContent::ColourAndDepth, 2)] {
         let mut bench = Bench::new();
         let copy = run(CommandKind::CopyRegion, 1);
@@ -130,7 +130,7 @@ fn a_region_in_the_backing_store_leaves_beside_the_commands_that_follow() {
 }
 
 #[test]
-fn where_the_backing_store_is_full_the_next_region_waits_until_one_has_left() {
+fn if_the_backing_store_is_full_the_next_region_waits_for_room() {
     use CopyContent::{Colour, ColourAndDepth};
     // A region occupies one block of the backing store, or two blocks with depths. A region that is being sent can
     // still occupy a block.
@@ -151,7 +151,7 @@ fn where_the_backing_store_is_full_the_next_region_waits_until_one_has_left() {
 }
 
 #[test]
-fn a_region_that_is_kept_leaves_when_a_command_asks_for_it_and_once() {
+fn a_stored_region_leaves_once_when_a_command_requests_it() {
     let mut bench = Bench::new();
     let kept = order(1, CopyPath::IntoBacking, CopyContent::Colour);
     let asked = order(1, CopyPath::FromBacking, CopyContent::Colour);
@@ -180,7 +180,7 @@ fn a_copy_command_without_an_order_ends_at_once() {
 /// Sends two triangles in one message, or in two messages. The second message is announced before the first has
 /// arrived.
 #[test]
-fn a_watched_fifo_counts_words_from_their_last_word_to_the_start_of_their_command() {
+fn an_observed_fifo_counts_a_word_until_the_command_of_the_word_starts() {
     for messages in [1, 2] {
         let mut bench = Bench::new();
         bench.device.watch_fifo();
@@ -214,7 +214,7 @@ fn an_unwatched_fifo_has_no_counts() {
 }
 
 #[test]
-fn a_delivery_of_nothing_is_no_copy() {
+fn a_delivery_without_a_message_starts_no_copy() {
     let mut bench = Bench::new();
     bench.delivered(BEGIN);
     bench.run();

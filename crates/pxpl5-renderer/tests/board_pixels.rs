@@ -60,7 +60,7 @@ fn a_region_is_copied_as_it_was_when_its_copy_was_sent() {
 }
 
 #[test]
-fn depths_that_are_copied_too_follow_the_colours_and_lie_at_the_far_plane_where_nothing_was_drawn() {
+fn copied_depths_follow_the_colours_and_are_far_if_nothing_was_drawn() {
     let mut bench = Bench::new();
     let order = order(1, CopyPath::ThroughBacking, CopyContent::ColourAndDepth);
     bench.announce(BEGIN, painted(0x10_20_30, order));
@@ -74,7 +74,7 @@ fn depths_that_are_copied_too_follow_the_colours_and_lie_at_the_far_plane_where_
 /// The 20 bits of depth in the layout of Slats are the upper bits of a depth of 24 bits. The 24 bits are the upper bits
 /// of the depth expression's 32 bits.
 #[test]
-fn depths_of_what_was_drawn_are_the_upper_bits_of_24() {
+fn the_copied_depths_are_the_upper_bits_of_24_bit_depths() {
     let inside = Linear::constant(1);
     let depth = Linear::constant(0x1234_5678);
     let triangle = Command::Triangle(TriangleCommand { edges: [inside; 3], depth, colour: [Linear::constant(0); 3] });
@@ -87,7 +87,7 @@ fn depths_of_what_was_drawn_are_the_upper_bits_of_24() {
 
 /// A copy must not contain drawing after the copy in the same list, or pixels that are copied to another target.
 #[test]
-fn what_comes_behind_a_copy_is_not_in_it() {
+fn commands_behind_a_copy_do_not_change_the_copied_pixels() {
     for saves in [true, false] {
         let mut bench = Bench::new();
         if !saves {
@@ -105,7 +105,7 @@ fn what_comes_behind_a_copy_is_not_in_it() {
 }
 
 #[test]
-fn a_region_of_which_no_words_were_sent_is_black() {
+fn a_region_without_words_is_black() {
     let mut bench = Bench::new();
     let order = order(1, CopyPath::ThroughBacking, CopyContent::ColourAndDepth);
     bench.announce(BEGIN, list(&[run(CommandKind::Clear, 1), run(CommandKind::CopyRegion, 1)], &[order]));
@@ -120,7 +120,7 @@ fn colour(array: &Lanes) -> Word {
 }
 
 #[test]
-fn pixel_memory_holds_what_was_sent_since_the_last_clear_and_no_list_that_draws_nothing() {
+fn pixel_memory_has_everything_drawn_since_the_last_clear() {
     let mut bench = Bench::new();
     bench.announce(BEGIN, list_of(&[select(0)], &[]));
     bench.run();
@@ -161,7 +161,7 @@ fn a_snapshot_of_the_array_shows_all_commands_that_have_started() {
 
 /// Arrays are reused for other regions, so an array can hold old content.
 #[test]
-fn a_region_that_was_never_cleared_is_black_whatever_its_array_held() {
+fn a_region_that_was_never_cleared_is_black() {
     let mut bench = Bench::new();
     let orders = [1, 2].map(|region| order(region, CopyPath::ThroughBacking, CopyContent::Colour));
     bench.announce(BEGIN, painted(0x10_20_30, orders[0]));
@@ -176,7 +176,7 @@ fn a_region_that_was_never_cleared_is_black_whatever_its_array_held() {
 
 /// The board has eight contexts, so context 9 is the same as context 1.
 #[test]
-fn what_is_sent_to_another_context_changes_nothing_that_is_copied() {
+fn commands_for_another_context_do_not_change_the_copied_pixels() {
     for (sent, copied) in [(1, 1), (1, 9), (9, 1)] {
         let mut bench = Bench::new();
         let order = CopyOrder { context: copied, ..order(1, CopyPath::ThroughBacking, CopyContent::Colour) };

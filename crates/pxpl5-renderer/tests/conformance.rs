@@ -56,7 +56,7 @@ fn bit_planes_agree_on_every_vector_unit() {
 }
 
 #[test]
-fn what_is_skipped_changes_nothing_on_any_vector_unit() {
+fn an_array_that_skips_unnecessary_work_has_the_same_results_on_any_vector_unit() {
     for vectors in Vectors::available() {
         for layout in layouts() {
             let mut definition = BitSerial::new(&layout);
@@ -180,7 +180,7 @@ fn spheres_agree_on_every_vector_unit() {
 
 /// Tests that a later read of Enable finds the value that a command left there.
 #[test]
-fn enable_is_read_behind_a_command() {
+fn a_read_of_the_enable_bits_finds_the_value_that_the_previous_command_left() {
     for layout in [Layout::rendering_control_phong(), Layout::slats()] {
         let mut random = Random::new(80);
         let mut definition = BitSerial::new(&layout);
@@ -290,7 +290,7 @@ fn runs_whose_signs_turn_at_corners_of_blocks_agree_on_every_vector_unit() {
 }
 
 #[test]
-fn random_lists_agree() {
+fn random_lists_give_equal_pixel_memory_on_both_arrays() {
     let seconds = std::env::var("PXPL5_FUZZ_SECONDS").ok();
     let limit = seconds.map(|text| Duration::from_secs(text.parse().expect("a number of seconds")));
     let start = Instant::now();
@@ -310,7 +310,7 @@ fn random_lists_agree() {
 }
 
 #[test]
-fn constants_of_a_command_agree_whatever_they_are() {
+fn all_constants_of_commands_agree() {
     for layout in layouts() {
         let mut a = BitSerial::new(&layout);
         let mut b = Lanes::new(&layout);
@@ -407,7 +407,7 @@ fn every_part_of_the_suite_finds_a_wrong_array() {
 /// Each plane is one of eight kinds. In one kind no bit is set, in one kind all bits, in one kind a quarter, and in one
 /// kind three quarters. In four kinds, half of the bits are set.
 #[test]
-fn noise_is_the_same_in_both_arrays_and_has_long_runs_too() {
+fn both_arrays_start_with_the_same_noise() {
     let layout = Layout::slats();
     let [mut a, mut b] = [(); 2].map(|()| BitSerial::new(&layout));
     let mut counts = [0; 5];
@@ -432,7 +432,7 @@ fn noise_is_the_same_in_both_arrays_and_has_long_runs_too() {
 
 /// Tests that the error names the first wrong pixel, its wrong bit, and the number of wrong pixels in the plane.
 #[test]
-fn a_mismatch_names_the_first_pixel_and_counts_them() {
+fn a_mismatch_names_the_first_wrong_pixel_and_counts_the_wrong_pixels() {
     let layout = Layout::slats();
     for (places, told) in [
         (vec![(3, 5)], "bit 9 of pixel (69, 1) is not 1; 1 pixels differ"),

@@ -385,21 +385,21 @@ fn follow(array: impl PixelArray, seed: u64) {
 }
 
 #[test]
-fn the_definition_does_what_the_table_says() {
+fn the_bit_serial_array_has_the_effects_of_the_table_of_instructions() {
     for (seed, vectors) in (1..).zip(Vectors::available()) {
         follow(BitSerial::with_vectors(&Layout::slats(), vectors), seed);
     }
 }
 
 #[test]
-fn what_is_skipped_does_what_the_table_says() {
+fn the_bit_serial_array_that_skips_work_has_the_effects_of_the_table_of_instructions() {
     for (seed, vectors) in (10..).zip(Vectors::available()) {
         follow(BitSerial::with_vectors(&Layout::slats(), vectors).skipping(), seed);
     }
 }
 
 #[test]
-fn values_do_what_the_table_says() {
+fn the_array_of_lanes_has_the_effects_of_the_table_of_instructions() {
     for (seed, layout) in (20..).zip([Layout::slats(), Layout::slats_quarters(), Layout::rendering_control_phong()]) {
         follow(Lanes::new(&layout), seed);
     }
@@ -427,7 +427,7 @@ fn follow_signs(array: impl PixelArray) {
 }
 
 #[test]
-fn signs_are_right_at_0_and_at_the_largest_number_and_the_smallest() {
+fn signs_are_correct_at_0_and_at_the_largest_and_smallest_numbers() {
     let layout = Layout::slats();
     for vectors in Vectors::available() {
         follow_signs(BitSerial::with_vectors(&layout, vectors));

@@ -132,7 +132,7 @@ fn instructions() -> Vec<(ArrayInstruction, Vec<Word>, u32)> {
 }
 
 #[test]
-fn instructions_are_the_words_of_the_table() {
+fn instructions_have_the_words_of_the_table() {
     for (instruction, words, clocks) in instructions() {
         let mut written = Vec::new();
         instruction.encode(&mut written);
@@ -158,7 +158,7 @@ fn a_list_is_read_instruction_by_instruction() {
 /// Tests that the error of a truncated instruction has the number of words that the instruction needs. For a linear
 /// evaluation, this error occurs before the coefficients are read.
 #[test]
-fn a_part_of_an_instruction_is_told_from_a_whole_one() {
+fn a_truncated_instruction_is_detected() {
     for (instruction, words, _) in instructions() {
         for found in 1..words.len() {
             let error = ArrayInstruction::decode(&words[..found], 0).expect_err("a part").kind;
@@ -172,7 +172,7 @@ fn a_part_of_an_instruction_is_told_from_a_whole_one() {
 }
 
 #[test]
-fn what_breaks_a_rule_of_the_table_is_refused_by_it() {
+fn an_instruction_that_breaks_a_rule_is_refused_with_that_rule() {
     use DecodeErrorKind as K;
     let output = |words: [Word; 8]| [&[0x7000_0000 | 23 << 8 | 40], &words[..]].concat();
     let changed = |place: usize, word: Word| {

@@ -20,7 +20,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 4_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_stream_is_refused_or_reads_back_as_the_same(words in prop::collection::vec(likely_word(), 0..40)) {
+    fn any_stream_is_refused_or_encodes_to_the_same_words(words in prop::collection::vec(likely_word(), 0..40)) {
         if let Ok(instructions) = ArrayInstruction::decode_all(&words) {
             let mut again = Vec::new();
             instructions.iter().for_each(|instruction| instruction.encode(&mut again));

@@ -9,21 +9,15 @@ const UNKNOWN: Time = Time(u64::MAX);
 /// A snapshot of a message that occupies a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChannelSnapshot {
-    /// Number of the channel, counted from 0.
     pub channel: usize,
-    /// Ring port of the board that sends the message.
     pub source: NodeId,
-    /// Ring port of the board that receives the message.
     pub destination: NodeId,
-    /// Length of the message in words.
     pub words: u32,
-    /// Time at which the arbiter granted the channel to the message.
     pub granted: Time,
-    /// Time at which the channel becomes free. `None` means that the receiver has a FIFO and has not answered yet.
+    /// Time at which the channel becomes free. `None` if the receiver has a FIFO and has not answered yet.
     pub ends_at: Option<Time>,
 }
 
-/// A message that occupies a channel.
 #[derive(Clone, Debug)]
 pub(crate) struct MessageInFlight {
     pub(crate) source: NodeId,
@@ -33,11 +27,11 @@ pub(crate) struct MessageInFlight {
     pub(crate) hold: bool,
     pub(crate) granted: Time,
     pub(crate) latency: Span,
-    /// Number of word times until the message ends. Only a ring that moves every word
-    /// ([`Ring::move_every_word`](crate::Ring::move_every_word)) uses this number.
+    /// Number of word times until the message ends. Only used after
+    /// [`Ring::move_every_word`](crate::Ring::move_every_word).
     pub(crate) slots_left: u64,
-    /// The message, kept until it is passed to the receiver. Only a ring that moves every word
-    /// ([`Ring::move_every_word`](crate::Ring::move_every_word)) keeps the message.
+    /// The content of the message. `None` after the receiver has got the message. Only used after
+    /// [`Ring::move_every_word`](crate::Ring::move_every_word).
     pub(crate) message: Option<Box<Message>>,
 }
 
@@ -45,12 +39,12 @@ pub(crate) struct MessageInFlight {
 #[derive(Clone, Debug)]
 pub(crate) struct RingChannels {
     flights: Vec<Option<MessageInFlight>>,
-    /// Time at which each channel becomes free. The time is `UNKNOWN` for free channels, and for messages whose
-    /// receiver has not answered yet.
+    /// Time at which each channel becomes free. `UNKNOWN` for free channels, and for messages without an answer of
+    /// their receiver.
     ends_at: Vec<Time>,
-    /// Known end times of messages with their channels, sorted by falling time.
+    /// Known end times of messages and their channels, the latest end first.
     due: Vec<(Time, usize)>,
-    /// Bit set of the free channels.
+    /// Free channels, one bit each.
     free: u64,
 }
 
@@ -77,20 +71,20 @@ impl RingChannels {
         self.flights.iter().all(Option::is_none)
     }
 
-    /// Puts a message on the free channel with the lowest number, and returns the number of the channel. At least one
-    /// channel must be free.
+    /// Puts a message on the free channel with the lowest number, and returns this number. At least one channel must be
+    /// free.
     pub(crate) fn occupy(&mut self, flight: MessageInFlight, ends_at: Option<Time>) -> usize {
         let channel = self.free.trailing_zeros() as usize;
         self.free &= !(1 << channel);
         self.flights[channel] = Some(flight);
-        // A free channel has no end time, so an unknown end needs no record.
+        // A free channel has no end time, so an unknown end needs no entry.
         if let Some(end) = ends_at {
             self.end_at(channel, end);
         }
         channel
     }
 
-    /// Sets the time at which the message on a channel ends. This function must be called once for each message.
+    /// Sets the time at which the message on a channel ends. Must be called once for each message.
     pub(crate) fn end_at(&mut self, channel: usize, at: Time) {
         let before = std::mem::replace(&mut self.ends_at[channel], at);
         debug_assert_eq!(before, UNKNOWN, "an end that is known stays");
@@ -99,17 +93,15 @@ impl RingChannels {
         self.due.insert(self.due.len() - earlier, (at, channel));
     }
 
-    /// Returns the earliest known end of a message.
     pub(crate) fn first_end(&self) -> Option<Time> {
         self.due.last().map(|end| end.0)
     }
 
-    /// Iterates over the known ends of messages, each with its message. The earliest end comes first.
+    /// Iterates over the messages with a known end, the earliest end first.
     pub(crate) fn ends(&self) -> impl Iterator<Item = (Time, &MessageInFlight)> {
         self.due.iter().rev().filter_map(|(end, channel)| Some((*end, self.flight(*channel)?)))
     }
 
-    /// Returns the time at which the message on a channel ends, if this time is known.
     pub(crate) fn end(&self, channel: usize) -> Option<Time> {
         Some(self.ends_at[channel]).filter(|end| *end != UNKNOWN)
     }
@@ -122,8 +114,8 @@ impl RingChannels {
         Some((channel, ended, self.flights[channel].take()?))
     }
 
-    /// Counts one word time of the message on a channel and returns the message. After the word time is processed, the
-    /// message must be returned to the channel by [`RingChannels::put_back`].
+    /// Counts one word time of the message on `channel`, and removes the message from the channel. The caller must then
+    /// put it back with [`RingChannels::put_back`].
     pub(crate) fn take_slot(&mut self, channel: usize) -> Option<MessageInFlight> {
         let flight = self.flights.get_mut(channel)?.take()?;
         Some(MessageInFlight { slots_left: flight.slots_left.saturating_sub(1), ..flight })
@@ -137,17 +129,16 @@ impl RingChannels {
         self.flights[channel].as_ref()
     }
 
-    /// Iterates over the messages that occupy channels, sorted by channel.
+    /// Iterates over the messages on channels, in the order of the channels.
     pub(crate) fn flights(&self) -> impl Iterator<Item = &MessageInFlight> {
         self.flights.iter().flatten()
     }
 
-    /// Returns the message on a channel if the end of this message is not known yet.
     pub(crate) fn unanswered(&self, channel: usize) -> Option<&MessageInFlight> {
         self.flight(channel).filter(|_| self.ends_at[channel] == UNKNOWN)
     }
 
-    /// Iterates over snapshots of the messages that occupy channels after time `now`, sorted by channel.
+    /// Iterates over snapshots of the messages on channels at time `now`, in the order of the channels.
     pub(crate) fn channel_snapshots(&self, now: Time) -> impl Iterator<Item = ChannelSnapshot> + '_ {
         (0..self.flights.len()).filter_map(move |channel| {
             let ends_at = self.end(channel);

@@ -13,20 +13,19 @@
 //! 1. A [`RingEvent::Request`] puts a message into the queue of its source port. Messages leave a queue in order. A
 //!    source can send to different receivers at the same time, on a limited number of channels.
 //! 2. The *head*, the first message of a queue, waits until three things are free: a channel, the source's port and the
-//!    destination. The arbiter grants all three together. Heads are granted in the order in which they became heads. If
-//!    several messages become heads at one instant, the lowest source number comes first. A head that must wait does
-//!    not delay later heads.
-//! 3. A message occupies its channel and both ports for 16 + `words` word times. At the end of this time the next
-//!    message is granted. A board can send and receive at the same time.
+//!    destination. The arbiter grants all three together. The arbiter serves heads in the order in which they became
+//!    heads, and at equal times in the order of their sources. A head that must wait does not delay later heads.
+//! 3. A message occupies its channel and both ports for 16 + `words` word times. At the end of this time, the arbiter
+//!    grants the next message. A board can send and receive at the same time.
 //! 4. A message sent with [`Request::hold`] leaves its destination reserved for the same source. The messages of a
-//!    region transfer therefore follow each other, and transfers come in order of arrival. This rule is published for
-//!    frame buffers (TR94). For all other receivers it is assumed, because all boards have the same port.
-//! 5. An *elastic* receiver accepts every word immediately: graphics processors, frame buffers, the host. Such a
-//!    receiver gets the message when the last word has arrived ([`RingOutput::Delivered`]).
+//!    region therefore follow each other without messages of other sources in between. This rule is published for frame
+//!    buffers (TR94). For all other receivers, it is assumed, because all boards have the same port.
+//! 5. An *elastic* receiver (a graphics processor, a frame buffer or the host) accepts every word immediately. It gets
+//!    the message when the last word has arrived ([`RingOutput::Delivered`]).
 //! 6. A receiver with a FIFO that can be full (a renderer) gets an announcement of the message
 //!    ([`RingOutput::Announce`]). The receiver answers with the time at which the last word enters the FIFO
-//!    ([`RingEvent::Accept`]). If this time is later than the earliest possible time, the difference is a *stall*.
-//!    During a stall, channel and ports stay occupied.
+//!    ([`RingEvent::Accept`]). If the FIFO was full, this time is later than the earliest possible time. The difference
+//!    is a *stall*, during which channel and ports stay occupied.
 //! 7. Messages to receivers with a FIFO use at most [`RingTiming::fifo_channels`] channels. A board with a full FIFO
 //!    may have to send messages before it can accept more words. The remaining channels are for such messages, so full
 //!    FIFOs cannot block them.
@@ -44,11 +43,10 @@
 //! | last word arrived; sender notified ([`RingOutput::Sent`]) | `g + (overhead + words) x word + stall + h x hop` |
 //! | channel and ports free | `g + (overhead + words) x word + stall` |
 //!
-//! A message needs one event, its grant. A second event is needed only if another message waits for the end of the
-//! first. All times of a message are known at its grant or at the receiver's answer. [`Ring::move_every_word`] disables
-//! this optimization. The module [`reference`](mod@reference) is the reference model. The model applies the same rules
-//! word by word and shares no code with the ring. A property test compares the reference model with the ring, with and
-//! without the optimization.
+//! All times of a message are known at its grant or at the receiver's answer. A message therefore needs only one event,
+//! its grant, and a second event if another message waits for its end. [`Ring::move_every_word`] disables this
+//! optimization. The reference model ([`reference`](mod@reference)) applies the same rules word by word, and shares no
+//! code with the ring. A property test compares the reference model with the ring, with and without the optimization.
 //!
 //! **Not modelled:**
 //!
@@ -58,9 +56,9 @@
 //!   the second message can therefore begin to arrive before the first message has ended.
 //! - multicast and broken hardware
 //!
-//! Sources: TR94 (channels, rate, region transfers), F89 (rate). No paper describes the arbiter. The order of the
-//! arbiter, first come first served, is derived. With any other order, 20 field regions over two ports would need 12
-//! region times instead of 11.
+//! Sources: TR94 (channels, rate, region transfers), F89 (rate). No paper describes the arbiter. Its order (first come,
+//! first served) is derived from the published transfer of 20 regions of a field over two ports, which takes the time
+//! of 11 regions. With any other order, the transfer would take the time of 12 regions.
 
 mod channels;
 mod port;
@@ -75,7 +73,6 @@ pub use ring::Ring;
 pub use stats::{Refusals, RingStats, WaitReason, WaitingMessage};
 pub use timing::RingTiming;
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -1,5 +1,5 @@
-//! The reference model of the ring, word by word. The model is slow and obvious, and the fast ring is tested against
-//! it.
+//! The reference model of the ring. It moves each word separately, so it is slow and obvious. Tests compare the fast
+//! ring with this model.
 //!
 //! Time advances in equal time steps. In every time step, the model does three things, in this order:
 //!
@@ -7,13 +7,13 @@
 //! 2. Every channel at the end of a word slot moves one word: first the slots of the overhead, then the words of the
 //!    message. A word that does not fit into its receiver stays in its slot and is offered again in the next time step.
 //!    Channel and ports become free after the last word has moved and the receiver has answered.
-//! 3. The first messages of the queues are granted while channels are free. These messages are sorted by the time at
-//!    which they became first, then by source. A message needs a source port with a free send channel, and a free
-//!    destination that is not reserved for another source. Messages to receivers with a FIFO use at most
-//!    `fifo_channels` channels.
+//! 3. The first message of each queue may get a free channel. The message that has been first in its queue for the
+//!    longest time is served first. Among equal times, the message with the lowest source number is served first. A
+//!    message needs a source port with a free send channel, and a free destination that is not reserved for another
+//!    source. Messages to receivers with a FIFO use at most `fifo_channels` channels.
 //!
-//! Because of the hops between two boards, each word slot at the receiver is later than the slot at the sender. Hops
-//! have no other effect. The model computes no end in advance and skips no event.
+//! Because of the hops between two boards, each slot is later at the receiver than at the sender. Hops have no other
+//! effect. The model never computes the end of a message in advance, and skips no event.
 
 use crate::{RingError, RingTiming};
 use pxpl5_sim::parameters::ParameterTable;
@@ -27,9 +27,7 @@ use std::collections::VecDeque;
 pub struct PlannedMessage {
     /// Time at which the sending board passes the message to its port.
     pub at: Time,
-    /// Ring port of the board that sends the message.
     pub source: NodeId,
-    /// Ring port of the board that receives the message.
     pub destination: NodeId,
     /// Length of the message in words, 1 to 1,024, without the overhead.
     pub words: u32,
@@ -37,23 +35,22 @@ pub struct PlannedMessage {
     pub hold: bool,
 }
 
-/// The channel of a message that was sent, and the times of its transfer.
+/// The channel and the times of the transfer of one message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CarriedMessage {
-    /// Number of the channel, counted from 0.
     pub channel: usize,
-    /// Time at which the message was granted its channel and ports.
+    /// Time at which the arbiter granted the channel and the ports.
     pub granted: Time,
-    /// Time at which the last word of the message entered the receiver.
+    /// Time at which the last word entered the receiver.
     pub last_word_at: Time,
-    /// Time at which the message's channel and ports became free again.
+    /// Time at which the channel and the ports became free again.
     pub released: Time,
 }
 
-/// The receivers in the reference model. The model calls these functions for every message and word. The argument `at`
-/// is the time at the receiver.
+/// The receivers in the reference model. The model calls these functions for every message and word. `at` is the time
+/// at the receiver.
 pub trait Receivers {
-    /// Returns true if the receiver is elastic: it accepts every word immediately.
+    /// Returns true if the receiver accepts every word immediately.
     fn is_elastic(&self, destination: NodeId) -> bool;
 
     /// Announces a message to its receiver. Returns the time that the receiver needs to answer.
@@ -81,18 +78,17 @@ impl Receivers for Elastic {
     }
 }
 
-/// The reference model: a ring whose time advances in equal time steps. All messages are known before the first time
-/// step.
+/// The reference model: a ring whose time advances in equal time steps. All messages are known before the first step.
 #[derive(Debug)]
 pub struct SteppedRing<'a, R> {
     timing: RingTiming,
     n_nodes: u16,
     traffic: &'a [PlannedMessage],
     receivers: R,
-    /// Queue of each source: the indices of its waiting messages, and the time at which the first message reached the
-    /// head of the queue.
+    /// For each source, the indices of its waiting messages, and the time at which the first of these messages reached
+    /// the head of the queue.
     queues: Vec<(VecDeque<usize>, Time)>,
-    /// Number of messages that each source is sending on channels.
+    /// For each source, the number of channels on which it sends.
     sending: Vec<u64>,
     receiving: Vec<bool>,
     reserved_for: Vec<Option<NodeId>>,
@@ -100,7 +96,6 @@ pub struct SteppedRing<'a, R> {
     carried: Vec<Option<CarriedMessage>>,
 }
 
-/// A message on a channel, with the number of its remaining word times.
 #[derive(Clone, Copy, Debug)]
 struct ChannelSlots {
     message: usize,
@@ -148,12 +143,12 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     /// Advances by time steps of length `tick` until all messages are delivered. Returns the times of each message, in
-    /// the order of the messages in `traffic`.
+    /// the order of `traffic`.
     ///
     /// # Errors
     ///
     /// Returns [`RingError::OffTick`] if a time of the timing table or of the traffic is not a multiple of `tick`.
-    /// Returns [`RingError::Unfinished`] if a message is not delivered at `until`.
+    /// Returns [`RingError::Unfinished`] if a message is not delivered by `until`.
     pub fn run(mut self, tick: Span, until: Time) -> Result<Vec<CarriedMessage>, RingError> {
         self.check_tick(tick)?;
         let mut now = Time::ZERO;
@@ -187,7 +182,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         for (message, traffic) in self.traffic.iter().enumerate().filter(|(_, t)| t.at == now) {
             let source = usize::from(traffic.source.0);
             let (queue, since) = &mut self.queues[source];
-            // The first message of an empty queue becomes its head now.
+            // If the queue was empty, the message becomes its head (first message) now.
             if queue.is_empty() {
                 *since = now;
             }
@@ -214,7 +209,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     fn move_word(&mut self, slots: &mut ChannelSlots, now: Time) {
         let destination = self.traffic[slots.message].destination;
         let seen_at = now + slots.latency;
-        // The slots of the overhead pass without an offer to the receiver.
+        // The slots of the overhead are not offered to the receiver.
         if slots.overhead_left > 0 {
             slots.overhead_left -= 1;
             slots.slot_began = now;
@@ -228,7 +223,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn release(&mut self, message: usize, now: Time) {
-        // If the source was at its limit, its next message becomes the head only now.
+        // If the source was at its limit, its next message becomes a head only now.
         let PlannedMessage { source, destination, hold, .. } = self.traffic[message];
         if self.sending[usize::from(source.0)] == self.timing.source_channels {
             self.queues[usize::from(source.0)].1 = now;
@@ -248,7 +243,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn first_grantable(&self) -> Option<(usize, usize)> {
-        // Grant the first possible queue head whose port has a free send channel.
+        // Grant the first queue head for which everything is free.
         let channel = self.channels.iter().position(Option::is_none)?;
         let mut heads: Vec<_> = (0..self.queues.len())
             .filter(|source| self.sending[*source] < self.timing.source_channels)

@@ -9,7 +9,6 @@ use std::collections::VecDeque;
 
 type RingContext = Context<RingEvent, RingOutput>;
 
-/// The ring: its ports, its channels, and the arbiter that grants channels to messages.
 #[derive(Clone, Debug)]
 pub struct Ring {
     timing: RingTiming,
@@ -17,26 +16,25 @@ pub struct Ring {
     sources: Vec<SourcePort>,
     destinations: Vec<DestinationPort>,
     channels: RingChannels,
-    /// Number of messages that are being sent to receivers with a FIFO, at most `fifo_channels`.
+    /// Number of messages on channels to receivers with a FIFO, at most `fifo_channels`.
     to_fifos: u64,
-    /// First message of each queue whose source has a free send channel. The messages are sorted by the order of
-    /// grants.
+    /// First message of each queue whose source has a free send channel, in the order of grants.
     heads: Vec<QueueHead>,
     /// Number of messages in `heads` whose receiver has a FIFO.
     heads_to_fifos: u32,
-    /// Number of sources that send on the greatest possible number of channels, `source_channels`.
+    /// Number of sources that send on the greatest permitted number of channels, `source_channels`.
     at_limit: usize,
-    /// True if a channel or destination has become free since the last grants. In this case, a waiting message may be
+    /// True if a channel or destination has become free since the last grants, so that a waiting message may be
     /// granted.
     unblocked: bool,
     /// Times at which an arbitration (a pass that grants channels to waiting messages) is scheduled.
     arbitrations: Vec<Time>,
-    /// True if every end of a message causes an event, even if no other message waits for the end.
+    /// True if every end of a message causes an event, even if no other message waits for this end.
     watched: bool,
-    /// True if each word of a message causes a separate event.
+    /// True if every word causes an event.
     word_by_word: bool,
     stats: RingStats,
-    /// Time that each port has spent receiving messages, including overhead and stalls.
+    /// Time for which each port has received messages, including overhead and stalls.
     receiving: Vec<Span>,
     refusals: Refusals,
 }
@@ -44,7 +42,7 @@ pub struct Ring {
 #[derive(Clone, Debug, Default)]
 struct SourcePort {
     queue: VecDeque<QueuedRequest>,
-    /// Number of messages that the source is sending on channels, at most `source_channels`.
+    /// Number of channels on which the source sends, at most `source_channels`.
     in_flight: u64,
 }
 
@@ -59,12 +57,12 @@ struct DestinationPort {
     elastic: bool,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
-    /// Number of messages to this destination that are the first message of a queue and wait for a grant.
+    /// Number of messages for this destination that are first in their queue and wait for a grant.
     heads: u32,
 }
 
-/// The first message of a source's queue, which waits for its grant. Messages are granted in the order of `since`, and
-/// messages with equal `since` in the order of `source`.
+/// The first message of a source's queue, which waits for its grant. The arbiter serves messages in the order of
+/// `since`, and at equal times in the order of `source`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct QueueHead {
     since: Time,
@@ -73,8 +71,7 @@ struct QueueHead {
 }
 
 impl Ring {
-    /// Makes an empty ring of `n_nodes` ports. `elastic` must return true for receivers that accept every word
-    /// immediately.
+    /// Makes an empty ring of `n_nodes` ports. `elastic` returns true for receivers that accept every word immediately.
     ///
     /// # Errors
     ///
@@ -105,20 +102,18 @@ impl Ring {
         })
     }
 
-    /// Schedules a separate event for the end of every message. [`Ring::busy_channels`] is then correct after every
-    /// event.
+    /// Schedules an event for the end of every message. [`Ring::busy_channels`] is then correct after every event.
     pub const fn watch(&mut self) {
         self.watched = true;
     }
 
-    /// Schedules a separate event for every word of a message. Without this call, the ring computes the end of a
-    /// message at its grant. The call does not change the times of messages. Receivers with a FIFO still answer for
-    /// whole messages.
+    /// Schedules an event for every word. Without this call, the ring computes the end of a message at its grant. The
+    /// call does not change the times of messages. Receivers with a FIFO still answer for whole messages.
     pub const fn move_every_word(&mut self) {
         self.word_by_word = true;
     }
 
-    /// Handles one event at the time of `context`. New events and outputs are passed to `context`.
+    /// Handles one event at the time of `context`. The resulting events and outputs go to `context`.
     pub fn handle(&mut self, event: RingEvent, context: &mut RingContext) {
         match event {
             RingEvent::Request(request) => self.request(request, context),
@@ -141,10 +136,10 @@ impl Ring {
         self.arbitrate_at_next_end(context);
     }
 
-    /// Recomputes every counter of the ring. Returns true if the counters are correct.
+    /// Recomputes all counters of the ring. Returns true if the counters were correct.
     fn check_counters(&self) -> bool {
         let to_fifo = |node: NodeId| !self.is_elastic(node);
-        // Count in one pass over the heads. A scan for each port would take most of the time of a test run.
+        // Count in one pass over the heads, because a scan for each port would take most of the time of a test run.
         let mut heads_of_ports = vec![0; self.destinations.len()];
         self.heads.iter().for_each(|head| heads_of_ports[usize::from(head.destination.0)] += 1);
         let source_limit = self.timing.source_channels;
@@ -160,26 +155,23 @@ impl Ring {
             && self.destinations.iter().zip(heads_of_ports).all(|(port, heads)| port.heads == heads)
     }
 
-    /// Returns the timing table of the ring.
     #[must_use]
     pub const fn timing(&self) -> &RingTiming {
         &self.timing
     }
 
-    /// Returns the number of ports. Ports are numbered from 0.
     #[must_use]
     pub fn n_nodes(&self) -> u16 {
         self.sources.len() as u16
     }
 
-    /// Returns the statistics of the ring. The statistics cover all messages that had ended at the last grant or
-    /// [`Ring::settle`].
+    /// Returns the statistics of all messages that had ended at the last grant or [`Ring::settle`].
     #[must_use]
     pub const fn stats(&self) -> &RingStats {
         &self.stats
     }
 
-    /// Returns the time that a port has spent receiving messages, including overhead and stalls. Only ended messages
+    /// Returns the time for which a port has received messages, including overhead and stalls. Only ended messages
     /// count. The result is zero for a port that does not exist.
     #[must_use]
     pub fn receiving(&self, port: NodeId) -> Span {
@@ -192,20 +184,20 @@ impl Ring {
         &self.refusals
     }
 
-    /// Returns the number of occupied channels. After a call of [`Ring::watch`], the number is correct after every
-    /// event. Without this call, the channel of an ended message can still count as occupied.
+    /// Returns the number of occupied channels. Unless [`Ring::watch`] was called, the channel of an ended message can
+    /// still count as occupied.
     #[must_use]
     pub fn busy_channels(&self) -> u32 {
         self.channels.busy()
     }
 
-    /// Returns snapshots of the messages on channels at time `now`, sorted by channel. `now` must not be earlier than
-    /// the last event. The ring stays unchanged.
+    /// Returns snapshots of the messages on channels at time `now`, in the order of the channels. `now` must not be
+    /// earlier than the last event.
     pub fn channel_snapshots(&self, now: Time) -> impl Iterator<Item = ChannelSnapshot> + '_ {
         self.channels.channel_snapshots(now)
     }
 
-    /// Returns true if no message is on a channel or waits for a channel, as of the last grant or [`Ring::settle`].
+    /// Returns true if, at the last grant or [`Ring::settle`], no message was on a channel or waited for a channel.
     #[must_use]
     pub fn is_idle(&self) -> bool {
         self.heads.is_empty() && self.channels.is_idle()
@@ -226,8 +218,8 @@ impl Ring {
         Err(RingError::Length { source: message.source, destination: message.destination, words: message.words })
     }
 
-    /// Returns the first message of each queue that waits for a grant, and the messages that wait for their receiver's
-    /// answer. The messages are sorted by source.
+    /// Returns the messages that wait for a grant as first of their queue, and the messages that wait for their
+    /// receiver's answer. The messages are sorted by source.
     #[must_use]
     pub fn waiting(&self) -> Vec<WaitingMessage> {
         let heads = self.heads.iter().filter_map(|head| self.waiting_head(*head));
@@ -256,7 +248,7 @@ impl Ring {
         if !new_first || source.in_flight >= most {
             return;
         }
-        // The new message can come before the old head if both reached the port at this instant.
+        // The new message can precede the old head if both reached the port at this instant.
         if source.queue.len() > 1
             && let Some(place) = self.heads.iter().position(|head| head.source == id)
         {
@@ -266,8 +258,8 @@ impl Ring {
         self.arbitrate_at(now, context);
     }
 
-    /// Schedules an arbitration, a pass that grants channels to waiting messages, at time `at`. Does nothing if an
-    /// earlier arbitration is already scheduled, because each arbitration schedules the next arbitration.
+    /// Schedules an arbitration (a pass that grants channels to waiting messages) at time `at`. Does nothing if an
+    /// earlier arbitration is already scheduled, because each arbitration schedules the next.
     fn arbitrate_at(&mut self, at: Time, context: &mut RingContext) {
         if self.arbitrations.iter().all(|earlier| *earlier > at) {
             self.arbitrations.push(at);
@@ -275,10 +267,10 @@ impl Ring {
         }
     }
 
-    /// Schedules an arbitration at the next relevant end of a message. An end is relevant if a waiting message needs
-    /// it, or if [`Ring::watch`] was called.
+    /// Schedules an arbitration at the next end of a message for which another message waits. After [`Ring::watch`],
+    /// schedules it at the next end of any message.
     fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
-        // If a source is at its limit or no channel is free, every end is relevant.
+        // If a source is at its limit or no channel is free, the end of every message is relevant.
         let any_end = self.watched || self.at_limit > 0;
         let next = if any_end || self.is_channel_missing() {
             self.channels.first_end()
@@ -292,14 +284,13 @@ impl Ring {
         }
     }
 
-    /// Returns the earliest time at which a destination of a waiting head becomes free. A head is the first message of
-    /// a queue.
+    /// Returns the earliest known time when a destination of a waiting message becomes free. Only messages at the head
+    /// of their queue count.
     fn first_end_waited_for(&self) -> Option<Time> {
         let waited_for = |flight: &MessageInFlight| self.destinations[usize::from(flight.destination.0)].heads > 0;
         self.channels.ends().find(|(_, flight)| waited_for(flight)).map(|(end, _)| end)
     }
 
-    /// Returns true if the first message of a queue waits because no channel is free.
     fn is_channel_missing(&self) -> bool {
         (!self.heads.is_empty() && !self.channels.has_free())
             || (self.heads_to_fifos > 0 && self.to_fifos >= self.timing.fifo_channels)
@@ -316,11 +307,10 @@ impl Ring {
     fn add_head(&mut self, since: Time, source: NodeId) {
         let Some(first) = self.sources[usize::from(source.0)].queue.front() else { return };
         let head = QueueHead { since, source, destination: first.request.message.destination };
-        // Keep the heads sorted by the time at which they became heads, then by source.
+        // Sort the heads by the time at which they became heads, then by source.
         let later = self.heads.iter().rev().take_while(|&&h| h > head).count();
         self.heads.insert(self.heads.len() - later, head);
-        // Count the head at its destination. The end of a message at this destination then causes a new round of
-        // grants.
+        // Count the head at its destination, so that the end of a message there causes a new round of grants.
         let destination = &mut self.destinations[usize::from(head.destination.0)];
         destination.heads += 1;
         self.heads_to_fifos += u32::from(!destination.elastic);
@@ -333,8 +323,8 @@ impl Ring {
         self.heads_to_fifos -= u32::from(!destination.elastic);
     }
 
-    /// Frees the channels and ports of all messages that have ended by `now`, and adds the messages to the statistics.
-    /// The ring also does this before every grant.
+    /// Frees the channels and ports of all messages that have ended by `now`, and adds these messages to the
+    /// statistics. The ring also does this before every grant.
     pub fn settle(&mut self, now: Time) {
         let lacked_channel = self.is_channel_missing();
         while let Some((channel, ended, flight)) = self.channels.take_ended(now) {
@@ -361,9 +351,8 @@ impl Ring {
     }
 
     /// Grants channels to all waiting messages that can be sent, in one pass. One pass is enough, because a grant frees
-    /// nothing, and the next message of the same source comes later in the order. If nothing became free since the last
-    /// pass, messages that waited then still cannot be sent. In this case, the pass checks only messages that became
-    /// the first of their queue at this instant.
+    /// nothing, and the next message of the same source comes later in the order. If nothing has become free since the
+    /// last pass, the pass checks only messages that became first in their queue at this instant.
     fn grant_all(&mut self, now: Time, context: &mut RingContext) {
         let is_for_all = std::mem::take(&mut self.unblocked);
         let mut place =
@@ -420,9 +409,9 @@ impl Ring {
         }
     }
 
-    /// Puts a message on a channel and outputs its delivery or its announcement. If the receiver accepts every word
-    /// immediately, the end of the message is known at its grant. Otherwise, the end follows from the receiver's
-    /// answer. With an event for every word, the end follows from the last of these events.
+    /// Puts a message on a channel, and outputs its delivery or its announcement. The end of the message is known at
+    /// its grant if the receiver accepts every word immediately, otherwise at the receiver's answer. If every word
+    /// causes an event, the end is known at the last of these events.
     fn carry(&mut self, flight: MessageInFlight, message: Message, context: &mut RingContext) {
         if self.word_by_word {
             let begins = flight.granted;
@@ -447,7 +436,7 @@ impl Ring {
     }
 
     /// Ends the time slot of one word, or of one word of overhead. A receiver with a FIFO gets the announcement after
-    /// the first slot. An elastic receiver, which accepts every word immediately, gets the message after the last slot.
+    /// the first slot. An elastic receiver (which accepts every word immediately) gets the message after the last slot.
     fn move_word(&mut self, channel: usize, context: &mut RingContext) {
         let Some(mut flight) = self.channels.take_slot(channel) else { return };
         // The next word slot follows at once.
@@ -489,7 +478,7 @@ impl Ring {
             let error = RingError::NothingAnnounced { destination };
             return self.refusals.record(now, error);
         };
-        // The earliest possible time for the last word, without a stall. A stall keeps the channel occupied, and the
+        // The earliest possible time for the last word, without a stall. A stall keeps the channel occupied, so the
         // channel cannot become free before the present.
         let earliest = flight.granted + self.timing.occupancy(flight.words) + flight.latency;
         let accepted = last_word_at.max(earliest);
@@ -503,7 +492,7 @@ impl Ring {
         }
     }
 
-    /// Returns the message that was announced to a receiver but not answered yet, with the number of its channel.
+    /// Returns the message that was announced to `destination` but not answered yet, and its channel.
     fn unanswered(&self, destination: NodeId) -> Option<(usize, &MessageInFlight)> {
         let channel = self.destinations.get(usize::from(destination.0))?.channel?;
         Some((channel, self.channels.unanswered(channel)?))
@@ -528,8 +517,7 @@ impl Ring {
     }
 }
 
-/// Outputs the delivery of a message to a receiver that accepts every word immediately, and the notification of the
-/// sender.
+/// Outputs the delivery of a message to a receiver that accepts every word immediately, and the report to the sender.
 fn deliver(message: Message, at: Time, sender: (NodeId, Option<u64>), context: &mut RingContext) {
     context.output(at, RingOutput::Delivered(message));
     notify_sender(sender, at, context);

@@ -12,9 +12,9 @@ pub struct RingStats {
     pub channel_busy: Vec<Span>,
     /// Number of messages that have ended and have freed their channels.
     pub messages: u64,
-    /// Number of words in the ended messages, without the overhead.
+    /// Number of words of all ended messages, without the overhead.
     pub words: u64,
-    /// Sum of the waiting times of all messages, each from request to grant.
+    /// Sum of the waiting times of all messages, from request to grant.
     pub waiting: Span,
     /// Longest waiting time of a message, from request to grant.
     pub longest_wait: Span,
@@ -22,7 +22,7 @@ pub struct RingStats {
     pub stalled: Span,
 }
 
-/// The number of refused messages and answers, and the reason for the first refusal.
+/// Number of refused messages and answers, and the reason for the first refusal.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Refusals {
     /// Number of refused messages and answers since the ring was made.
@@ -41,37 +41,33 @@ impl Refusals {
 /// A message that waits for its grant or for the answer of its receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitingMessage {
-    /// Ring port of the board that sends the message.
     pub source: NodeId,
-    /// Ring port of the board that receives the message.
     pub destination: NodeId,
-    /// Length in words, without the overhead.
+    /// Length of the message in words, without the overhead.
     pub words: u32,
-    /// Time at which the message was granted. If the message is not granted yet, time at which the message became the
-    /// first of its queue.
+    /// Time at which the message was granted. Without a grant, time at which the message became the first of its queue.
     pub since: Time,
-    /// Condition that the message waits for.
     pub reason: WaitReason,
 }
 
-/// The condition that a message waits for before it can continue.
+/// The condition for which a message waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WaitReason {
-    /// The receiver must answer the announcement of the message.
+    /// The receiver must still answer the announcement of the message.
     Acceptance,
     /// The receiver is busy with a message from this port.
     DestinationBusy(NodeId),
-    /// The receiver is reserved for an unfinished transfer from this port.
+    /// The receiver is reserved for messages from this port.
     DestinationReserved(NodeId),
-    /// A channel must become free: all channels that the message can use are occupied.
+    /// All channels that the message can use are occupied.
     Channel,
-    /// The message can be sent, and the arbiter will grant it at this instant.
+    /// Nothing is missing: the arbiter will grant the message at this instant.
     Arbitration,
 }
 
 impl WaitingMessage {
-    /// Returns the port whose board must act before the message can continue. The port belongs to the board that
-    /// occupies or reserves the receiver, or to the receiver. Returns `None` if the message waits for the ring.
+    /// Returns the port of the board that must act before the message can continue: the receiver, or the board that
+    /// occupies or reserves the receiver. Returns `None` if the message waits for the ring.
     #[must_use]
     pub const fn waits_on(&self) -> Option<NodeId> {
         match self.reason {
@@ -81,7 +77,7 @@ impl WaitingMessage {
         }
     }
 
-    /// Returns the condition that the message waits for, for a deadlock report. `name` must return the name of a board.
+    /// Returns the condition for which the message waits, for reports of deadlocks. `name` returns the name of a board.
     #[must_use]
     pub fn waits_for<N: fmt::Display>(&self, name: impl Fn(NodeId) -> N) -> String {
         let to = name(self.destination);

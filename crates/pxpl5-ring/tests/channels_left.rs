@@ -158,7 +158,7 @@ fn machines() -> impl Iterator<Item = Machine> {
 }
 
 #[test]
-fn while_fifos_leave_a_channel_no_order_of_events_ends_in_a_deadlock() {
+fn if_fifos_leave_one_channel_free_no_order_of_events_causes_a_deadlock() {
     let mut states = 0;
     let mut searched = 0;
     for machine in machines().filter(|machine| machine.fifo_channels < machine.channels) {
@@ -174,7 +174,7 @@ fn while_fifos_leave_a_channel_no_order_of_events_ends_in_a_deadlock() {
 /// Without the limit, a machine can deadlock if full FIFOs can hold all channels. For this, the machine needs at least
 /// as many renderers as channels, and enough senders.
 #[test]
-fn without_a_channel_left_full_fifos_hold_all_of_them() {
+fn if_fifos_can_hold_every_channel_a_machine_with_enough_renderers_and_senders_can_deadlock() {
     for machine in machines().filter(|machine| machine.fifo_channels == machine.channels) {
         let (_, stuck) = machine.search();
         let can_fill = machine.channels.min(machine.processors * machine.source_channels);

@@ -18,7 +18,7 @@ struct RingCase {
 }
 
 /// Returns random transfers. Each transfer has up to four messages to one destination. All messages except the last
-/// have `hold`.
+/// have the flag `hold`.
 fn transfers(n_nodes: u16, tick: Span) -> impl Strategy<Value = Vec<PlannedMessage>> {
     let words = prop_oneof![8 => 1u32..40, 2 => 40u32..200, 1 => Just(1_024u32)];
     let transfer = (0u64..600, 0..n_nodes, 0..n_nodes, words, 1usize..5);
@@ -119,7 +119,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn closed_form_and_word_by_word_agree_to_the_picosecond(case in cases(), seed in any::<u64>()) {
+    fn the_closed_form_agrees_with_word_by_word_transfer_to_the_picosecond(case in cases(), seed in any::<u64>()) {
         let carried = step(&case);
         let ways: [fn(&mut Ring); 3] = [|_| {}, Ring::watch, Ring::move_every_word];
         for prepare in ways {
@@ -152,7 +152,7 @@ fn elastic(traffic: &[PlannedMessage], tick: Span, until_ns: u64) -> Result<Vec<
 /// Sends seven messages to elastic receivers at once. The ring also has receivers with a FIFO, whose messages may use
 /// only six channels.
 #[test]
-fn word_by_word_elastic_receivers_take_each_word_as_it_comes_on_any_channel() {
+fn in_the_reference_model_elastic_receivers_accept_each_word_on_arrival() {
     let traffic: Vec<_> = (0..7).map(|i| planned(3_000, 2 * i, 2 * i + 1, 100)).collect();
     let carried = elastic(&traffic, Span::from_ns(50), 100_000).expect("delivered");
     let end = Time::ZERO + Span::from_ns(3_000 + (16 + 100) * 50);
@@ -164,7 +164,7 @@ fn word_by_word_elastic_receivers_take_each_word_as_it_comes_on_any_channel() {
 }
 
 #[test]
-fn word_by_word_what_ends_when_time_is_up_is_delivered_and_what_ends_later_is_not() {
+fn the_reference_model_delivers_only_messages_that_end_by_the_end_time() {
     let traffic = [planned(0, 0, 1, 10), planned(3_000, 2, 3, 10)];
     let tick = Span::from_ns(50);
     let end_ns = 3_000 + (16 + 10) * 50;
@@ -174,7 +174,7 @@ fn word_by_word_what_ends_when_time_is_up_is_delivered_and_what_ends_later_is_no
 }
 
 #[test]
-fn word_by_word_every_time_must_be_a_multiple_of_the_tick() {
+fn the_reference_model_refuses_times_that_are_no_multiple_of_the_tick() {
     let traffic = [planned(3_010, 0, 1, 10)];
     let off = |what, found_ps, tick| Err(RingError::OffTick { what, found_ps, tick });
     let long = Span::from_ns(20);
@@ -187,7 +187,7 @@ fn word_by_word_every_time_must_be_a_multiple_of_the_tick() {
 
 /// 20 boards send to their neighbours at once and occupy all eight channels. Random traffic seldom does this for long.
 #[test]
-fn both_agree_when_twenty_messages_want_eight_channels_at_once() {
+fn both_models_agree_if_twenty_messages_request_eight_channels_at_once() {
     let tick = Span::from_ns(50);
     let traffic: Vec<_> = (0..20).flat_map(|node| parts(&(3, node, (node + 1) % 20, 1_024, 3), tick)).collect();
     let timing = RingTiming { hop_ns: 0, ..RingTiming::PAPERS };

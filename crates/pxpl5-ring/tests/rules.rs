@@ -87,7 +87,7 @@ fn the_ninth_message_waits_until_a_channel_is_free_and_not_a_picosecond_longer()
 }
 
 #[test]
-fn full_fifos_leave_channels_for_what_their_boards_must_send() {
+fn full_fifos_leave_channels_for_messages_of_their_boards() {
     // Ports 0 to 7 accept no word before 400 us. A message from port 10 to port 11 comes a microsecond later.
     let shut = Receiver::Fifo {
         words: 1,
@@ -106,14 +106,14 @@ fn full_fifos_leave_channels_for_what_their_boards_must_send() {
 }
 
 #[test]
-fn what_a_board_sends_does_not_disturb_what_it_receives() {
+fn sending_does_not_disturb_receiving() {
     let times = accepted(&[traffic(us(0), 0, 1, 1_000), traffic(us(0), 1, 0, 1_000)]);
     let occupied = Span::from_ns(1_016 * 50);
     assert_eq!(times, [us(0) + occupied + HOP, us(0) + occupied + HOP * 19]);
 }
 
 #[test]
-fn a_source_sends_to_several_destinations_at_a_time_and_a_destination_takes_one() {
+fn a_source_can_send_to_several_destinations_and_a_destination_receives_from_one_source_at_a_time() {
     let from_one = accepted(&[traffic(us(0), 0, 1, 1_024), traffic(us(0), 0, 2, 1_024)]);
     assert_eq!(from_one, [us(52) + HOP, us(52) + HOP * 2]);
     let to_one = accepted(&[traffic(us(0), 0, 2, 1_024), traffic(us(0), 1, 2, 1_024)]);
@@ -121,7 +121,7 @@ fn a_source_sends_to_several_destinations_at_a_time_and_a_destination_takes_one(
 }
 
 #[test]
-fn of_two_that_wait_the_one_that_came_first_goes_first_and_at_one_instant_the_lowest_source() {
+fn waiting_messages_go_in_order_of_arrival_then_of_source_number() {
     let busy = traffic(us(0), 9, 3, 1_024);
     let first_come = accepted(&[busy, traffic(us(2), 1, 3, 1_024), traffic(us(1), 2, 3, 1_024)]);
     assert_eq!(first_come[1..], [us(156) + HOP * 2, us(104) + HOP]);
@@ -132,7 +132,7 @@ fn of_two_that_wait_the_one_that_came_first_goes_first_and_at_one_instant_the_lo
 /// Port 0 requests port 3 earlier than port 1 does. However, port 0 must first send another message, and this message
 /// has to wait.
 #[test]
-fn a_message_queues_for_its_destination_from_when_it_is_first_at_its_source() {
+fn a_message_queues_for_its_destination_once_it_is_first_at_its_source() {
     let times = accepted(&[
         traffic(us(0), 9, 3, 1_024),
         traffic(us(0), 8, 5, 1_000),
@@ -145,13 +145,13 @@ fn a_message_queues_for_its_destination_from_when_it_is_first_at_its_source() {
 }
 
 #[test]
-fn a_message_that_must_wait_does_not_hold_up_a_later_one() {
+fn a_waiting_message_does_not_delay_a_later_message_to_another_destination() {
     let times = accepted(&[traffic(us(0), 0, 3, 1_024), traffic(us(1), 1, 3, 1_024), traffic(us(2), 2, 4, 1_024)]);
     assert_eq!(times[2], us(54) + HOP * 2);
 }
 
 #[test]
-fn messages_of_one_instant_and_source_go_in_their_order() {
+fn messages_of_one_source_at_one_instant_keep_their_order() {
     let mut bench = bench();
     let mut ring = ring_with_a_fifo();
     for number in [2, 0, 1] {
@@ -171,7 +171,7 @@ fn messages_of_one_instant_and_source_go_in_their_order() {
 }
 
 #[test]
-fn a_held_destination_waits_for_its_source_and_a_released_one_goes_to_the_first_come() {
+fn a_reserved_destination_serves_its_source_and_after_release_the_first_waiting_request() {
     let hold = PlannedMessage { hold: true, ..traffic(us(0), 0, 2, 1_024) };
     let end_of_transfer = traffic(us(100), 0, 2, 1_024);
     let other = traffic(us(1), 1, 2, 1_024);
@@ -188,7 +188,7 @@ fn sent_at(output: &(Time, RingOutput)) -> Option<Time> {
 }
 
 #[test]
-fn a_receiver_with_a_fifo_is_told_before_the_first_word_and_its_answer_ends_the_message() {
+fn a_receiver_with_a_fifo_is_notified_before_the_first_word_and_its_answer_ends_the_message() {
     let mut bench = bench();
     let mut ring = ring_with_a_fifo();
     bench.feed(us(0), Phase::Arrive, RingEvent::Request(request(1, 0, 9, 100)));
@@ -262,7 +262,7 @@ fn events_of_a_message(prepare: fn(&mut Ring)) -> usize {
 }
 
 #[test]
-fn a_message_is_a_few_events_and_word_by_word_one_for_each_slot() {
+fn a_message_needs_a_few_events_and_word_by_word_transfer_adds_one_event_for_each_slot() {
     let slots = 16 + 100;
     let [few, all] = [events_of_a_message(|_| {}), events_of_a_message(Ring::move_every_word)];
     assert!(few < 4, "{few} events of a message as a whole");
@@ -283,7 +283,7 @@ fn an_answer_that_comes_after_the_last_word_frees_the_sender_at_once() {
 }
 
 #[test]
-fn what_no_ring_can_carry_is_refused_and_its_sender_told() {
+fn a_message_too_long_for_the_ring_is_refused_and_its_sender_notified() {
     let mut bench = bench();
     let mut ring = ring_with_a_fifo();
     for (number, (source, destination, words)) in (0..).zip([(0, 1, 0), (0, 1, 1_025), (10, 1, 5), (0, 10, 5)]) {
@@ -347,7 +347,7 @@ fn a_deadlock_report_names_each_waiting_board_and_the_cause() {
 }
 
 #[test]
-fn a_ring_that_cannot_be_built_says_why() {
+fn a_ring_that_cannot_be_built_is_refused_with_the_reason() {
     let none = Ring::new(TIMING, 0, |_| true).expect_err("no ports");
     assert_eq!(none.to_string(), "a ring needs one port at least, found none");
     let no_channels = RingTiming { channels: 0, ..TIMING };
@@ -391,7 +391,7 @@ fn a_message_to_a_fifo_waits_for_a_channel_until_another_to_a_fifo_has_ended() {
 }
 
 #[test]
-fn a_source_waits_for_a_channel_and_not_for_its_own_reservation() {
+fn a_source_that_reserves_its_destination_waits_only_for_a_channel() {
     let mut bench = bench();
     let mut ring = ring_with_two_fifos();
     let held = Request { hold: true, ..request(1, 0, 9, 10) };
@@ -405,7 +405,7 @@ fn a_source_waits_for_a_channel_and_not_for_its_own_reservation() {
 }
 
 #[test]
-fn a_message_that_nothing_stands_in_the_way_of_waits_for_arbitration() {
+fn an_unobstructed_message_waits_only_for_arbitration() {
     let mut ring = ring_with_two_fifos();
     let mut context = Context::default();
     ring.handle(RingEvent::Request(request(1, 0, 1, 10)), context.at(us(3)));
@@ -413,7 +413,7 @@ fn a_message_that_nothing_stands_in_the_way_of_waits_for_arbitration() {
 }
 
 #[test]
-fn a_watched_ring_knows_after_every_event_how_many_channels_are_busy() {
+fn an_observed_ring_counts_busy_channels_after_every_event() {
     let mut bench = bench();
     let mut ring = Ring::new(TIMING, 10, |_| true).expect("valid");
     ring.watch();
@@ -429,7 +429,7 @@ fn a_watched_ring_knows_after_every_event_how_many_channels_are_busy() {
 }
 
 #[test]
-fn a_ring_is_idle_when_nothing_waits_and_nothing_is_on_a_channel() {
+fn a_ring_is_idle_if_no_message_waits_or_is_on_a_channel() {
     let mut ring = Ring::new(ONE_AT_A_TIME, 10, |_| true).expect("valid");
     let mut bench = bench();
     assert!(ring.is_idle());

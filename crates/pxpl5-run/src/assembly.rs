@@ -88,24 +88,24 @@ impl Experiment {
         if !self.on_demand {
             return Ok((setup, Some(head)));
         }
-        // On demand, a frame begins with the first report at which the host is ready.
+        // With frames on demand, a frame begins with the first report at which the host is ready.
         let asked = Arc::clone(&head);
         let free = Arc::clone(&setup.starts);
         Ok((Setup { starts: Arc::new(move |ready| asked.report_from(free(ready)?)), ..setup }, Some(head)))
     }
 }
 
-/// Returns the function that gives the start time of a frame. When the host is ready for a frame, its application
-/// computes for a while, and then the frame starts.
+/// Returns the function that gives the start time of a frame: the time at which the host is ready, plus the computing
+/// time of the host's application.
 fn frame_starts(host: HostTiming, seed: u64) -> FrameStarts {
     Arc::new(move |ready| Some(ready + host.application_span(mix(seed ^ mix(ready.0)))))
 }
 
-/// Checks that display and pipeline have the same coverage.
+/// Checks that the display and the pipeline have the same coverage: one view, or all directions around the head.
 ///
 /// # Errors
 ///
-/// [`SettingError`] states the coverage of both.
+/// The [`SettingError`] states the coverage of the display and the coverage of the pipeline.
 pub fn check_coverage(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), SettingError> {
     let Some(display) = config.displays.first() else { return Ok(()) };
     let (shown, drawn) = (display.coverage(), pipeline.coverage());
@@ -124,7 +124,6 @@ pub fn check_coverage(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result
     )))
 }
 
-/// Checks that a recorded head motion has poses for the whole run.
 fn check_recording(head: &Head, until: Time) -> Result<(), ExperimentError> {
     if let Some((from_ps, to_ps)) = head.motion.gap_ps(until.0) {
         return Err(ExperimentError::RecordingGap { from: Time(from_ps), to: Time(to_ps), run: until });

@@ -1,5 +1,3 @@
-//! Converts scenes to display lists for graphics processors.
-
 use crate::error::ExperimentError;
 use pphigs::{DisplayList, DisplayStructure, MAX_EDITS, ModelFrame, RecentViews, Shading};
 use pxpl5_geometry::{Culling, WorldSphere};

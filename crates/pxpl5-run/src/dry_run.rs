@@ -1,5 +1,3 @@
-//! Result of a dry run: the instants at which a pipeline shows its views, and the resulting prediction intervals.
-
 use crate::head::Head;
 use crate::instants::Instants;
 use pxpl5_sim::Time;
@@ -40,8 +38,9 @@ impl DryRun {
     /// Returns the head with a predictor that is tuned for the prediction intervals of this dry run. Returns `None` if
     /// the dry run found no interval.
     ///
-    /// The parameters for positions are tuned for the prediction interval of pictures. If the display turns pictures,
-    /// the parameters for orientations are tuned for the prediction interval of these turns.
+    /// The parameters for positions are tuned for the prediction interval of pictures. Some displays turn each picture
+    /// by the newest orientation. For such a display, the parameters for orientations are tuned for the prediction
+    /// interval of the orientations.
     pub(crate) fn tuned(&self, head: &Head) -> Option<Head> {
         let of_pictures = self.interval_ps.map(|interval_ps| head.tuned_for(interval_ps));
         match self.turn_interval_ps {

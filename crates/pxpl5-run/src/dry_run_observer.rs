@@ -1,5 +1,3 @@
-//! Streaming observer of a dry run without prediction.
-
 use crate::dry_run::{DryRun, SeenTimes};
 use crate::head_views::{HeadViews, SampledPose};
 use crate::instants::Instants;
@@ -12,12 +10,11 @@ use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::any::Any;
 use std::collections::BTreeMap;
 
-/// One millisecond, the step to which a prediction interval is rounded before tuning. A finer step changes the
-/// parameters of a filter by less than one per cent.
+/// One millisecond, the step to which a prediction interval is rounded before tuning. A finer step changes the tuned
+/// parameters by less than one per cent.
 const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 
-/// Streaming observer that collects the times at which views are shown, and the prediction intervals of views and
-/// of orientations by which the display turns pictures.
+/// A streaming observer that collects the times at which views are shown, and the prediction intervals.
 #[derive(Debug, Default)]
 pub(crate) struct DryRunObserver {
     pictures: usize,
@@ -28,11 +25,11 @@ pub(crate) struct DryRunObserver {
     intervals: Mean,
     turns: Mean,
     turned_to: PeriodNumber,
-    /// Last picture so far. The picture that replaces it on the screen is not known yet.
+    /// The newest picture, whose successor on the screen is not known yet.
     waiting: Option<PictureTimes>,
 }
 
-/// The time from the first to the last light of all pictures that show a view.
+/// The times at which the pictures of one view are lit, from the first to the last light.
 #[derive(Clone, Copy, Debug)]
 struct ShownView {
     shown: LightTimes,
@@ -55,7 +52,7 @@ impl Mean {
         self.sum_ms / self.n as f64
     }
 
-    /// Returns the mean, rounded to steps of [`INTERVAL_STEP_PS`], or `None` if no span was added.
+    /// Returns the mean, rounded to steps of [`INTERVAL_STEP_PS`], or `None` if no interval was added.
     fn rounded_ps(self) -> Option<u64> {
         let steps = (self.ms() * 1e9 / INTERVAL_STEP_PS as f64).round();
         (self.n > 0).then_some(steps as u64 * INTERVAL_STEP_PS)
@@ -90,8 +87,9 @@ impl DryRunObserver {
 
     /// Returns each new picture with its successor, because the successor ends the display time of the picture.
     ///
-    /// For a display with several layers, only the first layer is timed. The first layer holds the structures that must
-    /// be drawn most often. The last picture of this layer is returned only when its successor is known.
+    /// For a display with several layers (display memories), only the first layer is timed. The first layer holds the
+    /// structures that must be drawn most often. The last picture of this layer is returned only when its successor is
+    /// known.
     fn timed(&mut self, results: &FinalResults<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
         let is_timed = |times: &&PictureTimes| times.layer == 0;
         let timed = results.pictures.iter().filter(is_timed).copied();
@@ -128,7 +126,7 @@ impl DryRunObserver {
     /// Adds the prediction interval of a view that no later picture shows.
     ///
     /// The instant of the view is stored too, unless the firmware computes display times itself. Such firmware may show
-    /// views in another order than their numbers.
+    /// views in an order that differs from the order of their numbers.
     fn end_view(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
         let instant = results.aim.instant(&shown);
@@ -144,7 +142,6 @@ impl DryRunObserver {
         }
     }
 
-    /// Adds the prediction interval of the orientation by which the display turns each period.
     fn take_turns(&mut self, results: &FinalResults<'_>, head: &HeadViews) {
         let FinalResults { pipeline, record, aim, until, .. } = *results;
         let periods = self.turned_to.until(until);

@@ -17,8 +17,9 @@ use serde::Serialize;
 
 pub(crate) const LEAST_UPDATES: u64 = 2;
 
-/// Numbers of pictures that were due in the result window of a run. Each due picture was shown, late, incomplete or
-/// missed.
+/// Numbers of pictures that were due in the result window of a run.
+///
+/// Each due picture was shown, late, incomplete or missed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DuePictures {
     /// First display period of the result window.

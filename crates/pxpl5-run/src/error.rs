@@ -1,5 +1,3 @@
-//! Errors of experiments.
-
 use crate::outcome::Outcome;
 use crate::picture_ends::WARM_UP_PICTURES;
 use pxpl5_machine::RunError;

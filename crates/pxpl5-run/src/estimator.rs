@@ -12,23 +12,25 @@ use tracking::predict::ExactPredictor;
 use tracking::time::PS_PER_S;
 use tracking::tracker::{TrackerConfig, TrackerModel};
 
-/// A cause of pixel errors. After a run, an [`Estimator`] can compute poses as if one cause did not exist.
+/// A cause of pixel errors.
+///
+/// After a run, an [`Estimator`] can compute poses as if one cause did not exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// Latency: reports arrive late at the host, and pictures are shown late. Without this cause, the host has every
-    /// measurement up to the instant for which a picture is drawn.
+    /// Latency: reports arrive late at the host, and pictures are shown late. If this cause is turned off, the host has
+    /// every measurement up to the instant for which a picture is drawn.
     Latency,
-    /// Scan-out: a picture is drawn for one instant, but its lines light one after the other. Without this cause, all
-    /// lines light at the instant for which the picture was drawn.
+    /// Scan-out: a picture is drawn for one instant, but its lines light one after the other. If this cause is turned
+    /// off, all lines light at the instant for which the picture was drawn.
     ScanOut,
-    /// Noise and bias of the tracker. Without this cause, reports contain the true pose.
+    /// Noise and bias of the tracker. If this cause is turned off, reports contain the true pose.
     Noise,
-    /// Errors of the predictor. Without this cause, the pose of the newest report is moved exactly as the head really
-    /// moves.
+    /// Errors of the predictor. If this cause is turned off, the predicted pose is the reported pose plus the true
+    /// movement of the head since the measurement.
     Prediction,
-    /// Sampling: the tracker measures, and the host polls, at intervals. Without this cause, a report arrives exactly
-    /// when the host predicts.
+    /// Sampling: the tracker measures, and the host polls, at intervals. If this cause is turned off, a report arrives
+    /// exactly when the host predicts.
     Sampling,
 }
 
@@ -51,17 +53,16 @@ impl Cause {
 
 pxpl5_sim::parameters::named!(Cause, "cause", Cause::ALL.map(|cause| (cause.name(), cause)));
 
-/// Length of the series of reports that a new predictor receives for one request, in picoseconds.
+/// Length of the series of reports that a predictor receives for one request, in picoseconds.
 const FED_PS: u64 = 2 * PS_PER_S;
 
-/// Computes the head's pose from the tracker reports that a host has at an instant.
+/// An estimator of the head's pose, from the tracker reports that a host has at an instant.
 pub struct Estimator {
     views: Arc<HeadViews>,
     way: Way,
 }
 
 enum Way {
-    /// One predictor receives all tracker reports in order of time.
     Following(Follower),
     /// One predictor receives all measurements of the tracker up to the requested instant.
     AtOnce(Follower),

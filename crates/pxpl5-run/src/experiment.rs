@@ -1,11 +1,9 @@
-//! An experiment: a machine, a pipeline, a scene and a head motion.
-
 use crate::dry_run::DryRun;
 use crate::fingerprint::Fingerprint;
 use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::host::{BareHost, Host};
-use crate::keep::Keep;
+use crate::keep::{Keep, LEAST_RECORDS};
 use crate::level::Level;
 use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
@@ -18,7 +16,9 @@ use pxpl5_wire::display::Aim;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The pixels that a run computes. The choice changes no simulated time.
+/// The pixels that a run computes.
+///
+/// The choice changes no simulated time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pixels {
@@ -40,7 +40,7 @@ pxpl5_sim::parameters::named!(Pixels, "choice of pixels", Pixels::ALL);
 /// Smallest and largest number of fields that an experiment may simulate.
 pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
-/// Returns the parameters whose values no source supports: values outside the range of the sources, set by the user.
+/// Returns the parameters that the user set to values outside the range that the sources support.
 #[must_use]
 pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
     let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());
@@ -74,6 +74,7 @@ pub struct Experiment {
     pub(crate) shuffle: Option<u64>,
     pub(crate) traffic: bool,
     pub(crate) keep: Keep,
+    pub(crate) least_records: usize,
     pub(crate) disabled: BTreeSet<Optimization>,
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
@@ -119,6 +120,7 @@ impl Experiment {
             shuffle: None,
             traffic: false,
             keep: Keep::Everything,
+            least_records: LEAST_RECORDS,
             disabled: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
@@ -179,6 +181,15 @@ impl Experiment {
     #[must_use]
     pub const fn keep(mut self, keep: Keep) -> Self {
         self.keep = keep;
+        self
+    }
+
+    /// Sets the number of records below which a run discards nothing. Tests set a small number, so that short runs
+    /// discard records several times.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn least_records(mut self, records: usize) -> Self {
+        self.least_records = records;
         self
     }
 
@@ -283,15 +294,15 @@ impl Experiment {
     /// Begins the evaluation of the run at the period `period` of the first display, or later if the warm-up takes
     /// longer.
     ///
-    /// With this setting, results of different pipelines cover the same periods, to within one interval between due
-    /// pictures.
+    /// With this setting, results of different pipelines cover the same periods, except for at most one interval
+    /// between due pictures.
     #[must_use]
     pub const fn results_from(mut self, period: PeriodNumber) -> Self {
         self.results_from = Some(period);
         self
     }
 
-    /// Returns the same experiment on another machine.
+    /// Returns the same experiment on the machine `config`.
     #[must_use]
     pub fn with_machine(self, config: MachineConfig) -> Self {
         Self { config, ..self }
@@ -419,7 +430,7 @@ impl Experiment {
         self.level
     }
 
-    /// Returns which pixels the run computes.
+    /// Returns the choice of the pixels that the run computes.
     #[must_use]
     pub const fn pixels_wanted(&self) -> Pixels {
         self.pixels

@@ -22,7 +22,7 @@ impl Default for Fingerprint {
 }
 
 impl Fingerprint {
-    /// Returns the 128-bit FNV-1a hash of some bytes.
+    /// Returns the 128-bit FNV-1a hash of `bytes`.
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         let mut fingerprint = Self::default();
@@ -33,7 +33,8 @@ impl Fingerprint {
     /// Returns a hash of everything in a scene that affects pictures or times: primitives, structures, light and
     /// motion.
     ///
-    /// The hash omits the scene's name, and the seed of the motion, which is a setting of an experiment.
+    /// The hash omits the scene's name. The hash also omits the seed of the motion, because this seed is a setting of
+    /// the experiment.
     ///
     /// Numbers are hashed with the least significant byte first. A list is hashed as its length (64 bits), then its
     /// entries. The value of an enum is hashed as a byte, counted from 0 in the order of declaration.
@@ -101,7 +102,7 @@ impl Fingerprint {
         self.add(colour);
     }
 
-    /// Adds a structure to the hash. The name of the structure affects neither pictures nor times, and is left out.
+    /// Adds a structure to the hash, without its name. The name affects neither pictures nor times.
     fn structure(&mut self, structure: &Structure) {
         // The pattern lists all fields, so a new field cannot be forgotten.
         let Structure { name: _, vertices, triangles, spheres, frame, hinge, culls_back_faces } = structure;
@@ -187,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_agrees_with_the_published_vectors_of_fnv_1a() {
+    fn the_hash_agrees_with_the_published_vectors_of_fnv_1a() {
         // These values are test vectors of the reference program for 128 bits: "" and "a".
         assert_eq!(Fingerprint::of(b"").to_string(), "6c62272e07bb014262b821756295c58d");
         assert_eq!(Fingerprint::of(b"a").to_string(), "d228cb696f1a8caf78912b704e4a8964");

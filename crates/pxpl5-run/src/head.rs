@@ -1,5 +1,3 @@
-//! The head of a viewer, with a tracker and a predictor.
-
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
 use crate::report_schedule::{Arrivals, Coming, Contents};
@@ -17,11 +15,9 @@ use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 
 pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
 
-/// Origin of a predictor's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Numbers {
     Given,
-    /// A dry run will find the parameters.
     ToBeTuned,
     /// A dry run has found the parameters. The first training data are for complete poses, the second for orientations.
     ///
@@ -29,8 +25,8 @@ enum Numbers {
     Tuned(Option<Training>, Option<Training>),
 }
 
-/// Names of experiments contain this text instead of the tuned parameters, which follow from the method and all other
-/// settings.
+/// Names of experiments contain this text in place of the tuned parameters. The parameters follow from the method and
+/// from all other settings.
 const TUNING: &str = "for its interval and motion, version 1";
 
 /// The coordinates in which a head motion is given.
@@ -83,7 +79,6 @@ impl fmt::Debug for Head {
     }
 }
 
-/// Smallest and largest distance, in metres, at which pixel errors can be evaluated.
 const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
 
 impl Head {
@@ -239,7 +234,6 @@ impl Head {
         self.reports_of(Arc::clone(&self.motion))
     }
 
-    /// Returns the reports that [`Head::reporting`] has set, or else the tracker's reports about `motion`.
     fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
             Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
@@ -310,7 +304,6 @@ impl Head {
         self.numbers == Numbers::ToBeTuned && self.predicts()
     }
 
-    /// Returns this head with a predictor that is tuned for a prediction interval in picoseconds.
     pub(crate) fn tuned_for(&self, interval_ps: u64) -> Self {
         let tuned = self.tuning(interval_ps);
         Self { predictor: tuned.config, numbers: Numbers::Tuned(tuned.training, None), ..self.clone() }
@@ -330,7 +323,7 @@ impl Head {
             start,
             ..own
         };
-        // The training for positions stays on record.
+        // The training for positions is kept.
         let of_all = if let Numbers::Tuned(of_all, _) = self.numbers { of_all } else { None };
         Self { predictor, numbers: Numbers::Tuned(of_all, training), ..self.clone() }
     }
@@ -358,7 +351,7 @@ impl Head {
 
     /// Returns the training data from which the parameters for orientations were tuned separately, or `None`.
     ///
-    /// Only a display that turns pictures needs separate parameters.
+    /// Only a display that turns pictures by the newest orientation needs separate parameters.
     #[must_use]
     pub const fn training_of_turns(&self) -> Option<&Training> {
         if let Numbers::Tuned(_, Some(training)) = &self.numbers { Some(training) } else { None }

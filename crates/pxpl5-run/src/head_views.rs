@@ -24,12 +24,12 @@ pub struct SampledPose {
     pub number: ViewNumber,
     /// Instant of the request. The pose depends only on reports that had arrived by this instant.
     pub known: Time,
-    /// Time at which the newest used report was measured. `None` before the first report.
+    /// Measurement time of the newest report that the pose uses. `None` before the first report.
     pub measured_at: Option<Time>,
-    /// Time at which the newest used report arrived at the host. `None` before the first report.
+    /// Arrival time at the host of the newest report that the pose uses. `None` before the first report.
     pub arrived_at: Option<Time>,
-    /// Instant for which the picture is drawn, chosen by the head's [`Aim`](crate::Aim). Moving objects have their
-    /// positions of this instant.
+    /// Instant for which the picture is drawn, chosen by the head's [`Aim`](crate::Aim). Moving objects are drawn at
+    /// their positions at this instant.
     pub objects_at: Time,
     /// Instant for which the pose was predicted. `None` without prediction: the newest report was used unchanged.
     pub predicted_for: Option<Time>,
@@ -45,8 +45,8 @@ struct Newest {
 
 /// A predictor that receives tracker reports as simulated time advances.
 ///
-/// The content of a report is computed only after its arrival, because the motion of an interactive head is unknown
-/// before.
+/// The content of a report is computed only after its arrival, because the motion can depend on a user's input during
+/// the run.
 pub(crate) struct Follower {
     arrivals: Peekable<Arrivals>,
     contents: Contents,
@@ -55,7 +55,6 @@ pub(crate) struct Follower {
 }
 
 impl Follower {
-    /// Creates a follower of the reports whose times are `arrivals` and whose contents are `contents`.
     pub(crate) fn new(arrivals: Arrivals, contents: Contents, predictor: Box<dyn Predictor + Send>) -> Self {
         Self { arrivals: arrivals.peekable(), contents, predictor, newest: Newest::default() }
     }
@@ -129,7 +128,6 @@ impl HeadViews {
         Self { head, scene: Arc::clone(scene), hmd, eyes, until, schedule, seen_times, base, start, state }
     }
 
-    /// Returns the functions for firmware: the view at a sample time, the view for a later instant, and report times.
     pub(crate) fn functions(this: &Arc<Self>) -> (Views, ViewsWanted, ReportTimes) {
         let [a, b, c] = [(); 3].map(|()| Arc::clone(this));
         (
@@ -211,7 +209,6 @@ impl HeadViews {
         Some(self.schedule().after(after)?.arrives)
     }
 
-    /// Converts a pose from the tracker's coordinates to the scene's coordinates, as [`HeadPlace`] defines.
     pub(crate) fn in_scene(&self, tracked: &Pose) -> Pose {
         let turn: DQuat = self.base.orientation * self.start.orientation.conjugate();
         let way: DVec3 = turn * (tracked.position - self.start.position);
@@ -239,7 +236,7 @@ impl HeadViews {
     /// Returns the distance, in metres, at which pixel errors are evaluated if the position of a pixel's content is
     /// unknown.
     ///
-    /// The default is the distance from the head's start to the centre of the scene, at least 0.1.
+    /// The default is the distance from the head's start to the centre of the scene, but at least 0.1 metres.
     #[must_use]
     pub fn distance_m(&self) -> f64 {
         let (centre, _) = self.scene.bounding_sphere();

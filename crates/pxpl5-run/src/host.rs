@@ -1,9 +1,9 @@
-//! The interface to the computer on which a simulation runs.
-
 use pxpl5_machine::{PixelWorker, SameThread};
 use std::fmt::Debug;
 
-/// Services of the computer on which a simulation runs. No service affects a result.
+/// Services of the computer on which a simulation runs.
+///
+/// No service affects a result.
 pub trait Host: Debug + Send + Sync {
     /// Returns the time of the host's clock in seconds, or `None` without a clock. The zero of the clock is arbitrary.
     fn seconds(&self) -> Option<f64> {

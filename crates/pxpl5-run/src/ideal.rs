@@ -1,5 +1,3 @@
-//! Ideal pictures, for comparison with the pictures of a run.
-
 use crate::display_list::display_list_for;
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;

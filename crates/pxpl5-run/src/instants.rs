@@ -6,11 +6,11 @@ use pxpl5_sim::Time;
 /// Number of entries from one `Begin` to the next. A lookup decodes at most this number of entries.
 const BLOCK: u64 = 256;
 
-/// A compressed list of instants. Each instant has a number, such as the number of its view. The numbers ascend.
+/// A compressed list of instants. Each instant has a number, such as the number of its view, and the numbers ascend.
 ///
-/// Each entry stores the number of skipped numbers before it, and the difference from an expected instant. A step is
-/// the difference of two successive instants. The expected instant is the last instant plus the step before the last
-/// step. The difference is therefore 0, in one byte, if two steps alternate, for example two and three periods.
+/// An entry stores how many numbers were skipped before it, and the difference between its instant and an expected
+/// instant. A step is the difference of two successive instants. The expected instant is the last instant plus the
+/// second last step. If two steps alternate, for example two and three periods, the difference is 0 and takes one byte.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Instants {
     written: Vec<u8>,
@@ -26,7 +26,8 @@ struct Begin {
     next: usize,
 }
 
-/// A decoded entry: number, instant in picoseconds, and the last two steps before it, the older first.
+/// A decoded entry: number, instant in picoseconds, and the last two differences of successive instants, the difference
+/// of the earlier instants first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct At {
     number: u64,
@@ -66,7 +67,6 @@ impl Instants {
         self.count += 1;
     }
 
-    /// Returns the instant with the number `number`, or `None` if the list does not contain this number.
     pub(crate) fn of(&self, number: u64) -> Option<Time> {
         let block = self.begins.partition_point(|begin| begin.at.number <= number);
         let Begin { mut at, mut next } = *self.begins.get(block.checked_sub(1)?)?;
@@ -119,7 +119,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_number_has_its_instant_and_no_other_has_one(
+        fn every_stored_number_has_its_instant(
             steps in proptest::collection::vec((1u64..5, any::<u64>(), 0u32..64), 0..900),
         ) {
             let mut instants = Instants::default();
@@ -138,7 +138,7 @@ mod tests {
 
     /// Tests the memory for instants that are two or three fields apart, in turn: at most three bytes for each instant.
     #[test]
-    fn even_steps_take_three_bytes_at_most() {
+    fn instants_with_nearly_equal_steps_take_at_most_three_bytes_each() {
         let field_ps = |n: u64| n * 1_001_000_000_000 / 60;
         let mut instants = Instants::default();
         (0..10_000).for_each(|n| instants.push(n, Time(field_ps(2 * n + n / 2))));

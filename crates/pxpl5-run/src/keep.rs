@@ -1,6 +1,9 @@
-//! Choice of the observations that a run keeps in memory.
+/// Number of records below which a run discards nothing. A record, such as an arrival or a swap, takes about 80 bytes.
+pub(crate) const LEAST_RECORDS: usize = 32_768;
 
-/// The choice of the observations that a run keeps in memory. The choice changes no time and no trace.
+/// The choice of the observations that a run keeps in memory.
+///
+/// The choice changes no time and no trace.
 ///
 /// Two runs that differ only in this choice have the same statistics. Only the last digits of means over more than
 /// [`KEPT_SAMPLES`](crate::KEPT_SAMPLES) pictures can differ.
@@ -21,8 +24,8 @@ pub enum Keep {
     /// The run keeps the same data as under [`Keep::Statistics`], but messages may be recorded, and no streaming
     /// observer is used.
     ///
-    /// A page that displays a run for hours uses this choice. Pixel errors and messages are available only for the last
-    /// periods.
+    /// A web page that displays a run for hours uses this choice. Pixel errors and messages are available only for the
+    /// last periods.
     Recent,
 }
 

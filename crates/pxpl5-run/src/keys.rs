@@ -1,10 +1,9 @@
-//! Values of the settings of pipelines.
-
 use pxpl5_sim::parameters::KeyValue;
 use std::collections::BTreeMap;
 
-/// Values of the keys that the user has set. Each value must have been checked against its
-/// [`Key`](pxpl5_sim::parameters::Key).
+/// Values of the pipeline settings (keys) that the user has set.
+///
+/// Each value must have been checked against its [`Key`](pxpl5_sim::parameters::Key).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PipelineSettings {
     values: BTreeMap<&'static str, KeyValue>,

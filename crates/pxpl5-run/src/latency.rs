@@ -70,7 +70,8 @@ impl LatencyParts {
     }
 }
 
-/// Divides the latency of a picture. `stages` must contain the stages of this picture only.
+/// Divides the latency of a picture into the parts of [`LATENCY_PARTS`]. `stages` must contain only the stages of this
+/// picture.
 pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan]) -> LatencyParts {
     let PictureTimes { picture, sampled_at, transform_at, shown_at, .. } = *times;
     let light = first_light(record, shown_at);
@@ -122,7 +123,6 @@ pub(crate) const LATENCY_SURFACES: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)
 /// Function that returns the time of the event that ends a latency. The argument is the index of the eye.
 pub(crate) type End = fn(&Pair, usize) -> Time;
 
-/// The events that can end a latency, with name, definition and time.
 pub(crate) const ENDS: [(&str, &str, End); 3] = [
     ("end_of_copy", "the end of its COPY", |pair, surface| pair.copied_at[surface]),
     ("swap", "the retrace at which the frame is swapped in", |pair, _| pair.shown_at),
@@ -169,8 +169,8 @@ fn last_surface(stages: &[StageSpan]) -> Option<SurfaceId> {
     stages.iter().filter(|span| span.stage == Stage::Transform).filter_map(|span| span.surface).max()
 }
 
-/// Returns true if a SEND stage begins at `sampled_at`. Otherwise SEND counts its pictures in another way than the
-/// other stages, so the latency has no part for SEND.
+/// Returns true if a SEND stage begins at `sampled_at`. In some pipelines, the numbers of SEND count messages instead
+/// of pictures. The latency then has no part for SEND.
 fn sent_for_it(stages: &[StageSpan], sampled_at: Option<Time>) -> bool {
     spans_of(stages, Stage::Send, None).any(|span| Some(span.begin) == sampled_at)
 }

@@ -1,5 +1,6 @@
-//! Runs one experiment on the emulated Pixel-Planes 5: a machine, a pipeline, a scene and a head. The result is an
-//! [`Outcome`].
+//! Runs one experiment on the emulated Pixel-Planes 5: a machine, a pipeline, a scene and a head.
+//!
+//! The result is an [`Outcome`].
 //!
 //! ```text
 //!   MachineConfig --+
@@ -102,7 +103,6 @@ pub use tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
 pub use tunings::Tunings;
 pub use views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -67,7 +67,7 @@ impl FinalResults<'_> {
     }
 }
 
-/// A streaming observer of a run.
+/// An observer that accumulates a result during a run (streaming observer).
 ///
 /// The observer receives every record once, in order. The run discards old records, so the observer must copy data that
 /// it needs later.

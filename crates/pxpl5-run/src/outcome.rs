@@ -1,5 +1,3 @@
-//! Result of an experiment.
-
 use crate::assembled::Assembled;
 use crate::due::{DuePictures, LEAST_UPDATES};
 use crate::experiment::Experiment;
@@ -167,7 +165,7 @@ impl Outcome {
     }
 
     /// Returns true if the viewer sees a complete screen at the end. With interlaced fields, a screen shows the
-    /// pictures of two fields, and both must have been in time.
+    /// pictures of two fields, and both pictures must have been in time.
     #[must_use]
     pub fn ends_complete(&self) -> bool {
         let (_, fields_of_a_screen) = self.record.display().rows_lit(PeriodNumber::FIRST);
@@ -232,7 +230,7 @@ impl Outcome {
         self.experiment.fields
     }
 
-    /// Returns the end of the run.
+    /// Returns the simulated time at which the run ended.
     #[must_use]
     pub fn end(&self) -> Time {
         self.record.tick(self.experiment.end())

@@ -1,10 +1,7 @@
-//! Registry of the papers' pipelines and displays.
-
 use crate::displays;
 use crate::pipelines;
 use crate::registry::{PipelineEntry, Registry};
 
-/// Pipelines that appear in a short comparison, one for each family.
 const USUAL: [&str; 7] =
     ["rendering-control", "slats", "frameless", "jitp-field", "jitp-scanline-racing", "arp-full", "arp-priority-line"];
 

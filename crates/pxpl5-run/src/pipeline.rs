@@ -1,5 +1,3 @@
-//! Interface between pipelines and experiments.
-
 use crate::head_views::HeadViews;
 use crate::picture_ends::PictureResult;
 use crate::views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
@@ -45,7 +43,8 @@ pub struct Setup {
     pub list: Arc<DisplayList>,
     /// Function that returns the newest view: its transforms, and the edits of moving structures.
     pub views: Views,
-    /// Function that returns a view for a given display time, for firmware that computes the display time of a view.
+    /// Function that returns a view for a requested display time, for firmware that computes the display time of a
+    /// view.
     pub wanted: ViewsWanted,
     /// Function that returns the pose of the head alone, for displays that follow its rotation.
     pub poses: Poses,
@@ -58,7 +57,7 @@ pub struct Setup {
     pub aim: Aim,
     /// Function that returns the arrival time of the next tracker report at the host.
     pub reports: ReportTimes,
-    /// Function that returns the time at which a host that waits for the pipeline begins a frame.
+    /// Function that returns the start time of the next frame, for a host that waits for the pipeline.
     pub starts: FrameStarts,
     /// Times of the host's operations, in nanoseconds.
     pub host: HostTiming,
@@ -86,7 +85,8 @@ pub struct PictureTimes {
     pub shown_at: Time,
     /// Result of the picture: shown, late or incomplete.
     pub end: PictureResult,
-    /// Layer of the display that the picture replaces. 0 for a display that shows one picture at a time.
+    /// Layer of the display, such as a display memory, in which the picture replaces the last picture. 0 for a display
+    /// that shows one picture at a time.
     pub layer: usize,
 }
 
@@ -122,14 +122,14 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         Shading::Gouraud
     }
 
-    /// Returns the kind of i860 code that the pipeline uses, which determines the times of the code. The default is
-    /// PPHIGS.
+    /// Returns the kind of i860 code that the pipeline uses, which determines the times of the code. The default is the
+    /// code of the graphics library PPHIGS.
     fn code_use(&self) -> CodeUse {
         CodeUse::Pphigs
     }
 
-    /// Returns the configuration of the machine with the changes that this variant of the pipeline needs, for example
-    /// the times of other code.
+    /// Returns the configuration of the machine with the changes that this variant of the pipeline needs. For example,
+    /// a variant with a different version of the i860 code changes the times of triangles.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         config
     }
@@ -179,8 +179,8 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
 
 /// The rules that determine the times and contents of a pipeline's pictures.
 pub trait PictureRules {
-    /// Returns the pictures that were begun and that, at `end`, are shown or have missed their deadline. The pictures
-    /// are in order.
+    /// Returns the pictures that were begun and that, at `end`, are shown or have missed their deadline. The list is in
+    /// the order in which the pictures are shown.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
 
     /// Returns the number of display periods before `end` in which the display showed old pictures in a new head
@@ -223,8 +223,8 @@ pub trait PictureRules {
     /// Returns one sentence that defines latency for this pipeline.
     fn latency_definition(&self) -> &'static str;
 
-    /// Returns a sentence that defines the time at which a picture is due, and the time up to which the picture is in
-    /// time. For pipelines without due pictures, the sentence gives the reason.
+    /// Returns a sentence that defines two times: when a picture is due, and up to when the picture is in time. For
+    /// pipelines without due pictures, the sentence states why no picture is due.
     fn due_definition(&self) -> &'static str;
 
     /// Returns the number of entries in the list of [`PictureRules::pictures`] that together make one whole picture.
@@ -239,8 +239,8 @@ pub trait PictureRules {
         0
     }
 
-    /// Returns the view that a part of a picture shows. `views` gives the view of each picture as in [`PictureTimes`].
-    /// `aim` is the instant for which the part was drawn.
+    /// Returns the view that a part of a picture shows. `views` maps the number of each picture to its view, as in
+    /// [`PictureTimes`]. `aim` is the instant for which the part was drawn.
     fn source(
         &self,
         _record: &Record,

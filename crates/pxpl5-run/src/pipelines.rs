@@ -36,7 +36,7 @@ pub(crate) fn entries() -> Vec<PipelineEntry> {
 }
 
 /// Checks that a backing store of `renderer.backing_bits` bits holds one finished region, because a region without room
-/// can never be copied. The region takes `blocks` blocks of `renderer.kept_bits` bits.
+/// can never be copied. The region takes `blocks` times `renderer.kept_bits` bits.
 fn region_has_room(record: &Record, blocks: u64) -> Result<(), SettingError> {
     let renderer = &record.config().renderer;
     if renderer.backing_regions() >= blocks {
@@ -48,7 +48,6 @@ fn region_has_room(record: &Record, blocks: u64) -> Result<(), SettingError> {
     Err(SettingError::value("renderer.backing_bits", expected, found))
 }
 
-/// Returns the viewport of a picture that fills the first surface of the machine's display.
 fn whole_picture(record: &Record) -> Result<Viewport, SettingError> {
     let grid = record.display().surfaces().first().map_or(Viewport::FRAME.grid(), |surface| surface.grid());
     Viewport::new(grid, Lines::Frame)
@@ -77,10 +76,8 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Setti
     Ok(display)
 }
 
-/// The methods of shading, with their names in experiment files.
 const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
 
-/// The setting `shading` of pipelines that support both Phong and Gouraud shading.
 const SHADING: Key = Key::new("shading", "method of shading", KeyValues::Names(&const { names(&SHADINGS) }));
 
 fn shading_value(shading: Shading) -> KeyValue {
@@ -114,7 +111,6 @@ fn samples(record: &Record) -> impl Iterator<Item = &Mark> {
     record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample)
 }
 
-/// Returns the regions that arrived after the deadline `due`, in order of arrival.
 fn late_regions(
     display: &NtscDisplay,
     record: &Record,

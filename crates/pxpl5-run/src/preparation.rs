@@ -62,8 +62,8 @@ impl Experiment {
         Ok(Preparation { seen_times, head: tuned.map(Arc::new) })
     }
 
-    /// Returns the head if a run needs a dry run: the firmware does not compute display times, or the predictor is not
-    /// tuned.
+    /// Returns the head if a run needs a dry run, because the firmware does not compute display times, or because the
+    /// predictor is not tuned.
     fn predicting_head(&self) -> Option<&Arc<Head>> {
         let needs = |head: &&Arc<Head>| !self.pipeline.knows_when_seen() || head.is_to_be_tuned();
         self.head.as_ref().filter(|head| head.predicts()).filter(needs)

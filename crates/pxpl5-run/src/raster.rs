@@ -1,5 +1,3 @@
-//! Correction of a picture during its scan, between the frame buffer and the eye.
-
 use crate::reprojection::Reprojection;
 use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};

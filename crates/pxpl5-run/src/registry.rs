@@ -28,8 +28,9 @@ pub enum Goal {
     LatencyFields(f64),
 }
 
-/// Kind of triangles in a test scene. A search varies the number of these triangles to find the largest scene that a
-/// pipeline draws in time.
+/// Kind of triangles in a test scene.
+///
+/// A search varies the number of these triangles to find the largest scene that a pipeline draws in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TestScene {

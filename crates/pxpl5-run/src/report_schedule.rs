@@ -1,5 +1,5 @@
 //! Arrival times of a tracker's reports at the host. The times do not depend on the motion, so the times are known in
-//! advance even for an interactive head.
+//! advance, even if a user moves the head during the run.
 
 use pxpl5_sim::Time;
 use std::collections::VecDeque;
@@ -45,14 +45,12 @@ impl ReportSchedule {
         self.from(Time(instant.0.saturating_add(1)))
     }
 
-    /// Returns the last report that arrives at `instant` or earlier.
     pub(crate) fn by(&mut self, instant: Time) -> Option<Coming> {
         self.read_until_after(instant);
         let there = self.known.partition_point(|coming| coming.arrives <= instant);
         self.known.get(there.checked_sub(1)?).copied()
     }
 
-    /// Discards the reports before the last report that had arrived at `instant`.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         let Some(last) = self.by(instant) else { return };
         let earlier = self.known.partition_point(|coming| coming.arrives < last.arrives);

@@ -20,7 +20,9 @@ pub enum Warp {
     Depth,
 }
 
-/// The part of a scan for which the device uses one pose. Each part uses the newest pose.
+/// The part of a scan for which a [`Reprojection`] uses one pose.
+///
+/// Each part uses the newest pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Every {

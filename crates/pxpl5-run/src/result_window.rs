@@ -13,8 +13,9 @@ use crate::picture_ends::{PictureResult, PictureResults};
 use pxpl5_wire::PeriodNumber;
 use serde::{Deserialize, Serialize};
 
-/// Number of display periods at the start of a run that are not evaluated (assumed). In these periods, the pipeline
-/// still fills.
+/// Number of display periods at the start of a run that are not evaluated (assumed).
+///
+/// In these periods, the pipeline still fills.
 pub const WARM_UP_PERIODS: u64 = 8;
 
 /// The rule for the result window, as text in reports.

@@ -1,5 +1,3 @@
-//! Runs experiments.
-
 use crate::error::ExperimentError;
 use crate::experiment::Experiment;
 use crate::outcome::Outcome;

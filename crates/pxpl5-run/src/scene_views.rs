@@ -34,8 +34,10 @@ pub(crate) fn poses(scene: &Scene, seed: u64) -> Poses {
     Arc::new(move |known, _| motion.pose(known.0))
 }
 
-/// Returns two functions that give views of the scene's own head motion. The first function returns the view at the
-/// time of the request. The second function returns the view at the later time when the view is seen.
+/// Returns two functions that give views of the scene's own head motion.
+///
+/// The first function returns the view at the time of the request. The second function returns the view at a later
+/// time, at which the picture is seen.
 pub fn views(scene: &Arc<Scene>, seed: u64, hmd: Hmd, eyes: usize) -> (Views, ViewsWanted) {
     let motion: HeadMotion = scene.motion().with_seed(seed);
     let at = {

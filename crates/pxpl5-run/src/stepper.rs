@@ -164,7 +164,7 @@ impl Stepper {
         // The search for a deadlock simulates time after the end of the run, so its host time is not counted.
         let host_seconds = self.begun_s.zip(self.experiment.host.seconds()).map(|(begin, end)| end - begin);
         let mut error = self.failure().cloned();
-        // With frames on demand, a host without a further report waits for a legitimate reason.
+        // With frames on demand, a host that waits for a further report is not in a deadlock.
         if error.is_none() && !self.experiment.on_demand && self.may_be_deadlocked() {
             error = self.deadlock();
         }
@@ -307,8 +307,8 @@ impl Stepper {
 
     /// Returns true if a machine at the end of the run may be in a deadlock.
     ///
-    /// The machine itself detects a deadlock in a long run, but not in a short run or after a last period without work.
-    /// A pipeline that only waits for the next swap has the same state, so this test alone is not sufficient.
+    /// The machine itself detects a deadlock in a long run, unless its last periods were idle. A pipeline that only
+    /// waits for the next swap has the same state, so this test alone is not sufficient.
     fn may_be_deadlocked(&self) -> bool {
         let is_long = self.experiment.fields > SHORT_RUN && self.run.machine.idle_ticks() < IDLE_TICKS;
         self.run.machine.is_at_rest() && !is_long

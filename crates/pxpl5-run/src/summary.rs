@@ -1,5 +1,3 @@
-//! The results of an experiment that are available at every level of detail.
-
 use crate::due::DuePictures;
 use pxpl5_sim::Samples;
 use pxpl5_sim::Statistics;

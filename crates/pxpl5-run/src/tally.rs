@@ -18,8 +18,9 @@ use std::collections::BTreeMap;
 /// Largest number of late regions that a [`Tally`] lists individually.
 pub const LATE_REGIONS_LISTED: usize = 20;
 
-/// Statistics of a run's results, over the pictures in the result window ([`ResultWindow`](crate::ResultWindow)). Times
-/// are in milliseconds. Latencies cover only the complete pictures.
+/// Statistics of a run's results, over the pictures in the result window ([`ResultWindow`](crate::ResultWindow)).
+///
+/// Times are in milliseconds. Latencies cover only the complete pictures.
 #[derive(Clone, Debug)]
 pub struct Tally {
     /// Number of pictures that were begun and evaluated, complete or not.
@@ -81,7 +82,8 @@ pub struct SurfaceLatency<'a> {
     pub ms: &'a Samples,
 }
 
-/// The first and the last word of a copy: one eye under Rendering Control, half a field under Slats.
+/// The times of the first and the last word of a copy. A copy is one eye under Rendering Control, and half a field
+/// under Slats.
 struct CopySpan {
     begin: Time,
     end: Time,
@@ -216,7 +218,6 @@ impl Tally {
         }
     }
 
-    /// Adds the times from the start of an eye's TRANSFORM on any slave to the swap that shows the picture.
     fn take_eye_swaps<'a>(&mut self, stages: &[StageSpan], complete: impl Iterator<Item = &'a PictureTimes>) {
         let shown: BTreeMap<PictureNumber, Time> = complete.map(|times| (times.picture, times.shown_at)).collect();
         let mut begins: BTreeMap<(PictureNumber, SurfaceId), Time> = BTreeMap::new();

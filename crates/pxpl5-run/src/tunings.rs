@@ -1,5 +1,3 @@
-//! A cache of tuned predictors, which several runs share.
-
 use crate::fingerprint::Fingerprint;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -20,8 +18,8 @@ pub struct Tunings {
 }
 
 impl Tunings {
-    /// Returns the tuned predictor from the cache, or tunes it. Threads that request the same predictor wait for one
-    /// result.
+    /// Returns the tuned predictor from the cache. If the cache does not contain the predictor, tunes the predictor
+    /// first. Threads that request the same predictor wait for one result.
     pub(crate) fn tuned(
         &self,
         motion: &(dyn Motion + Send + Sync),
@@ -34,7 +32,7 @@ impl Tunings {
         motion.identify(&mut |key, value| hash.setting(key, value));
         hash.setting("tracker", format_args!("{:?}", tracker.config()));
         hash.setting("predictor", format_args!("{base:?}"));
-        // The seed of the evaluated run matters only as far as the training avoids it.
+        // The seed of the evaluated run matters only because the training must use another seed.
         let key = (hash, interval_ps, training_seed(evaluated_seed));
         // The map is locked only to find the place. The place itself waits for the result.
         let place = Arc::clone(self.known.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default());
@@ -75,7 +73,7 @@ mod tests {
 
     /// Tests that a tuning from the cache equals a new tuning, for different motions, trackers, intervals and seeds.
     #[test]
-    fn a_shared_tuning_is_the_tuning_of_a_head_alone() {
+    fn a_tuning_from_the_cache_equals_a_new_tuning() {
         let tunings = Tunings::default();
         let still: [Box<dyn Motion + Send + Sync>; 3] =
             [Box::new(Pan::at(200.0)), Box::new(Pan::at(-30.0)), Box::new(Synthetic::recorded_use(3))];
@@ -96,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_that_the_training_avoids_alike_share_a_tuning() {
+    fn seeds_not_used_for_training_share_a_tuning() {
         let tunings = Tunings::default();
         let tracker = TrackerModel::new(TrackerConfig::optical_ceiling()).expect("a preset");
         let base = PredictorConfig::for_tracker(PredictorKind::ConstantVelocity, tracker.config());

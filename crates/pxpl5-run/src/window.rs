@@ -15,9 +15,6 @@ use pxpl5_wire::PeriodNumber;
 use std::any::Any;
 use std::sync::Arc;
 
-/// Number of records below which a run discards nothing. A record, such as an arrival or a swap, takes about 80 bytes.
-const LEAST_RECORDS: usize = 32_768;
-
 /// Number of pictures after which the results of a picture are final. Until then, records of a picture may arrive after
 /// records of later pictures.
 const PICTURES_HELD: usize = 32;
@@ -27,7 +24,7 @@ const PERIODS_HELD: u64 = 32;
 ///
 /// A picture is final after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`] display periods. Records older than
 /// the first picture that is not final are kept for [`PERIODS_HELD`] periods. Requested head poses are kept twice as
-/// long, because views are predicted from older reports.
+/// long, because views are predicted from reports that arrived earlier than these records.
 #[derive(Debug)]
 pub(crate) struct Window {
     tally: Tally,
@@ -35,10 +32,10 @@ pub(crate) struct Window {
     forgets: bool,
     samples: usize,
     taken_to: Option<Time>,
-    /// Number of arrivals in memory that are already part of the statistics.
     arrivals_taken: usize,
     /// Number of records in memory at which old records are discarded the next time.
     next_look: usize,
+    least_records: usize,
 }
 
 #[derive(Debug)]
@@ -61,7 +58,17 @@ impl Window {
         let tally = Tally::new(experiment.end(), field_ms(record), samples);
         let sums = experiment.sums.filter(|_| forgets && experiment.keep == Keep::Statistics);
         let sum = sums.map(|begin| begin());
-        Self { tally, sum, forgets, samples, taken_to: None, arrivals_taken: 0, next_look: LEAST_RECORDS }
+        let least_records = experiment.least_records;
+        Self {
+            tally,
+            sum,
+            forgets,
+            samples,
+            taken_to: None,
+            arrivals_taken: 0,
+            next_look: least_records,
+            least_records,
+        }
     }
 
     /// Adds final results to the statistics and discards their records. Does nothing if the run has few records or must
@@ -80,7 +87,7 @@ impl Window {
             self.arrivals_taken = run.machine.record().observation().arrivals.len();
         }
         // The next pass begins when the number of records has doubled, so the cost per record is bounded.
-        self.next_look = LEAST_RECORDS.max(2 * run.records());
+        self.next_look = self.least_records.max(2 * run.records());
     }
 
     /// Adds final pictures to the statistics. Returns the instant from which records are still needed.
@@ -112,7 +119,6 @@ impl Window {
         Some(begin)
     }
 
-    /// Returns the pictures that are not yet part of the statistics, in the order in which they are shown.
     fn fresh(&self, pipeline: &dyn Pipeline, record: &Record, now: Time) -> Vec<PictureTimes> {
         let pictures = pipeline.pictures(record, now).into_iter();
         pictures.filter(|times| Some(times.shown_at) > self.taken_to).collect()
@@ -124,7 +130,6 @@ impl Window {
         self.sum.iter_mut().for_each(|sum| sum.take(results));
     }
 
-    /// Adds all remaining results of a run that ended in the period `reached`.
     pub(crate) fn close(
         mut self,
         experiment: &Experiment,
@@ -152,7 +157,6 @@ impl Window {
     }
 }
 
-/// Returns the start of the period that is [`PERIODS_HELD`] periods before `instant`.
 fn before(record: &Record, instant: Time) -> Option<Time> {
     let period = record.display().period_at(instant).before(PERIODS_HELD)?;
     Some(record.tick(period))

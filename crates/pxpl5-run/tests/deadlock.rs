@@ -81,7 +81,7 @@ fn a_run_that_is_too_short_is_no_deadlock() {
 
 /// After a failure, the state of the machine can be read, and running on changes nothing.
 #[test]
-fn a_stepper_stands_at_a_deadlock_and_gives_the_same_error_in_the_end() {
+fn a_stepper_stops_at_a_deadlock_and_returns_the_same_error() {
     let scene = builtin("full-screen:1").expect("built in");
     let experiment = Experiment::new(MachineConfig::slats(), Waiting, scene).fields(300).pixels(Pixels::Off);
     let mut stepper = experiment.stepper().expect("it can be built");

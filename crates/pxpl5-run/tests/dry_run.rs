@@ -13,7 +13,7 @@ fn head(kind: PredictorKind) -> Head {
 }
 
 #[test]
-fn one_predictor_continues_with_the_reports_of_another() {
+fn a_run_that_continues_with_another_predictor_equals_a_run_with_this_predictor_from_the_start() {
     let registry = Registry::of_papers();
     for name in ["rendering-control", "slats", "jitp-field", "arp-full-line"] {
         let pipeline = (registry.pipeline(name).expect("listed").build)(&PipelineSettings::default());

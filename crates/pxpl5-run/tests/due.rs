@@ -26,14 +26,14 @@ fn regular(first: u64, apart: u64, periods: u64, end: PictureResult) -> Vec<(u64
 }
 
 #[test]
-fn pictures_of_every_field_are_all_shown() {
+fn if_every_field_shows_a_new_picture_all_due_pictures_are_shown() {
     let due = count(&regular(2, 1, 100, Shown), 1, 100);
     assert_eq!((due.first_period.0, due.last_period.0), (WARM_UP_PERIODS, 99));
     assert_eq!((due.due, due.shown, due.not_shown()), (92, 92, 0));
 }
 
 #[test]
-fn each_kind_of_end_is_counted_once() {
+fn late_incomplete_and_missed_pictures_are_each_counted_once() {
     let mut pictures = regular(2, 1, 108, Shown);
     pictures[10].1 = Late;
     pictures[11].1 = Incomplete;
@@ -45,7 +45,7 @@ fn each_kind_of_end_is_counted_once() {
 }
 
 #[test]
-fn of_pictures_three_periods_apart_that_are_due_every_second_a_third_is_missed() {
+fn pictures_three_periods_apart_but_due_every_second_period_miss_a_third() {
     // Swaps come at 9, 12, 15, 18 ..., due periods at 9, 11, 13, 15, 17, 19 .... Two of three due pictures are new.
     let due = count(&regular(9, 3, 609, Shown), 2, 609);
     assert!((due.not_shown_share() - 1.0 / 3.0).abs() < 1.0 / due.due as f64, "{due:?}");
@@ -53,14 +53,14 @@ fn of_pictures_three_periods_apart_that_are_due_every_second_a_third_is_missed()
 }
 
 #[test]
-fn one_retrace_of_delay_is_one_picture_missed() {
+fn a_delay_of_one_retrace_counts_as_one_missed_picture() {
     let mut pictures = regular(9, 2, 50, Shown);
     pictures.iter_mut().filter(|picture| picture.0 >= 31).for_each(|picture| picture.0 += 1);
     assert_eq!(count(&pictures, 2, 51).missed, 1);
 }
 
 #[test]
-fn two_pictures_for_one_that_is_due_are_one_that_is_shown() {
+fn two_pictures_in_one_due_interval_count_as_one_due_picture_shown() {
     let due = count(&regular(4, 1, 40, Shown), 2, 40);
     assert_eq!((due.due, due.shown, due.pictures), (16, 16, 32));
     // The rate counts the pictures shown: one in each field.
@@ -69,13 +69,13 @@ fn two_pictures_for_one_that_is_due_are_one_that_is_shown() {
 }
 
 #[test]
-fn what_never_showed_anything_missed_all() {
+fn a_run_that_showed_nothing_missed_all_pictures() {
     let due = count(&[], 1, 60);
     assert_eq!((due.due, due.missed, due.updates_hz(1001.0 / 60.0)), (52, 52, None));
 }
 
 #[test]
-fn a_run_within_the_warm_up_says_nothing() {
+fn a_run_shorter_than_the_warm_up_has_no_counts() {
     for periods in 0..=WARM_UP_PERIODS {
         assert_eq!(counted(&regular(2, 1, periods, Shown), 1, periods), None);
     }
@@ -86,7 +86,7 @@ fn a_run_within_the_warm_up_says_nothing() {
 ///
 /// With a picture in every period, the ninth period comes later than the fifth picture.
 #[test]
-fn the_window_begins_with_the_ninth_period_or_the_fifth_picture_whichever_is_later() {
+fn the_window_begins_at_the_later_of_ninth_period_and_fifth_picture() {
     for (first, apart, every, expected) in [(5, 2, 2, 12), (2, 1, 1, 8), (0, 2, 2, 9), (20, 10, 10, 51)] {
         let due = count(&regular(first, apart, 200, Shown), every, 200);
         assert_eq!(due.first_period.0, expected, "{first} {apart} {every}");
@@ -96,7 +96,7 @@ fn the_window_begins_with_the_ninth_period_or_the_fifth_picture_whichever_is_lat
 /// If a pipeline begins a picture every seventh period, and no picture is in time, then the pictures count as late from
 /// the ninth period on.
 #[test]
-fn start_up_hides_no_failure_behind_the_first_periods() {
+fn failures_after_the_eighth_period_are_counted() {
     let due = count(&regular(2, 7, 60, Late), 1, 60);
     assert_eq!((due.first_period.0, due.due, due.shown), (WARM_UP_PERIODS, 52, 0));
 }
@@ -111,7 +111,7 @@ fn a_failure_in_the_second_half_is_counted_over_the_whole_window() {
 }
 
 #[test]
-fn one_picture_has_no_rate() {
+fn a_run_with_one_shown_picture_has_no_rate() {
     let mut pictures = regular(2, 1, 60, Incomplete);
     pictures[20].1 = Shown;
     let due = count(&pictures, 1, 60);
@@ -140,7 +140,7 @@ fn ends() -> impl Strategy<Value = Vec<(u64, PictureResult)>> {
 
 proptest! {
     #[test]
-    fn every_picture_that_is_due_ends_in_exactly_one_way(pictures in ends(), every in 1u64..12, periods in 0u64..260) {
+    fn every_picture_due_has_exactly_one_result(pictures in ends(), every in 1u64..12, periods in 0u64..260) {
         if let Some(due) = counted(&pictures, every, periods) {
             prop_assert_eq!(due.shown + due.late + due.incomplete + due.missed, due.due);
             prop_assert_eq!(window(&due), due.due * every);
@@ -157,14 +157,12 @@ proptest! {
         prop_assert!((short.shown as f64 - expected).abs() <= 1.0, "{:?} {:?}", short, long);
     }
 
-    /// A larger distance between pictures never reduces the share of missed pictures.
     #[test]
     fn the_share_missed_rises_with_the_time_a_picture_takes(first in 0u64..40, every in 1u64..4, apart in 1u64..20) {
         let share = |apart| count(&regular(first, apart, 2_000, Shown), every, 2_000).not_shown_share();
         prop_assert!(share(apart + 1) + 1e-2 >= share(apart));
     }
 
-    /// No failure is left out: a picture after the warm-up that was not shown lies in the window.
     #[test]
     fn the_window_holds_every_picture_that_was_not_shown(at in WARM_UP_PERIODS..300, periods in 300u64..400) {
         let mut pictures = regular(0, 1, periods, Shown);

@@ -53,7 +53,7 @@ fn assert_ideal(outcome: &Outcome, what: &str) {
 /// A field that is drawn in time is shown at the retrace after its start (TR94), so each field has a picture. With a
 /// backup, the last complete picture replaces a late one.
 #[test]
-fn slats_shows_each_field_a_field_after_it_began() {
+fn slats_shows_each_field_one_field_after_its_start() {
     let scene = still("sphere:10");
     for (name, pipeline) in [("whole", Slats::whole()), ("split", Slats::split()), ("backup", Slats::backup())] {
         for n_gps in [1, 2, 4] {
@@ -78,7 +78,7 @@ fn slats_shows_each_field_a_field_after_it_began() {
 /// With primitives for more than a field's time, each picture takes two fields or more, and only complete pictures are
 /// shown.
 #[test]
-fn slats_goes_on_when_fields_are_late() {
+fn slats_continues_after_late_fields() {
     let scene = still("molecules");
     for (name, pipeline) in [("split", Slats::split()), ("backup", Slats::backup())] {
         let outcome = run(Arc::new(pipeline), machine("slats-optimised", 2, 20), &scene, 60);
@@ -136,7 +136,7 @@ fn copies(outcome: &Outcome) -> Vec<(Time, Time)> {
 /// TR94: Rendering Control works on one eye after the other. At any time, only one frame buffer receives a copy,
 /// although each frame buffer has a ring port of its own.
 #[test]
-fn copy_of_an_eye_begins_after_copy_of_the_eye_before_has_ended() {
+fn copy_of_an_eye_begins_after_the_end_of_copy_of_the_previous_eye() {
     let light = builtin("full-screen:2").map(Arc::new).expect("built in");
     let heavy = still("sphere:10");
     for finished in FinishedRegions::ALL {
@@ -161,10 +161,11 @@ fn copy_of_an_eye_begins_after_copy_of_the_eye_before_has_ended() {
 }
 
 /// COPY of both eyes takes 31.2 ms of the 33.4 ms of two fields. A light scene is thus shown every second field, with
-/// any number of renderers. TRANSFORM of a frame begins at the earliest when COPY of the third previous eye has ended,
-/// 31.2 ms after a swap and three frames before its own swap. Additional renderers only make frames wait longer.
+/// any number of renderers. TRANSFORM of a frame begins at the earliest when COPY of the third previous eye has ended.
+/// This instant is 31.2 ms after a swap and three frames before the swap of the new frame. Additional renderers only
+/// make frames wait longer.
 #[test]
-fn a_scene_bound_by_copy_keeps_its_rate_and_its_latency_with_any_number_of_renderers() {
+fn a_scene_limited_by_copy_keeps_rate_and_latency_with_any_number_of_renderers() {
     let scene = builtin("typical:2000").map(Arc::new).expect("built in");
     for n_renderers in [18, 19, 20, 21, 30] {
         let config = machine("small-hmd", 13, n_renderers);
@@ -202,7 +203,7 @@ fn on_screen_and_clipped(hmd: HmdConfig, grid: RegionGrid, lines: Lines) -> [(u6
 
 /// The triangles of the papers' test scene are on the screen, and none of them takes time in the clipper.
 #[test]
-fn full_screen_triangles_are_clipped_before_no_display_and_no_separation_of_eyes() {
+fn full_screen_triangles_are_never_clipped_by_the_near_plane() {
     let ntsc = RegionGrid::FRAME;
     let cut = |width, height| RegionGrid { width, height, ..ntsc };
     let of_preset = |preset: &Preset| {
@@ -236,7 +237,7 @@ fn rendered_and_free(outcome: &Outcome) -> Vec<(Time, Time)> {
 /// Three renderers hold three regions of a frame until its buffer is free, so RENDER waits. With the backing stores in
 /// use, RENDER continues.
 #[test]
-fn regions_that_are_stored_let_render_end_before_the_buffer_is_free() {
+fn with_stored_regions_render_ends_before_the_buffer_is_free() {
     let scene = still("sphere:10");
     for finished in FinishedRegions::ALL {
         let pipeline = RenderingControl { finished, ..RenderingControl::stereo() };
@@ -250,7 +251,7 @@ fn regions_that_are_stored_let_render_end_before_the_buffer_is_free() {
 /// TR94: 7,700 triangles cover the screen. Each of the 12 slaves has 642 of them in 20 bins, at 4 bytes a pointer. The
 /// bins of the next frame take the same space until the first are drawn.
 #[test]
-fn bins_of_rendering_control_hold_642_triangles_that_cover_the_screen_and_no_more() {
+fn the_bins_of_a_slave_hold_642_triangles_that_cover_the_screen_and_a_643rd_triangle_is_a_fault() {
     let run = |triangles: u32| {
         let scene = builtin(&format!("full-screen:{triangles}")).expect("built in");
         let experiment = Experiment::new(machine("small-hmd", 2, 20), RenderingControl::mono(), scene);

@@ -25,7 +25,7 @@ fn allowed_hz(ports: f64) -> f64 {
 }
 
 #[test]
-fn one_port_lets_14_4_pictures_a_second_through_and_two_let_more() {
+fn one_port_carries_14_4_pictures_a_second_and_two_carry_more() {
     let [one, two] = [1, 2].map(|ports| run(ports).updates_hz().expect("pictures are shown"));
     assert!((allowed_hz(1.0) - 14.4).abs() < 1e-9 && (allowed_hz(2.0) - 24.0).abs() < 1e-9);
     assert!((one - allowed_hz(1.0)).abs() < 0.2, "{one} Hz");
@@ -33,7 +33,7 @@ fn one_port_lets_14_4_pictures_a_second_through_and_two_let_more() {
 }
 
 #[test]
-fn regions_that_come_through_two_ports_make_the_same_picture() {
+fn regions_sent_through_two_ports_make_the_same_picture_as_through_one_port() {
     let [one, two] = [1, 2].map(|ports| {
         let outcome = run(ports);
         let display = outcome.record().display();

@@ -67,7 +67,7 @@ fn wholes(numbers: &[u64]) -> Vec<u8> {
 }
 
 #[test]
-fn a_scene_is_named_by_the_bits_of_its_numbers_in_order() {
+fn a_scene_is_identified_by_the_bits_of_its_numbers_in_order() {
     let bytes = [
         wholes(&[3]),
         [floats(&[0.0, 0.5, -3.0, 0.0, 0.0, 1.0]), vec![1, 2, 3]].concat(),
@@ -77,12 +77,13 @@ fn a_scene_is_named_by_the_bits_of_its_numbers_in_order() {
         [0_u32, 1, 2].iter().flat_map(|corner| corner.to_le_bytes()).collect(),
         wholes(&[1]),
         [floats(&[0.0, 0.0, -1.0, 0.125]), vec![7, 8, 9]].concat(),
-        // One structure: three ranges, fixed to the head (1), with a hinge (1).
+        // The words of one structure: three ranges, the mark of a structure that is fixed to the head (1), and the mark
+        // of a hinge (1).
         wholes(&[1, 0, 3, 0, 1, 0, 1]),
         vec![1, 1],
         floats(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0]),
         [reals(&[20.0]), wholes(&[2_000_000_000_000]), reals(&[0.25])].concat(),
-        // Light, path (a pan is the second kind) and sway.
+        // The numbers of the light, the path (a pan is the second kind) and the sway.
         [floats(&[0.0, 0.0, 1.0, 0.25, 0.75]), vec![4, 5, 6]].concat(),
         [vec![1], floats(&[0.0, 0.0, 0.0]), reals(&[30.0]), reals(&[0.0])].concat(),
     ];
@@ -90,7 +91,7 @@ fn a_scene_is_named_by_the_bits_of_its_numbers_in_order() {
 }
 
 #[test]
-fn any_change_of_a_scene_but_of_its_names_changes_its_fingerprint() {
+fn any_change_of_a_scene_except_its_names_changes_its_fingerprint() {
     let plain = name_of(parts());
     let hinged = |hinge: Option<Hinge>| {
         let mut parts = parts();
@@ -128,7 +129,7 @@ fn head(motion: impl Motion + Send + Sync + 'static) -> Head {
 }
 
 #[test]
-fn a_head_is_named_by_its_settings_a_line_each() {
+fn a_head_is_identified_by_its_settings_one_per_line() {
     let found = head(Pan::at(200.0)).with_raster(Raster::Vdrt).fingerprint().to_string();
     let TrackerConfig { rate_hz, filter_gain, .. } = TrackerConfig::ideal();
     let predictor = tracking::predict::PredictorConfig::for_tracker(PredictorKind::None, &TrackerConfig::ideal());
@@ -174,7 +175,7 @@ impl Motion for Nod {
 }
 
 #[test]
-fn motions_that_differ_have_different_names_even_if_debug_does_not_tell() {
+fn different_motions_have_different_names_even_with_equal_debug_output() {
     let recording = |x: f64| {
         let text = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
         Recording::read(text.as_bytes()).expect("valid")
@@ -201,7 +202,7 @@ fn motions_that_differ_have_different_names_even_if_debug_does_not_tell() {
 }
 
 #[test]
-fn every_tracker_predictor_seed_and_raster_has_a_name_of_its_own() {
+fn heads_with_different_trackers_predictors_seeds_or_rasters_have_different_names() {
     let of = |tracker: TrackerConfig, predictor: PredictorKind, seed: u64| {
         Head::new(Arc::new(Pan::at(1.0)), tracker, predictor, seed).expect("in range").fingerprint()
     };
@@ -244,7 +245,7 @@ fn every_parameter_of_the_machine_changes_the_name_of_an_experiment() {
 }
 
 #[test]
-fn a_machine_with_the_papers_numbers_of_its_firmware_is_the_one_without_them() {
+fn writing_out_the_default_parameters_of_firmware_changes_nothing() {
     let of = |config: MachineConfig| {
         let scene = pxpl5_scene::builtin("full-screen:12").expect("built in");
         Experiment::new(config, Jitp::new(Viewpoint::Field, false), scene).config_hash()

@@ -8,7 +8,8 @@ use pxpl5_scene::builtin;
 use pxpl5_wire::{RegionId, SurfaceId};
 use std::sync::{Arc, Mutex};
 
-/// Regions in order, each for the next renderer. Stores the numbers of columns and of all regions of each frame.
+/// A policy that gives the regions to the renderers in turn. Stores the numbers of columns and of all regions of each
+/// frame.
 #[derive(Debug, Default)]
 struct InTurn(Mutex<Vec<(u32, usize)>>);
 

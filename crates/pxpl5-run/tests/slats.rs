@@ -53,12 +53,12 @@ fn no_bottom_region_of_a_field_is_copied_before_all_top_ones() {
     }
 }
 
-/// Checks each field that the beam of an eye scans. The whole field must come from one picture of its lines: the newest
-/// whose top regions had arrived before the retrace.
+/// Checks each field that the beam of an eye scans. The whole field must come from one picture with the lines of the
+/// field: the newest picture whose top regions had arrived before the retrace.
 ///
 /// No pixel may arrive behind the beam, and no newer picture may be written into the displayed buffer.
 #[test]
-fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
+fn with_a_backup_only_complete_fields_are_shown() {
     for scene in ["full-screen:147", "full-screen:160", "full-screen:200", "typical:147", "typical:160", "typical:200"]
     {
         let outcome = run(Slats::backup(), scene);
@@ -68,7 +68,7 @@ fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
         for field in (8..28).map(PeriodNumber) {
             let parity = FieldParity::of_field(field);
             let [begins, ends] = [field, field.next()].map(|field| display.video().retrace(field));
-            // Software time of five acknowledgements and of the request, and their time on the ring.
+            // Time of the software for five acknowledgements and for the request, plus their time on the ring.
             let on_its_way = Span::from_ns(6 * 12_000 + 28_000);
             let of_lines = |arrival: &&Arrival| arrival.target.lines == Lines::Field(parity);
             let top_at = |regions: &[Arrival]| {
@@ -96,7 +96,7 @@ fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
             assert_eq!(torn.count(), 0, "{scene}, {field:?}: {picture:?}");
             seen_pictures[parity as usize].push(**picture);
         }
-        // New fields of both parities keep coming.
+        // Fields of both parities show new pictures until the end.
         for of_lines in &mut seen_pictures {
             assert!(of_lines.len() >= 9, "{scene}: {of_lines:?}");
             of_lines.dedup();

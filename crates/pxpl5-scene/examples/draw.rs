@@ -118,7 +118,7 @@ impl Canvas {
         for y in low.y.max(0.0) as i32..=(high.y.min(HEIGHT as f32 - 1.0)) as i32 {
             for x in low.x.max(0.0) as i32..=(high.x.min(WIDTH as f32 - 1.0)) as i32 {
                 let at = glam::Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-                // Barycentric coordinates: areas over the sides that lie opposite to the corners.
+                // The barycentric coordinate of a corner is proportional to the area over the opposite side.
                 let [a, b, c] = [(1, 2), (2, 0), (0, 1)]
                     .map(|(i, j)| (p[j].truncate() - p[i].truncate()).perp_dot(at - p[i].truncate()) / area);
                 if a >= 0.0 && b >= 0.0 && c >= 0.0 {

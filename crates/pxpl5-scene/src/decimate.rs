@@ -66,12 +66,12 @@ impl Decimation {
     fn surface(&self, wanted: usize) -> Surface {
         let passed = self.passed.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let known = passed.filter(|passed| passed.serves(wanted));
-        // A state far from the wanted number saves little, so a nearer one replaces it.
+        // A stored state far from the wanted number saves little work, so a nearer state replaces it.
         let is_near = known.as_ref().is_some_and(|known| known.left() / 2 <= wanted);
         let mut first = known.map_or_else(|| FirstPass::new(Surface::new(&self.scene)), Arc::unwrap_or_clone);
         if !is_near {
             first.until(wanted + wanted / PASSED_ABOVE, wanted);
-            // A state that was reached only for this number is of no use to others.
+            // A state that was reached only for this number does not help with other numbers, so it is not stored.
             if first.serves(wanted) {
                 *self.passed.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(first.clone()));
             }
@@ -86,8 +86,8 @@ impl fmt::Debug for Decimation {
     }
 }
 
-/// Divisor for the size of the stored intermediate surface. For n wanted triangles the surface has about n + n / 8
-/// triangles. A search for a limit can then also start from this surface for slightly larger numbers than n.
+/// Divisor for the size of the stored intermediate surface: n + n / 8 triangles for n wanted triangles. A search for a
+/// limit can then also start from this surface for numbers slightly above n.
 const PASSED_ABOVE: usize = 8;
 
 /// Returns a scene with at most `n` primitives. `reduce` receives a number of triangles, and returns the scene's
@@ -116,7 +116,7 @@ fn decimated(scene: &Scene, n: usize, reduce: impl FnOnce(usize) -> Surface) -> 
     Ok(Scene::new(kept.of(scene.clone().into_parts()))?.with_warnings(scene.warnings().to_vec()))
 }
 
-/// Chooses `kept` of `all` items, spread evenly. Returns true if the item with this index is chosen.
+/// Returns true if the item `index` is chosen. Of `all` items, `kept` are chosen, spread evenly.
 const fn is_kept(index: usize, all: usize, kept: usize) -> bool {
     index * kept / all != (index + 1) * kept / all
 }
@@ -139,8 +139,6 @@ fn drop_pieces(surface: &mut Surface, wanted: usize) {
     }
 }
 
-/// Removes the smallest triangles until `wanted` remain. This is the last step, after the collapse of edges and the
-/// removal of pieces.
 fn drop_triangles(surface: &mut Surface, wanted: usize) {
     let left: Vec<u32> = surface.all().map(|(triangle, _)| triangle).collect();
     let areas: Vec<f64> = left.iter().map(|&triangle| area(surface, triangle)).collect();
@@ -168,14 +166,12 @@ fn remove(surface: &mut Surface, triangle: u32) {
     }
 }
 
-/// The triangles and spheres that remain after decimation.
 struct Kept {
     triangles: Vec<Option<[u32; 3]>>,
     spheres: Vec<bool>,
 }
 
 impl Kept {
-    /// Returns the parts of the scene that remain, without unused vertices and empty structures.
     fn of(self, mut parts: SceneParts) -> SceneParts {
         // Count how many items remain before each index: these are the new indices.
         let mut used = vec![false; parts.vertices.len()];

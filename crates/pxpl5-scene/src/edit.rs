@@ -41,8 +41,8 @@ impl Hinge {
         self.amplitude_deg * trig::sin_turns(turns + self.phase_turns)
     }
 
-    /// Returns the model matrix at simulated time `time_ps` (picoseconds), which is a rotation about the axis of the
-    /// swing.
+    /// Returns the model matrix at simulated time `time_ps` (picoseconds). The matrix is a rotation about the axis of
+    /// the swing.
     #[must_use]
     pub fn model(&self, time_ps: u64) -> Mat4 {
         let rotation = rotation_about(self.axis.as_dvec3(), self.angle_deg(time_ps));
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hinge_leaves_its_axis_in_place() {
+    fn the_swing_of_a_hinge_does_not_move_points_on_its_axis() {
         let point = Vec3::new(1.0, 0.0, 5.0);
         assert!((quarter_swing().model(777).transform_point3(point) - point).length() < 1e-6);
     }

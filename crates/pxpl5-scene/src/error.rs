@@ -3,7 +3,6 @@
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::{fmt, io};
 
-/// The position in a file at which an error was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FilePlace {
     /// Line number, counted from 1.
@@ -21,12 +20,10 @@ impl fmt::Display for FilePlace {
     }
 }
 
-/// Creates the error of a model file that the operating system cannot read.
 pub(crate) fn unreadable(file: &str, error: &io::Error) -> FileError {
     FileError::unreadable(file, "a readable file", error)
 }
 
-/// Creates the error of a model file that is well formed but contains nothing to draw.
 pub(crate) fn nothing_to_draw(file: &str, expected: &str) -> FileError {
     FileError::new(FileErrorKind::Empty, format_args!("at least one {expected}"), "none").in_file(file)
 }

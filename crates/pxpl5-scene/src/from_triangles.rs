@@ -7,7 +7,6 @@ use crate::sway::Sway;
 use glam::Vec3;
 use pxpl5_sim::parameters::SettingError;
 
-/// Colour of a mesh that has no colours of its own: light grey.
 const GREY: [u8; 3] = [200, 200, 200];
 
 impl Scene {
@@ -66,7 +65,6 @@ impl Scene {
     }
 }
 
-/// Returns the motion of a head that stands still at `eye` and looks at `target`.
 fn standing(target: Vec3, eye: Vec3) -> HeadMotion {
     let still = HeadPath::Still { eye, target };
     HeadMotion::new(still, Sway { seed: 1, scale: 0.0 }).expect("pxpl5-scene: no sway is in range")

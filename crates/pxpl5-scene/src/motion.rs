@@ -75,7 +75,6 @@ pub struct HeadMotion {
     sway: Sway,
 }
 
-/// The numbers of a head motion before [`HeadMotion::new`] checks the numbers.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Unchecked {
@@ -140,7 +139,7 @@ impl HeadMotion {
         &self.sway
     }
 
-    /// Returns the same motion with another seed for its sway.
+    /// Returns the same motion with the seed `seed` for its sway.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.sway.seed = seed;

@@ -181,7 +181,8 @@ impl Scene {
         &self.parts.spheres
     }
 
-    /// Returns the structures of the scene, at least one. In order, they contain all triangles and spheres.
+    /// Returns the structures of the scene, at least one. Together, the structures contain all triangles and spheres,
+    /// in the order of the lists of triangles and spheres.
     #[must_use]
     pub fn structures(&self) -> &[Structure] {
         &self.parts.structures
@@ -275,7 +276,7 @@ pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone)
     (middle, reaches.fold(0.0, f64::max))
 }
 
-/// Returns the length of a vector, even if the square of the length is too large or too small for f64.
+/// Returns the length of a vector. The result is correct even if the square of the length exceeds the range of f64.
 fn length(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     if largest > 0.0 { (v / largest).length() * largest } else { 0.0 }

@@ -46,7 +46,6 @@ const GAZE_PITCH: [Sine; 3] = [(0.31, 2.7), (0.97, 2.2), (1.73, 1.6)];
 /// Sine waves whose sum is the head's tilt to its left, degrees.
 const GAZE_ROLL: [Sine; 3] = [(0.17, 3.4), (0.71, 2.5), (1.37, 1.6)];
 
-/// The angles and the relative distance of the sway at one instant.
 pub(crate) struct Swing {
     pub(crate) azimuth_deg: f64,
     pub(crate) elevation_deg: f64,
@@ -78,7 +77,7 @@ impl Sway {
     }
 }
 
-/// A generator of sums of sines. Each sine gets the next phase drawn from the seed.
+/// A generator of sums of sines. Every sine gets a new random phase from the seed.
 struct SumsOfSines<'a> {
     sway: &'a Sway,
     seconds: f64,
@@ -103,13 +102,11 @@ impl SumsOfSines<'_> {
 }
 
 impl Swing {
-    /// Returns the rotation that the sway adds to the direction of the gaze.
     pub(crate) fn gaze(&self) -> DQuat {
         turn_about(DVec3::Y, self.yaw_deg) * turn_about(DVec3::X, self.pitch_deg) * turn_about(DVec3::Z, self.roll_deg)
     }
 }
 
-/// Returns the rotation by `angle_deg` about the unit vector `axis`.
 pub(crate) fn turn_about(axis: DVec3, angle_deg: f64) -> DQuat {
     let (sin, cos) = trig::sin_cos_deg(angle_deg / 2.0);
     DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)

@@ -10,7 +10,6 @@ pub(crate) fn cos_turns(turns: f64) -> f64 {
     libm::cos(TAU * (turns - libm::floor(turns)))
 }
 
-/// Returns the sine and the cosine of an angle in degrees.
 pub(crate) fn sin_cos_deg(degrees: f64) -> (f64, f64) {
     (libm::sin(degrees * PI / 180.0), libm::cos(degrees * PI / 180.0))
 }

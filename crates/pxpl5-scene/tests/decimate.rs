@@ -51,7 +51,7 @@ fn size(scene: &Scene) -> Vec3 {
 }
 
 #[test]
-fn a_head_of_fewer_triangles_is_a_closed_head_of_the_same_size() {
+fn the_decimated_head_is_closed_and_has_the_same_size() {
     let whole = scene("head");
     // The unavoidable error of a polyhedron against a smooth shape is inversely proportional to the number of
     // triangles.
@@ -71,7 +71,7 @@ fn a_head_of_fewer_triangles_is_a_closed_head_of_the_same_size() {
 /// Every octant of the bounding box must keep triangles. Keeping only the first N triangles of the head would leave
 /// only its crown.
 #[test]
-fn no_part_of_the_head_is_left_out() {
+fn a_decimated_head_keeps_triangles_in_every_octant() {
     let few = scene("head").decimated(200).expect("it has more");
     let (centre, radius) = few.bounding_sphere();
     for octant in 0..8 {
@@ -83,7 +83,7 @@ fn no_part_of_the_head_is_left_out() {
 }
 
 #[test]
-fn an_aircraft_of_fewer_triangles_keeps_wings_tail_and_nose() {
+fn a_decimated_aircraft_keeps_wings_tail_and_nose() {
     let whole = scene("mig");
     for wanted in [300, 140, 100] {
         let few = whole.decimated(wanted).expect("it has more");
@@ -96,7 +96,7 @@ fn an_aircraft_of_fewer_triangles_keeps_wings_tail_and_nose() {
 }
 
 #[test]
-fn a_flat_sheet_of_many_triangles_becomes_two() {
+fn decimation_reduces_a_flat_sheet_of_many_triangles_to_two_triangles() {
     // Corners keep their positions, and everything within a plane can be removed.
     let mut parts = scene("full-screen:1").into_parts();
     const SIDE: u32 = 9;
@@ -113,7 +113,7 @@ fn a_flat_sheet_of_many_triangles_becomes_two() {
 }
 
 #[test]
-fn of_separate_pieces_as_many_are_left_as_asked_for_and_from_everywhere() {
+fn decimating_separate_pieces_keeps_the_requested_number_of_triangles_from_all_parts() {
     let few = scene("typical:1000").decimated(100).expect("it has more");
     assert_eq!(few.triangles().len(), 100);
     let ratio = size(&few) / size(&scene("typical:1000"));
@@ -122,7 +122,7 @@ fn of_separate_pieces_as_many_are_left_as_asked_for_and_from_everywhere() {
 }
 
 #[test]
-fn spheres_and_triangles_are_left_in_their_proportion() {
+fn decimation_keeps_the_proportion_of_spheres_and_triangles() {
     let whole = scene("molecules");
     let few = whole.decimated(384).expect("it has more");
     // 384 of 3,839 primitives: about 262 of 2,620 triangles, as far as a closed ribbon allows, and 122 of 1,219
@@ -138,7 +138,7 @@ fn spheres_and_triangles_are_left_in_their_proportion() {
 }
 
 #[test]
-fn what_is_left_has_places_normals_and_colours_that_were_there() {
+fn decimation_uses_only_existing_positions_normals_and_colours() {
     let whole = scene("mig");
     for vertex in whole.decimated(120).expect("it has more").vertices() {
         assert!(whole.vertices().contains(vertex));
@@ -149,7 +149,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn at_most_so_many_and_the_same_each_time(half in 4u32..200, share in 0.01f64..1.0) {
+    fn decimation_respects_its_limit_and_is_deterministic(half in 4u32..200, share in 0.01f64..1.0) {
         let whole = scene(&format!("sphere:{}", 2 * half));
         let wanted = ((f64::from(2 * half) * share) as usize).max(1);
         let few = whole.decimated(wanted).expect("it has more");
@@ -163,10 +163,10 @@ proptest! {
     }
 }
 
-/// Decimates to numbers in an order in which later calls continue from states of earlier calls, and in which they
-/// cannot.
+/// Decimates a scene to several sizes, one after the other. Some calls can continue from the state of an earlier call,
+/// and others cannot.
 #[test]
-fn a_decimation_that_goes_on_from_an_earlier_one_gives_the_same_scene() {
+fn decimating_in_two_steps_gives_the_same_scene() {
     for (name, numbers) in [
         ("mig", &[200, 201, 199, 190, 120, 60, 300, 416, 150, 7, 1, 417][..]),
         ("molecules", &[900, 880, 901, 500, 3_000, 20]),

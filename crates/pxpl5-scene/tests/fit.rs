@@ -40,7 +40,7 @@ fn models() -> Vec<Scene> {
 }
 
 #[test]
-fn the_whole_model_is_in_the_view_of_both_eyes_at_any_time_with_a_margin() {
+fn both_eyes_see_the_whole_model_with_a_margin_at_all_times() {
     for scene in models() {
         let least = (0..6_000).map(|i| margin_deg(&scene, i * SECOND / 9)).fold(f64::MAX, f64::min);
         // The worst case of all sines at once leaves 1.2 degrees. The model must not be smaller than necessary either.
@@ -49,7 +49,7 @@ fn the_whole_model_is_in_the_view_of_both_eyes_at_any_time_with_a_margin() {
 }
 
 #[test]
-fn every_seed_of_the_motion_keeps_it_there() {
+fn every_seed_of_the_motion_keeps_the_model_in_view() {
     let scene = builtin("sphere:80").expect("built in");
     for seed in 0..20 {
         let motion = scene.motion().with_seed(seed);
@@ -61,7 +61,7 @@ fn every_seed_of_the_motion_keeps_it_there() {
 }
 
 #[test]
-fn without_fit_a_model_stands_where_its_file_says() {
+fn without_fit_a_model_stays_where_its_file_places_it() {
     let text = b"v 1 2 -30\nv 2 2 -30\nv 1 4 -30\nf 1 2 3\n";
     let scene = placed_from_bytes(text, Format::Obj, "model", Placement::AsInFile).expect("well formed");
     assert_eq!(scene.vertices()[2].position, Vec3::new(1.0, 4.0, -30.0));

@@ -23,7 +23,6 @@ fn corners(scene: &Scene, triangle: [u32; 3]) -> [DVec3; 3] {
     triangle.map(|corner| scene.vertices()[corner as usize].position.as_dvec3())
 }
 
-/// Returns the area vectors of all triangles.
 fn areas(scene: &Scene) -> Vec<DVec3> {
     let area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a) / 2.0;
     scene.triangles().iter().map(|triangle| area(corners(scene, *triangle))).collect()
@@ -34,7 +33,7 @@ const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\
 // Lines that continue in the next line.
 
 #[test]
-fn a_line_of_obj_that_ends_in_a_backslash_goes_on_in_the_next_one() {
+fn a_line_of_obj_that_ends_in_a_backslash_continues_on_the_next_line() {
     let plain = obj(TETRAHEDRON);
     for (from, to) in [
         ("f 1 3 2\n", "f 1 3 \\\n2\n"),
@@ -55,12 +54,12 @@ fn a_line_of_obj_that_ends_in_a_backslash_goes_on_in_the_next_one() {
 }
 
 #[test]
-fn a_comment_that_ends_in_a_backslash_takes_nothing_from_the_next_line() {
+fn a_comment_of_obj_that_ends_in_a_backslash_does_not_continue() {
     assert_eq!(obj(format!("# C:\\models\\\n{TETRAHEDRON}")), obj(TETRAHEDRON));
 }
 
 #[test]
-fn a_fault_in_a_line_that_goes_on_is_named_with_the_line_where_it_begins() {
+fn an_error_in_a_continued_line_names_its_first_line() {
     let error = read(Format::Obj, "v 0 0 0\nv 1 \\\n two 0\nf 1 1 1\n").expect_err("no number").to_string();
     assert_eq!(error, "test: line 2: expected a number for y, found \"two\"");
     let error = read(Format::Obj, "v 0 0 0\nv \\\n0 0 1\nv 1 0 0\nf 1 2 \\\n9\n").expect_err("no point").to_string();
@@ -70,7 +69,7 @@ fn a_fault_in_a_line_that_goes_on_is_named_with_the_line_where_it_begins() {
 // Order of elements.
 
 #[test]
-fn faces_may_stand_before_the_points_of_an_obj_file() {
+fn faces_may_precede_the_points_of_an_obj_file() {
     let (points, faces) = TETRAHEDRON.split_at(TETRAHEDRON.find('f').expect("a face"));
     assert_eq!(obj(format!("{faces}{points}")), obj(TETRAHEDRON));
 }
@@ -124,14 +123,14 @@ fn binary_faces_first(encoding: &str, word: fn(u32) -> [u8; 4]) -> Vec<u8> {
 }
 
 #[test]
-fn faces_come_first_in_binary_files_too() {
+fn in_binary_ply_files_faces_may_precede_the_vertices() {
     let plain = ply(ascii_ply(&ELEMENTS));
     assert_eq!(ply(binary_faces_first("binary_little_endian", u32::to_le_bytes)), plain);
     assert_eq!(ply(binary_faces_first("binary_big_endian", u32::to_be_bytes)), plain);
 }
 
 #[test]
-fn a_fault_in_faces_that_come_first_is_named_where_it_stands() {
+fn an_error_in_faces_that_precede_the_vertices_names_the_line() {
     let [vertices, faces] = ELEMENTS;
     let text = ascii_ply(&[faces, vertices]).replace("3 1 2 3\n", "3 1 2 4\n");
     let error = read(Format::Ply, text).expect_err("no such vertex").to_string();
@@ -139,7 +138,7 @@ fn a_fault_in_faces_that_come_first_is_named_where_it_stands() {
 }
 
 #[test]
-fn lines_of_ply_end_as_those_of_obj_and_a_mark_may_come_before_them() {
+fn lines_of_ply_may_have_any_line_ending_and_a_byte_order_mark() {
     let text = ascii_ply(&ELEMENTS);
     let plain = ply(&text);
     for text in
@@ -150,7 +149,7 @@ fn lines_of_ply_end_as_those_of_obj_and_a_mark_may_come_before_them() {
 }
 
 #[test]
-fn numbers_of_ply_are_written_in_any_way() {
+fn numbers_of_ply_may_have_any_notation() {
     let plain = ply(ascii_ply(&ELEMENTS));
     for one in ["1.", "+1", "1e0", "1.0E+00", "10e-1", "0.1e1"] {
         assert_eq!(ply(ascii_ply(&ELEMENTS).replace("1 0 0\n", &format!("{one} 0 0\n"))), plain, "{one}");
@@ -159,7 +158,7 @@ fn numbers_of_ply_are_written_in_any_way() {
 }
 
 #[test]
-fn indices_of_ply_have_any_type() {
+fn indices_of_ply_may_have_any_type() {
     let plain = ply(ascii_ply(&ELEMENTS));
     for kinds in ["uint8 uint8", "char short", "int ushort", "uint uint", "uint16 int32"] {
         assert_eq!(ply(ascii_ply(&ELEMENTS).replace("uchar int", kinds)), plain, "{kinds}");
@@ -169,7 +168,7 @@ fn indices_of_ply_have_any_type() {
 // Encodings and line ends.
 
 #[test]
-fn comments_and_names_in_any_encoding_are_no_reason_to_refuse_a_model() {
+fn comments_and_names_in_any_encoding_are_accepted() {
     let latin = |text: &str| -> Vec<u8> { text.chars().map(|c| c as u8).collect() };
     let with_names =
         format!("# Gr\u{f6}\u{df}e\no W\u{fc}rfel\ng t\u{ea}te\nusemtl M\u{e9}tall\n{TETRAHEDRON}# \u{e9}\n");
@@ -184,7 +183,7 @@ fn comments_and_names_in_any_encoding_are_no_reason_to_refuse_a_model() {
 }
 
 #[test]
-fn what_is_no_text_where_a_number_must_be_is_refused_with_its_line() {
+fn bytes_that_are_not_text_in_place_of_a_number_are_refused_with_the_line() {
     let error = read(Format::Obj, b"v 0 0 0\nv 0 \xe9 0\n").expect_err("no number").to_string();
     assert_eq!(error, "test: line 2: expected a number for y, found \"\u{fffd}\"");
     let mut text = ascii_ply(&ELEMENTS).into_bytes();
@@ -216,7 +215,7 @@ fn assert_covers(points: &[(f64, f64)], scene: &Scene) {
     let whole = shoelace(points);
     let areas = areas(scene);
     let sum: f64 = areas.iter().map(|area| area.z).sum();
-    // Single precision of the scene's places.
+    // The scene stores positions in single precision.
     assert!((sum - whole).abs() < 1e-5 * whole.abs(), "{points:?}: {sum} for {whole}");
     assert!(areas.iter().all(|area| area.z * whole.signum() > -1e-6 * whole.abs()), "{points:?}: {areas:?}");
 }
@@ -225,10 +224,10 @@ fn assert_covers(points: &[(f64, f64)], scene: &Scene) {
 const DART: [(f64, f64); 4] = [(0.0, 2.0), (-2.0, -2.0), (0.0, -1.0), (2.0, -2.0)];
 
 #[test]
-fn the_notch_of_a_polygon_stays_open_wherever_it_begins_and_whichever_way_it_turns() {
+fn the_notch_of_a_polygon_stays_open_for_any_start_and_orientation() {
     let polygons: [&[(f64, f64)]; 6] = [
         &DART,
-        // L, U, and a star; a comb with points on straight lines, and one with a point twice.
+        // The letters L and U, a star, a comb with points on straight lines, and a polygon with a repeated point.
         &[(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)],
         &[(0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (2.0, 2.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)],
         &[(0.0, 3.0), (-0.5, 0.5), (-3.0, 0.0), (-0.5, -0.5), (0.0, -3.0), (0.5, -0.5), (3.0, 0.0), (0.5, 0.5)],
@@ -302,7 +301,7 @@ proptest! {
     /// Generates polygons around the origin with a radius at each of several rising angles. The angles are less than
     /// half a turn apart, so a polygon never crosses itself.
     #[test]
-    fn any_polygon_about_a_point_is_covered_once(
+    fn the_triangles_of_a_star_shaped_polygon_cover_each_of_its_points_once(
         radii in prop::collection::vec(0.1..4.0_f64, 4..200),
         begin in any::<prop::sample::Index>(),
         clockwise in any::<bool>(),
@@ -344,7 +343,7 @@ fn is_flat(scene: &Scene) -> bool {
 }
 
 #[test]
-fn faces_of_obj_are_flat_where_smoothing_is_off() {
+fn faces_of_obj_are_flat_if_smoothing_is_off() {
     let faces = FACES.concat();
     for off in ["", "s off\n", "s 0\n", "s Off\n", "s 1\ns off\n"] {
         let scene = obj(format!("{off}{CUBE}{faces}"));
@@ -362,10 +361,11 @@ fn faces_of_obj_are_flat_where_smoothing_is_off() {
 }
 
 #[test]
-fn smoothing_groups_are_shaded_by_themselves() {
+fn smoothing_groups_are_shaded_separately() {
     let grouped: String = (1..).zip(FACES).map(|(group, face)| format!("s {group}\n{face}")).collect();
     assert!(is_flat(&obj(format!("{CUBE}{grouped}"))));
-    // Two faces that meet at a right angle in one group: at their edge the mean, elsewhere their own.
+    // Two faces of one group meet at a right angle. At their common edge the normal is the mean, elsewhere each face
+    // has its own normal.
     let scene = obj(format!("{CUBE}s 1\n{}{}s off\n{}", FACES[0], FACES[2], FACES[1]));
     let mean = |v: &&pxpl5_scene::Vertex| (v.normal - Vec3::new(-1.0, -1.0, 0.0).normalize()).length() < 0.4;
     assert_eq!(scene.vertices().iter().filter(mean).count(), 2);
@@ -378,7 +378,7 @@ fn normals_of_the_file_win_over_smoothing_off() {
 }
 
 #[test]
-fn a_flat_face_that_is_not_plane_has_one_normal() {
+fn a_flat_shaded_face_that_is_not_planar_has_one_normal() {
     let scene = obj("v 0 0 0\nv 1 0 0\nv 1 1 0.2\nv 0 1 0\nf 1 2 3 4\n");
     assert_eq!(scene.vertices().len(), 4);
     assert!(scene.vertices().iter().all(|v| v.normal == scene.vertices()[0].normal));
@@ -387,19 +387,20 @@ fn a_flat_face_that_is_not_plane_has_one_normal() {
 // Colours of vertices and faces.
 
 #[test]
-fn colours_of_obj_vertices_are_drawn_as_fractions_or_bytes() {
+fn colours_of_obj_vertices_may_be_fractions_or_bytes() {
     let with = |colours: [&str; 4]| {
         let points = ["0 0 0", "1 0 0", "0 1 0", "0 0 1"];
         let vertices: String = points.iter().zip(colours).map(|(p, c)| format!("v {p} {c}\n")).collect();
         obj(format!("{vertices}s 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"))
     };
-    // In the order in which the faces name the points: 1, 3, 2, 4.
+    // The colours are in the order in which the faces name the points: 1, 3, 2, 4.
     let of = |scene: &Scene| scene.vertices().iter().map(|v| v.colour).collect::<Vec<_>>();
     let expected = [[255, 0, 0], [0, 0, 255], [0, 128, 0], [255, 255, 255]];
     assert_eq!(of(&with(["1 0 0", "0 0.5 0", "0 0 1.0", "1 1 1"])), expected);
     assert_eq!(of(&with(["255 0 0", "0 128 0", "0 0 255", "255 255 255"])), expected);
     assert_eq!(of(&with(["1.0 0 0 1", "0 5e-1 0 1", "0 0 1 1", "1 1 1 1"])), expected);
-    // A fourth number alone is a weight; a point without colour is grey among those with one.
+    // A fourth number alone is a weight and not a colour. A point without a colour is grey, even if other points have
+    // colours.
     assert!(of(&with(["1", "1", "1.0", "0.5"])).iter().all(|colour| *colour == DEFAULT_COLOUR));
     assert_eq!(of(&with(["1 0 0", "", "", ""]))[..2], [[255, 0, 0], DEFAULT_COLOUR]);
     let error = read(Format::Obj, "v 0 0 0 red 0 0\n").expect_err("no number").to_string();
@@ -407,7 +408,7 @@ fn colours_of_obj_vertices_are_drawn_as_fractions_or_bytes() {
 }
 
 #[test]
-fn materials_that_are_not_read_are_told_once() {
+fn unread_materials_cause_one_warning() {
     let scene = obj(format!("usemtl a\nusemtl b\n{TETRAHEDRON}"));
     assert_eq!(scene.warnings(), ["colours of materials (usemtl) are not read: faces have one colour"]);
     assert!(obj(TETRAHEDRON).warnings().is_empty());
@@ -447,7 +448,7 @@ fn colours_of_ply_faces_are_drawn_and_do_not_change_the_shading() {
 // Normals that are NaN.
 
 #[test]
-fn normals_that_are_no_numbers_are_computed_and_told_once() {
+fn invalid_normals_are_recomputed_with_one_warning() {
     let smooth = TETRAHEDRON.replacen('f', "s 1\nf", 1);
     let plain = obj(&smooth);
     for nan in ["nan", "NaN", "-nan", "-nan(ind)", "nan(0x8000)", "1.#QNAN", "inf", "-inf", "1.#INF"] {
@@ -465,7 +466,7 @@ fn normals_that_are_no_numbers_are_computed_and_told_once() {
 }
 
 #[test]
-fn a_place_that_is_no_number_is_refused_and_named() {
+fn an_invalid_coordinate_is_refused_with_its_place() {
     for nan in ["nan", "-nan(ind)", "1.#IND"] {
         let said = read(Format::Obj, format!("v 0 {nan} 0\n")).expect_err("no place").to_string();
         assert!(said.starts_with("test: line 1: expected a coordinate") && said.ends_with("found NaN"), "{said}");
@@ -492,7 +493,7 @@ fn drawn(line: &str) -> (f32, [u8; 3]) {
 }
 
 #[test]
-fn elements_are_told_by_the_names_of_atoms_where_the_columns_for_them_are_missing() {
+fn missing_element_columns_are_replaced_by_the_names_of_atoms() {
     let (h, c, n, o, s) = (1.20, 1.70, 1.55, 1.52, 1.80);
     for (record, name, residue, radius) in [
         ("ATOM", "HG11", "VAL", h),
@@ -546,7 +547,7 @@ fn elements_are_told_by_the_names_of_atoms_where_the_columns_for_them_are_missin
 }
 
 #[test]
-fn what_stands_in_the_columns_of_the_element_and_is_none_is_passed_over() {
+fn unknown_text_in_the_element_columns_is_ignored() {
     // Old files number their lines in columns 73 to 80.
     for end in ["1CRN  70", "1CRN 123", "        ", ""] {
         let line = format!("{:<72}{end}\n", atom("ATOM", " CA ", "VAL").trim_end());
@@ -574,7 +575,7 @@ fn a_model_without_a_triangle_that_has_an_area_is_refused() {
     }
     let line = ascii_ply(&ELEMENTS).replace("0 1 0\n0 0 1\n", "2 0 0\n3 0 0\n");
     assert!(read(Format::Ply, line).expect_err("a line").to_string().contains("triangle with an area"));
-    // One such triangle is enough, however small and thin.
+    // One triangle with an area is enough, however small and thin.
     let thin = obj("v 0 0 0\nv 1 0 0\nv 0 1e-9 0\nv 2 0 0\nf 1 2 4\nf 1 2 3\n");
     assert_eq!(thin.triangles().len(), 2);
     let fitted = from_bytes(b"v 0 0 0\nv 1e-300 0 0\nv 0 1e-300 0\nf 1 2 3\n", Format::Obj, "test").expect("small");

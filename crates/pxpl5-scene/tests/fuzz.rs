@@ -96,7 +96,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_damaged_file_makes_a_reader_panic(which in 0..5_usize, damages in prop::collection::vec(damage(), 1..6)) {
+    fn no_damaged_file_causes_a_panic(which in 0..5_usize, damages in prop::collection::vec(damage(), 1..6)) {
         let (format, mut file) = samples().swap_remove(which);
         damages.into_iter().for_each(|d| apply(&mut file, d));
         if let Ok(scene) = from_bytes(&file, format, "damaged") {
@@ -105,7 +105,7 @@ proptest! {
     }
 
     #[test]
-    fn no_bytes_make_a_reader_panic(which in 0..3_usize, bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+    fn no_bytes_cause_a_panic(which in 0..3_usize, bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         let format = [Format::Ply, Format::Obj, Format::Pdb][which];
         if let Ok(scene) = from_bytes(&bytes, format, "noise") {
             assert_sound(scene);

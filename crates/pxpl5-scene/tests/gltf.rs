@@ -100,7 +100,6 @@ fn scene(bytes: &[u8]) -> Scene {
     read(bytes).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns the corners of all triangles.
 fn corners(scene: &Scene) -> Vec<[Vec3; 3]> {
     scene.triangles().iter().map(|t| t.map(|corner| scene.vertices()[corner as usize].position)).collect()
 }
@@ -187,7 +186,7 @@ fn corners_without_indices_make_triangles_strips_and_fans_as_the_specification_s
 }
 
 #[test]
-fn triangles_that_only_join_parts_of_a_strip_are_left_out() {
+fn triangles_that_only_join_parts_of_a_strip_are_ignored() {
     let mut writer = Writer::default();
     let positions = writer.vectors(&SQUARE);
     let indices = writer.shorts(&[0, 1, 2, 2, 0, 0, 2, 3]);
@@ -254,7 +253,7 @@ fn a_mirroring_transform_leaves_triangles_anticlockwise() {
 }
 
 #[test]
-fn a_mesh_in_two_nodes_is_there_twice_and_a_node_out_of_the_scene_is_not() {
+fn a_mesh_in_two_nodes_is_drawn_twice_and_a_node_outside_the_scene_is_not_drawn() {
     let (writer, mut document) = square();
     document["nodes"] = json!([{"mesh": 0}, {"mesh": 0, "translation": [5, 0, 0]}, {"mesh": 0}]);
     document["scenes"] = json!([{"nodes": [2]}, {"nodes": [0, 1]}]);
@@ -307,7 +306,7 @@ fn quantized_interleaved_and_sparse_numbers_are_read() {
     let mut document = writer.one_mesh(json!({"attributes": {"POSITION": positions}}));
     document["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
     assert_eq!(corners(&scene(&writer.binary(&document))), [[at(0), at(1), at(3)]]);
-    // Zeros without a view, of which two vertices are replaced.
+    // A sparse accessor without a buffer view: all vertices are zero, except for two replaced vertices.
     let mut writer = Writer::default();
     let indices = writer.view(&[1, 2]);
     let values: Vec<u8> = [SQUARE[1], SQUARE[3]].as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
@@ -319,7 +318,7 @@ fn quantized_interleaved_and_sparse_numbers_are_read() {
 }
 
 #[test]
-fn a_buffer_in_a_file_beside_the_model_is_read_and_no_other_file() {
+fn a_buffer_is_read_from_a_file_beside_the_model_and_from_no_other_folder() {
     let folder = std::env::temp_dir().join(format!("pxpl5-gltf-{}", std::process::id()));
     std::fs::create_dir_all(folder.join("inner")).expect("a temporary folder");
     let (writer, mut document) = square();
@@ -345,7 +344,7 @@ fn a_buffer_in_a_file_beside_the_model_is_read_and_no_other_file() {
 }
 
 #[test]
-fn what_is_not_read_gives_a_warning() {
+fn unread_parts_cause_a_warning() {
     let (writer, mut document) = square();
     document["textures"] = json!([{"source": 0}]);
     document["images"] = json!([{"uri": "a.png"}]);
@@ -416,7 +415,7 @@ fn errors_name_the_part_of_the_file() {
     );
     refused(&|d| d["accessors"][2]["componentType"] = 5126.into(), &["accessors[2].componentType", "F32"]);
     refused(&|d| d["bufferViews"][1]["byteOffset"] = u64::MAX.into(), &["bufferViews[1]: expected 48 bytes at byte"]);
-    // 0 to 3 are the vertices; the indices of the file now contain a 4.
+    // The vertices have the indices 0 to 3, but the file now contains the index 4.
     let mut writer = Writer::default();
     let positions = writer.vectors(&SQUARE);
     let indices = writer.shorts(&[0, 1, 4]);
@@ -434,7 +433,7 @@ fn errors_name_the_part_of_the_file() {
 }
 
 #[test]
-fn errors_of_the_container_name_the_position() {
+fn errors_of_the_gltf_container_name_the_byte_or_line() {
     let (writer, document) = square();
     let good = writer.binary(&document);
     for (change, expected) in [
@@ -479,7 +478,7 @@ fn small_files_that_ask_for_much_memory_are_refused() {
     let mut document = square().1;
     document["extensionsUsed"] = vec![""; 1_000_000].into();
     assert!(too_much(&writer.binary(&document)), "many empty texts");
-    // One sparse vertex of a thousand millions.
+    // A sparse accessor of a thousand million vertices, of which the file stores one.
     let mut writer = Writer::default();
     let index = writer.view(&[1]);
     let value = writer.view(&[0; 12]);
@@ -506,7 +505,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_damaged_file_makes_the_reader_panic(is_binary: bool, damages in damages(), end: prop::sample::Index, cut: bool) {
+    fn no_damaged_file_causes_a_panic(is_binary: bool, damages in damages(), end: prop::sample::Index, cut: bool) {
         let (writer, document) = square();
         let mut file = if is_binary { writer.binary(&document) } else { writer.text(document) };
         for (place, bytes) in damages {
@@ -522,9 +521,9 @@ proptest! {
         }
     }
 
-    /// Every number of the document becomes any number in turn, which no damage of bytes reaches as often.
+    /// Replaces each number of the document by other numbers. Random damage of bytes seldom changes these numbers.
     #[test]
-    fn no_number_in_the_document_makes_the_reader_panic(which in 0..64_usize, number: u64, small in 0..9_u64, is_small: bool) {
+    fn no_number_in_the_document_causes_a_panic(which in 0..64_usize, number: u64, small in 0..9_u64, is_small: bool) {
         let (writer, document) = square();
         let number = if is_small { small } else { number };
         let text = document.to_string();

@@ -47,13 +47,13 @@ fn negative_indices_count_back_from_the_last_vertex_so_far() {
 }
 
 #[test]
-fn texture_coordinates_are_passed_over_in_every_notation() {
+fn texture_coordinates_are_ignored_in_every_notation() {
     assert_square(&obj(&format!("{SQUARE_OBJ}vt 0 0\nvn 0 0 2\nf 1/1 2/1/1 3//1 4\n")));
     assert_square(&obj(&format!("{SQUARE_OBJ}vt 0 0\nf 1/1/ 2/1 3// 4 # comment\r\n")));
 }
 
 #[test]
-fn given_normals_win_over_computed_ones_and_split_a_vertex() {
+fn normals_in_the_file_replace_computed_normals_and_a_vertex_with_two_normals_is_split() {
     let scene = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 1 0 0\nvn 0 3 0\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n");
     assert_eq!(scene.vertices().len(), 6);
     assert_eq!(scene.vertices()[0].normal, Vec3::X);
@@ -63,7 +63,8 @@ fn given_normals_win_over_computed_ones_and_split_a_vertex() {
 
 #[test]
 fn missing_normals_are_the_mean_of_the_triangles_weighted_by_area() {
-    // At the shared corner: a triangle of area 1/2 facing +z, one of area 1 facing +x. Mean (2, 0, 1) / sqrt 5.
+    // Two triangles share a corner: one of area 1/2 faces +z, and one of area 1 faces +x. The mean normal is (2, 0, 1)
+    // / sqrt 5.
     let scene = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0\nv 0 0 1\ns 1\nf 1 2 3\nf 1 4 5\n");
     let expected = Vec3::new(2.0, 0.0, 1.0) / 5.0_f32.sqrt();
     assert!((scene.vertices()[0].normal - expected).length() < 1e-6);
@@ -71,7 +72,7 @@ fn missing_normals_are_the_mean_of_the_triangles_weighted_by_area() {
 }
 
 #[test]
-fn models_of_any_size_fit() {
+fn models_of_any_size_are_scaled_to_the_import_radius() {
     for size in ["1e-300", "1e-40", "1e15"] {
         let scene = obj(&format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nf 1 2 3\n"));
         let (_, radius) = scene.bounding_sphere();
@@ -81,7 +82,7 @@ fn models_of_any_size_fit() {
 }
 
 #[test]
-fn points_that_no_face_uses_are_dropped_however_far_they_lie() {
+fn unused_points_are_dropped_at_any_distance() {
     let scene = ply("ply\nformat ascii 1.0\nelement vertex 5\nproperty double x\nproperty double y\n\
         property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
         1e15 0 0\n0 0 0\n-1e15 0 0\n1e-300 0 0\n0 1e-300 0\n3 1 3 4\n");
@@ -122,7 +123,7 @@ fn the_three_encodings_of_ply_give_the_same_scene() {
 }
 
 #[test]
-fn normals_doubles_fractional_colours_and_foreign_elements_of_ply_are_understood() {
+fn normals_doubles_fractional_colours_and_unknown_elements_of_ply_are_read() {
     let scene = ply("ply\nformat ascii 1.0\nelement junk 2\nproperty int a\nelement vertex 3\nproperty double x\n\
         property double y\nproperty double z\nproperty float nx\nproperty float ny\nproperty float nz\n\
         property float red\nproperty float green\nproperty float blue\nproperty float quality\n\
@@ -154,12 +155,13 @@ fn written(scene: &Scene) -> String {
 }
 
 #[test]
-fn a_scene_comes_back_from_a_ply_file() {
+fn a_scene_written_as_ply_is_read_back() {
     let mig = pxpl5_scene::builtin("mig").expect("a built-in scene");
     let back = ply(written(&mig));
     let again = ply(written(&back));
     assert_eq!(back.triangles(), mig.triangles());
-    // From a radius of 2 m to the fitted one, and centred as before; then unchanged but for rounding.
+    // The first import scales the radius of 2 m to the radius of imported models and keeps the centre. The second
+    // import changes nothing except for rounding.
     let scale = (IMPORT_RADIUS_M / 2.0) as f32;
     for ((a, b), c) in mig.vertices().iter().zip(back.vertices()).zip(again.vertices()) {
         assert!((a.position * scale - b.position).length() < 1e-6);
@@ -182,14 +184,15 @@ ATOM      6  N   SER A   1      99.000  -2.000   0.500  1.00  0.00           N  
 #[test]
 fn atoms_become_spheres_with_van_der_waals_radii_and_their_colours() {
     let scene = read(Format::Pdb, SERINE).expect("sound");
-    // N, C of the first location, Fe, O; not the second location, not the second model. Radii: Bondi 1964.
+    // The scene has N, the first location of C, Fe and O, but neither the second location nor the second model. The
+    // radii are from Bondi 1964.
     let radii: Vec<f32> = scene.spheres().iter().map(|s| s.radius / scene.spheres()[0].radius).collect();
     for (radius, expected) in radii.iter().zip([1.55, 1.70, 2.00, 1.52]) {
         assert!((radius - expected / 1.55).abs() < 1e-6);
     }
     assert_eq!(radii.len(), 4);
     assert_eq!(scene.spheres()[3].colour, [240, 24, 24]);
-    // 2 Ångström apart along x, as many times as large as the nitrogen's radius of 1.55.
+    // The atoms are 2 Ångström apart along x, on the scale in which the nitrogen has a radius of 1.55.
     let apart = scene.spheres()[1].centre - scene.spheres()[0].centre;
     assert!((apart.x / scene.spheres()[0].radius - 2.0 / 1.55).abs() < 1e-5);
 }
@@ -215,7 +218,7 @@ fn missing_primitive(format: Format, text: &str) -> String {
 }
 
 #[test]
-fn a_file_with_nothing_to_draw_says_what_is_missing() {
+fn a_file_with_nothing_to_draw_is_refused_with_the_missing_part() {
     assert_eq!(missing_primitive(Format::Obj, "v 0 0 0\n"), "triangle");
     let header =
         "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
@@ -224,7 +227,7 @@ fn a_file_with_nothing_to_draw_says_what_is_missing() {
 }
 
 #[test]
-fn a_coordinate_that_is_no_place_is_refused() {
+fn a_coordinate_that_is_not_finite_is_refused() {
     for bad in ["nan", "inf", "-inf", "1e16", "-1e300", "1e999"] {
         let error = read(Format::Obj, format!("v 0 0 0\nv 0 {bad} 0\nf 1 2 1\n")).expect_err(bad);
         assert_eq!((error.kind, &*error.place), (FileErrorKind::Number, "line 2"), "{bad}");
@@ -265,7 +268,7 @@ fn an_index_of_ply_out_of_range_is_named_with_its_place() {
 }
 
 #[test]
-fn a_ply_file_cut_anywhere_is_refused() {
+fn a_truncated_ply_file_is_refused() {
     for file in
         [binary_square("binary_little_endian", u32::to_le_bytes), binary_square("binary_big_endian", u32::to_be_bytes)]
     {
@@ -310,7 +313,7 @@ fn message(format: Format, text: &str) -> String {
 }
 
 #[test]
-fn what_breaks_a_format_is_named_with_line_expectation_and_finding() {
+fn format_errors_name_line_expected_and_found() {
     assert_eq!(message(Format::Obj, "v 1 two 3\n"), "test: line 1: expected a number for y, found \"two\"");
     assert_eq!(message(Format::Obj, "v 1 2\n"), "test: line 1: expected a number for z, found \"\"");
     assert_eq!(message(Format::Obj, "v 1 2 3\nf 1 x 1\n"), "test: line 2: expected an index of vertices, found \"x\"");
@@ -361,7 +364,7 @@ fn paths_that_lead_to_no_model_are_refused() {
 }
 
 #[test]
-fn a_mark_at_the_begin_of_a_text_and_lines_that_end_in_cr_alone_change_nothing() {
+fn a_byte_order_mark_and_lines_that_end_in_cr_change_nothing() {
     let text = format!("{SQUARE_OBJ}f 1 2 3 4\n");
     let first_is_a_vertex = text.trim_start_matches("# a square, 5 right and 2 wide\no s\n");
     assert_square(&obj(&format!("\u{feff}{first_is_a_vertex}")));
@@ -374,7 +377,7 @@ fn a_mark_at_the_begin_of_a_text_and_lines_that_end_in_cr_alone_change_nothing()
 /// Superfluous content is refused at every position of a PLY file: repeated elements, numbers after a row, and rows
 /// after the last.
 #[test]
-fn what_is_too_much_in_a_ply_file_is_refused_where_it_stands() {
+fn surplus_data_in_a_ply_file_is_refused_with_its_place() {
     let file = |version: &str, again: &str, vertex: &str, face: &str, rest: &str| {
         format!(
             "ply\nformat ascii {version}\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{again}element face 1\n\
@@ -398,7 +401,7 @@ fn what_is_too_much_in_a_ply_file_is_refused_where_it_stands() {
 }
 
 #[test]
-fn triangle_strips_are_read_and_every_other_triangle_is_turned() {
+fn triangle_strips_are_read_and_every_other_triangle_is_reversed() {
     let scene = ply(
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n\
                      property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 1 2\n",
@@ -411,7 +414,7 @@ fn triangle_strips_are_read_and_every_other_triangle_is_turned() {
 /// Serine 5 has two locations of CB and one of OG, and a third residue shares its position. Atom CA of residue 6 has
 /// only the locations B and C.
 #[test]
-fn an_atom_is_where_its_first_alternate_location_is_whatever_its_letter() {
+fn an_atom_has_its_first_alternate_location() {
     let atom = |name: &str, alternate: &str, residue: &str, place: u32, x: f64| {
         format!("ATOM      1  {name:<3}{alternate}{residue} A{place:>4}    {x:>8.3}{:>8.3}{:>8.3}\n", 0.0, 0.0)
     };
@@ -428,7 +431,7 @@ fn an_atom_is_where_its_first_alternate_location_is_whatever_its_letter() {
     let scene = from_bytes(text.concat().as_bytes(), Format::Pdb, "test").expect("atoms");
     let centres: Vec<f32> = scene.spheres().iter().map(|sphere| sphere.centre.x).collect();
     assert_eq!(centres.len(), 4);
-    // The places 1, 2, 4 and 7: steps of 1, 2 and 3.
+    // The atoms lie at 1, 2, 4 and 7, so the steps between them are 1, 2 and 3.
     let step = centres[1] - centres[0];
     let steps: Vec<f32> = centres.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect();
     assert!(steps.iter().zip([1.0, 2.0, 3.0]).all(|(found, expected)| (found - expected).abs() < 1e-4), "{steps:?}");

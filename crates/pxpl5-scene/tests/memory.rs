@@ -96,7 +96,7 @@ fn obj_of_corners(points_and_normals: usize) -> Vec<u8> {
 }
 
 #[test]
-fn obj_files_made_for_it_take_at_most_seven_times_their_size() {
+fn hostile_obj_files_need_at_most_seven_times_their_size() {
     let _alone = alone();
     // The four cases of docs/hardening.md, and the worst known case for each list of the reader.
     is_accepted("corners.obj", obj_of_corners(500));
@@ -115,7 +115,7 @@ fn obj_files_made_for_it_take_at_most_seven_times_their_size() {
         "window.obj",
         (seen.clone() + &points("v ", 9) + &points("vn ", 9) + &window.repeat(60_000)).into_bytes(),
     );
-    // A polygon of many notches, whose ears are cut, and faces without smoothing.
+    // A polygon with many notches, which is divided by cutting ears, and faces without smoothing.
     let comb: String = (0..15_000).fold(String::new(), |mut text, n| {
         writeln!(text, "v {} {} 0", if n % 2 == 0 { 9.5 } else { 1.25 }, f64::from(n) / 1e3).expect("into a string");
         text
@@ -135,7 +135,7 @@ fn obj_files_made_for_it_take_at_most_seven_times_their_size() {
 }
 
 #[test]
-fn meshes_of_real_size_take_little() {
+fn real_meshes_need_little_memory() {
     let _alone = alone();
     // A grid as a scanner makes it: shared vertices, two triangles a square.
     let side = 700;
@@ -167,7 +167,7 @@ fn ply(kind: &str, vertices: usize, vertex: &[u8], corners: impl Iterator<Item =
 }
 
 #[test]
-fn ply_files_made_for_it_take_at_most_seven_times_their_size_or_are_refused() {
+fn hostile_ply_files_need_at_most_seven_times_their_size_or_are_refused() {
     let _alone = alone();
     let count = 2_000_000;
     let (_, bytes) = taken("bytes.ply", ply("uchar", 3, &[1, 2, 3], (0..count).map(|n| vec![(n % 3) as u8]), count));
@@ -182,7 +182,7 @@ fn ply_files_made_for_it_take_at_most_seven_times_their_size_or_are_refused() {
 }
 
 #[test]
-fn ascii_ply_and_pdb_files_take_at_most_seven_times_their_size() {
+fn ascii_ply_and_pdb_files_need_at_most_seven_times_their_size() {
     let _alone = alone();
     let header = |vertices: usize, faces: usize| {
         format!(

@@ -27,7 +27,7 @@ fn swaying(seed: u64) -> HeadMotion {
 }
 
 #[test]
-fn the_mean_angular_speed_is_that_of_recorded_heads() {
+fn the_mean_angular_speed_of_the_motion_agrees_with_recorded_heads_within_10_percent() {
     for seed in [0, 1, 2, 99, u64::MAX] {
         let speeds = speeds(&swaying(seed), 600);
         let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
@@ -36,7 +36,7 @@ fn the_mean_angular_speed_is_that_of_recorded_heads() {
 }
 
 #[test]
-fn no_head_turns_faster_than_recorded_ones() {
+fn no_head_rotates_faster_than_recorded_heads() {
     for seed in 0..8 {
         let fastest = speeds(&swaying(seed), 600).into_iter().fold(0.0, f64::max);
         assert!(fastest < MAX_HEAD_SPEED_DEG_PER_S, "seed {seed}: {fastest}");
@@ -44,7 +44,7 @@ fn no_head_turns_faster_than_recorded_ones() {
 }
 
 #[test]
-fn the_mean_translation_is_about_that_of_recorded_heads() {
+fn the_mean_speed_of_translation_agrees_with_recorded_heads_within_a_quarter() {
     // The published mean is 0.37 m/s. The mean of the motion must agree within a quarter.
     let motion = swaying(1);
     let moved = (0..6_000).map(|i| {
@@ -58,14 +58,15 @@ fn the_mean_translation_is_about_that_of_recorded_heads() {
 
 #[test]
 fn practically_all_energy_of_yaw_lies_below_2_hz_and_95_percent_below_0_14_hz() {
-    // Discrete Fourier transform of 400 s at 8 Hz, mean removed; a Hann window keeps lines from leaking upwards.
+    // The discrete Fourier transform of 400 s at 8 Hz, without the mean. A Hann window prevents leaks of lines to
+    // higher frequencies.
     let motion = swaying(5);
     let count = 3_200_usize;
     let mut previous = 0.0_f64;
     let yaw = (0..count).map(|i| {
         let f = forward(&motion.pose(i as u64 * SECOND / 8));
         let angle = (-f.x).atan2(-f.z);
-        // Unwrapped: the next turn is the nearest one.
+        // Unwrap the angle: a turn between two samples is less than half a circle.
         previous +=
             (angle - previous + 3.0 * std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
         previous
@@ -95,7 +96,7 @@ fn energy(signal: &[f64], mean: f64, bin: usize) -> f64 {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_pose_and_another_seed_another() {
+fn equal_seeds_give_equal_poses_and_different_seeds_different_poses() {
     let time = 123_456_789_012_345;
     assert_eq!(swaying(3).pose(time), swaying(3).pose(time));
     assert_ne!(swaying(3).pose(time), swaying(4).pose(time));
@@ -167,8 +168,8 @@ fn boxed_share(scene: &Scene, time_ps: u64) -> f32 {
 }
 
 #[test]
-fn mig_at_times_fills_the_view_and_at_times_is_small_in_it() {
-    // Each at least a twentieth of two laps.
+fn mig_varies_between_filling_the_view_and_being_small() {
+    // The model is large in at least a twentieth of two laps, and small in another twentieth.
     let mig = builtin("mig").expect("a built-in scene");
     let shares: Vec<f32> = (0..80).map(|i| boxed_share(&mig, i * SECOND / 2)).collect();
     assert!(shares.iter().filter(|&&s| s > 0.9).count() >= 4, "{shares:?}");
@@ -185,7 +186,7 @@ fn the_head_fills_about_a_third_of_the_view_at_all_times() {
 }
 
 #[test]
-fn numbers_out_of_range_are_refused_also_from_a_file() {
+fn numbers_out_of_range_are_refused_in_code_and_in_files() {
     let nan = HeadPath::Pan { eye: Vec3::ZERO, deg_per_s: f64::NAN };
     assert_eq!(&*HeadMotion::new(nan, Sway::none()).expect_err("not a number").name, "deg_per_s");
     let far = HeadPath::Look { target: Vec3::splat(f32::INFINITY), distance: 1.0 };

@@ -46,8 +46,8 @@ fn check(normal: &str) {
 }
 
 #[test]
-fn a_normal_of_any_length_is_a_direction() {
-    // The square of 3e-162 is not 0, and has one bit.
+fn the_direction_of_a_normal_is_exact_for_a_normal_of_any_length() {
+    // The square of 3e-162 is not 0, but a subnormal number with a single bit.
     check("3e-162 0 0");
     for exponent in -330..=15 {
         let largest = if exponent == 15 { "1e15" } else { "" };
@@ -70,7 +70,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn components_of_different_size_give_the_direction_of_the_largest(
+    fn a_normal_with_components_of_different_size_has_the_correct_direction(
         mantissas in prop::array::uniform3(-9.99..9.99),
         exponents in prop::array::uniform3(-330..14),
     ) {

@@ -34,13 +34,14 @@ fn each_scene_has_the_stated_number_of_primitives() {
     assert_eq!(counts("full-screen:1"), (1, 0));
     assert_eq!(counts("aircraft"), (100, 0));
     assert_eq!(counts("typical:37"), (37, 0));
-    // Six sides of two triangles, ten boxes without a lower side; 30 whole boxes and ten more without.
+    // The room has six sides of two triangles, and ten boxes without a lower side. The full scene has 30 whole boxes
+    // and ten more boxes without a lower side.
     assert_eq!(counts("gallery"), (6 * 2 + 10 * 10, 0));
     assert_eq!(counts("gallery:full"), (112 + 30 * 12 + 10 * 10, 0));
 }
 
 #[test]
-fn every_listed_name_is_had_with_n_replaced() {
+fn every_listed_name_can_be_built_with_n_replaced() {
     for (name, sentence) in names() {
         scene(&name.replace('N', "12"));
         assert!(sentence.ends_with('.'), "{sentence}");
@@ -48,7 +49,7 @@ fn every_listed_name_is_had_with_n_replaced() {
 }
 
 #[test]
-fn a_gallery_alone_has_a_path() {
+fn only_a_gallery_has_a_path() {
     for (name, _) in names() {
         let has_path = !scene(&name.replace('N', "12")).path().is_empty();
         assert_eq!(has_path, name.starts_with("gallery"), "{name}");
@@ -63,7 +64,7 @@ fn the_same_name_gives_the_same_scene() {
 }
 
 #[test]
-fn a_misspelt_name_is_answered_with_the_nearest() {
+fn a_misspelt_name_is_refused_with_the_nearest_name() {
     for (wrong, right) in [
         ("mgi", "mig"),
         ("Haed", "head"),
@@ -94,14 +95,14 @@ fn every_edge_of_the_head_is_used_once_in_each_direction() {
             *edges.entry(edge).or_default() += 1;
         }
     }
-    assert_eq!(edges.len(), 3 * 59_592); // each once
+    assert_eq!(edges.len(), 3 * 59_592); // each directed edge once
     assert!(edges.keys().all(|&(a, b)| edges.contains_key(&(b, a))));
     // Euler: a surface without holes has V - E + F = 2.
     assert_eq!(head.vertices().len() as i64 - edges.len() as i64 / 2 + 59_592, 2);
 }
 
 #[test]
-fn the_head_is_turned_outwards_and_its_normals_follow_its_triangles() {
+fn the_triangles_and_normals_of_the_head_face_outwards() {
     let head = scene("head");
     assert!(six_volumes(&head) > 0.0);
     let against = head.triangles().iter().filter(|t| {
@@ -134,7 +135,7 @@ fn all_normals_are_of_unit_length() {
 }
 
 #[test]
-fn the_normals_of_mig_point_the_way_its_triangles_face() {
+fn the_normals_of_mig_agree_with_its_triangles() {
     let mig = scene("mig");
     for triangle in mig.triangles() {
         let [a, b, c] = corners(&mig, triangle);
@@ -146,7 +147,7 @@ fn the_normals_of_mig_point_the_way_its_triangles_face() {
 }
 
 #[test]
-fn mig_moves_its_five_control_surfaces_and_nothing_else() {
+fn mig_moves_only_its_five_control_surfaces() {
     let mig = scene("mig");
     let edits = mig.edits_at(700_000_000_000);
     let moved: Vec<&str> = edits.iter().map(|e| mig.structures()[e.structure].name.as_str()).collect();
@@ -178,13 +179,13 @@ fn the_ailerons_of_mig_deflect_oppositely() {
         sum_of_heights(&mig, 1, early) > sum_of_heights(&mig, 1, 0)
             && sum_of_heights(&mig, 2, early) < sum_of_heights(&mig, 2, 0)
     );
-    // The right one is the mirror image of the left one half a swing later.
+    // The right structure is the mirror image of the left structure half a swing later.
     assert!((sum_of_heights(&mig, 1, early) - sum_of_heights(&mig, 2, late)).abs() < 1e-5);
     assert!((sum_of_heights(&mig, 1, late) - sum_of_heights(&mig, 2, early)).abs() < 1e-5);
 }
 
 #[test]
-fn full_screen_triangles_cover_every_corner_of_both_screens_however_the_head_turns() {
+fn full_screen_triangles_cover_both_screens_for_any_head_rotation() {
     let scene = scene("full-screen:12");
     let hmd = Hmd::unc();
     let pose = Pose { position: DVec3::new(3.0, -2.0, 9.0), orientation: glam::DQuat::from_xyzw(0.5, 0.5, -0.5, 0.5) };
@@ -213,16 +214,17 @@ fn full_screen_triangles_lie_at_different_depths() {
 
 #[test]
 fn the_first_atoms_of_molecules_are_those_of_myoglobin() {
-    // The entry has 783 carbons, 216 nitrogens, 215 oxygens and 2 sulphurs. The scene adds a water molecule.
+    // The molecule's PDB entry has 783 carbons, 216 nitrogens, 215 oxygens and 2 sulphurs. The scene adds a water
+    // molecule.
     let molecules = scene("molecules");
     let colours = [[144, 144, 144], [48, 80, 248], [255, 216, 48], [240, 24, 24], [255, 255, 255]];
     let counts = colours.map(|colour| molecules.spheres().iter().filter(|s| s.colour == colour).count());
-    // Carbon, nitrogen, sulphur, oxygen, hydrogen.
+    // The counts are of carbon, nitrogen, sulphur, oxygen and hydrogen.
     assert_eq!(counts, [783, 216, 2, 216, 2]);
 }
 
 #[test]
-fn a_triangle_may_not_use_the_vertex_of_another_structure() {
+fn a_triangle_with_a_vertex_of_another_structure_is_refused() {
     let mut parts = scene("mig").into_parts();
     parts.triangles[0][0] = parts.vertices.len() as u32 - 1;
     let error = Scene::new(parts).expect_err("the vertex belongs to the rudder");
@@ -231,7 +233,7 @@ fn a_triangle_may_not_use_the_vertex_of_another_structure() {
 }
 
 #[test]
-fn a_hand_made_scene_is_checked_in_every_part() {
+fn every_part_of_a_scene_made_by_hand_is_checked() {
     let broken: [fn(&mut pxpl5_scene::SceneParts); 6] = [
         |p| p.vertices[3].position.y = f32::NAN,
         |p| p.vertices[3].normal = Vec3::ZERO,
@@ -262,7 +264,7 @@ fn edges(scene: &Scene) -> BTreeMap<[[u32; 3]; 2], [u32; 2]> {
 }
 
 #[test]
-fn the_aircraft_is_closed_wound_alike_and_turned_outwards() {
+fn the_aircraft_is_closed_and_its_triangles_face_outwards() {
     let aircraft = scene("aircraft");
     assert!(edges(&aircraft).values().all(|uses| *uses == [1, 1]));
     assert!(six_volumes(&aircraft) > 0.0);
@@ -276,7 +278,7 @@ fn the_aircraft_is_closed_wound_alike_and_turned_outwards() {
 }
 
 #[test]
-fn the_aircraft_is_as_wide_as_long_and_symmetric() {
+fn the_aircraft_is_nearly_as_wide_as_long_and_symmetric() {
     let aircraft = scene("aircraft");
     let mirrored =
         |p: Vec3| aircraft.vertices().iter().any(|v| (v.position * Vec3::new(-1.0, 1.0, 1.0) - p).length() < 1e-3);
@@ -286,7 +288,7 @@ fn the_aircraft_is_as_wide_as_long_and_symmetric() {
 }
 
 #[test]
-fn every_sphere_is_closed_of_exactly_its_number_of_triangles_and_nearly_round() {
+fn every_sphere_is_closed_and_nearly_round_with_the_stated_number_of_triangles() {
     for count in (8..400).step_by(2).chain([1_000, 20_000]) {
         let sphere = scene(&format!("sphere:{count}"));
         assert_eq!(sphere.triangles().len(), count);

@@ -79,7 +79,7 @@ fn attributes_of_binary_triangles_give_a_warning() {
 }
 
 #[test]
-fn errors_state_the_position_and_what_was_expected() {
+fn errors_state_the_position_and_the_expected_value() {
     let good = text(&TWO, "\n");
     let whole = binary("x", &TWO);
     let mut nan = whole.clone();
@@ -118,7 +118,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_damaged_file_makes_the_reader_panic(
+    fn no_damaged_file_causes_a_panic(
         is_text: bool,
         damages in prop::collection::vec((any::<prop::sample::Index>(), prop::collection::vec(any::<u8>(), 0..4)), 1..5),
     ) {

@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn the_edge_at_or_after_an_edge_is_that_edge_and_one_tick_later_the_next() {
+    fn the_first_edge_at_or_after_an_edge_is_this_edge() {
         for clock in [Clock::from_hz(40_000_000), Clock::new(1_001_000_000_000_000, 60_000), Clock::new(7, 3)] {
             let clock = clock.expect("valid");
             for n in [0, 1, 2, 3, 1_000, 123_457] {
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_behind_the_end_of_time_is_at_its_end() {
+    fn an_edge_beyond_the_end_of_time_is_at_the_end_of_time() {
         let seconds = Clock::from_hz(1).expect("valid");
         // 2^64 ps are a little more than 18,446,744 s.
         assert_eq!(seconds.edge(18_446_744), Time(18_446_744_000_000_000_000));
@@ -109,7 +109,7 @@ mod tests {
     proptest! {
         /// Tests the fast path in 64 bits. About half of the random edges need the 128 bits of the slow path.
         #[test]
-        fn an_edge_is_the_same_in_64_bits_as_in_128(period_bits in 1u32..64, bits in 0u32..64, seed: [u64; 3]) {
+        fn edges_are_the_same_in_64_and_128_bits(period_bits in 1u32..64, bits in 0u32..64, seed: [u64; 3]) {
             let [numerator, denominator] = [seed[0] >> (64 - period_bits), seed[1] >> (64 - period_bits)];
             let clock = Clock::new(numerator.max(denominator).max(1), numerator.min(denominator).max(1)).expect("valid");
             let n = seed[2] >> bits;

@@ -37,13 +37,12 @@ impl<E, O> Context<E, O> {
         self.now
     }
 
-    /// Schedules an event for the same device.
     #[inline]
     pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
         self.own.push((time, phase, event));
     }
 
-    /// Schedules an event for the same device at `span` after the current time, in phase `Work`.
+    /// Schedules an event for the same device at `span` after the current time, in the phase [`Phase::Work`].
     #[inline]
     pub fn after(&mut self, span: Span, event: E) {
         self.schedule(self.now + span, Phase::Work, event);
@@ -115,7 +114,6 @@ impl<E, O> TestBench<E, O> {
         &mut self.queue
     }
 
-    /// Schedules an event for the device.
     pub fn feed(&mut self, time: Time, phase: Phase, event: E) {
         self.queue.schedule(time, phase, event);
     }
@@ -154,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_device_is_run_alone_up_to_an_instant_and_no_further() {
+    fn a_device_can_be_run_alone_up_to_a_time() {
         let mut bench = TestBench::new();
         bench.feed(Time(100), Phase::Arrive, 3);
         bench.run_until(Time(99), echo);
@@ -165,7 +163,7 @@ mod tests {
         assert_eq!(bench.outputs, [(Time(110), 3), (Time(115), 2)]);
     }
     #[test]
-    fn what_was_scheduled_is_taken_once_in_order_and_what_was_put_out_is_known() {
+    fn scheduled_events_are_taken_once_in_order_and_outputs_are_recorded() {
         let mut context = Context::<u32, u32>::default();
         context.at(Time(7));
         for count in [0, 1, 3] {
@@ -182,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_fed_waits_in_the_queue_of_the_bench() {
+    fn an_input_of_a_test_bench_waits_in_its_queue() {
         let mut bench = TestBench::<u32, u32>::new();
         bench.feed(Time(100), Phase::Arrive, 3);
         assert_eq!(bench.queue().next_time(), Some(Time(100)));

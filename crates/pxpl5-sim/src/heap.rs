@@ -7,7 +7,6 @@ pub(crate) trait Keyed: Copy {
     fn key(&self) -> u128;
 }
 
-/// A priority queue that returns the element with the least key first.
 #[derive(Debug)]
 pub(crate) struct QuadHeap<T> {
     items: Vec<T>,
@@ -94,7 +93,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_gives_what_the_library_s_heap_gives(pushes in proptest::collection::vec((0u64..50, 0usize..3), 0..300)) {
+        fn the_heap_equals_the_heap_of_the_standard_library(pushes in proptest::collection::vec((0u64..50, 0usize..3), 0..300)) {
             let mut heap = QuadHeap::default();
             let mut expected = BinaryHeap::new();
             for (item, pops) in pushes {

@@ -55,7 +55,6 @@ pub use statistics::{DefinedStatistics, Statistics, number_or_nan};
 pub use time::{Span, Time};
 pub use trace::{TraceHash, mix};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -35,7 +35,7 @@
 //!
 //! All crates of the project use the same two types of errors for inputs. [`SettingError`] is for a setting, a name or
 //! an argument, and [`FileError`] is for a file or a text. An error states the place, the expected content and the
-//! found content. Programs can read the reason from the field `kind`. A setting that names an unusable file is a
+//! found content. Programs can read the reason from `kind`. A setting that names an unusable file is a
 //! [`SettingError`] of the kind [`File`](SettingErrorKind::File).
 //!
 //! **Not here:** rules that relate several parameters, such as "at most the length of a line". The crate that owns the

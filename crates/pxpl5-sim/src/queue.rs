@@ -1,4 +1,4 @@
-//! The event queue of the simulation. The first page of the crate's documentation states the order of events.
+//! The event queue of the simulation. The documentation of the crate states the order of events.
 
 use crate::heap::{Keyed, QuadHeap};
 use crate::{Time, mix};
@@ -199,7 +199,6 @@ impl<E> EventQueue<E> {
         self.events.iter().flatten().chain(&self.soon)
     }
 
-    /// Returns the time of the next event, or `None` if the queue is empty.
     #[must_use]
     pub fn next_time(&self) -> Option<Time> {
         if !self.soon.is_empty() {
@@ -231,13 +230,11 @@ impl<E> EventQueue<E> {
         self.popped
     }
 
-    /// Returns the number of waiting events.
     #[must_use]
     pub fn len(&self) -> usize {
         self.heap.len() + self.near.len() + self.soon.len()
     }
 
-    /// Returns true if no event waits.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -262,14 +259,14 @@ mod tests {
     }
 
     #[test]
-    fn ties_come_in_order_of_scheduling() {
+    fn simultaneous_events_run_in_order_of_scheduling() {
         let mut queue = EventQueue::new();
         (0..100).for_each(|i| queue.schedule(Time(7), Phase::Work, i));
         assert_eq!(drain(&mut queue), (0..100).collect::<Vec<_>>());
     }
 
     #[test]
-    fn shuffled_ties_come_in_another_order_that_the_seed_decides() {
+    fn the_seed_determines_the_order_of_shuffled_simultaneous_events() {
         assert_eq!(order_of_ties(1), order_of_ties(1));
         assert_ne!(order_of_ties(1), order_of_ties(2));
         assert_ne!(order_of_ties(1), (0..100).collect::<Vec<_>>());
@@ -278,7 +275,7 @@ mod tests {
     /// Tests the shuffle with seeds that differ in one bit. Each of 64 seeds shuffles 100 events. A fair shuffle has
     /// 100 (1 - 0.99^64) = 47 different first events on average, with a standard deviation of 3.
     #[test]
-    fn seeds_that_are_nearly_the_same_shuffle_as_fairly_as_any() {
+    fn similar_seeds_shuffle_as_fairly_as_different_seeds() {
         for bits in [0, u64::MAX] {
             let firsts: BTreeSet<u32> = (0..64).map(|bit| order_of_ties(bits ^ 1 << bit)[0]).collect();
             assert!((35..60).contains(&firsts.len()), "{} come first", firsts.len());
@@ -323,7 +320,7 @@ mod tests {
         /// Tests the queue against the reference model. The delays include 0, because the queue stores events of the
         /// current instant separately.
         #[test]
-        fn what_events_schedule_comes_as_from_a_sorted_list(
+        fn events_scheduled_by_events_are_sorted_correctly(
             begun in proptest::collection::vec((0u64..4, 0u8..3), 1..60),
             follows in proptest::collection::vec(proptest::collection::vec((0u64..3, 0u8..3), 0..3), 60)
         ) {
@@ -359,7 +356,7 @@ mod tests {
         }
 
         #[test]
-        fn events_come_by_time_then_phase(times in proptest::collection::vec((0u64..20, 0u8..3), 0..200)) {
+        fn events_are_ordered_by_time_then_phase(times in proptest::collection::vec((0u64..20, 0u8..3), 0..200)) {
             let mut queue = EventQueue::new();
             queue.shuffle_ties(3);
             let phases = [Phase::Arrive, Phase::Work, Phase::Observe];

@@ -11,8 +11,8 @@ pub struct SplitMix64 {
 }
 
 impl SplitMix64 {
-    /// Makes the generator with a seed. All seeds give the same cyclic sequence, but each seed starts at another
-    /// position.
+    /// Makes the generator with a seed. All seeds give the same cyclic sequence of numbers, but each seed starts at a
+    /// different position of this sequence.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { state: seed }
@@ -74,13 +74,13 @@ mod tests {
     ];
 
     #[test]
-    fn the_sequence_is_the_published_one() {
+    fn the_random_sequence_is_the_published_sequence() {
         let mut random = SplitMix64::new(1_234_567);
         assert_eq!(PUBLISHED.map(|_| random.bits()), PUBLISHED);
     }
 
     #[test]
-    fn parts_of_the_range_come_from_the_same_bits() {
+    fn integers_and_fractions_come_from_the_published_bits() {
         let mut random = SplitMix64::new(1_234_567);
         assert_eq!(random.below(1_000), PUBLISHED[0] % 1_000);
         let unit = f64::from(random.unit());

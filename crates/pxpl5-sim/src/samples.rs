@@ -4,8 +4,9 @@
 use crate::statistics::Statistics;
 use std::ops::Deref;
 
-/// Largest number of samples of each measured quantity that a simulation keeps if it only needs statistics. The samples
-/// of one quantity take 512 KiB.
+/// Largest number of samples of each measured quantity that a simulation keeps if it only needs statistics.
+///
+/// The samples of one quantity take 512 KiB.
 ///
 /// Under Slats, one sample belongs to a field. Under any other pipeline, one sample belongs to a picture.
 pub const KEPT_SAMPLES: usize = 65_536;
@@ -37,7 +38,6 @@ impl Samples {
         Self { kept: Vec::new(), limit, moments: None }
     }
 
-    /// Adds a number to the collection.
     pub fn push(&mut self, value: f64) {
         if let Some(moments) = &mut self.moments {
             moments.push(value);
@@ -56,7 +56,6 @@ impl Samples {
         self.moments.as_ref().map_or(self.kept.len() as u64, |moments| moments.n)
     }
 
-    /// Returns the statistics of all added numbers.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         self.statistics_in(1.0)
@@ -98,7 +97,6 @@ impl IntoIterator for Samples {
     type Item = f64;
     type IntoIter = std::vec::IntoIter<f64>;
 
-    /// Iterates over the kept numbers.
     fn into_iter(self) -> Self::IntoIter {
         self.kept.into_iter()
     }
@@ -173,7 +171,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn up_to_the_limit_statistics_are_those_of_the_numbers_bit_for_bit() {
+    fn statistics_are_exact_up_to_the_limit_of_stored_numbers() {
         let values: Vec<f64> = (0..100).map(|i| f64::from(i * 7919 % 101) * 0.1).collect();
         let mut samples = Samples::keeping(100);
         samples.extend(values.iter().copied());
@@ -182,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn ten_million_equal_numbers_have_their_own_value_as_mean_and_no_deviation() {
+    fn ten_million_equal_numbers_have_an_exact_mean_and_zero_deviation() {
         let mut samples = Samples::keeping(16);
         (0..10_000_000).for_each(|_| samples.push(16.683_333_333));
         let Statistics { n, mean, sd, min, max } = samples.statistics();
@@ -192,7 +190,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn beyond_the_limit_they_differ_in_the_last_digits_at_most(
+        fn beyond_the_limit_statistics_differ_only_in_the_last_digits(
             values in proptest::collection::vec(0.0f64..200.0, 3..400), limit in 0usize..300,
         ) {
             let mut samples = Samples::keeping(limit);

@@ -1,5 +1,3 @@
-//! Mean and spread of a list of numbers.
-
 use serde::ser::SerializeStruct;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -9,18 +7,14 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// null.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Statistics {
-    /// Count of numbers in the list.
     pub n: u64,
-    /// Mean of the list: the sum of the numbers divided by their count. NaN for an empty list.
     #[serde(deserialize_with = "number_or_nan")]
     pub mean: f64,
     /// Sample standard deviation, with n - 1 as divisor. NaN for fewer than two numbers.
     #[serde(deserialize_with = "number_or_nan")]
     pub sd: f64,
-    /// Smallest number of the list. NaN for an empty list.
     #[serde(deserialize_with = "number_or_nan")]
     pub min: f64,
-    /// Largest number of the list. NaN for an empty list.
     #[serde(deserialize_with = "number_or_nan")]
     pub max: f64,
 }
@@ -56,8 +50,8 @@ impl Serialize for Statistics {
 impl Statistics {
     /// Returns the statistics in the form for reports and tables, without effects of rounding.
     ///
-    /// If the numbers differ by at most a picosecond, the deviation becomes 0. The mean lies between the minimum and
-    /// the maximum.
+    /// If the numbers differ by at most a picosecond, the deviation becomes 0. The mean is limited to the range from
+    /// the minimum to the maximum.
     #[must_use]
     pub fn told(self) -> Self {
         if self.n == 0 {
@@ -99,10 +93,8 @@ impl Statistics {
 /// Statistics together with the definition of their numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DefinedStatistics {
-    /// Statistics of the numbers that `definition` describes.
     #[serde(flatten)]
     pub statistics: Statistics,
-    /// Definition of the numbers, in a sentence.
     pub definition: String,
 }
 
@@ -111,14 +103,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn statistics_of_a_known_sample() {
+    fn statistics_of_a_known_sample_are_exact() {
         let s = Statistics::of([2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0].into_iter());
         assert_eq!((s.n, s.mean, s.min, s.max), (8, 5.0, 2.0, 9.0));
         assert!((s.sd - (32.0f64 / 7.0).sqrt()).abs() < 1e-12);
     }
 
     #[test]
-    fn of_nothing_there_is_no_number() {
+    fn an_empty_sample_has_no_statistics() {
         let Statistics { n, mean, sd, min, max } = Statistics::of(std::iter::empty());
         assert_eq!(n, 0);
         assert!([mean, sd, min, max].iter().all(|number| number.is_nan()));
@@ -127,7 +119,7 @@ mod tests {
     /// Tests equal numbers, whose deviation must be exactly 0. With rounding errors, three times 0.1 would have the
     /// deviation 1.7e-17.
     #[test]
-    fn what_does_not_vary_is_told_without_deviation() {
+    fn a_constant_is_printed_without_deviation() {
         for values in [[0.1; 3], [30.949_033_339, 30.949_033_340, 30.949_033_340]] {
             let all = Statistics::of(values.into_iter());
             let told = all.told();

@@ -16,7 +16,6 @@ pub struct Time(pub u64);
 pub struct Span(pub u64);
 
 impl Time {
-    /// The start of simulated time.
     pub const ZERO: Self = Self(0);
 
     /// The end of simulated time (213 days), which no simulation reaches.
@@ -33,14 +32,12 @@ impl Time {
 impl Span {
     pub const ZERO: Self = Self(0);
 
-    /// Makes a duration of `ns` nanoseconds.
     #[must_use]
     #[inline]
     pub const fn from_ns(ns: u64) -> Self {
         Self(ns.saturating_mul(1_000))
     }
 
-    /// Makes a duration of `us` microseconds.
     #[must_use]
     #[inline]
     pub const fn from_us(us: u64) -> Self {
@@ -147,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn spans_are_counted_as_whole_numbers_are() {
+    fn spans_follow_integer_arithmetic() {
         assert_eq!((Time(17) - Time(5), Span(17) - Span(5), Span(17) / 5), (Span(12), Span(12), Span(3)));
         assert_eq!([Span(1), Span(20), Span(300)].into_iter().sum::<Span>(), Span(321));
         let mut span = Span(17);
@@ -156,14 +153,14 @@ mod tests {
     }
 
     #[test]
-    fn a_field_is_told_in_milliseconds_and_printed_in_microseconds() {
+    fn a_field_converts_to_milliseconds_and_prints_in_microseconds() {
         let field = Span(1_001_000_000_000_000 / 60_000);
         assert!((field.as_ms() - 1_001.0 / 60.0).abs() < 1e-9, "{}", field.as_ms());
         assert_eq!(field.to_string(), "16683.333333 us");
     }
 
     #[test]
-    fn nothing_is_later_than_the_end_of_time_or_earlier_for_being_so_late() {
+    fn times_saturate_at_the_end_of_time() {
         let late = Time(u64::MAX - 1);
         assert_eq!(late + Span(2), Time::END);
         assert_eq!((Span(u64::MAX) + Span(1), Span(1 << 40) * (1 << 40)), (Span(u64::MAX), Span(u64::MAX)));

@@ -21,8 +21,9 @@ pub const fn mix(value: u64) -> u64 {
     c ^ (c >> 31)
 }
 
-/// The sum of the hashes of all records. A record has the time of an event and numbers that describe the event.
+/// The hash of a run: the sum of the hashes of all its records.
 ///
+/// A record has the time of an event and numbers that describe the event.
 /// The sum depends on every time and every number. The sum does not depend on the order of simultaneous events, because
 /// this order has no meaning.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -40,7 +41,6 @@ impl TraceHash {
 impl FromStr for TraceHash {
     type Err = ParseIntError;
 
-    /// Parses a hash from the 16 hexadecimal digits that `Display` writes.
     fn from_str(text: &str) -> Result<Self, ParseIntError> {
         u64::from_str_radix(text, 16).map(Self)
     }
@@ -63,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn order_does_not_matter_but_time_fact_and_number_do() {
+    fn the_hash_depends_on_time_fact_and_number_but_not_on_order() {
         let base = hash(&[(1, &[2, 3]), (1, &[4])]);
         assert_eq!(base, hash(&[(1, &[4]), (1, &[2, 3])]));
         assert_ne!(base, hash(&[(1, &[3, 2]), (1, &[4])]));
@@ -74,7 +74,7 @@ mod tests {
     /// Tests a record whose only number equals its time. The hash mixes both, and their exclusive or is 0. The result
     /// is the first output of SplitMix64 for the seed 0 (Vigna's reference program).
     #[test]
-    fn a_fact_that_is_its_own_time_leaves_the_hash_of_zero() {
+    fn a_record_whose_number_equals_its_time_has_the_published_hash_of_zero() {
         for both in [0, 1, 1_234_567, u64::MAX] {
             assert_eq!(hash(&[(both, &[both])]), TraceHash(0xE220_A839_7B1D_CDAF));
         }

@@ -15,7 +15,7 @@ parameter_table! {
 }
 
 #[test]
-fn a_parameter_is_reached_by_name_and_an_unknown_name_is_answered_with_the_nearest() {
+fn a_parameter_is_found_by_name_and_an_unknown_name_gives_the_nearest_name() {
     let mut table = Table::PAPERS;
     table.set("send_ns", Value::Whole(10_000)).expect("known");
     table.set("noise", Value::Real(0.5)).expect("known");
@@ -26,7 +26,7 @@ fn a_parameter_is_reached_by_name_and_an_unknown_name_is_answered_with_the_neare
 }
 
 #[test]
-fn whole_numbers_stay_exact_and_take_no_fraction() {
+fn integers_stay_exact_and_accept_no_fraction() {
     let mut table = Table::PAPERS;
     table.set("word_ns", Value::Whole(u64::MAX)).expect("known");
     assert_eq!(table.get("word_ns"), Ok(Value::Whole(u64::MAX)));
@@ -36,7 +36,7 @@ fn whole_numbers_stay_exact_and_take_no_fraction() {
 }
 
 #[test]
-fn a_value_out_of_its_range_is_listed_and_within_its_limits_accepted() {
+fn a_value_within_its_limits_is_accepted_and_listed_if_out_of_its_range() {
     let table = Table { word_ns: 25, ..Table::PAPERS };
     let names: Vec<_> = table.out_of_range().iter().map(|entry| entry.info.name).collect();
     assert_eq!(names, ["word_ns"]);
@@ -44,21 +44,21 @@ fn a_value_out_of_its_range_is_listed_and_within_its_limits_accepted() {
 }
 
 #[test]
-fn the_limits_are_taken_and_one_more_is_refused() {
+fn a_parameter_at_its_limits_is_accepted_and_a_parameter_one_beyond_is_refused() {
     for (word_ns, is_possible) in [(0, false), (1, true), (1_000_000, true), (1_000_001, false)] {
         assert_eq!(Table { word_ns, ..Table::PAPERS }.check().is_ok(), is_possible, "{word_ns}");
     }
 }
 
 #[test]
-fn without_limits_of_its_own_a_number_has_those_of_its_range() {
+fn a_parameter_without_limits_is_limited_to_its_range() {
     for (send_ns, is_possible) in [(9_999, false), (10_000, true), (25_000, true), (25_001, false)] {
         assert_eq!(Table { send_ns, ..Table::PAPERS }.check().is_ok(), is_possible, "{send_ns}");
     }
 }
 
 #[test]
-fn a_refusal_says_what_was_expected_and_found() {
+fn an_error_states_the_expected_and_found_values() {
     let error = Table { noise: f64::NAN, ..Table::PAPERS }.check().expect_err("NaN is in no range");
     assert_eq!(error.to_string(), "noise must be 0 to 1000, found NaN");
     assert_eq!((error.kind, &*error.name), (SettingErrorKind::Limits, "noise"));
@@ -81,12 +81,12 @@ fn tables_of_different_types_are_listed_together() {
 }
 
 #[test]
-fn tables_are_equal_when_all_their_numbers_are() {
+fn two_tables_are_equal_if_all_their_numbers_are_equal() {
     assert_eq!(Table::PAPERS, Table::PAPERS);
     assert_ne!(Table { noise: 2.6, ..Table::PAPERS }, Table::PAPERS);
 }
 
 #[test]
-fn every_preset_lies_in_its_range() {
+fn every_preset_is_in_range() {
     assert_eq!(Table::PAPERS.out_of_range(), []);
 }

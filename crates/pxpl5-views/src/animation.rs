@@ -35,8 +35,8 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// Returns [`PictureError`] if the picture has another size, or if the animation already has all announced
-    /// pictures.
+    /// Returns [`PictureError`] if the picture's size differs from the animation's size, or if the animation already
+    /// has all announced pictures.
     pub fn add(&mut self, picture: &RgbImage) -> Result<(), PictureError> {
         Ok(self.writer.write_image_data(picture.as_raw())?)
     }
@@ -58,7 +58,7 @@ mod tests {
     use std::io::Cursor;
 
     #[test]
-    fn every_picture_comes_back_in_its_order() {
+    fn every_picture_of_an_animation_is_read_back_in_order() {
         let mut bytes = Vec::new();
         let mut animation = Animation::begin(&mut bytes, (2, 1), 3, (1, 25), &[]).expect("valid");
         for level in [10, 20, 30] {

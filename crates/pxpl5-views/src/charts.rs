@@ -37,7 +37,7 @@ fn ticks(greatest: f64) -> Vec<f64> {
     values.take_while(|value| *value <= greatest).collect()
 }
 
-/// Removes the rounding errors in the last digits of a mark's value, for example of 3 x 0.2 = 0.6000000000000001.
+/// Removes the rounding errors in the last digits of a mark's value. For example, 3 x 0.2 gives 0.6000000000000001.
 fn readable(value: f64) -> f64 {
     (value * 1e9).round() / 1e9
 }

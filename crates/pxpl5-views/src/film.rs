@@ -73,7 +73,6 @@ impl Film {
         self.each_of(&mut machine, &surfaces, |period, picture| Ok(take(period, picture)))
     }
 
-    /// Checks the number of periods, and builds the machine that runs the experiment.
     fn begin(&self) -> Result<Machine, PictureError> {
         if !(FILM_PERIODS.0..=FILM_PERIODS.1).contains(&self.periods) {
             let (low, high) = FILM_PERIODS;
@@ -108,8 +107,8 @@ impl Film {
         Ok(())
     }
 
-    /// Runs the experiment for the periods of the film without pixels, to find the shift that the display applies to
-    /// the picture in each period. Returns `None` if the display shifts no pictures.
+    /// Runs the experiment for the periods of the film without pixels. The run gives the shift that the display applies
+    /// to the picture in each period. Returns `None` if the display shifts no pictures.
     fn without_pixels(&self) -> Result<Option<Outcome>, PictureError> {
         if self.experiment.raster() == Raster::Plain {
             return Ok(None);

@@ -1,5 +1,3 @@
-//! Duration of a film's frame.
-
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Display;
@@ -28,7 +26,7 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// Returns the distance from another fraction, multiplied by both denominators so that the result is an integer.
+    /// Returns the difference to another fraction, multiplied by both denominators so that the result is an integer.
     const fn distance(self, other: Self) -> u128 {
         (self.over * other.under).abs_diff(other.over * self.under)
     }
@@ -60,7 +58,8 @@ fn nearest_fraction(exact: Fraction) -> Fraction {
         let times = rest.over / rest.under;
         let fits = last.fits(before);
         if times > fits {
-            // The next fraction of the chain is too large, so the best one lies between it and the last.
+            // The next fraction of the chain is too large, so the best fraction lies between the next and the last
+            // fraction.
             let between = last.followed(fits, before);
             let last_is_nearer = exact.distance(last) * between.under <= exact.distance(between) * last.under;
             return if last_is_nearer && last.under > 0 { last } else { between };
@@ -86,24 +85,24 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_takes_an_ntsc_field() {
+    fn a_film_frame_of_the_ntsc_display_takes_one_field() {
         assert_eq!(seconds(&FrameBufferConfig::NTSC), (1_001, 60_000));
     }
 
     /// Tests the time of a field with half of 625 lines. A line takes 4004/63 us, so the field takes 143/7200 s.
     #[test]
-    fn a_frame_of_625_lines_takes_longer_in_the_same_proportion() {
+    fn a_film_frame_of_a_display_with_625_lines_takes_the_time_of_its_field() {
         let video = VideoTiming { frame_lines: 625, ..FrameBufferConfig::NTSC.video };
         assert_eq!(seconds(&FrameBufferConfig { video, ..FrameBufferConfig::NTSC }), (143, 7_200));
     }
 
     #[test]
-    fn a_frame_of_the_high_resolution_display_takes_the_72nd_part_of_a_second() {
+    fn a_frame_of_the_high_resolution_display_takes_a_72nd_of_a_second() {
         assert_eq!(seconds(&HiResConfig::PAPERS), (1, 72));
     }
 
     #[test]
-    fn a_fraction_that_fits_is_found_exactly() {
+    fn an_exact_fraction_is_found() {
         for (over, under) in [(1, 1), (65_535, 65_534), (1, 65_535), (65_535, 1), (355, 113), (2, 3)] {
             let exact = Fraction { over, under };
             assert_eq!(nearest_fraction(Fraction { over: over * 1_000, under: under * 1_000 }), exact);
@@ -111,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn of_fractions_that_do_not_fit_no_neighbour_is_nearer() {
+    fn the_nearest_fraction_is_found() {
         for (over, under) in [(100_003, 100_019), (1, 1_000_003), (141_421_356, 100_000_000), (1_000_003, 70_001)] {
             let exact = Fraction { over, under };
             let found = nearest_fraction(exact);

@@ -21,7 +21,7 @@ impl Element {
         self
     }
 
-    /// Appends text to the content. Even with empty text, the element gets a closing tag.
+    /// Appends text to the content. Even an empty text gives the element a closing tag.
     pub(crate) fn text(mut self, text: impl Display) -> Self {
         self.content().push_str(&escape(&text.to_string()));
         self
@@ -90,29 +90,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn markup_in_a_title_is_text() {
+    fn markup_in_a_title_is_escaped() {
         assert_eq!(escape("a<b>&\"c\"\u{7}"), "a&lt;b&gt;&amp;&quot;c&quot;");
     }
 
     #[test]
-    fn lines_stay_lines_and_what_xml_forbids_is_left_out() {
+    fn line_breaks_are_kept_and_characters_forbidden_in_xml_are_removed() {
         assert_eq!(escape("one\r\n\ttwo\u{0}\u{85}\u{ffff}"), "one\n\ttwo");
     }
 
     #[test]
-    fn attributes_stand_in_the_order_in_which_they_are_given() {
+    fn attributes_keep_their_order() {
         let element = Element::new("rect").with("y", 2).with("x", 1);
         assert_eq!(element.to_string(), r#"<rect y="2" x="1"/>"#);
     }
 
     #[test]
-    fn an_attribute_cannot_be_left_by_a_quote() {
+    fn quotes_in_attributes_are_escaped() {
         let element = Element::new("a").with("b", r#"" onload="x"#);
         assert_eq!(element.to_string(), r#"<a b="&quot; onload=&quot;x"/>"#);
     }
 
     #[test]
-    fn elements_in_an_element_are_not_escaped_again_but_their_text_is() {
+    fn nested_elements_are_escaped_once() {
         let inner = Element::new("title").text("a & b");
         assert_eq!(Element::new("g").child(&inner).to_string(), "<g><title>a &amp; b</title></g>");
     }
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_feed_stands_where_it_was_put() {
+    fn line_feeds_between_elements_keep_their_place() {
         let mut element = Element::new("svg");
         element.end_line();
         element.add_line(&Element::new("rect"));

@@ -62,7 +62,7 @@ mod tests {
     use std::io::Cursor;
 
     #[test]
-    fn pixels_and_texts_come_back() {
+    fn the_pixels_and_texts_of_a_written_png_file_are_read_back() {
         let picture = RgbImage::from_fn(3, 2, |x, y| Rgb([x as u8, y as u8, 7]));
         let bytes = png_bytes(&picture, &[("scene", "M\u{fc}nster".to_owned())]).expect("it has pixels");
         let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().expect("PNG");

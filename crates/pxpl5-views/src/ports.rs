@@ -1,5 +1,5 @@
-//! Displays with more ports than surfaces, such as displays with several memories: their ports, and the pictures that
-//! each port showed.
+//! Displays with more ports than surfaces, such as displays with several memories. For each of their ports, this module
+//! finds the pictures that the port showed.
 
 use pxpl5_machine::Record;
 use pxpl5_run::SoFar;
@@ -49,7 +49,7 @@ fn has_more_ports(display: &dyn Display) -> bool {
 }
 
 /// Returns the pictures that a port has shown, in the order in which the pictures were begun. A port shows each picture
-/// from one swap to the next swap.
+/// from one swap to the port's next swap.
 pub(crate) fn shown(run: &SoFar<'_>, node: NodeId) -> Vec<ShownPicture> {
     let shown = run.record().shown_by(node);
     let ends = shown.iter().skip(1).map(|next| next.at).chain([run.end()]);

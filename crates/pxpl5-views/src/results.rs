@@ -3,8 +3,8 @@
 //!
 //! The origin of a file ([`origin`]) states how to reproduce the file. For CSV, the origin is in `report.json` and
 //! `experiment.toml` beside the file. For Parquet, the origin is in the key-value metadata (keys `pxpl5.machine` and so
-//! on). All times are whole picoseconds of simulated time, so nothing is rounded. [`columns`] returns the schema.
-//! [`SCHEMA`] has the schema's name and version.
+//! on). All times are whole picoseconds of simulated time, so nothing is rounded. [`columns`] returns the table's
+//! columns. [`SCHEMA`] has the name and version of this set of columns.
 //!
 //! [`csv_table`] writes every CSV file. [`quantities_csv`] returns the table of the measured quantities of an
 //! experiment.

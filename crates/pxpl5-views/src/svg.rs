@@ -36,7 +36,6 @@ impl Display for Units {
     }
 }
 
-/// A number that is printed with one decimal.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(crate) struct Tenths(pub(crate) f64);
 
@@ -50,7 +49,6 @@ pub(crate) fn document() -> Element {
     Element::new("svg").with("xmlns", "http://www.w3.org/2000/svg")
 }
 
-/// Returns a document as text that ends with a line feed.
 pub(crate) fn finished(document: &Element) -> String {
     format!("{document}\n")
 }
@@ -60,7 +58,7 @@ pub(crate) fn rectangle(class: &str, [x, y, width, height]: [Units; 4]) -> Eleme
     Element::new("rect").with("class", class).with("x", x).with("y", y).with("width", width).with("height", height)
 }
 
-/// Returns a straight line with a CSS class. The numbers are the coordinates of the two end points.
+/// Returns a straight line with a CSS class. The numbers are the coordinates of the line's two ends.
 pub(crate) fn segment(class: &str, [x1, y1, x2, y2]: [Units; 4]) -> Element {
     Element::new("path").with("class", class).with("d", format_args!("M{x1} {y1}L{x2} {y2}"))
 }
@@ -70,18 +68,18 @@ pub(crate) fn caption(class: &str, [x, y]: [Units; 2]) -> Element {
     Element::new("text").with("class", class).with("x", x).with("y", y)
 }
 
-/// Returns a line of a chart. `course` is the text of the SVG attribute `d`, which describes the path of the line.
+/// Returns a curve of a chart. `course` is the text of the SVG attribute `d`, which describes the path of the curve.
 pub(crate) fn line(course: impl Display, colour: &str) -> Element {
     Element::new("path").with("d", course).with("stroke", colour)
 }
 
-/// Returns an empty text element of a chart. `anchor` states which part of the text lies at the point (`x`, `y`):
-/// `middle` or `end`.
+/// Returns an empty text element of a chart at the point (`x`, `y`). `anchor` states which part of the text lies at
+/// this point: `middle` or `end`.
 pub(crate) fn anchored(x: impl Display, y: impl Display, anchor: &str) -> Element {
     Element::new("text").with("x", x).with("y", y).with("text-anchor", anchor)
 }
 
-/// Returns a tooltip. A browser shows the tooltip while the mouse is over the element that contains the tooltip.
+/// Returns a tooltip. A browser shows the tooltip while the mouse is over the element that contains it.
 pub(crate) fn hint(text: impl Display) -> Element {
     Element::new("title").text(text)
 }
@@ -111,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_document_is_a_line_of_text_at_least() {
+    fn an_empty_drawing_is_a_document_of_one_line() {
         assert_eq!(finished(&document()), "<svg xmlns=\"http://www.w3.org/2000/svg\"/>\n");
     }
 }

@@ -16,10 +16,10 @@
 //! Flow arrows lead from a picture's SEND through its stages to the first period that shows the picture. If the numbers
 //! of ports and surfaces of a display differ, ports and surfaces have separate groups.
 //!
-//! Time is simulated time. Chrome's JSON has microseconds with six decimals, which is exact. Perfetto's timestamps are
-//! nanoseconds, rounded down. Slices (events with a duration) of one track never overlap. A message may reach a port
-//! shortly before the previous message has left the port. The message is then drawn from the end of the previous
-//! message.
+//! Time is simulated time. Chrome's JSON has microseconds with six decimals, so times in picoseconds are exact.
+//! Perfetto's timestamps are nanoseconds, rounded down. Slices (events with a duration) of one track never overlap. A
+//! message may reach a port shortly before the previous message has left the port. The message is then drawn from the
+//! end of the previous message.
 //!
 //! Sources: the published `.proto` files of the Perfetto project (`TracePacket`, `TrackDescriptor`, `TrackEvent`) and
 //! the description of Chrome's trace event format. **Not written:** interned strings, clock snapshots.

@@ -15,11 +15,10 @@ pub(crate) struct Updates {
     received: Vec<Received>,
 }
 
-/// An update that has reached the graphics processor.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Received {
     at: Time,
-    /// Number of the SEND that carried the update.
+    /// Number of the SEND in which the host sent the update.
     update: PictureNumber,
 }
 
@@ -47,7 +46,7 @@ impl Updates {
     }
 }
 
-/// Returns true if the host samples the poses of pictures, instead of a graphics processor.
+/// Returns true if the host samples the poses of pictures. Otherwise a graphics processor samples them.
 fn host_samples(run: &SoFar<'_>) -> bool {
     let host = run.record().ports().host;
     run.observation().marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host)

@@ -54,13 +54,13 @@ fn a_timeline_counts_the_periods_of_its_display() {
 }
 
 #[test]
-fn what_a_file_is_made_again_from_names_the_display() {
+fn the_command_that_repeats_a_file_names_the_display() {
     let report = Report::of(&run(hires(40)));
     assert!(origin(&report).contains(&("display", "hires".to_owned())));
 }
 
 #[test]
-fn only_pictures_that_a_surface_receives_in_two_parts_have_halves() {
+fn only_a_picture_that_a_surface_receives_in_two_parts_has_a_bottom_half_in_the_timeline() {
     let split = Timeline::of(&slats(Slats::split()), &TimelineOptions::default());
     for row in ["left frame buffer", "right frame buffer"] {
         let bars = copies(&split, row);
@@ -74,7 +74,7 @@ fn only_pictures_that_a_surface_receives_in_two_parts_have_halves() {
 }
 
 #[test]
-fn each_eye_of_rendering_control_is_copied_whole() {
+fn rendering_control_copies_the_picture_of_each_eye_in_one_part() {
     let scene = builtin("full-screen:12").expect("built in");
     let outcome = run(Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(40));
     let timeline = Timeline::of(&outcome, &TimelineOptions::default());
@@ -115,7 +115,7 @@ fn a_film_has_the_size_and_the_rate_of_its_display() {
 }
 
 #[test]
-fn a_film_of_what_is_not_there_is_refused() {
+fn a_film_of_a_missing_surface_is_refused() {
     let film = Film::new(hires(10), PeriodNumber(6), 2, FilmSurfaces::One(SurfaceId(1)));
     let error = film.write(&[], Vec::new()).expect_err("there is one surface");
     assert_eq!(error.to_string(), "a film of surface 1: the display has 1, counted from 0");

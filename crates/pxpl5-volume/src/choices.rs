@@ -9,14 +9,16 @@ pub enum ClipKind {
     Prism,
     /// Clip by two user clip planes in each of two drawing passes.
     UserPlanes,
-    /// Clip by both boundary planes in the fragment program, which gives exactly the volume of the slice.
+    /// The fragment program clips by the two boundary planes of the slice. The result is exactly the volume of the
+    /// slice.
     Exact,
-    /// Clip by two planes whose distance grows with the radius: a fixed number of pixels at the axis, and the exact
-    /// thickness of the slice at the rim. Each side of the axis has its own drawing pass.
+    /// Clip by two planes whose distance grows with the radius. The distance is a fixed number of pixels at the axis,
+    /// and the exact thickness of the slice at the rim. Each side of the axis has its own drawing pass.
     Tapered,
-    /// Clip by both boundary planes of the slice, moved outwards.
+    /// Clip by the two boundary planes of the slice, which are moved outwards.
     Parallel,
-    /// Clip by the sign of a sum: the product of the distances from both boundary planes, plus a bias.
+    /// Clip by the sign of a sum: the product of a point's distances from the two boundary planes of the slice, plus a
+    /// bias.
     Hyperbolic,
 }
 
@@ -51,9 +53,7 @@ pub enum RendererKind {
     PixelPlanes,
 }
 
-/// A choice that has a name in options, files and reports.
 pub(crate) trait Named: Copy + PartialEq + 'static {
-    /// Names, each with the choice that it stands for.
     const NAMES: &'static [(&'static str, Self)];
 
     fn name(self) -> &'static str {

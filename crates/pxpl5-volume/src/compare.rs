@@ -188,7 +188,7 @@ impl Variant {
     }
 
     fn row(&self, volume: &Volume) -> VariantRow {
-        // Most columns come from the report, so that both always agree.
+        // Most columns come from the report, so that the table and the report always agree.
         let report = volume.report();
         let stats = &volume.frame.stats;
         let time = volume.time();

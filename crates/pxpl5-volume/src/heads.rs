@@ -42,7 +42,7 @@ pub const POINTS: usize = 512;
 
 const PS_PER_S: f64 = 1e12;
 
-/// Errors of both displays at one instant, over all points and both eyes.
+/// Errors of the volume and of the head-mounted display at one instant, over all points and both eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HeadSample {
     /// Time since the motion began, seconds.
@@ -79,11 +79,12 @@ pub struct HeadSample {
 pub struct HeadStudy {
     /// Name and version of the JSON layout of this data.
     pub schema: &'static str,
-    /// Name of the scene that both displays show.
+    /// Name of the scene that the volume and the head-mounted display show.
     pub scene: String,
     /// Latency of the head-mounted display, milliseconds.
     pub latency_ms: f64,
-    /// Origin of the latency: "the volume's" if both displays have the same latency, or "given" if the user chose it.
+    /// Origin of the latency: "the volume's" if the head-mounted display has the latency of the volume, or "given" if
+    /// the user chose the latency.
     pub latency_is: &'static str,
     /// Latency with which the volume shows changes of the scene, in milliseconds, or `None` if no GPU drew the volume.
     pub volume_latency_ms: Option<f64>,
@@ -137,7 +138,7 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the latency is out of range (0 to 10,000 ms) or missing.
+    /// Returns a [`SettingError`] if the latency is out of range (0 to 10,000 ms), or if it is missing.
     pub fn new(volume: &'a Volume, motion: &'a dyn Motion, latency_ms: Option<f64>) -> Result<Self, SettingError> {
         let wrong = |found: String| {
             let expected = "0 to 10000 ms, because no pipeline runs here that would give a latency";
@@ -195,8 +196,6 @@ impl<'a> HeadComparison<'a> {
         })
     }
 
-    /// Returns the evenly spaced instants of a study. The first instant is one latency after the beginning of the
-    /// motion.
     fn instants(&self, question: &HeadStudyConfig) -> Result<Vec<u64>, SettingError> {
         let HeadStudyConfig { seconds, instants, .. } = *question;
         let wrong = |what, expected: &str, found: String| SettingError::value(what, expected, found);
@@ -305,7 +304,7 @@ impl<'a> HeadComparison<'a> {
 
     fn head_mounted(&self, time_ps: u64, side: f64, picture_px: u32) -> Result<RgbImage, SettingError> {
         let then = time_ps - self.latency_ps;
-        // Draw the scene for the eye of one latency ago.
+        // Draw the scene for the position of the eye one latency before.
         let look = self.look(then, side, picture_px)?;
         let camera = look.camera;
         let azimuth = camera.azimuth_deg.to_radians();
@@ -392,7 +391,6 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// An accumulator for the mean and the maximum of errors.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     sum: f64,

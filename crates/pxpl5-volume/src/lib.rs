@@ -17,8 +17,8 @@
 //!
 //! # Beyond the paper
 //!
-//! Connected coverage, mirrored strobes and the renderers of Pixel-Planes 5 are not in the paper. Every report lists
-//! the features beyond the paper that it used ([`VolumeReport::beyond_paper`]).
+//! Connected coverage, mirrored strobes and the renderers of Pixel-Planes 5 are not in the SpatialGL paper. Every
+//! report lists the features beyond the paper that its volume uses ([`VolumeReport::beyond_paper`]).
 
 #![warn(missing_docs)]
 
@@ -45,7 +45,6 @@ pub use spatialgl;
 pub use spatialgl::perspecta;
 pub use workers::Counted;
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -1,4 +1,4 @@
-//! All numbers of an experiment, except the numbers of the display and of the time model.
+//! All numbers in the settings of a volume, except the numbers of the display and of the time model.
 
 pxpl5_sim::parameters::parameter_table! {
     /// Offset and bias of the methods that clip to a slice, and the precision of their planes.
@@ -76,7 +76,7 @@ pxpl5_sim::parameters::parameter_table! {
         /// Distance from the head to the middle of the volume at the beginning of a motion.
         distance_mm: f64 = 508.0, "mm", Assumed, 300.0..=2000.0 in 1.0..=1000000.0, "four radii, the same as other views";
         /// Distance between both eyes.
-        eye_separation_mm: f64 = 62.0, "mm", Assumed, 55.0..=70.0 in 0.0..=1000.0, "the mean of human heads";
+        eye_separation_mm: f64 = 64.0, "mm", Assumed, 54.0..=74.0 in 0.0..=1000.0, "mean of adults, as hmd.eye_distance";
         /// Width of the head-mounted display's picture, whose height is three quarters of the width.
         hmd_width_px: 640, "px", Published, 640..=640 in 8..=16000, "TR94: 640 x 480";
         /// Viewing angle between the left and the right edge of the head-mounted display's picture.

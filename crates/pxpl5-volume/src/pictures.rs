@@ -20,7 +20,7 @@ const BELOW_WHITE: f64 = 0.98;
 /// Number of batches of slices side by side in the picture of all tiles ([`tile_map`]).
 const MAP_COLUMNS: u32 = 11;
 
-/// The position of an eye before a volume, and the options of its view.
+/// The position of an eye in front of a volume, and the options of its view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// Position of the eye and size of its picture.
@@ -83,7 +83,7 @@ impl Look {
         Ok(light.picture(exposure.unwrap_or_else(|| light.exposure(BELOW_WHITE))))
     }
 
-    /// Returns the exposure at which most of the lit pixels stay below white.
+    /// Returns the exposure at which 98 % of the lit pixels stay below white.
     ///
     /// # Errors
     ///
@@ -92,7 +92,7 @@ impl Look {
         Ok(self.light(volume, workers)?.exposure(BELOW_WHITE))
     }
 
-    /// Returns pictures of the volume from viewpoints on a circle around the volume, all with one exposure.
+    /// Returns pictures of the volume from viewpoints on a circle around the volume, all with the same exposure.
     pub fn film<'a>(
         &self,
         volume: &'a Volume,
@@ -172,8 +172,8 @@ pub fn before_and_after(volume: &Volume, slice: u32) -> RgbImage {
     beside(&[coloured(volume, slice), halftoned(volume, slice)])
 }
 
-/// Returns a picture of the tiles of every batch of slices, row by row. A tile is a square of 3 x 3 pixels. Tiles with
-/// lit pixels are white. Returns `None` if the volume was drawn without tiles.
+/// Returns a picture of the tiles of every batch of slices, row by row. Each tile is shown as a square of 3 x 3 pixels.
+/// Tiles with lit pixels are white. Returns `None` if the volume was drawn without tiles.
 #[must_use]
 pub fn tile_map(volume: &Volume) -> Option<RgbImage> {
     let tile = u32::try_from(volume.settings.tile.size).ok().filter(|tile| *tile > 0)?;

@@ -133,7 +133,7 @@ impl PixelPlanesReport {
     }
 }
 
-/// The numbers of the display.
+/// Size, number of slices and rotation of the display.
 #[derive(Clone, Debug, Serialize)]
 pub struct DisplayReport {
     /// Name of the display in options and files.
@@ -184,7 +184,7 @@ pub struct ModelTimes {
 /// A setting whose number differs from the SpatialGL paper's value.
 #[derive(Clone, Debug, Serialize)]
 pub struct Override {
-    /// Path of the number, as after `--set`.
+    /// Path of the setting, as written after `--set`.
     pub path: String,
     /// Value of the setting with which the volume was drawn.
     pub value: Value,
@@ -284,7 +284,6 @@ impl Volume {
     }
 }
 
-/// Returns the percentage of the bits in unpacked pixels that the projector does not use.
 fn waste_percent(bytes_unpacked: u64, settings: &VolumeSettings) -> f64 {
     let display = &settings.display;
     let slices = if settings.strobes == spatialgl::Strobes::Mirror { display.slices / 2 } else { display.slices };

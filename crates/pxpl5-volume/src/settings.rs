@@ -17,7 +17,7 @@ use spatialgl::{
 pub struct VolumeSettings {
     /// Number of slices, width, height and spin of the display.
     pub display: PerspectaConfig,
-    /// Angle around the axis of the first slice of a turn.
+    /// Angle of the first slice of a turn, measured around the axis.
     pub sweep: SweepNumbers,
     /// Direction in which the screen turns.
     pub rotation: Rotation,
@@ -146,7 +146,7 @@ impl VolumeSettings {
         self.display.width as f64 / 2.0
     }
 
-    /// Returns the display as the rendering pipeline needs it.
+    /// Returns the display in the form that the rendering pipeline needs.
     ///
     /// # Errors
     ///

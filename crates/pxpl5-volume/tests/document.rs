@@ -27,16 +27,16 @@ fn every_figure_of_the_specification_has_a_row() {
 /// Checks that all figures without a scene agree with the paper. Figures measured on a scene must be listed as missed
 /// if they do not agree.
 #[test]
-fn every_row_without_a_scene_is_met() {
+fn every_figure_that_needs_no_scene_is_met() {
     for row in FIGURES.figures.iter().filter(|row| row.scene.is_none()) {
         assert!(row.is_met, "{row:?}");
     }
 }
 
-/// Checks the numbers that no run can change: inputs from section 2 of the paper's list, and results of plain
-/// arithmetic. They have no verdict.
+/// Checks the numbers that no run can change: inputs that the paper states, and results of plain arithmetic. They have
+/// no verdict.
 #[test]
-fn a_number_that_no_run_can_change_is_a_definition_and_has_no_verdict() {
+fn a_number_independent_of_runs_is_a_definition_without_verdict() {
     let inputs = ["P1", "P6", "P13", "P16", "P18", "P20", "D12"];
     for id in inputs {
         assert!(FIGURES.definitions.iter().any(|row| row.id == id), "{id} is a definition");
@@ -50,7 +50,7 @@ fn a_number_that_no_run_can_change_is_a_definition_and_has_no_verdict() {
 }
 
 #[test]
-fn what_the_paper_states_without_numbers_is_shown() {
+fn statements_of_the_paper_without_numbers_are_listed() {
     assert!(FIGURES.shown.len() >= 7);
     for shown in &FIGURES.shown {
         assert!(shown.holds, "{shown:?}");
@@ -75,7 +75,7 @@ fn the_document_is_fresh() {
 /// Checks the drawings of figures 4 to 12. The enlarged volumes have more pixels in the colour of slice 1 than the
 /// exact one. The tapered volume has fewer at the rim.
 #[test]
-fn the_drawings_show_what_their_captions_say() {
+fn the_drawings_agree_with_their_captions() {
     let drawn = drawings(&builtin("mig").expect("built in"), &Threads::all()).expect("valid");
     let numbers: Vec<u32> = drawn.iter().map(|drawing| drawing.number).collect();
     assert_eq!(numbers, [4, 5, 6, 7, 8, 9, 10, 11, 12]);

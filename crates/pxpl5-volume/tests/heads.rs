@@ -1,4 +1,5 @@
-//! Tests of a moving head before the volume: errors of a late head-mounted display, and errors of voxels.
+//! Tests of a head that moves in front of the volume: errors of a head-mounted display with latency, and errors of
+//! voxels.
 
 use pxpl5_scene::builtin;
 use pxpl5_sim::parameters::PathSettings;
@@ -25,7 +26,7 @@ fn study(motion: &dyn Motion, question: &HeadStudyConfig) -> pxpl5_volume::heads
     before.study(question).expect("valid")
 }
 
-/// Checks that a still head sees no error on the head-mounted display, and still sees errors of the voxels.
+/// Checks that the head-mounted display has no error for a still head, and that the voxels still have errors.
 #[test]
 fn a_still_head_has_no_error_of_latency() {
     let study = study(&Still(Pose::IDENTITY), &QUESTION);
@@ -42,7 +43,7 @@ fn a_still_head_has_no_error_of_latency() {
 /// atan(20/508) = 2.25 degrees for the middle. The mean over points around the middle is about the same. The errors
 /// grow with the latency.
 #[test]
-fn a_sliding_head_is_off_by_its_way_over_the_distance() {
+fn the_error_of_a_sliding_head_is_its_movement_over_the_distance() {
     let slide = Slide::right_at(0.4);
     let short = HeadStudyConfig { seconds: 0.01, ..QUESTION };
     let first = study(&slide, &short).samples[0];
@@ -57,7 +58,7 @@ fn a_sliding_head_is_off_by_its_way_over_the_distance() {
 /// Checks a head that turns by 60 degrees a second, with a latency of 50 ms. The error is exactly 3 degrees, seen from
 /// the head. The eyes are 31 mm beside the axis of the turn.
 #[test]
-fn a_turning_head_is_off_by_its_rate_times_the_latency() {
+fn the_error_of_a_rotating_head_is_its_rate_times_the_latency() {
     let first = study(&Pan::at(60.0), &HeadStudyConfig { seconds: 0.01, ..QUESTION }).samples[0];
     let found = first.hmd_mean_deg.expect("ahead");
     assert!((found - 3.0).abs() < 0.2, "{found}");
@@ -67,7 +68,7 @@ fn a_turning_head_is_off_by_its_rate_times_the_latency() {
 /// edges. Across the plane it is at most half the distance to the next slice. At the rim this is 64 px x sin(5 degrees)
 /// = 5.58 px, because 36 slices are 10 degrees apart. One pixel is 254/128 mm.
 #[test]
-fn voxels_are_off_by_their_own_size_and_no_more() {
+fn the_distance_of_a_point_from_its_voxel_is_at_most_the_size_of_a_voxel() {
     let study = study(&Still(Pose::IDENTITY), &QUESTION);
     let pixel_mm = 254.0 / 128.0;
     assert!((study.voxel_mm - pixel_mm).abs() < 1e-12);
@@ -77,13 +78,13 @@ fn voxels_are_off_by_their_own_size_and_no_more() {
     let most_deg = (most_mm.hypot(pixel_mm / 2.0) / least_distance_mm).atan().to_degrees();
     assert!(sample.voxel_worst_deg <= most_deg, "{} > {most_deg}", sample.voxel_worst_deg);
     assert!(sample.voxel_mean_mm > 0.2 * pixel_mm, "{sample:?}");
-    // A cell of 8 x 8 pixels, from 508 mm.
+    // A cell of 8 x 8 pixels, seen from a distance of 508 mm.
     let cell = 2.0 * (4.0 * pixel_mm / 508.0).atan().to_degrees();
     assert!((sample.dither_cell_deg - cell).abs() < 1e-9);
 }
 
 #[test]
-fn both_eyes_see_both_displays() {
+fn the_picture_of_each_eye_shows_both_displays() {
     let slide = Slide::right_at(0.4);
     let before = HeadComparison::new(&VOLUME, &slide, Some(50.0)).expect("valid");
     let at = before.film_instants(&QUESTION, 3).expect("valid")[2];
@@ -100,7 +101,7 @@ fn both_eyes_see_both_displays() {
 }
 
 #[test]
-fn a_volume_is_as_late_as_its_model_and_its_turn() {
+fn the_latency_of_a_volume_is_the_drawing_time_plus_three_quarters_of_a_rotation() {
     let late = VOLUME.latency_ms().expect("a GPU drew it");
     assert!((late - 1e3 / VOLUME.time().serial_hz() - 50.0).abs() < 1e-9, "three quarters of a turn of 66.7 ms");
     let study = study(&Still(Pose::IDENTITY), &HeadStudyConfig { latency_ms: None, ..QUESTION });
@@ -109,7 +110,7 @@ fn a_volume_is_as_late_as_its_model_and_its_turn() {
 }
 
 #[test]
-fn what_cannot_be_asked_is_refused() {
+fn impossible_settings_are_refused() {
     let still = Still(Pose::IDENTITY);
     for latency in [-1.0, f64::NAN, 1e9] {
         let error = HeadComparison::new(&VOLUME, &still, Some(latency)).expect_err("refused").to_string();

@@ -107,7 +107,7 @@ fn command(corners: &[Corner; 3]) -> SliceTriangle {
 /// Checks that the arrays draw the same pixels as the host wherever the hyperbola exceeds its rounding error. Colours
 /// differ by at most one level. Both arrays agree everywhere.
 #[test]
-fn both_pixel_arrays_draw_what_the_host_draws() {
+fn both_pixel_arrays_draw_the_same_pixels_as_the_host() {
     let lanes = PixelPlanesRenderer::new(&settings(), ArrayKind::Lanes).expect("supported");
     let serial = PixelPlanesRenderer::new(&settings(), ArrayKind::BitSerial).expect("supported");
     let rounding = SliceTriangle::clip_rounding_px2(SIZE) * f64::from(1 << 26);
@@ -140,7 +140,7 @@ fn both_pixel_arrays_draw_what_the_host_draws() {
 /// Checks the clocks of the 36 regions of a slice: each is selected (6 clocks), cleared (62) and halftoned (72). A
 /// triangle in one region takes 238 more.
 #[test]
-fn clocks_and_words_are_those_of_the_programs() {
+fn the_clocks_and_words_of_a_slice_follow_from_its_programs() {
     let renderer = PixelPlanesRenderer::new(&settings(), ArrayKind::Lanes).expect("supported");
     let corners = [([6400, 6400], 0.0, [200; 3]), ([6560, 6400], 0.0, [200; 3]), ([6400, 6560], 0.0, [200; 3])];
     drawn(&renderer, &recording(&corners));
@@ -148,16 +148,16 @@ fn clocks_and_words_are_those_of_the_programs() {
     assert_eq!((work.regions, work.triangles, work.commands, work.left_out), (36, 1, 1, 0));
     assert_eq!(work.clocks, 36 * (6 + 62 + 72) + 238);
     assert_eq!(work.command_words, 36 * (2 + 5 + 12) + 38);
-    // Clearing all regions of 198 slices: 11.05 ms of one renderer.
+    // Clearing all regions of 198 slices takes one renderer 11.05 ms.
     let layout = Layout::rendering_control_phong();
     let clears = 198 * 36 * CommandKind::Clear.clocks(&layout).expect("every layout");
     assert!((f64::from(clears) / 40e6 * 1e3 - 11.05).abs() < 0.005);
 }
 
-/// Checks the specification's numbers. A tile takes 7.2 us on the ring. 10 % of the tiles of 198 slices take 82 ms of
-/// one channel, or 10.3 ms of eight. Renderers and processors divide their work.
+/// Checks numbers that were computed by hand. A tile takes 7.2 us on the ring. 10 % of the tiles of 198 slices take 82
+/// ms of one channel, or 10.3 ms of eight. Renderers and processors divide their work.
 #[test]
-fn bounds_follow_from_counts() {
+fn the_lower_bounds_of_a_volume_follow_from_its_counts() {
     let bounds = SliceBounds { work: RendererWork::default(), tiles: 11_405, tile_words: 128, copies: 0 };
     let row = bounds.with(1, 1);
     assert!((row.ms[1] - 11_405.0 * 7.2e-3 / 8.0).abs() < 1e-9 && (row.ms[1] - 10.3).abs() < 0.05, "{row:?}");
@@ -179,7 +179,7 @@ fn bounds_follow_from_counts() {
 /// channels. The program has 12 words. Both arrays give the bits of the host's halftone, for every level and threshold
 /// of Bayer's matrix.
 #[test]
-fn the_halftones_program_gives_the_hosts_bits_in_72_clocks() {
+fn the_halftone_program_gives_the_bits_of_the_host_in_72_clocks() {
     let layout = Layout::rendering_control_phong();
     assert_eq!(halftone_clocks(&layout), 3 * (6 + 12 + 6));
     assert_eq!(halftone_words(&layout).len(), 3 * (1 + 2 + 1));
@@ -273,7 +273,7 @@ fn more_boards_than_a_ring_has_ports_are_refused() {
 }
 
 #[test]
-fn what_is_no_single_quadratic_is_refused() {
+fn a_surface_that_is_not_one_quadratic_is_refused() {
     for (path, text, part) in [
         ("clip.variant", "exact", "hyperbolic"),
         ("projection", "jittered", "orthographic"),

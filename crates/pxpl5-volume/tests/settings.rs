@@ -17,7 +17,7 @@ fn refused(assignment: &str) -> String {
 }
 
 #[test]
-fn every_path_of_the_specification_is_known() {
+fn every_path_of_the_specification_is_a_setting() {
     let keys = VolumeSettings::paper().keys();
     for path in [
         "display.slices",
@@ -34,7 +34,7 @@ fn every_path_of_the_specification_is_known() {
 }
 
 #[test]
-fn every_number_can_be_set_to_the_papers_value_and_changes_nothing() {
+fn setting_each_number_to_the_value_of_the_paper_changes_nothing() {
     for Parameter { path, value, .. } in VolumeSettings::paper().numbers() {
         let settings = set(&format!("{path}={value}")).expect("the value that it has");
         assert_eq!(settings, VolumeSettings::paper(), "{path}");
@@ -43,7 +43,7 @@ fn every_number_can_be_set_to_the_papers_value_and_changes_nothing() {
 }
 
 #[test]
-fn a_clip_brings_its_offset_or_bias_along() {
+fn each_clip_setting_includes_its_offset_or_bias() {
     for (text, expected) in [
         ("prism", SliceClip::Prism),
         ("user-planes", SliceClip::UserPlanes),
@@ -59,7 +59,7 @@ fn a_clip_brings_its_offset_or_bias_along() {
 }
 
 #[test]
-fn overrides_are_the_numbers_that_are_not_the_papers() {
+fn overrides_list_the_differences_from_the_paper() {
     let settings = set("gpu.readback_mb_s=1000").expect("valid");
     let overrides = settings.overrides();
     assert_eq!(overrides.len(), 1);
@@ -68,16 +68,16 @@ fn overrides_are_the_numbers_that_are_not_the_papers() {
 }
 
 #[test]
-fn a_tolerance_is_a_name_or_pixels() {
+fn a_tolerance_is_a_name_or_a_number_of_pixels() {
     assert_eq!(set("bins.tolerance=codes").expect("valid").bin_tolerance, BinTolerance::Codes);
     assert_eq!(set("bins.tolerance=1.5").expect("valid").bin_tolerance, BinTolerance::Pixels(1.5));
     assert!(refused("bins.tolerance=-1").contains("clip, codes or a number of pixels"));
 }
 
-/// Checks the errors for the invalid inputs of section 9. Each error says what is wrong and where, and names the
-/// expected and the found value.
+/// Checks the errors for invalid inputs. Each error says what is wrong and where, and names the expected and the found
+/// value.
 #[test]
-fn bad_input_says_what_was_expected_and_what_was_found() {
+fn invalid_input_is_refused_with_the_expected_and_found_values() {
     for (assignment, parts) in [
         ("display.slices=397", ["display.slices", "even", "397"]),
         ("display.slices=2", ["display.slices", "4 to 4096", "2"]),

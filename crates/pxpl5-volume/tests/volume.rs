@@ -25,7 +25,7 @@ fn drawn(settings: &VolumeSettings) -> Volume {
     Volume::draw(settings, &mig(), &OneThread).expect("valid")
 }
 
-/// Fields that every report must have, from section 9 of the specification.
+/// Fields that every report must have.
 const FIELDS: [&str; 35] = [
     "display",
     "clip",
@@ -86,7 +86,7 @@ fn counts_follow_from_the_display() {
     assert_eq!(report.bytes_packed, 36 * 128 * 96 / 2);
     assert!((report.waste_percent - 90.625).abs() < 1e-9);
     assert_eq!((report.queries, report.stencil_clears), (9 * 12, 9));
-    // A packed tile has 32 x 32 / 2 bytes, of each of 4 slices; the map of 12 tiles has 2 bytes.
+    // A packed tile has 32 x 32 / 2 bytes in each of 4 slices. The map of 12 tiles has 2 bytes.
     assert_eq!(report.bytes_sent, report.tiles_occupied * 4 * 512 + 9 * 2);
     assert_eq!(report.draws_unbinned, 36 * report.triangles);
     let rings: u64 = report.brightness_by_radius.lit_voxels.iter().sum();
@@ -95,7 +95,7 @@ fn counts_follow_from_the_display() {
 }
 
 #[test]
-fn mirrored_and_connected_volumes_say_that_they_are_beyond_the_paper() {
+fn mirrored_and_connected_volumes_are_marked_as_beyond_the_paper() {
     let mut settings = small();
     settings.set("draw.strobes", "mirror", "test").expect("valid");
     settings.set("draw.coverage", "connected", "test").expect("valid");
@@ -127,7 +127,7 @@ fn the_hash_depends_on_the_seed_and_not_on_threads() {
 
 /// Checks that the pixels of pictures equal the bit planes and the colours. Mirrored slices are shown reversed.
 #[test]
-fn pictures_show_the_slices() {
+fn the_pixels_of_a_slice_picture_equal_the_bit_planes_and_the_colours() {
     for strobes in [Strobes::Each, Strobes::Mirror] {
         let settings = VolumeSettings { strobes, projection: ProjectionKind::Orthographic, ..small() };
         let volume = drawn(&settings);
@@ -152,10 +152,10 @@ fn pictures_show_the_slices() {
     }
 }
 
-/// Checks that a sheet has rows of 22 thumbnails of 64 px. A tile map has as many white pixels as occupied tiles are
-/// counted.
+/// Checks that a sheet has rows of 22 thumbnails of 64 px. The number of white pixels of a tile map must equal the
+/// number of occupied tiles.
 #[test]
-fn sheets_and_maps_show_everything() {
+fn a_sheet_has_a_thumbnail_for_each_slice_and_a_map_marks_each_occupied_tile() {
     let volume = drawn(&small());
     assert_eq!(sheet(&volume).dimensions(), (22 * 64, 2 * 64));
     let map = tile_map(&volume).expect("there are tiles");
@@ -167,15 +167,15 @@ fn sheets_and_maps_show_everything() {
 }
 
 #[test]
-fn a_slice_that_is_not_there_is_refused() {
+fn a_missing_slice_is_refused() {
     let volume = drawn(&small());
     assert_eq!(volume.check_slice(35), Ok(35));
     let error = volume.check_slice(36).expect_err("36 slices");
     assert_eq!(error.to_string(), "slice: expected 0 to 35, found 36");
 }
 
-/// Checks the variants of a comparison: six clips with three projections, and three more. Passes are as published (P5),
-/// and clips with enlarged volumes accept at least as many fragments.
+/// Checks the variants of a comparison: six clips with three projections, and three further variants. Passes are as
+/// published (P5), and clips with enlarged volumes accept at least as many fragments.
 #[test]
 fn a_comparison_has_a_row_and_a_picture_for_each_variant() {
     let viewpoint = ComparePoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: 32 };

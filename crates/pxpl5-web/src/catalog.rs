@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_tracker_and_predictor_of_the_lists_is_known() {
+    fn every_listed_tracker_and_predictor_exists() {
         let all = catalog();
         let of = |key: &str| all[key].as_array().expect("a list").clone();
         assert!(of("trackers").len() > 3 && of("predictors").len() > 3);

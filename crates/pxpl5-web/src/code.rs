@@ -6,12 +6,11 @@ use pxpl5_gp::Processor;
 use pxpl5_machine::Board;
 use pxpl5_run::Stepper;
 
-/// Number of instructions that the text shows before the program counter.
 const BEFORE: u32 = 8;
 const AFTER: u32 = 8;
 
 /// Returns lines of text with the registers and the code of a board's processor. The list is empty for a board without
-/// a processor. Only the cycle level of modelling has processors.
+/// a processor, and at any level of detail except the cycle level.
 pub(crate) fn lines(stepper: &Stepper, board: Board) -> Vec<String> {
     stepper.machine().board(board).and_then(|gp| gp.with_processor(of)).unwrap_or_default()
 }

@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn messages_are_those_after_an_instant_and_never_more_than_asked_for() {
+    fn messages_after_a_time_are_listed_up_to_the_requested_number() {
         let mut session = session("slats");
         session.run_to(100_000_000_000);
         let after = Time(90_000_000_000);

@@ -29,7 +29,7 @@ mod tests {
     }
 
     #[test]
-    fn every_term_that_the_page_marks_is_explained_in_one_sentence() {
+    fn every_marked_term_of_the_page_has_one_sentence() {
         let glossary = glossary();
         assert!(used().len() > 15, "the page marks its terms");
         for term in used() {
@@ -40,7 +40,7 @@ mod tests {
     }
 
     #[test]
-    fn terms_are_in_order_and_none_stands_twice() {
+    fn terms_are_sorted_and_unique() {
         let terms: Vec<&str> =
             TEXT.lines().filter_map(|line| Some(line.strip_prefix("- **")?.split_once("**")?.0)).collect();
         assert!(terms.windows(2).all(|two| two[0].to_lowercase() < two[1].to_lowercase()), "{terms:?}");

@@ -202,9 +202,9 @@ impl WebMachine {
         pictures::renderer(self.0.stepper(), renderer)
     }
 
-    /// Returns the six faces of a cube around the head that an eye's display memory holds. `eye` is 0 or 1. The faces
-    /// form a cross of 512 x 384 pixels. Without `memory`, all memories are combined: each texel is the nearest texel
-    /// of all memories. The result is empty for a display without such memories.
+    /// Returns the six faces of a cube around the head, as an eye's display memory holds the faces. `eye` is 0 or 1.
+    /// The faces form a cross of 512 x 384 pixels. Without `memory`, all memories are combined: each texel is the
+    /// nearest texel of all memories. The result is empty for a display without such memories.
     #[must_use]
     pub fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
         self.0.faces(eye, memory)
@@ -229,7 +229,7 @@ impl WebMachine {
         look::misses_all(self.0.stepper())
     }
 
-    /// Returns, as JSON, the share of time for which each kind of board was busy up to now, and the waits of the last
+    /// Returns, as JSON, the share of time for which each kind of board was busy, and the waits that delayed the last
     /// pictures. Shares are 0 to 1, and values that were not measured are null.
     #[must_use]
     pub fn limits(&self) -> String {

@@ -50,7 +50,7 @@ pub(crate) fn misses_all(stepper: &Stepper) -> bool {
     run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
 }
 
-/// Returns, as JSON, the share of time for which each kind of board was busy up to now, and the waits of the last
+/// Returns, as JSON, the share of time for which each kind of board was busy, and the waits that delayed the last
 /// pictures. Shares are 0 to 1. `utilisation` is null at time zero, and `path` is null before the first complete
 /// picture.
 pub(crate) fn limits(stepper: &Stepper) -> Value {
@@ -68,7 +68,6 @@ pub(crate) fn limits(stepper: &Stepper) -> Value {
     json!({"utilisation": Utilisation::so_far(stepper), "path": path})
 }
 
-/// Returns the message on each channel of the ring as JSON, with null for a free channel.
 pub(crate) fn channels(stepper: &Stepper) -> Value {
     let ports = stepper.record().ports();
     let on = stepper.channels();

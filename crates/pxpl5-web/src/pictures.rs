@@ -81,7 +81,6 @@ pub(crate) fn renderer(stepper: &Stepper, number: usize) -> Vec<u8> {
         .collect()
 }
 
-/// Colour in which an enabled pixel is shown.
 const ENABLED: [u8; 3] = [79, 209, 165];
 
 /// Number of pixels on each side of a cube face in the picture of all six faces.
@@ -168,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn heat_goes_from_black_over_red_and_yellow_to_white() {
+    fn the_heat_scale_goes_from_black_over_red_and_yellow_to_white() {
         assert_eq!(heat(0), [0, 0, 0]);
         assert_eq!(heat(85), [255, 0, 0]);
         assert_eq!(heat(170), [255, 255, 0]);
@@ -184,7 +183,7 @@ mod tests {
     /// Tests the outlines, which are drawn where the depth changes suddenly. The depth of a plane is linear on the
     /// screen, so a plane has none.
     #[test]
-    fn a_plane_that_covers_the_screen_has_no_outlines_and_an_aircraft_has() {
+    fn a_plane_that_covers_the_screen_has_no_outlines_and_an_aircraft_has_outlines() {
         let opaque =
             |session: &crate::session::Session| session.outlines(0).chunks(4).filter(|rgba| rgba[3] > 0).count();
         let plane = session("pipeline=slats\nscene=full-screen:1\nfields=9", 1);

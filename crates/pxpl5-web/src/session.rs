@@ -23,13 +23,11 @@ pub(crate) struct Session {
     /// True if all fields of the experiment have been simulated.
     is_over: bool,
     plan: Plan,
-    /// Motion of the head that the visitor moves, or `None` if the experiment has another motion.
+    /// Recorded motion of a head that the visitor moves, or `None` if the settings give the motion.
     moves: Option<GrowingRecording>,
 }
 
 impl Session {
-    /// Creates the run of an experiment from settings, written one per line as in experiment files. `files` has the
-    /// contents of files that the settings name.
     pub(crate) fn new(settings: &str, files: &Files) -> Result<Self, String> {
         let mut file = ExperimentFile::new();
         for (name, contents) in &files.0 {
@@ -53,8 +51,6 @@ impl Session {
         Ok(Self { stepper, is_over: false, plan, moves })
     }
 
-    /// Adds poses to the motion of the head that the visitor of the page moves. The last row of `rows` must not be
-    /// earlier than the instant to which the machine runs next.
     pub(crate) fn moved(&self, rows: &str) -> Result<(), String> {
         let moves = self.moves.as_ref().ok_or("this head is not moved on the page")?;
         let more = Recording::read(rows.as_bytes()).map_err(|error| error.to_string())?;
@@ -141,7 +137,6 @@ impl Session {
         about(triangles, |triangles| query.reached(triangles)).ok().map(u64::from)
     }
 
-    /// Draws the scene of the experiment for the spinning volumetric display.
     pub(crate) fn volume(&self) -> Result<Volume, String> {
         Volume::draw(self.stepper.experiment().scene())
     }
@@ -173,7 +168,7 @@ mod tests {
 
     /// Tests that a run of the web page in several steps has the trace hash of a single run.
     #[test]
-    fn a_run_of_the_page_has_the_trace_hash_of_the_run() {
+    fn a_run_on_the_page_has_the_trace_hash_of_the_command() {
         let mut session = new(SETTINGS).expect("known settings");
         while session.state()["over"] == false {
             session.run_for(7_000_000_000);
@@ -209,7 +204,7 @@ mod tests {
 
     /// Tests that a run with live head motion can be repeated: the recording of this motion gives the same run.
     #[test]
-    fn a_head_that_is_moved_while_the_machine_runs_is_its_recording() {
+    fn a_run_with_live_head_motion_equals_a_run_with_a_recording_of_this_motion() {
         for pipeline in
             ["slats", "rendering-control", "jitp-scanline", "frameless", "arp-full-line", "arp-priority-pixel"]
         {
@@ -234,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn a_head_cannot_be_moved_back_in_time_or_where_it_is_not_moved_here() {
+    fn moving_the_head_back_in_time_or_in_another_mode_is_refused() {
         let settings =
             "pipeline=slats\nscene=full-screen:2\nfields=9\nhead.motion=live.csv\nhead.end=hold\nhead.predict=none\n";
         let session = Session::new(settings, &with_file(LIVE, rows(0..3))).expect("known");
@@ -248,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_setting_is_refused_in_words() {
+    fn a_wrong_setting_is_refused_with_a_message() {
         for (settings, said) in [
             ("pipeline=slat", "slats"),
             ("pipeline=slats\nscene=migg", "there is no scene `migg`; did you mean `mig`?"),
@@ -262,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_are_as_large_as_the_surfaces_that_the_state_names() {
+    fn pictures_have_the_sizes_of_the_listed_surfaces() {
         let mut session = new(SETTINGS).expect("known settings");
         session.run_for(60_000_000_000);
         for (number, surface) in session.state()["surfaces"].as_array().expect("a list").iter().enumerate() {
@@ -275,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn every_board_of_the_state_can_be_asked_and_no_other() {
+    fn every_listed_board_has_a_snapshot_and_an_unknown_board_is_refused() {
         let mut session = new(SETTINGS).expect("known settings");
         session.run_for(40_000_000_000);
         let boards = look::boards(session.stepper());
@@ -288,10 +283,10 @@ mod tests {
     }
 
     /// Tests the reports on scenes that are too large. Slats can draw about 140 triangles in a field (TR94), and the
-    /// Mig has ten times as many. For a scene that is too large, the page reports the number of triangles that would be
-    /// drawn in time. With just-in-time pixels, this number must be drawn in time, and twice this number must not.
+    /// Mig has three times as many. For a scene that is too large, the page reports the number of triangles that would
+    /// be drawn in time. With just-in-time pixels, this number must be drawn in time, and twice this number must not.
     #[test]
-    fn a_scene_that_is_too_heavy_is_reported_with_what_would_fit() {
+    fn a_scene_that_is_too_heavy_is_reported_with_a_size_that_fits() {
         let misses_all = |settings: &str| {
             let mut session = new(settings).expect("known");
             session.run_to(500_000_000_000);
@@ -313,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_that_fails_is_a_state() {
+    fn a_failed_machine_is_reported_as_a_state() {
         let mut session = new("pipeline=slats\nscene=full-screen:200000\nfields=8\npixels=off").expect("known");
         session.run_for(200_000_000_000);
         let state = session.state();

@@ -29,7 +29,6 @@ impl Volume {
         Ok(Self { frame: frame.map_err(|error| error.to_string())?, radius })
     }
 
-    /// Returns the number of slices, followed by the width and the height of a slice in pixels.
     pub(crate) fn size(&self) -> [u32; 3] {
         let [width, height] = self.frame.planes.size();
         [self.frame.planes.slices(), width, height]

@@ -1,5 +1,3 @@
-//! Messages on the ring and their contents.
-
 use crate::{NodeId, PeriodNumber, PictureNumber, RegionGrid, RegionId, TriangleBatch, Word};
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
@@ -8,17 +6,14 @@ use std::sync::Arc;
 /// A message from one ring port to another.
 #[derive(Clone, Debug)]
 pub struct Message {
-    /// Port of the board that sends the message.
     pub source: NodeId,
-    /// Port of the board that receives the message.
     pub destination: NodeId,
     /// Length of the message in words, 1 to [`crate::MAX_MESSAGE_WORDS`].
     pub words: u32,
-    /// Content of the message.
     pub body: Body,
 }
 
-/// The content of a message.
+/// The content of a message on the ring.
 #[derive(Clone, Debug)]
 pub enum Body {
     /// Commands for a renderer, in the order in which the renderer executes them.
@@ -32,8 +27,8 @@ pub enum Body {
 /// A list of commands for a renderer, in order.
 #[derive(Clone, Debug)]
 pub struct CommandList {
-    /// Kinds of the commands, in order. Each run of successive commands of one kind forms one entry. The execution time
-    /// of the list depends only on these entries.
+    /// Kinds of the commands, in order. Successive commands of one kind form one entry. The execution time of the list
+    /// depends only on these entries.
     pub runs: Vec<CommandRun>,
     /// Region context on which all commands of this list work. A region context is a part of pixel memory.
     pub context: u8,
@@ -95,22 +90,18 @@ pub struct RegionPlace {
     pub frame_buffer: Option<NodeId>,
     /// Lines of the video frame that the rows of the picture fill.
     pub lines: Lines,
-    /// Division of the picture into regions.
     pub grid: RegionGrid,
-    /// Number of the region within the grid.
     pub region: RegionId,
 }
 
 /// The parameters of a copy command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct CopyOrder {
-    /// Frame buffer and region that receive the pixels.
     pub target: CopyTarget,
     /// Region context that holds the pixels. A region context is a part of pixel memory.
     pub context: u8,
     /// Path that the colours take to the frame buffer.
     pub way: CopyPath,
-    /// Kind of data that is sent for each pixel.
     pub content: CopyContent,
     /// Port that receives a notification of [`COPY_ACKNOWLEDGEMENT_WORDS`] words after the last pixel has arrived.
     /// `None` if no notification is sent.
@@ -123,7 +114,7 @@ pub enum CopyContent {
     /// One word per pixel: its colour.
     #[default]
     Colour,
-    /// Two words per pixel: the colours of all pixels, then their 24-bit depths.
+    /// Two words per pixel: first the colours of all pixels, then the 24-bit depths of all pixels.
     ColourAndDepth,
     /// One word per pixel. The upper 16 bits are the upper 16 bits of the depth. The lower 16 bits are the colour: 5
     /// bits red, 6 bits green and 5 bits blue.
@@ -200,7 +191,6 @@ pub struct CommandRun {
     pub opcode: u8,
     /// Length of one command in words.
     pub words_each: u32,
-    /// Number of commands in the sequence.
     pub count: u32,
 }
 
@@ -210,8 +200,8 @@ pub trait CommandWords: Debug + Send + Sync {
     fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
     /// Passes the whole commands of message number `part` to `out`. An implementation may leave out primitives that
-    /// touch no pixel of the region. An implementation must pass commands that set the Enable bits before each drawing
-    /// command.
+    /// touch no pixel of the region. The Enable bits select the pixels in which a command has an effect. Each passed
+    /// command that draws must set these bits itself, because the preceding command may have been left out.
     ///
     /// Returns true if the passed commands may contain a primitive. The default implementation passes all commands and
     /// returns true.
@@ -230,7 +220,7 @@ pub trait CommandWords: Debug + Send + Sync {
 /// A receiver of renderer commands in order. The commands come as words, or as batches of triangles
 /// ([`TriangleBatch`]).
 pub trait CommandSink {
-    /// Returns the list to which the sender appends the words of its commands.
+    /// Returns the list to which a sender appends the words of commands.
     fn words(&mut self) -> &mut Vec<Word>;
 
     /// Offers a batch of triangles that follow the words appended so far. Returns true if the sink accepts the batch.
@@ -259,14 +249,14 @@ impl CommandWords for Vec<Word> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lines {
-    /// All lines of the video frame.
     Frame,
     /// Every second line: the lines of one field.
     Field(FieldParity),
 }
 
-/// The two fields of an interlaced video frame, distinguished by their lines. Line 0 is the top line of the picture and
-/// belongs to the even field.
+/// The two fields of an interlaced video frame, distinguished by their lines.
+///
+/// Line 0 is the top line of the picture and belongs to the even field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FieldParity {
@@ -293,15 +283,12 @@ impl FieldParity {
 /// The destination of a region's pixels in a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct CopyTarget {
-    /// Ring port of the frame buffer.
     pub frame_buffer: NodeId,
     /// Number of the pixel buffer, 0 or 1.
     pub buffer: u8,
     /// Lines of the video frame that the rows of the picture fill.
     pub lines: Lines,
-    /// Division of the picture into regions.
     pub grid: RegionGrid,
-    /// Number of the region within the grid.
     pub region: RegionId,
     /// Number of the picture that contains the region. The pipeline counts its pictures ([`PictureNumber`]). Boards use
     /// the number only to separate successive copies of a region. Observers use the number to collect the regions of a
@@ -313,7 +300,6 @@ pub struct CopyTarget {
 /// `part`.
 #[derive(Clone, Debug)]
 pub struct RegionPixels {
-    /// Destination of the region's pixels in a display.
     pub target: CopyTarget,
     /// Pixels of the whole region, not only of this part.
     pub image: Arc<dyn PixelSource>,

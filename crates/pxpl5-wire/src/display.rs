@@ -146,8 +146,8 @@ pub trait Display: Any + Debug + Send + Sync {
     /// lit so far in the current period and of earlier pixels that are still visible. Unlit pixels are black. The
     /// display stays unchanged.
     ///
-    /// The default implementation assumes that the shown buffer was complete when its period began. Double buffers meet
-    /// this assumption.
+    /// The default implementation assumes that the shown buffer was complete when its period began. This assumption is
+    /// true for double buffers.
     fn picture_so_far(&self, surface: usize, now: Time) -> Option<RgbImage> {
         let period = self.period_at(now);
         let size = self.surfaces().get(surface)?;

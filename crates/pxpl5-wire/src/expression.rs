@@ -1,5 +1,3 @@
-//! Expressions that a renderer evaluates at all its pixels at the same time.
-
 use serde::{Deserialize, Serialize};
 
 /// The expression `a x + b y + c` at the integer pixel (x, y) of the screen, in 32-bit two's complement (sums wrap).
@@ -17,13 +15,11 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// Makes an expression with the same value at every pixel.
     #[must_use]
     pub const fn constant(c: i32) -> Self {
         Self { a: 0, b: 0, c }
     }
 
-    /// Returns the value of the expression at pixel (x, y).
     #[must_use]
     pub const fn at(&self, x: i32, y: i32) -> i32 {
         let ax = self.a.wrapping_mul(x);
@@ -38,11 +34,8 @@ pub const LANES: usize = 8;
 /// The linear expressions of [`LANES`] triangles, with one array for each coefficient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinearLanes {
-    /// Coefficient [`Linear::a`] of each triangle.
     pub a: [i32; LANES],
-    /// Coefficient [`Linear::b`] of each triangle.
     pub b: [i32; LANES],
-    /// Coefficient [`Linear::c`] of each triangle.
     pub c: [i32; LANES],
 }
 
@@ -95,7 +88,6 @@ pub struct Quadratic {
 }
 
 impl Quadratic {
-    /// Returns the value of the expression at pixel (x, y).
     #[must_use]
     pub const fn at(&self, x: i32, y: i32) -> i64 {
         let px = x as i64;

@@ -1,4 +1,4 @@
-//! Fixed-point formats of expression coefficients and of fields in pixel memory.
+//! Fixed-point formats of expression coefficients and of bit fields in pixel memory.
 //!
 //! All formats are **assumed**. The papers give the number of bits of pixel memory (208), the number of bits of a
 //! colour (24) and the time of a triangle. These figures fit a 24-bit Z and 8-bit colour components. The numbers of
@@ -16,7 +16,6 @@ pub const Z_FRACTION_BITS: u32 = 8;
 /// Number of bits of one colour component in pixel memory.
 pub const COLOUR_BITS: u32 = 8;
 
-/// Number of fraction bits in the expression of a colour component.
 pub const COLOUR_FRACTION_BITS: u32 = 12;
 
 /// Number of bits of one component of a normal in pixel memory, in two's complement. The integer
@@ -27,7 +26,6 @@ pub const NORMAL_BITS: u32 = 12;
 /// a component is therefore -2 to 2.
 pub const NORMAL_ONE_BITS: u32 = 10;
 
-/// Number of fraction bits in the expression of a normal component.
 pub const NORMAL_FRACTION_BITS: u32 = 10;
 
 /// Number of fraction bits of a sphere's quadratic expression. The unit of the expression is the square pixel.

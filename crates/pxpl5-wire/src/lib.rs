@@ -45,11 +45,12 @@ pub const MAX_MESSAGE_WORDS: u32 = 1024;
 /// Width and height of a renderer's pixel array, in pixels (F89).
 pub const REGION_SIZE: u32 = 128;
 
-/// Number of a board's port on the ring. Ports are numbered in the direction in which messages travel.
+/// Number of a board's port on the ring.
+///
+/// Ports are numbered in the direction in which messages travel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub struct NodeId(pub u16);
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Declares a number type that counts from 0. Arithmetic combines only numbers of the same type. Text and data files
-/// contain only the number, without the name of its type.
+/// contain only the number, without the name of the type.
 macro_rules! count_from_zero {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
@@ -24,7 +24,6 @@ macro_rules! count_from_zero {
         pub struct $name(pub u64);
 
         impl $name {
-            /// The first number, 0.
             pub const FIRST: Self = Self(0);
 
             /// Returns the next number. The greatest number of the type is returned unchanged.
@@ -55,7 +54,6 @@ macro_rules! count_from_zero {
                 self.0.saturating_sub(earlier.0)
             }
 
-            /// Iterates over this number and all greater numbers.
             pub fn onwards(self) -> impl Iterator<Item = Self> {
                 (self.0..).map(Self)
             }
@@ -87,25 +85,31 @@ macro_rules! count_from_zero {
 }
 
 count_from_zero! {
-    /// The number of a display period. A period is the time from one tick of the display's clock to the next. Number n
-    /// begins at tick n, and tick 0 is the start of simulated time. A period of NTSC video is a field. A retrace has
-    /// the number of the field that begins with it. A period of the high-resolution frame buffer is a refresh.
+    /// The number of a display period.
+    ///
+    /// A period is the time from one tick of the display's clock to the next. Number n begins at tick n, and tick 0 is
+    /// the start of simulated time. A period of NTSC video is a field. A retrace has the number of the field that
+    /// begins with it. A period of the high-resolution frame buffer is a refresh.
     PeriodNumber
 }
 
 count_from_zero! {
-    /// The number of a picture. A picture is everything that a pipeline draws for one moment and shows together, on all
-    /// surfaces. Each pipeline counts its pictures from 0. A picture of Rendering Control is a frame with both eyes. A
-    /// picture of Slats or just-in-time pixels is a field and has the number of its period. A picture of frameless
-    /// rendering is a batch of blocks.
+    /// The number of a picture.
+    ///
+    /// A picture is everything that a pipeline draws for one moment and shows together, on all surfaces. Each pipeline
+    /// counts its pictures from 0. A picture of Rendering Control is a frame with both eyes. A picture of Slats or
+    /// just-in-time pixels is a field and has the number of its period. A picture of frameless rendering is a batch of
+    /// blocks.
     PictureNumber
 }
 
 count_from_zero! {
-    /// The number of a view. A view is one pose of the head, with edits of the scene, as received from the host. The
-    /// program that requests the views also assigns their numbers. Rendering Control and frameless rendering request
-    /// one view for each picture. Slats requests one view for each transmission. Just-in-time pixels request a fixed
-    /// number of views for each field.
+    /// The number of a view.
+    ///
+    /// A view is one pose of the head, with edits of the scene, as received from the host. The program that requests
+    /// the views also assigns their numbers. Rendering Control and frameless rendering request one view for each
+    /// picture. Slats requests one view for each transmission. Just-in-time pixels request a fixed number of views for
+    /// each field.
     ViewNumber
 }
 
@@ -146,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counting_ends_at_both_ends_instead_of_going_round() {
+    fn period_numbers_saturate_instead_of_wrapping() {
         assert_eq!(PeriodNumber::FIRST.before(1), None);
         assert_eq!(PeriodNumber(5).before(2), Some(PeriodNumber(3)));
         assert_eq!(PeriodNumber(u64::MAX).next(), PeriodNumber(u64::MAX));
@@ -155,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_has_its_begin_and_not_its_end() {
+    fn a_range_includes_its_start_and_excludes_its_end() {
         let range: Vec<_> = PictureNumber(2).until(PictureNumber(4)).collect();
         assert_eq!(range, [PictureNumber(2), PictureNumber(3)]);
         assert_eq!(PictureNumber(4).until(PictureNumber(2)).count(), 0);
@@ -163,13 +167,13 @@ mod tests {
     }
 
     #[test]
-    fn words_are_low_and_high() {
+    fn a_number_is_split_into_low_and_high_words() {
         assert_eq!(ViewNumber((5 << 32) + 6).to_words(), [6, 5]);
         assert_eq!(ViewNumber::from_words(6, 5), ViewNumber((5 << 32) + 6));
     }
 
     #[test]
-    fn as_text_it_is_the_bare_number_with_its_width() {
+    fn a_number_prints_as_plain_digits_with_the_requested_width() {
         assert_eq!(format!("{:>4}|{:04}", PeriodNumber(12), PictureNumber(7)), "  12|0007");
     }
 }

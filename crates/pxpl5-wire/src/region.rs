@@ -1,9 +1,7 @@
-//! Eyes, visible surfaces, and the division of pictures into regions.
-
 use crate::REGION_SIZE;
 use serde::{Deserialize, Serialize};
 
-/// The eye for which a picture is drawn.
+/// An eye of the viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Eye {
@@ -24,7 +22,6 @@ impl Eye {
         self as usize
     }
 
-    /// Returns the name of the eye in files and tables: `left` or `right`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -59,11 +56,11 @@ impl From<Eye> for SurfaceId {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct RegionId(pub u16);
 
-/// The division of a picture into a grid of regions. All lengths are in pixels. Regions in the last column and in the
-/// last row can be smaller than all other regions.
+/// The division of a picture into a grid of regions.
+///
+/// All lengths are in pixels. Regions in the last column and in the last row can be smaller than all other regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct RegionGrid {
-    /// Width of the picture in pixels.
     pub width: u32,
     /// Height of the picture in drawn lines, for example 240 for a field.
     pub height: u32,
@@ -80,7 +77,6 @@ impl RegionGrid {
     /// One NTSC field of 640 x 240 in 5 x 2 regions of 128 x 120 (TR94).
     pub const FIELD: Self = Self { width: 640, height: 240, region_width: 128, region_height: 120 };
 
-    /// Returns the number of regions in each row of the grid.
     #[must_use]
     #[inline]
     pub const fn columns(&self) -> u32 {
@@ -94,7 +90,6 @@ impl RegionGrid {
         self.height.div_ceil(self.region_height)
     }
 
-    /// Returns the number of regions in the whole grid.
     #[must_use]
     #[inline]
     pub const fn regions(&self) -> u32 {

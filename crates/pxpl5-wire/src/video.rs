@@ -8,7 +8,6 @@ use pxpl5_sim::{Clock, Time};
 pub struct VideoNumbers {
     /// Period of the pixel clock, multiplied by `pixel_divisor`, in picoseconds.
     pub pixel_ps: u64,
-    /// Divisor of `pixel_ps`.
     pub pixel_divisor: u64,
     /// Number of pixel periods in a line, including blanking.
     pub line_pixels: u64,
@@ -106,7 +105,6 @@ impl Video {
         target.grid.rectangle_within(target.region, self.width(), rows)
     }
 
-    /// Returns the number of visible pixels in a line.
     #[must_use]
     pub const fn width(&self) -> u32 {
         self.numbers.visible_pixels as u32

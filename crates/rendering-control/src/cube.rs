@@ -23,7 +23,8 @@
 //! - **Depth.** The depth of a texel is the depth that the renderers compute: z/w along the axis of the face, in 24
 //!   bits. The near plane is 0, and empty texels have all bits set. All views have the same near and far plane, so
 //!   depths of different memories can be compared. A region is copied as two words for each texel in 32 messages,
-//!   through two blocks of the backing store. With 16 bits of colour and 16 bits of depth, a region takes 16 messages.
+//!   and takes the space of two regions in the backing store. With 16 bits of colour and 16 bits of depth, a region
+//!   takes 16 messages.
 //! - **Empty regions** get no token and are not copied. The message that announces an update omits empty regions. An
 //!   update without primitives still copies one region, so that its end is detected.
 //! - **Memories** are updated in the order that the host chooses. Each memory has its own double buffer. An update must

@@ -10,13 +10,11 @@ use std::sync::Arc;
 
 /// The host's message for one picture (SEND).
 pub trait Sent: Clone + Debug + PartialEq + 'static {
-    /// Returns the number of the picture.
     fn number(&self) -> PictureNumber;
 
     /// Returns the views of all eyes, with the edits of structures.
     fn view(&self) -> &FrameView;
 
-    /// Encodes the message as words.
     fn to_words(&self) -> Vec<Word>;
 
     /// Decodes the message, or returns `None` if the words are invalid.
@@ -27,11 +25,10 @@ pub trait Sent: Clone + Debug + PartialEq + 'static {
 ///
 /// A picture consists of one drawing for each eye. TRANSFORM, RENDER and COPY process one drawing after the other.
 pub trait Drawn: Clone + 'static {
-    /// The host's message for one picture.
     type Sent: Sent;
 
     /// Number of views of a drawing, such as the six faces of a cube. The regions of all views are numbered together:
-    /// first the regions of view 0, then those of view 1, and so on.
+    /// first the regions of view 0, then the regions of view 1, and so on.
     const VIEWS: u16 = 1;
 
     /// True if the master announces each drawing to its frame buffer before COPY. The announcement lists the regions
@@ -80,7 +77,7 @@ pub trait Drawn: Clone + 'static {
         Vec::new()
     }
 
-    /// Returns a slave's share with the vertices of a picture. By default, all vertices stay in place.
+    /// Returns a slave's share with the vertices at their positions in a picture. By default, no vertex moves.
     fn placed(&self, share: &Share, _sent: &Self::Sent) -> Share {
         share.clone()
     }
@@ -127,7 +124,7 @@ pub struct RenderingControlConfig<D> {
     pub slaves: Vec<NodeId>,
     /// Ring ports of the renderers. There is at least one.
     pub renderers: Vec<NodeId>,
-    /// Kind of pictures, with the ring ports to which they are copied.
+    /// Kind of pictures, and the ring ports of the frame buffers that receive the pictures.
     pub drawn: D,
 }
 
@@ -144,7 +141,7 @@ impl<D: Drawn> RenderingControlConfig<D> {
         drawing.eye(self.drawn.eyes())
     }
 
-    /// Returns the share of the slave `index`: the triangles and spheres that it stores and transforms.
+    /// Returns the share of the slave `index`: the triangles and spheres that the slave stores and transforms.
     #[must_use]
     pub fn share(&self, list: &Arc<pphigs::DisplayList>, index: usize) -> Share {
         Share::new(Arc::clone(list), index, self.slaves.len())

@@ -15,7 +15,7 @@ pub struct Frames {
     /// All ring ports of the frame buffers: the first port of each frame buffer, then the second port of each, and so
     /// on. The regions of an eye use the ports of the eye's frame buffer in turn.
     pub frame_buffer_ports: Vec<NodeId>,
-    /// Viewport, shading and layout of the picture of each eye.
+    /// Viewport, shading and layout of a picture, which are the same for all eyes.
     pub picture: Picture,
     /// Number of finished regions that a renderer may store in its backing store until the frame buffer is available.
     ///
@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_go_to_the_buffer_that_is_not_shown_beginning_with_the_second() {
+    fn frames_go_to_the_hidden_buffer_starting_with_the_second_buffer() {
         let buffers = [0, 1, 2, 3].map(|frame| buffer_of(PictureNumber(frame)));
         assert_eq!(buffers, [1, 0, 1, 0]);
     }

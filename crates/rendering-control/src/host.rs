@@ -1,4 +1,4 @@
-//! The host's program, which decides when each picture is sent, and sends it (SEND).
+//! The host's program, which decides when each picture is sent, and sends the picture (SEND).
 
 use crate::drawn::{Drawn, RenderingControlConfig, Sent};
 use crate::protocol::StageOrder;
@@ -67,8 +67,8 @@ async fn send<D: Drawn>(gp: &Gp, config: &RenderingControlConfig<D>, timing: Hos
 
 /// Returns a function for the argument `plan` of `host`, which sends frames of a display one after the other.
 ///
-/// `start_of` gets the time at which the host may send a frame. It returns the time at which the frame begins, or
-/// `None` after the last frame. `view_of` returns the view for the pose of the head at a time.
+/// `start_of` receives the time at which the host may send a frame, and returns the time at which the frame begins. The
+/// result is `None` after the last frame. `view_of` returns the view for the pose of the head at a time.
 pub fn frames(
     start_of: impl Fn(Time) -> Option<Time>,
     mut view_of: impl FnMut(ViewNumber, Time) -> FrameView,

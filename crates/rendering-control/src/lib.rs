@@ -50,7 +50,6 @@ pub use host::{HostAction, frames, host};
 pub use master::master;
 pub use slave::slave;
 
-/// Compiles and runs the examples of README.md as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

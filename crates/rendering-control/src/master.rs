@@ -9,7 +9,7 @@ use pxpl5_wire::{Body, CopyOrder, CopyPath, CopyTarget, NodeId, PictureNumber, R
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
-/// Use of a renderer, as far as the master can infer it from messages.
+/// State of a renderer, which the master infers from messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
@@ -58,13 +58,11 @@ impl<S> DrawingProgress<S> {
     }
 }
 
-/// Progress of RENDER for one drawing.
 #[derive(Debug)]
 struct RenderStage {
     drawing: Drawing,
     /// Regions without a renderer, in the order in which they will be drawn.
     unassigned: VecDeque<RegionId>,
-    /// Number of regions to draw.
     regions: u16,
     /// Number of tokens that are still with the slaves.
     tokens_out: u16,
@@ -84,7 +82,7 @@ struct RegionMaster<D: Drawn> {
     edited: usize,
     /// Drawings that the host has sent and that are not complete in a frame buffer, oldest first.
     under_way: VecDeque<DrawingProgress<D::Sent>>,
-    /// Number of drawings for each frame buffer that the host has sent so far.
+    /// For each frame buffer, the number of drawings that the host has sent so far.
     of_buffers: BTreeMap<NodeId, u64>,
     rendering: Option<RenderStage>,
     renderers: Vec<RendererUse>,
@@ -187,7 +185,7 @@ impl<D: Drawn> RegionMaster<D> {
         true
     }
 
-    /// Returns the place in `under_way` of the first drawing that can be announced. All slaves must have finished
+    /// Returns the index in `under_way` of the first drawing that can be announced. All slaves must have finished
     /// TRANSFORM of the drawing, and the hidden half of its frame buffer must be free.
     fn next_announcement(&self) -> Option<usize> {
         let may_begin = |one: &DrawingProgress<D::Sent>| {
@@ -260,8 +258,8 @@ impl<D: Drawn> RegionMaster<D> {
         Some((renderer, region))
     }
 
-    /// Creates the token of a region and sends it to a slave. The first token goes to slave 0, the second to slave 1,
-    /// and so on, so that the slaves share the work.
+    /// Creates the token of a region and sends the token to a slave. The first token goes to slave 0, the second to
+    /// slave 1, and so on, so that the slaves share the work.
     async fn send_token(&mut self, renderer: usize, region: RegionId) {
         // The renderer receives commands from all slaves in turn.
         let Some(rendering) = &mut self.rendering else { return };
@@ -298,7 +296,8 @@ impl<D: Drawn> RegionMaster<D> {
         } else if self.stored[renderer].len() < room {
             RegionEnd::Stored
         } else {
-            // Under the other rule, finished regions wait in pixel memory, whatever the capacity of the store is.
+            // Under the other rule for finished regions, the regions wait in pixel memory, for any capacity of the
+            // store.
             if room > 0 {
                 self.gp.note_full_store();
             }
@@ -306,8 +305,8 @@ impl<D: Drawn> RegionMaster<D> {
         }
     }
 
-    /// Returns a copy that may begin, for the first renderer that has one. A region in the backing store is copied
-    /// before a region in pixel memory.
+    /// Returns a copy that may begin, or `None`. If several renderers have such a copy, the renderer with the lowest
+    /// index is chosen. A region in the backing store is copied before a region in pixel memory.
     fn next_allowed_copy(&self) -> Option<AllowedCopy> {
         (0..self.renderers.len()).find_map(|renderer| {
             let (drawing, region, way) = match (self.stored[renderer].front(), self.renderers[renderer]) {
@@ -450,7 +449,7 @@ mod tests {
 
     /// Tests both orders of two messages: the arrival of the last region, and the acceptance of its commands.
     #[test]
-    fn a_drawing_is_over_when_its_regions_have_arrived_and_its_commands_were_accepted() {
+    fn a_drawing_ends_when_its_regions_arrived_and_its_commands_were_accepted() {
         for accepted_first in [true, false] {
             let board = GpBoard::new(NodeId(1), GpTiming::PAPERS, Span(25_000));
             let mut master = RegionMaster::new(board.handle_for(Priority::Foreground), config());

@@ -14,13 +14,13 @@ const TOKEN: Word = 6;
 const ACCEPTED: Word = 7;
 const EDITS_DONE: Word = 8;
 
-/// The token of a region, which passes from slave to slave. Its holder may send its bin of the region to a renderer.
+/// The token of a region, which passes from slave to slave. The slave that holds the token may send a bin of the region
+/// to a renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) drawing: Drawing,
     /// Number of the region. The numbers continue through all views of the drawing.
     pub(crate) region: RegionId,
-    /// Index of the renderer that draws the region.
     pub(crate) renderer: u16,
     /// Number of slaves that must still send their bins, including the holder of the token.
     pub(crate) slaves_left: u16,
@@ -133,7 +133,6 @@ fn numbered(tag: Word, number: u64) -> Vec<Word> {
     vec![tag, number as Word, (number >> 32) as Word]
 }
 
-/// Decodes the number in a message that `numbered` has encoded.
 fn number_of(words: &[Word]) -> Option<u64> {
     let [_, low, high] = *words.first_chunk()?;
     Some(u64::from(low) | u64::from(high) << 32)
@@ -173,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn every_order_survives_its_words() {
+    fn every_order_is_decoded_from_its_words() {
         let drawing = Drawing(1 << 33);
         let token =
             Token { drawing, region: RegionId(95), renderer: 4, slaves_left: 12, of: 96, end: RegionEnd::Stored };
@@ -193,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_words_are_a_fault_that_shows_them() {
+    fn unknown_words_are_a_fault_with_these_words() {
         let received = Received { arrived: Time::ZERO, source: NodeId(7), body: Body::Words([0xBAD].into()) };
         let fault = StageOrder::<FrameView>::read(&received, NodeId(3)).expect_err("not an order");
         assert_eq!(fault.to_string(), "node 3: unexpected message [bad] from node 7");

@@ -40,7 +40,7 @@ impl Drawing {
     }
 }
 
-/// Progress of all stages: for each stage, the number of frames or drawings that have passed it.
+/// Progress of all stages: for each stage, the number of frames or drawings that have passed the stage.
 ///
 /// A drawing is the picture of one eye. Every stage processes frames and drawings in the order of their numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,8 +104,8 @@ impl Completed {
         self.transformed > drawing.0 && self.rendered >= drawing.0
     }
 
-    /// Returns true if the hidden buffer for a drawing is free. This is so when a swap has made the previous frame
-    /// visible.
+    /// Returns true if the hidden buffer for a drawing is free. The buffer is free when a swap has made the previous
+    /// frame visible.
     #[must_use]
     pub const fn frame_buffer_available(&self, drawing: Drawing) -> bool {
         self.swapped >= drawing.picture(self.eyes).0
@@ -114,8 +114,8 @@ impl Completed {
     /// Returns true if COPY of a drawing (the picture of one eye) may begin. The hidden buffer must be free, and COPY
     /// of the previous drawing must have finished.
     ///
-    /// Each frame buffer has its own ring port, so two copies could go on at once. The rule of TR94 nevertheless
-    /// permits only one at a time.
+    /// Each frame buffer has its own ring port, so the hardware could make two copies at the same time. The rule of
+    /// TR94 nevertheless permits only one copy at a time.
     #[must_use]
     pub const fn may_copy(&self, drawing: Drawing) -> bool {
         self.frame_buffer_available(drawing) && self.copied >= drawing.0
@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn mono_edit_waits_for_send_transform_render_and_copy_of_the_frames_before() {
+    fn mono_edit_waits_for_send_transform_render_and_copy_of_earlier_frames() {
         // EDIT 5 needs SEND 5, TRANSFORM 4, RENDER 3 and COPY 2 (TR94).
         let ready = Completed { eyes: 1, sent: 6, edited: 5, transformed: 5, rendered: 4, copied: 3, swapped: 0 };
         assert!(ready.may_edit(PictureNumber(5)));
@@ -158,13 +158,13 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_buffer_is_free_again_when_the_frame_before_is_shown() {
+    fn a_frame_buffer_is_free_when_the_previous_frame_is_shown() {
         let state = Completed { swapped: 3, ..Completed::none(2) };
         assert!(state.frame_buffer_available(Drawing(6)) && state.frame_buffer_available(Drawing(7)));
         assert!(!state.frame_buffer_available(Drawing(8)));
     }
     #[test]
-    fn copy_of_the_right_eye_waits_for_copy_of_the_left() {
+    fn copy_of_the_right_eye_waits_for_copy_of_the_left_eye() {
         // Frame 3 consists of drawings 6 and 7. Frame 2 has become visible, so both frame buffers are free.
         let state = Completed { swapped: 3, copied: 6, ..Completed::none(2) };
         assert!(state.may_copy(Drawing(6)));
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mono_copy_waits_for_nothing_but_its_frame_buffer() {
+    fn a_mono_copy_waits_only_for_its_frame_buffer() {
         // Frame 2 has become visible, so it was copied.
         let state = Completed { swapped: 3, copied: 3, ..Completed::none(1) };
         assert!(state.may_copy(Drawing(3)) && !state.may_copy(Drawing(4)));

@@ -14,7 +14,6 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Data that both programs of a slave use.
 #[derive(Debug)]
 struct SlaveState<S> {
     sent: VecDeque<S>,
@@ -128,11 +127,11 @@ impl<D: Drawn> Slave<D> {
         Ok(sent)
     }
 
-    /// Performs TRANSFORM of a drawing: makes the commands of all triangles and spheres, and puts them into bins.
+    /// Performs TRANSFORM of a drawing: makes the commands of all triangles and spheres, and fills the bins.
     ///
-    /// If the bins do not fit into memory beside those of the previous drawing, TRANSFORM waits until RENDER has freed
-    /// them. The simulated program has the number of entries in advance. A real program would estimate this number from
-    /// the previous drawing.
+    /// If memory has no room for the bins beside the bins of the previous drawing, TRANSFORM waits until RENDER has
+    /// freed the older bins. The simulated program has the number of entries in advance. A real program would estimate
+    /// this number from the previous drawing.
     async fn transform(&self, share: &Share, sent: &Arc<D::Sent>, drawing: Drawing) -> Result<(), Fault> {
         let drawn = &self.config.drawn;
         let (picture, eye) = (self.config.picture_of(drawing), self.config.eye_of(drawing));
@@ -168,7 +167,7 @@ impl<D: Drawn> Slave<D> {
         Ok(())
     }
 
-    /// Runs the interrupt program. It stores the host's pictures and the master's permissions, and it handles tokens.
+    /// Runs the interrupt program, which stores the host's pictures and the master's permissions, and handles tokens.
     async fn answer_messages(self) -> Result<(), Fault> {
         loop {
             let received = self.gp.next_message().await;
@@ -219,7 +218,7 @@ impl<D: Drawn> Slave<D> {
             shade: last,
             copy: token.end.way().filter(|_| last).map(|way| self.config.copy_order(target, way)),
         };
-        // A region of one of several views has no place on a surface.
+        // A region that belongs to one of several views has no place on a surface of the display.
         let frame_buffer = (D::VIEWS == 1).then_some(target.frame_buffer);
         Some(TokenBin { pass: Arc::clone(bins.passes.get(view)?), context, view, region, envelope, frame_buffer })
     }
@@ -253,7 +252,8 @@ impl<D: Drawn> Slave<D> {
     }
 }
 
-/// Writes the vertices of a picture into the board's memory if they were displaced. This takes no simulated time.
+/// Writes the vertices of a picture into the board's memory if the vertices were displaced. The write takes no
+/// simulated time.
 fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> Result<(), Fault> {
     if !Arc::ptr_eq(installed, share.list()) {
         gp.install(|processor| share.install(processor))?;
@@ -269,7 +269,7 @@ struct TokenBin {
     view: usize,
     region: RegionId,
     envelope: RegionEnvelope,
-    /// Frame buffer of the region. Observers read from it for which eye the renderer draws.
+    /// Ring port of the region's frame buffer. Observers use the port to find the eye for which the renderer draws.
     frame_buffer: Option<NodeId>,
 }
 

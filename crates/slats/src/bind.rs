@@ -13,7 +13,7 @@ pub struct BoundRegion {
     pub region: RegionId,
     /// Index of the renderer in the list [`crate::SlatsConfig::renderers`].
     pub renderer: usize,
-    /// Index of the part of the renderer's pixel memory that holds the region. A renderer has up to four such contexts.
+    /// Index of the part of the renderer's pixel memory that holds the region, from 0 to 3.
     pub context: u8,
 }
 
@@ -107,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn five_renderers_keep_four_regions_each_top_and_bottom_of_both_eyes() {
+    fn each_of_five_renderers_keeps_the_top_and_bottom_regions_of_both_eyes() {
         let binding = Binding::new(5, 4, CopySchedule::Whole).expect("five are enough");
         for renderer in 0..5 {
             let copies = binding.copies(renderer, true);

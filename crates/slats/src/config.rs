@@ -1,5 +1,3 @@
-//! Settings of Slats: the boards, and the variant of the pipeline.
-
 use crate::bind::Binding;
 use crate::schedule::CopySchedule;
 use pphigs::{Picture, RegionBinning, Shading};
@@ -15,7 +13,6 @@ pub struct SlatsConfig {
     pub host: NodeId,
     /// Ring ports of the graphics processors. The first graphics processor is the leader.
     pub processors: Vec<NodeId>,
-    /// Ring ports of the renderers.
     pub renderers: Vec<NodeId>,
     /// Ring ports of the left and the right eye's frame buffer.
     pub frame_buffers: [NodeId; 2],

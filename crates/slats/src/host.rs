@@ -1,5 +1,3 @@
-//! Program of the host, which sends a view for every new report of the tracker.
-
 use crate::config::SlatsConfig;
 use pphigs::{FrameView, send_as_tracked};
 use pxpl5_gp::{Fault, Gp, HostTiming};

@@ -53,7 +53,6 @@ pub use host::host;
 pub use processor::{CLUMP, processor};
 pub use schedule::CopySchedule;
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

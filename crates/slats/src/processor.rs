@@ -22,23 +22,21 @@ pub const CLUMP: usize = 30;
 /// field follows.
 const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;
 
-/// First word of a message from the first graphics processor to the others: begin a field. The number and the view of
-/// the field follow.
+/// First word of a message from the first graphics processor to the other graphics processors: begin a field. The
+/// number and the view of the field follow.
 const BEGIN: Word = 0x00BE_6123;
 
 #[derive(Debug, Default)]
 struct ProcessorState {
-    /// The newest view from the host, on the first graphics processor.
     newest: Option<FrameView>,
     /// Fields that this graphics processor must still draw. Empty on the first graphics processor.
     begun: VecDeque<(PeriodNumber, FrameView)>,
     /// Number of renderers that have reported the end of their copies since the newest copy order.
     copied: usize,
-    /// The copies of the bottom regions, which wait until all top regions are copied.
     bottom: Option<Bottom>,
     /// Index of the buffer with the last complete field, for even and for odd lines.
     complete: [u8; 2],
-    /// Number of graphics processors that have reported the end of their work for each unfinished field.
+    /// For each unfinished field, the number of graphics processors that have reported the end of their work.
     finished: Vec<(PeriodNumber, usize)>,
 }
 
@@ -91,7 +89,6 @@ pub fn processor(
     })
 }
 
-/// The frame buffers of both eyes under [`CopySchedule::Backup`].
 #[derive(Clone, Copy, Debug)]
 struct Backup {
     frame_buffers: [NodeId; 2],
@@ -304,8 +301,8 @@ impl SlatsProcessor {
         if self.config.copy == CopySchedule::Backup { 1 - complete } else { 0 }
     }
 
-    /// Runs the program of the other graphics processors, which draw their share of each field that the first graphics
-    /// processor begins.
+    /// Runs the program of every graphics processor except the first. The program draws a share of each field that the
+    /// first graphics processor begins.
     async fn follow(self) -> Result<(), Fault> {
         loop {
             let (field, view) =
@@ -344,7 +341,6 @@ impl SlatsProcessor {
         self.gp.send_batch(messages.collect()).await;
     }
 
-    /// Draws this graphics processor's share of `field`.
     async fn field(&self, field: PeriodNumber, view: &FrameView) -> Result<(), Fault> {
         let number = PictureNumber::drawn_for(field);
         self.gp.begin_view(Stage::Sample, number, view.number);

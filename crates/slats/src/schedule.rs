@@ -1,5 +1,3 @@
-//! Schedules for copying finished regions.
-
 /// The order and the time of the copies of a field's regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CopySchedule {

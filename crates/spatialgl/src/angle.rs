@@ -4,9 +4,9 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 
 /// Returns sine and cosine of `numerator / denominator` of a turn.
 ///
-/// The angle is reduced to the first eighth of a turn with integers. Half a turn more therefore gives exactly the
-/// negative sine and cosine. A quarter turn exchanges sine and cosine, except for a sign. At 45 degrees, sine and
-/// cosine are equal.
+/// The angle is reduced to the first eighth of a turn with integers. Adding half a turn therefore gives exactly the
+/// negative sine and cosine. Adding a quarter turn exchanges sine and cosine, except for a sign. At 45 degrees, sine
+/// and cosine are equal.
 ///
 /// # Panics
 /// Panics if the denominator is zero.
@@ -32,7 +32,7 @@ pub fn sin_cos_of_turn(numerator: i64, denominator: u32) -> (f64, f64) {
     }
 }
 
-/// Returns sine and cosine of `part / whole` of 45 degrees.
+/// Returns sine and cosine of the angle `part / whole` times 45 degrees.
 fn first_eighth(part: i64, whole: i64) -> (f64, f64) {
     if part == whole {
         return (FRAC_1_SQRT_2, FRAC_1_SQRT_2);
@@ -46,7 +46,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn quarters_and_eighths_are_exact() {
+    fn sine_and_cosine_of_quarter_turns_and_eighth_turns_are_exact() {
         assert_eq!(sin_cos_of_turn(0, 4), (0.0, 1.0));
         assert_eq!(sin_cos_of_turn(1, 4), (1.0, 0.0));
         assert_eq!(sin_cos_of_turn(2, 4), (0.0, -1.0));
@@ -57,14 +57,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn half_a_turn_negates_every_bit(n in -5000i64..5000, half in 2u32..1000) {
+        fn half_a_turn_changes_only_the_signs_of_sine_and_cosine(n in -5000i64..5000, half in 2u32..1000) {
             let (s, c) = sin_cos_of_turn(n, 2 * half);
             let (t, d) = sin_cos_of_turn(n + i64::from(half), 2 * half);
             prop_assert_eq!((t, d), (-s, -c));
         }
 
         #[test]
-        fn it_is_the_sine_and_the_cosine(n in -5000i64..5000, whole in 1u32..2000) {
+        fn the_functions_of_a_fraction_of_a_turn_approximate_sine_and_cosine(n in -5000i64..5000, whole in 1u32..2000) {
             let (s, c) = sin_cos_of_turn(n, whole);
             let angle = std::f64::consts::TAU * n as f64 / f64::from(whole);
             prop_assert!((s - angle.sin()).abs() < 1e-11 && (c - angle.cos()).abs() < 1e-11);

@@ -1,10 +1,11 @@
 //! Binning finds, for each primitive, the groups of slices that can show the primitive. Binning takes place once per
 //! volume, and only uses the signs of a few plane equations.
 //!
-//! The code of a vertex has one bit per plane, which is set on the positive side. The `and` of a primitive's codes
-//! gives the planes with the whole primitive on their positive side. The complement of the `or` gives the planes with
-//! the whole primitive on their negative side. A region of space is defined by the signs of the plane equations at its
-//! points. A primitive cannot touch a region if one plane separates the primitive from the region.
+//! The code of a vertex has one bit per plane. A bit is set if the vertex is on the positive side of its plane. The
+//! `and` of a primitive's codes gives the planes with the whole primitive on their positive side. The complement of the
+//! `or` gives the planes with the whole primitive on their negative side. A region of space is defined by the signs of
+//! the plane equations at its points. A primitive cannot touch a region if one plane separates the primitive from the
+//! region.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,39 +14,37 @@ use serde::{Deserialize, Serialize};
 pub struct BinRegion {
     /// Signs of the plane equations in the region: bit i is set if the region lies on the positive side of plane i.
     pub signs: u32,
-    /// Planes that bound the region: bit i is set if plane i is a bound.
+    /// Planes that bound the region: bit i is set if plane i bounds the region.
     pub bounds: u32,
-    /// Group of slices that draw the region, as a bit number of [`SliceView::bins`](crate::SliceView::bins).
+    /// Number of the bit in [`SliceView::bins`](crate::SliceView::bins) that stands for the slices of this region.
     pub group: u32,
 }
 
-/// The planes and regions by which primitives are sorted for a display.
+/// The planes and regions of space by which primitives are sorted into bins, with one bin for each group of slices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinLayout {
-    /// Planes (a, b, c, d). A plane is positive at points with a x + b y + c z + d >= 0.
+    /// Planes (a, b, c, d). A point is on the positive side of a plane if a x + b y + c z + d >= 0.
     pub planes: Vec<[f64; 4]>,
-    /// Regions into which the planes divide space.
     pub regions: Vec<BinRegion>,
     /// Greatest distance in pixels from a slice's exact volume at which the slice still shows points.
     pub tolerance: f64,
 }
 
-/// Choice of the plane equations that decide if a primitive belongs to a bin.
+/// Choice of the planes by which primitives are sorted into bins (groups of slices).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Binning {
     /// No binning: every slice draws every primitive.
     Off,
-    /// The test of a region uses only the two planes that bound the region, so a primitive gets into more bins than
-    /// with all planes. This test is the first version in the SpatialGL paper.
+    /// Each primitive is tested only against the two planes that bound a region, so the primitive gets into more bins
+    /// than with all planes. This test is the first version in the SpatialGL paper.
     TwoPlanes,
-    /// The test of each region uses all planes of the layout.
+    /// Each primitive is tested against all planes by which space is divided.
     #[default]
     AllPlanes,
 }
 
 impl Binning {
-    /// All methods of binning, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 3] =
         [("off", Self::Off), ("two-planes", Self::TwoPlanes), ("all-planes", Self::AllPlanes)];
 }
@@ -59,8 +58,8 @@ pub enum BinTolerance {
     /// The distance by which the display's clip enlarges the slice volumes. With this tolerance, no fragment is lost.
     #[default]
     OfTheClip,
-    /// No tolerance, as in the SpatialGL paper. A vertex in the plane counts as lying only on the plane's positive
-    /// side. These codes lose fragments if the clip enlarges the slice volumes.
+    /// No tolerance, as in the SpatialGL paper. A vertex in a plane counts as lying only on the plane's positive side.
+    /// Fragments are lost if the clip enlarges the slice volumes.
     Codes,
     /// A fixed distance in pixels, which does not depend on the clip.
     Pixels(f64),
@@ -81,7 +80,7 @@ impl BinLayout {
     }
 
     /// Returns a layout of eight sectors of 45 degrees around y. The planes z, x, x - z and x + z are bits 0 to 3.
-    /// Opposite sectors form one double wedge and therefore one group.
+    /// Opposite sectors form one double wedge, which one group of slices draws.
     #[must_use]
     pub fn double_wedges(tolerance: f64) -> Self {
         let planes = vec![[0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, -1.0, 0.0], [1.0, 0.0, 1.0, 0.0]];
@@ -112,8 +111,8 @@ impl BinLayout {
         touched.fold(0, |groups, region| groups | 1 << region.group)
     }
 
-    /// Returns the regions, one bit each in the layout's order, that a primitive with these corners may touch. The test
-    /// uses all planes of the layout.
+    /// Returns the regions that a primitive with these corners may touch, with one bit for each region of the layout.
+    /// The test uses all planes of the layout.
     #[must_use]
     pub fn touched_regions(&self, corners: &[[f64; 3]], tolerance: BinTolerance) -> u64 {
         let codes = Codes::of(self, corners, tolerance, 0.0);
@@ -122,10 +121,11 @@ impl BinLayout {
     }
 }
 
-/// Signs of the plane equations in each sector, from +x to +z. The highest of the four binary digits is bit 3 (x + z).
+/// Signs of the plane equations in each sector, from +x to +z. The binary digits stand for the planes x + z, x - z, x
+/// and z, in this order.
 const SECTOR_SIGNS: [u32; 8] = [0b1111, 0b1011, 0b1001, 0b0001, 0b0000, 0b0100, 0b0110, 0b1110];
 
-/// Planes that bound each sector. Each of the sector's two planes has one bit.
+/// The two planes that bound each sector, as a bit mask, in the order of `SECTOR_SIGNS`.
 const SECTOR_BOUNDS: [u32; 8] = [0b0101, 0b0110, 0b1010, 0b1001, 0b0101, 0b0110, 0b1010, 0b1001];
 
 /// The combined codes of a primitive, with one bit per plane. A bit of `and` is set if the whole primitive lies on the
@@ -164,9 +164,9 @@ impl Codes {
 /// Returns two booleans for one plane. The first is true if all of a primitive lies on the plane's positive side. The
 /// second is true if any part of the primitive lies on this side.
 ///
-/// With a tolerance, a primitive lies on one side only if it lies strictly beyond the tolerance. A triangle in a bin
-/// plane is therefore drawn by the slices on both sides of the plane. The rule for points on a boundary may assign the
-/// triangle to either side.
+/// If a primitive is nearer to the plane than the tolerance, the primitive counts as lying on both sides. A triangle in
+/// the plane is therefore drawn by the slices on both sides. This is necessary, because the rule for points on a
+/// boundary may assign the triangle to either side.
 fn sides(least: f64, most: f64, norm: f64, tolerance: BinTolerance, clip: f64, extra: f64) -> (bool, bool) {
     let pixels = match tolerance {
         BinTolerance::Codes => return (least >= 0.0, most >= 0.0),

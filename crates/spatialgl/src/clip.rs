@@ -9,13 +9,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SliceClip {
-    /// Clipping uses only the near and far planes of an orthographic projection. The volume is a prism as thick as the
-    /// exact slice at the rim.
+    /// Clipping uses only the near and far planes of an orthographic projection. The clipped volume is a prism with the
+    /// same thickness everywhere. The exact volume of a slice has this thickness only at the rim of the display.
     Prism,
     /// Each pass clips with two user clip planes. The volume of a slice is a double wedge around the axis, and each
     /// half (lobe) of the double wedge has its own pass.
     UserPlanes,
-    /// The fragment program tests the product of the interpolated distances from both boundary planes of the slice.
+    /// The fragment program tests the product of the interpolated distances from the two boundary planes of the slice.
     /// This gives the exact volume in one pass.
     ShaderPlanes,
     /// Clip planes whose distance from the slice grows from q pixels at the axis to the exact half thickness at the
@@ -24,35 +24,33 @@ pub enum SliceClip {
         /// Half thickness q of the volume at the axis, in pixels.
         f64,
     ),
-    /// Both boundary planes are moved outwards by q pixels.
+    /// The two boundary planes of the exact slice are moved outwards by q pixels.
     Parallel(
-        /// Offset q of both planes, in pixels.
+        /// Distance q by which the two planes are moved outwards, in pixels.
         f64,
     ),
-    /// The product of the distances from both boundary planes, plus a bias b, is tested.
+    /// The fragment program tests the sign of a sum: the product of a point's distances from the two boundary planes,
+    /// plus a bias b.
     Hyperbolic(
-        /// Bias b of the product, in square pixels.
+        /// Bias b that is added to the product of the distances, in square pixels.
         f64,
     ),
 }
 
-/// Offset of the parallel and the tapered clip, in pixels. The offset is assumed (0 to 2). With half a pixel, the
-/// volume of a slice is at least one pixel thick everywhere.
+/// Distance by which the parallel and the tapered clip move planes outwards, in pixels. The value is assumed (0 to 2).
+/// With half a pixel, the volume of a slice is at least one pixel thick everywhere.
 pub const DEFAULT_OFFSET_PX: f64 = 0.5;
 
-/// Bias of the hyperbolic clip, in square pixels. The bias is assumed (0 to 4) as the square of [`DEFAULT_OFFSET_PX`].
+/// Bias of the hyperbolic clip, in square pixels. The assumed value (0 to 4) is the square of [`DEFAULT_OFFSET_PX`].
 pub const DEFAULT_HYPERBOLIC_BIAS_PX2: f64 = 0.25;
 
 /// Half of the wedge that one slice represents: sine, cosine and tangent of d/2, where d is the angle between slices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfWedge {
-    /// Sine of half the angle between slices, S = sin(d/2).
     pub sin: f64,
-    /// Cosine of half the angle between slices, C = cos(d/2).
     pub cos: f64,
-    /// Tangent of half the angle between slices, T = tan(d/2).
     pub tan: f64,
-    /// Radius of the display, which is half the width of the image, pixels.
+    /// Half the width of the image, in pixels.
     pub radius: f64,
 }
 
@@ -76,7 +74,6 @@ impl SliceClip {
         Self::Hyperbolic(DEFAULT_HYPERBOLIC_BIAS_PX2),
     ];
 
-    /// Returns the name of the method in options, tables and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -125,7 +122,6 @@ impl SliceClip {
         }
     }
 
-    /// Returns the slice volume that this method gives for a slice with the boundary planes `planes`.
     #[must_use]
     pub fn volume(self, planes: WedgePlanes, ties: TieRule, wedge: HalfWedge) -> SliceVolume {
         match self {

@@ -17,7 +17,6 @@ pub enum Combine {
 }
 
 impl Combine {
-    /// All rules for the colour, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 3] = [("last", Self::Last), ("max", Self::Max), ("add", Self::Add)];
 }
 
@@ -69,7 +68,7 @@ pub struct CommandBuffer {
     pub(crate) background: [u8; 3],
 }
 
-/// A triangle in the form that a renderer receives.
+/// A recorded triangle with its lit colours, in the form that a renderer receives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommandTriangle {
     /// Corners in world coordinates, pixels.
@@ -79,7 +78,7 @@ pub struct CommandTriangle {
 }
 
 impl CommandBuffer {
-    /// Returns the number of transformed and lit vertices.
+    /// Returns the number of recorded vertices, which are already transformed and lit.
     #[must_use]
     pub const fn vertices(&self) -> usize {
         self.positions.len()
@@ -91,7 +90,7 @@ impl CommandBuffer {
         self.primitives.len()
     }
 
-    /// Returns red, green and blue of pixels without a fragment.
+    /// Returns the colour of pixels without a fragment: red, green and blue.
     #[must_use]
     pub const fn background(&self) -> [u8; 3] {
         self.background
@@ -115,7 +114,6 @@ impl CommandBuffer {
         })
     }
 
-    /// Returns the same primitives with another rule for several fragments on one pixel.
     #[must_use]
     pub fn combining(&self, combine: Combine) -> Self {
         let mut combining = self.clone();

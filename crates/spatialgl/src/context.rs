@@ -1,5 +1,5 @@
-//! The programming interface: drawing state as in GL, vertices, and drawing. The interface does not depend on any
-//! display.
+//! The programming interface, which is similar to OpenGL: a drawing state, vertices and draw calls. The interface does
+//! not depend on any display.
 
 use crate::command::{Combine, CommandBuffer, Primitive, Shape};
 use glam::{DMat4, DVec3};
@@ -64,13 +64,10 @@ impl VertexBuffer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Topology {
-    /// Each vertex is a point.
     Points,
-    /// Each pair of vertices is a line.
     Lines,
     /// Each vertex after the first ends a line that begins at the previous vertex.
     LineStrip,
-    /// Each group of three vertices is a triangle.
     Triangles,
     /// Each vertex from the third on forms a triangle with the two preceding vertices.
     TriangleStrip,
@@ -89,7 +86,7 @@ pub struct TwoSidedLight {
     pub diffuse: f64,
 }
 
-/// The drawing state, and the draw calls recorded since the last call of [`DrawContext::present`]. That function
+/// The drawing state, and the draw calls recorded since the last call of [`DrawContext::present`]. The method `present`
 /// returns the recorded draw calls and does not change the drawing state.
 #[derive(Clone, Debug)]
 pub struct DrawContext {
@@ -101,7 +98,6 @@ pub struct DrawContext {
     pub line_width: f64,
     /// Light source of the scene. With `None`, colours stay unchanged.
     pub light: Option<TwoSidedLight>,
-    /// Rule for the colour of a pixel with several fragments.
     pub combine: Combine,
     recording: CommandBuffer,
 }

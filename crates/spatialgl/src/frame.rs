@@ -5,7 +5,7 @@ use crate::projection::Size;
 use crate::stats::VolumeStats;
 use pxpl5_sim::mix;
 
-/// One bit per colour for every pixel of every slice, with eight pixels per word as in the projector's memory.
+/// The pixels of all slices, with one bit per colour. One word holds eight pixels, as in the projector's memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BitPlanes {
     size: Size,
@@ -20,7 +20,6 @@ impl BitPlanes {
         Self { size, slices, words: vec![0; slices as usize * words_of_slice(size)] }
     }
 
-    /// Returns width and height of every slice in pixels.
     #[must_use]
     pub const fn size(&self) -> Size {
         self.size

@@ -30,13 +30,13 @@ impl Halftone {
         Ok(Self { size, rows })
     }
 
-    /// Returns the number of rows, which is also the number of columns, of the matrix.
+    /// Returns the number of rows of the matrix, which is also the number of columns.
     #[must_use]
     pub const fn size(&self) -> u32 {
         self.size
     }
 
-    /// Returns the threshold at pixel (x, y). A channel's bit is set if its value exceeds the threshold.
+    /// Returns the threshold at pixel (x, y). The bit of a channel is set if the channel's value exceeds the threshold.
     #[must_use]
     pub fn threshold(&self, x: u32, y: u32) -> u8 {
         self.rows[(y % self.size) as usize][(x % self.size) as usize]
@@ -62,8 +62,8 @@ fn bayer(size: u32, i: u32, j: u32) -> u32 {
     (0..levels).fold(0, |value, bit| value << 2 | digit(bit))
 }
 
-/// Compares eight channel values with eight thresholds, one per byte. The result for the leftmost pixel (lowest byte)
-/// is in bit 7.
+/// Compares eight channel values with eight thresholds. Each value and each threshold is one byte. The result for the
+/// leftmost pixel (lowest byte) is in bit 7.
 #[inline(always)]
 pub(crate) fn bits_above(values: u64, thresholds: u64) -> u8 {
     const HIGH: u64 = 0x8080_8080_8080_8080;
@@ -86,21 +86,21 @@ mod tests {
     }
 
     #[test]
-    fn the_first_rows_of_the_matrix_are_bayers() {
+    fn the_first_rows_of_the_halftone_matrix_equal_bayers_matrix() {
         let row = |j| (0..8).map(|i| bayer(8, i, j)).collect::<Vec<_>>();
         assert_eq!(row(0), [0, 32, 8, 40, 2, 34, 10, 42]);
         assert_eq!(row(1), [48, 16, 56, 24, 50, 18, 58, 26]);
     }
 
     #[test]
-    fn so_many_of_64_pixels_are_lit() {
+    fn a_colour_value_lights_the_stated_number_of_64_pixels() {
         let counts = [0u8, 1, 2, 64, 127, 128, 200, 253, 254, 255]
             .map(|c| thresholds(8).iter().filter(|threshold| c > **threshold).count());
         assert_eq!(counts, [0, 0, 1, 16, 32, 32, 50, 63, 64, 64]);
     }
 
     #[test]
-    fn every_size_lights_the_rounded_share() {
+    fn a_halftone_matrix_of_any_size_lights_the_rounded_fraction_of_its_pixels() {
         for size in [2u32, 4, 8, 16] {
             for c in 0..=255u8 {
                 let lit = thresholds(size).iter().filter(|threshold| c > **threshold).count();
@@ -112,7 +112,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn eight_at_a_time_are_as_one_by_one(values: [u8; 8], thresholds: [u8; 8]) {
+        fn eight_pixels_at_once_equal_single_pixels(values: [u8; 8], thresholds: [u8; 8]) {
             let bits = bits_above(u64::from_le_bytes(values), u64::from_le_bytes(thresholds));
             for i in 0..8 {
                 prop_assert_eq!(bits >> (7 - i) & 1 == 1, values[i] > thresholds[i]);

@@ -15,7 +15,7 @@ pub struct SliceImage {
 }
 
 impl SliceImage {
-    /// Creates a dark image. The width must be a multiple of 8, which displays guarantee.
+    /// Creates a dark image. The width must be a multiple of 8, and every display has such a width.
     #[must_use]
     pub fn new(size: Size) -> Self {
         let pixels = size[0] as usize * size[1] as usize;
@@ -107,8 +107,8 @@ impl SliceImage {
         y as usize * self.size[0] as usize + x as usize
     }
 
-    /// Returns true if a fragment is nearer to the near plane than all earlier fragments of its pixel. If so, stores
-    /// the fragment's distance.
+    /// Returns true if a fragment is nearer to the near plane than all earlier fragments of its pixel. In this case,
+    /// the function also stores the distance of the fragment.
     #[inline]
     pub(crate) fn is_nearest(&mut self, x: u32, y: u32, distance: f64) -> bool {
         if self.depth.is_empty() {
@@ -150,7 +150,7 @@ impl SliceImage {
         self.stencil.iter().map(|byte| u64::from(byte.count_ones())).sum()
     }
 
-    /// Draws a pixel if no fragment was drawn on it before. Returns true if this call drew the pixel.
+    /// Draws a pixel if the pixel has no fragment yet. Returns true if this call drew the pixel.
     pub(crate) fn fill_gap(&mut self, x: f64, y: f64, colour: [u8; 3]) -> bool {
         let inside = x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]);
         let is_gap = inside && !self.is_marked(x as u32, y as u32);

@@ -18,7 +18,7 @@
 //!
 //! - A display consists of views and slice volumes ([`SpatialDisplay`]). The pipeline uses no other property of a
 //!   display, and the recorded draw calls do not depend on the display. [`SweptDisplay`] is the spinning screen of
-//!   the paper. [`PlaneStack`] and [`FlatDisplay`] show the same draw calls.
+//!   the SpatialGL paper. [`PlaneStack`] and [`FlatDisplay`] show the same draw calls.
 //! - The boundary planes of swept slices come from one table in which opposite planes are exact negatives. Neighbouring
 //!   slices therefore compute the same number for a point between them. [`TieRule`] assigns the point to one of the two
 //!   slices.
@@ -106,7 +106,6 @@ pub use timing::{GpuTiming, TimeModel, VolumeTime};
 pub use view::{PixelFormat, SliceView, SpatialDisplay};
 pub use workers::{OneThread, Task, Workers};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

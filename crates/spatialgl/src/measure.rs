@@ -8,7 +8,7 @@ use crate::view::{SliceView, SpatialDisplay};
 use glam::DVec3;
 use serde::Serialize;
 
-/// Counts of samples along the curves in which the slices intersect a mesh.
+/// Counts of sample points along the curves in which the slices intersect a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Connected {
     /// Number of samples inside the image. Neighbouring samples are at most a pixel apart.
@@ -47,7 +47,6 @@ pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: 
     Some(found)
 }
 
-/// Calls `each` for every triangle that crosses the plane of a slice, with both ends of the intersection.
 fn each_curve(view: &SliceView, commands: &CommandBuffer, all: &Bin, mut each: impl FnMut([[f64; 3]; 2])) {
     // Clusters away from the slice are skipped.
     let middle = view.volume.middle();
@@ -83,7 +82,6 @@ pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, f
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Counts all samples and the shown samples in each row of a slice's image.
 fn rows_of_slice(
     view: &SliceView,
     commands: &CommandBuffer,
@@ -141,7 +139,7 @@ impl Around {
         Self { size, near }
     }
 
-    /// Calls `each` for every sample of a curve inside the image. The arguments of `each` are the row of the sample,
+    /// Calls `each` for every sample inside the image along a curve. The arguments of `each` are the row of the sample,
     /// and a boolean that is true if the sample is shown.
     fn samples(&self, view: &SliceView, ends: [[f64; 3]; 2], mut each: impl FnMut(u32, bool)) {
         let [from, to] = ends.map(|end| pixel_of(view, end, self.size));
@@ -158,15 +156,14 @@ impl Around {
     }
 }
 
-/// Returns the position of a point of the slice in the slice's image, in pixels from the top left.
 fn pixel_of(view: &SliceView, local: [f64; 3], size: [u32; 2]) -> [f64; 2] {
     let clip = view.projection * DVec3::from_array(local).extend(1.0);
     let [width, height] = size.map(f64::from);
     [(clip.x / clip.w + 1.0) * width / 2.0, (1.0 - clip.y / clip.w) * height / 2.0]
 }
 
-/// Returns the number of lit pixels of all slices in each ring around the axis. Rings are `ring` pixels wide, and the
-/// distance is measured from the middle column.
+/// Returns, for each ring around the axis, the number of lit pixels in all slices. Rings are `ring` pixels wide, and
+/// distances are measured from the middle column.
 #[must_use]
 pub fn brightness_by_radius(planes: &BitPlanes, ring: u32) -> Vec<u64> {
     let [width, _] = planes.size();
@@ -189,8 +186,8 @@ pub fn innermost_lit_radius(planes: &BitPlanes) -> Option<u32> {
 /// Returns the radius in pixels of the display's dead zone around the axis. In the dead zone, no slice can show any
 /// point of any scene.
 ///
-/// A column of pixels is tested at its centre, at half of the volume's height, on both sides of the axis. The column
-/// belongs to the dead zone if no slice accepts either of the two points. Returns `None` if no slice accepts any
+/// Each column of pixels is tested at two points, one on each side of the axis, at half of the volume's height. The
+/// column belongs to the dead zone if no slice accepts either of the two points. Returns `None` if no slice accepts any
 /// column.
 #[must_use]
 pub fn dead_zone_radius(display: &dyn SpatialDisplay) -> Option<u32> {

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 /// Number of three-bit pixels in one word of [`pack_dense`] (derived): 32 / 3, rounded down.
 pub const DENSE_PIXELS: usize = 10;
 
-/// Number of pixels in one word (published in the SpatialGL paper).
+/// Number of pixels in one word of the projector's memory (published in the SpatialGL paper).
 pub const PIXELS_PER_WORD: u32 = 8;
 
-/// The order of the eight pixels in a byte.
+/// The order of eight pixels in a byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BitOrder {
@@ -37,7 +37,7 @@ pub const fn pixel_of_word(word: u32, pixel: u32) -> u8 {
     (column & 1 | column >> 7 & 2 | column >> 14 & 4) as u8
 }
 
-/// Returns a packed word in which each byte has its eight pixels in the order `order`.
+/// Returns a word of eight pixels in the given order of bits.
 #[must_use]
 pub const fn in_bit_order(word: u32, order: BitOrder) -> u32 {
     match order {
@@ -67,20 +67,20 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn the_reversed_order_mirrors_each_byte_in_its_place() {
+    fn the_reversed_bit_order_mirrors_the_bits_of_each_byte() {
         assert_eq!(in_bit_order(packed_word(0x80, 0x40, 0x03), BitOrder::LeftIsLow), packed_word(0x01, 0x02, 0xC0));
     }
 
     proptest! {
         #[test]
-        fn dense_words_give_back_their_pixels(pixels in prop::collection::vec(0u8..8, 0..64)) {
+        fn dense_words_are_unpacked_to_their_pixels(pixels in prop::collection::vec(0u8..8, 0..64)) {
             let words = pack_dense(&pixels);
             prop_assert_eq!(words.len(), pixels.len().div_ceil(10));
             prop_assert_eq!(unpack_dense(&words, pixels.len()), pixels);
         }
 
         #[test]
-        fn a_word_gives_back_its_pixels(pixels: [u8; 8]) {
+        fn a_word_is_unpacked_to_its_pixels(pixels: [u8; 8]) {
             let byte = |channel: u32| (0..8).fold(0, |byte, i| byte << 1 | (pixels[i] >> channel & 1));
             let word = packed_word(byte(0), byte(1), byte(2));
             for i in 0..8 {

@@ -21,8 +21,8 @@
 //!
 //! # Numbers
 //!
-//! [`PerspectaConfig`] has the numbers of the paper. Where the paper gives no number, the table has an assumed value
-//! with a range. [`figures`] compares the paper's figures with this model.
+//! [`PerspectaConfig`] has the numbers of the SpatialGL paper. Where the paper gives no number, the table has an
+//! assumed value with a range. [`figures`] compares the paper's figures with this model.
 //!
 //! # Not modelled
 //!

@@ -20,7 +20,6 @@ pub enum Projection {
     Perspective {
         /// Horizontal and vertical position of the eye relative to the axis of the image, in pixels.
         eye: [f64; 2],
-        /// Distance of the eye from the plane of the slice, in pixels.
         distance: f64,
         /// Horizontal and vertical shear, in pixels per pixel of s, the distance from the slice.
         shear: [f64; 2],
@@ -36,11 +35,12 @@ pub enum Projection {
 pub struct Jitter {
     /// Seed of the random sequence. The seed is the same in all passes and volumes.
     pub seed: u64,
-    /// Distance of the eye from the slice in radii of the display. Assumed 4, 2 to 16.
+    /// Distance of the eye from the slice in radii of the display. The value 4 is assumed (2 to 16).
     pub eye_distance: f64,
-    /// Radius of the disc in which the eye lies, in radii of the display. Assumed 0.5, 0 to 1.
+    /// Radius of the disc in which the eye lies, in radii of the display. The value 0.5 is assumed (0 to 1).
     pub eye_radius: f64,
-    /// Greatest shift of a point by the shear, at the near or far plane of the slice, in pixels. Assumed 0.5, 0 to 1.
+    /// Greatest shift of a point by the shear, at the near or far plane of the slice, in pixels. The value 0.5 is
+    /// assumed (0 to 1).
     pub shear_px: f64,
 }
 
@@ -53,7 +53,7 @@ impl Jitter {
     }
 }
 
-/// The eye and the shear of one slice.
+/// The eye and the shear with which a slice is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliceEye {
     /// Position of the eye: horizontal and vertical position, and distance from the slice, in pixels. `None` for an eye
@@ -75,7 +75,6 @@ impl Projection {
         }
     }
 
-    /// Returns the name of the projection in options, tables and files.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -125,7 +124,7 @@ fn unit(seed: u64, slice: u32, draw: u64) -> f64 {
 }
 
 impl SliceEye {
-    /// Returns the matrix from the coordinates (u, v, s, 1) of the slice to clip coordinates, with depth 0 at the near
+    /// Returns the matrix from the slice's coordinates (u, v, s, 1) to clip coordinates. The depth is 0 at the near
     /// plane and 1 at the far plane.
     #[must_use]
     pub fn clip_matrix(&self, size: Size, reach: f64) -> DMat4 {
@@ -149,8 +148,8 @@ impl SliceEye {
         matrix_of_rows(rows)
     }
 
-    /// Returns the matrix rows from the coordinates (u, v, s, 1) of the slice to homogeneous window coordinates: x to
-    /// the right and y down in pixels, depth, w.
+    /// Returns the rows of the matrix from the slice's coordinates (u, v, s, 1) to homogeneous window coordinates.
+    /// These coordinates are x to the right and y down, both in pixels, depth, and w.
     ///
     /// The result equals [`Self::clip_matrix`] followed by the viewport. This function avoids the rounding of a
     /// division by half the image's size and of a multiplication by the same number.

@@ -65,7 +65,6 @@ impl ClipQuadratic {
         Some(Self::of_plane(slope, offset, wedge, bias))
     }
 
-    /// Returns the value of the quadratic at a sample.
     #[must_use]
     pub fn at(&self, u: f64, v: f64) -> f64 {
         self.uu * u * u + self.uv * u * v + self.vv * v * v + self.u * u + self.v * v + self.one
@@ -81,7 +80,7 @@ mod tests {
     const WEDGE: fn() -> HalfWedge = || HalfWedge::new(396, 384.0);
 
     #[test]
-    fn case_27_the_quadratic_of_a_plane() {
+    fn case_27_the_quadratic_of_a_plane_has_the_computed_coefficients_and_values() {
         let q = ClipQuadratic::of_plane([0.5, -0.25], -20.0, WEDGE(), 0.25);
         let expected = [-0.2499213, 0.2499843, -0.0624961, 19.9987413, -9.9993706, -399.7248255];
         for (found, expected) in [q.uu, q.uv, q.vv, q.u, q.v, q.one].into_iter().zip(expected) {
@@ -96,7 +95,7 @@ mod tests {
     /// 16 fraction bits of the renderers' format, S^2 would be 4 units, which is too coarse. With 26 bits, S^2 is 4,224
     /// units, and the quadratic fits into 48 bits.
     #[test]
-    fn its_scale_fits_the_renderers_words() {
+    fn a_quadratic_with_26_fraction_bits_fits_into_48_bits_and_16_fraction_bits_are_too_coarse() {
         let square = WEDGE().sin * WEDGE().sin;
         assert!((square * f64::from(1 << 16) - 4.12).abs() < 0.01);
         assert!((square * f64::from(1 << 26) - 4_223.6).abs() < 0.1);
@@ -105,7 +104,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_has_the_sign_of_the_biased_product(
+        fn a_quadratic_has_the_sign_of_the_biased_product(
             corners in prop::array::uniform3(prop::array::uniform3(-300.0f64..300.0)),
             u in -384.0f64..384.0, v in -384.0f64..384.0, bias in 0.0f64..4.0,
         ) {

@@ -34,7 +34,6 @@ pub enum Coverage {
 }
 
 impl Coverage {
-    /// Both rules for covered pixels, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("sampled", Self::Sampled), ("connected", Self::Connected)];
 }
 
@@ -58,7 +57,6 @@ pub struct SliceStats {
 /// drawing.
 #[derive(Clone, Copy, Debug)]
 pub struct SliceWork<'a> {
-    /// Recorded draw calls, which contain the primitives.
     pub commands: &'a CommandBuffer,
     pub bin: &'a Bin,
     pub coverage: Coverage,
@@ -66,7 +64,6 @@ pub struct SliceWork<'a> {
 
 /// A renderer of slices, which draws into an image that [`SliceImage::clear`] has cleared.
 pub trait SliceRenderer: Send + Sync {
-    /// Draws one slice with all its passes.
     fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats;
 
     /// Returns the number of samples per pixel. Each sample counts as a fragment.

@@ -19,11 +19,10 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Choice of the slices of a turn that are drawn. All other slices are mirrored copies of drawn slices.
+/// Rule that selects the slices to draw in a turn of the screen. All other slices are mirrored copies of drawn slices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Strobes {
-    /// Each slice of the turn is drawn.
     #[default]
     Each,
     /// The slices of the first half turn are drawn. The slices of the second half turn are mirror images of these
@@ -32,28 +31,20 @@ pub enum Strobes {
 }
 
 impl Strobes {
-    /// Both choices of drawn slices, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("each", Self::Each), ("mirror", Self::Mirror)];
 }
 
 pxpl5_sim::parameters::named!(Strobes, "choice of strobes", Strobes::ALL);
 
-/// The settings for rendering a volume from recorded graphics commands.
+/// The choices for drawing a volume.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeConfig {
-    /// Method of sorting primitives into bins before slices are drawn.
     pub binning: Binning,
-    /// Distance from a plane within which a vertex counts as lying on both sides.
     pub bin_tolerance: BinTolerance,
-    /// Size of tiles, and number of slices per occlusion query.
     pub tiling: Tiling,
-    /// Conversion from eight bits to one bit per channel.
     pub halftone: Halftone,
-    /// Rule for the pixels of a slice that a primitive covers.
     pub coverage: Coverage,
-    /// Choice of the slices of a turn that are drawn.
     pub strobes: Strobes,
-    /// True if the frame keeps the colours before halftoning.
     pub keeps_colours: bool,
 }
 
@@ -118,7 +109,6 @@ pub fn render_volume(
     Ok(VolumeFrame { planes, stats, colours: config.keeps_colours.then_some(colours) })
 }
 
-/// Primitives that the slices of each group of slices draw.
 struct Bins {
     lists: BTreeMap<u64, Bin>,
     memberships: u64,
@@ -164,18 +154,15 @@ impl SliceWords<'_> {
     }
 }
 
-/// The data that all batches of slices of a volume share.
 struct Volume<'a> {
     commands: &'a CommandBuffer,
     config: &'a VolumeConfig,
     renderer: &'a dyn SliceRenderer,
     bins: &'a Bins,
     size: Size,
-    /// Dark target images that no task uses at the moment.
     scratch: Mutex<Vec<SliceImage>>,
 }
 
-/// Slices that are drawn, queried and packed together, with their results.
 struct Batch<'a> {
     views: &'a [SliceView],
     words: Vec<SliceWords<'a>>,
@@ -311,14 +298,12 @@ impl<'a> Volume<'a> {
     }
 }
 
-/// Counts the primitives with a corner outside the display's volume.
 fn outside(display: &dyn SpatialDisplay, commands: &CommandBuffer) -> u64 {
     let is_shown: Vec<bool> = commands.positions.iter().map(|p| display.shows(DVec3::from_array(*p))).collect();
     let is_outside = |corners: &[u32]| corners.iter().any(|i| !is_shown[*i as usize]);
     commands.primitives.iter().filter(|primitive| is_outside(primitive.corners())).count() as u64
 }
 
-/// Returns the drawn pixels of an image with their colours.
 fn samples(image: &SliceImage) -> Vec<ColourSample> {
     let width = image.size()[0];
     let mut samples = Vec::new();

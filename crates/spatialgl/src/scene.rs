@@ -14,7 +14,7 @@ const SPHERE_ROWS: u32 = 12;
 pub const SCENE_REACH: f64 = 0.9;
 
 /// Records the draw calls of a scene for a display of this radius. The middle of the scene's box is at the origin, and
-/// its farthest point at [`SCENE_REACH`] times the radius. If `lit` is true, the scene's own light shades it. The
+/// its farthest point at [`SCENE_REACH`] times the radius. If `lit` is true, the scene is shaded by its own light. The
 /// background stays dark.
 ///
 /// # Errors

@@ -2,16 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The rule for a point exactly on a boundary plane of a slice's volume, which is a double wedge around the axis. The
-/// SpatialGL paper's rule "signs equal" is ambiguous for such a point.
+/// The rule for a point exactly on a boundary plane of a slice's volume. The volume is a double wedge around the axis.
+/// The SpatialGL paper's rule "signs equal" is ambiguous for such a point.
 ///
 /// The values `a` and `b` are the signed distances of the point from the two boundary planes. Both are positive in the
 /// positive lobe: the half of the double wedge with horizontal coordinate u > 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
-    /// Each boundary plane belongs to the slice that begins with this plane, so every point off the axis is in exactly
-    /// one slice. This rule is not from the SpatialGL paper.
+    /// Each boundary plane belongs to only one of its two adjacent slices, the slice that begins at this plane. Every
+    /// point off the axis is therefore in exactly one slice. This rule is not from the SpatialGL paper.
     #[default]
     HalfOpen,
     /// The rule as printed in the SpatialGL paper: the product of the distances is positive. No slice contains its
@@ -20,13 +20,12 @@ pub enum TieRule {
     /// The rule as printed in the SpatialGL paper: the signs are equal, and zero counts as positive. A slice contains
     /// both planes of the positive lobe (half of the double wedge), no plane of the negative lobe, and the axis.
     SameSign,
-    /// Both planes belong to both lobes (halves of the double wedge), as with user clip planes. The product of the
-    /// distances is not negative.
+    /// Points on a boundary plane belong to both lobes (halves of the double wedge), as with user clip planes. The
+    /// product of the distances is not negative.
     Closed,
 }
 
 impl TieRule {
-    /// All rules for points on a boundary, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 4] = [
         ("half-open", Self::HalfOpen),
         ("product-positive", Self::ProductPositive),
@@ -61,12 +60,12 @@ impl TieRule {
 /// z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WedgePlanes {
-    /// Coefficients of x and z of plane A. Points of the positive lobe (half of the double wedge) lie on its positive
-    /// side.
+    /// Coefficients of x and z of plane A. Points of the positive lobe (half of the double wedge) lie on the positive
+    /// side of this plane.
     pub a: [f64; 2],
-    /// Coefficients of x and z of plane B. Points of the positive lobe lie on its positive side.
+    /// Coefficients of x and z of plane B. Points of the positive lobe lie on the positive side of this plane.
     pub b: [f64; 2],
-    /// Fraction bits to which both planes are rounded at every sample, or `None` for double precision.
+    /// Number of fraction bits in the evaluation of both planes at every sample, or `None` for double precision.
     pub fraction_bits: Option<u32>,
 }
 
@@ -76,12 +75,14 @@ pub enum WedgeTest {
     /// Two user clip planes for each lobe (half of the double wedge), with one drawing pass per lobe. Fragments outside
     /// the planes are not generated.
     UserPlanes(TieRule),
-    /// The distances from both boundary planes are interpolated, and one test compares their signs.
+    /// A point's distances from the two boundary planes are interpolated, and one test compares the signs of the
+    /// distances.
     Shader(TieRule),
-    /// Both planes are moved outwards by this number of pixels before the product of the distances is tested.
+    /// A distance in pixels by which both boundary planes are moved outwards. The test then checks the sign of the
+    /// product of a point's distances from the two moved planes.
     Parallel(f64),
-    /// This number of square pixels is added to the product of the distances from both planes before the sign is
-    /// tested.
+    /// A bias in square pixels. The test multiplies a point's distances from the two boundary planes, adds the bias,
+    /// and checks the sign of the sum.
     Hyperbolic(f64),
 }
 
@@ -91,12 +92,7 @@ pub enum SliceVolume {
     /// All points between the near and far planes.
     Frustum,
     /// A slab low <= s < high parallel to the slice, where s is the distance from the slice in pixels.
-    Slab {
-        /// Lower limit of the distance s in the slab, inclusive.
-        low: f64,
-        /// Upper limit of the distance s in the slab, exclusive.
-        high: f64,
-    },
+    Slab { low: f64, high: f64 },
     /// A double wedge around the axis y: its planes, and its test.
     Wedge(WedgePlanes, WedgeTest),
     /// The volume |s| <= offset + slope |u|, bounded by clip planes. s is the distance from the slice, and u the
@@ -147,7 +143,6 @@ impl SliceVolume {
         }
     }
 
-    /// Returns the test that samples must pass in one replay of the commands.
     pub(crate) fn test(&self, pass: u32) -> SampleTest {
         match *self {
             Self::Frustum => SampleTest::All,
@@ -206,7 +201,6 @@ impl SampleTest {
         }
     }
 
-    /// Returns the number of fraction bits to which the planes are rounded, or `None` without rounding.
     pub(crate) const fn fraction_bits(self) -> Option<u32> {
         match self {
             Self::All | Self::Slab | Self::Taper { .. } => None,
@@ -215,7 +209,6 @@ impl SampleTest {
         }
     }
 
-    /// Returns the same test for values that are already rounded.
     pub(crate) const fn without_rounding(self) -> Self {
         match self {
             Self::Plus(ties, _) => Self::Plus(ties, None),

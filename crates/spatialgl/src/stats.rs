@@ -3,9 +3,9 @@
 use crate::raster::SliceStats;
 use serde::Serialize;
 
+/// Counts of the primitives, slices and passes of a drawn volume.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct VolumeStats {
-    /// Number of transformed vertices.
     pub vertices: u64,
     /// Number of triangles, lines and points.
     pub primitives: u64,
@@ -39,7 +39,6 @@ pub struct VolumeStats {
     pub queries: u64,
     /// Number of stencil clears: one for each batch of slices.
     pub stencil_clears: u64,
-    /// Number of halftoned and packed pixels.
     pub pixels_packed: u64,
     /// Size of all drawn slices with a 32-bit word per pixel, bytes.
     pub bytes_unpacked: u64,
@@ -47,7 +46,6 @@ pub struct VolumeStats {
     pub bytes_packed: u64,
     /// Number of bytes sent: the packed words of occupied tiles, and a bitmap of tiles for each batch.
     pub bytes_sent: u64,
-    /// Counts of the work for each drawn slice.
     pub slices: Vec<SliceStats>,
 }
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct Tiling {
     /// Side of a tile in pixels, a multiple of 8. With `None` there are no tiles, and every pixel is packed and sent.
     pub tile: Option<u32>,
-    /// Number of slices that share a stencil clear and the queries of tiles.
+    /// Number of slices in a batch. The slices of a batch share one clear of the stencil and the queries of tiles.
     pub batch: u32,
 }
 
@@ -26,7 +26,7 @@ impl Tiling {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] names the number, the expected range and the value found.
+    /// [`SettingError`] names the invalid number, the expected range and the found value.
     pub fn check(self) -> Result<(), SettingError> {
         if let Some(tile) = self.tile {
             SettingError::require((8..=4096).contains(&tile), "tile.size", "8 to 4096", tile)?;
@@ -73,14 +73,13 @@ impl TileGrid {
         u64::from((right - left) / 8) * u64::from(bottom - top)
     }
 
-    /// Sets `tiles` to true for each tile in which a fragment was drawn.
     pub(crate) fn mark(&self, image: &SliceImage, tiles: &mut [bool]) {
         let row_bytes = self.size[0] as usize / 8;
         let tile_bytes = self.tile as usize / 8;
         let rows_of_tiles = image.stencil.chunks(row_bytes * self.tile as usize);
         let mut any = vec![0u8; row_bytes];
         for (rows, tiles) in rows_of_tiles.zip(tiles.chunks_mut(self.columns as usize)) {
-            // Combine the stencil rows of one row of tiles, then look at each tile's bytes once.
+            // Combine the stencil rows of one row of tiles, then read the bytes of each tile once.
             any.fill(0);
             for row in rows.chunks_exact(row_bytes) {
                 any.iter_mut().zip(row).for_each(|(any, byte)| *any |= byte);

@@ -42,7 +42,6 @@ pxpl5_sim::parameters::parameter_table! {
 /// A transfer of unpacked pixels takes 4 bytes per pixel, and needs no time for packing.
 #[derive(Clone, Copy, Debug)]
 pub struct TimeModel {
-    /// Rates and times of the hardware.
     pub timing: GpuTiming,
 }
 

@@ -1,4 +1,5 @@
-//! The interface between a display and the pipeline: views and slice volumes, without other properties of the display.
+//! The interface between a display and the pipeline. The pipeline uses only the views and the slice volumes of a
+//! display.
 
 use crate::bin::BinLayout;
 use crate::projection::{Size, window_of};
@@ -16,14 +17,14 @@ pub struct SliceView {
     /// Matrix from the coordinates (u, v, s, 1) of the slice to clip coordinates, with depth 0 at the near plane and 1
     /// at the far plane.
     pub projection: DMat4,
-    /// Part of space that the slice represents.
     pub volume: SliceVolume,
-    /// Bins whose primitives the slice draws, one bit for each group of regions of [`SpatialDisplay::bins`].
+    /// Bins whose primitives the slice draws, as a bit mask. Bit g stands for the regions of [`SpatialDisplay::bins`]
+    /// with group g.
     pub bins: u64,
-    /// True if the nearest surface hides farther surfaces. This suits a display that is seen from one side only.
+    /// True if the nearest surface hides farther surfaces, as on a display that is seen from one side only.
     pub hides: bool,
     pub(crate) window: [[f64; 4]; 4],
-    /// Slightly enlarged range of distances from the slice in which anything can be drawn, or `None` if the range is
+    /// Range of distances from the slice in which anything can be drawn, slightly enlarged. `None` if the range is
     /// unknown.
     pub(crate) reach: Option<[f64; 2]>,
     /// Number of samples along a side of a pixel. The number exceeds 1 while a supersampled image is drawn.
@@ -31,14 +32,13 @@ pub struct SliceView {
 }
 
 impl SliceView {
-    /// Creates the view of a slice with an image of this size. The view draws the bins of group 0.
+    /// Creates the view of a slice with an image of this size. The slice draws the primitives of bin 0.
     #[must_use]
     pub fn new(view: DMat4, projection: DMat4, volume: SliceVolume, size: Size) -> Self {
         let window = window_of(&projection, size);
         Self { view, projection, volume, bins: 1, hides: false, window, reach: None, magnification: 1.0 }
     }
 
-    /// Returns the same view for an image with `factor` samples along each side of a pixel.
     pub(crate) fn supersampled_view(&self, factor: u32) -> Self {
         let factor = f64::from(factor);
         let mut view = self.clone();
@@ -55,7 +55,8 @@ impl SliceView {
         self.view.transform_point3(world)
     }
 
-    /// Returns true if a point of the world belongs to the slice: between its near and far planes and in its volume.
+    /// Returns true if a point of the world belongs to the slice: between the slice's near and far planes, and in the
+    /// slice's volume.
     #[must_use]
     pub fn accepts(&self, world: DVec3) -> bool {
         let local = self.local(world);
@@ -65,34 +66,29 @@ impl SliceView {
     }
 }
 
-/// The colours that a pixel of a display can show.
+/// The number of bits for each colour of a pixel: 1 or 8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PixelFormat {
-    /// One bit each for red, green and blue.
     Rgb1,
-    /// Eight bits each for red, green and blue.
     Rgb8,
 }
 
-/// A volumetric or flat display, in the form that the pipeline uses. A display does not depend on the triangles that it
-/// shows. The pipeline uses no other property of a display.
+/// A volumetric or flat display, reduced to the properties that the pipeline uses. A display does not depend on the
+/// triangles that it shows.
 pub trait SpatialDisplay: Send + Sync {
     /// Returns the slices, in the order in which they are shown.
     fn views(&self) -> &[SliceView];
 
-    /// Returns the size of every slice's image.
     fn target_size(&self) -> Size;
 
-    /// Returns the colours that a pixel can show.
     fn pixel_format(&self) -> PixelFormat;
 
-    /// Returns the planes and regions for sorting primitives. The default is a single bin for everything.
+    /// Returns the planes and regions for sorting primitives into bins. By default, one bin contains all primitives.
     fn bins(&self) -> BinLayout {
         BinLayout::one()
     }
 
-    /// Returns true if any slice can show this point of the world.
     fn shows(&self, point: DVec3) -> bool;
 
     /// Returns true if the slice with index `view` (among [`Self::views`]) shows this point of the world.

@@ -1,5 +1,5 @@
-//! Tests of cases 12 and 21 of the specification: vertex codes, sectors, slices drawn, and fragments that bins without
-//! a tolerance lose.
+//! Tests of the numbered cases 12 and 21, which were computed by hand: vertex codes, sectors, slices drawn, and
+//! fragments that bins without a tolerance lose.
 
 mod support;
 
@@ -12,7 +12,7 @@ fn slices_drawn(triangle: Triangle, binning: Binning, tolerance: BinTolerance) -
 }
 
 #[test]
-fn case_12_codes_sectors_and_slices() {
+fn case_12_triangles_have_the_computed_codes_sectors_and_numbers_of_slices() {
     let layout = BinLayout::double_wedges(0.0);
     let cases = [
         (T1, [0b0001, 0b1111, 0b1011], 0b0000_1111, 198),
@@ -27,7 +27,7 @@ fn case_12_codes_sectors_and_slices() {
 }
 
 #[test]
-fn d9_each_double_wedge_serves_50_planes() {
+fn d9_each_double_wedge_bin_serves_50_slices() {
     let display = swept(SliceClip::ShaderPlanes, Projection::Orthographic);
     let views = &display.views()[..198];
     let served = [0, 1, 2, 3].map(|j| views.iter().filter(|view| view.bins >> j & 1 == 1).count());
@@ -37,7 +37,7 @@ fn d9_each_double_wedge_serves_50_planes() {
 }
 
 #[test]
-fn two_planes_are_weaker_than_all() {
+fn two_bin_planes_exclude_fewer_slices_than_all_bin_planes() {
     for triangle in [T1, T2, T4, T5, T8] {
         let two = slices_drawn(triangle, Binning::TwoPlanes, BinTolerance::OfTheClip);
         let all = slices_drawn(triangle, Binning::AllPlanes, BinTolerance::OfTheClip);

@@ -71,7 +71,7 @@ fn each_slice_lights_at_its_own_angle() {
 }
 
 #[test]
-fn strobes_of_a_revolution_follow_each_other_without_a_gap() {
+fn strobes_of_a_revolution_have_no_gaps() {
     for lit_percent in [100, 40] {
         let config = PerspectaConfig { lit_percent, spin_rpm: 730, ..PerspectaConfig::PAPERS };
         let mut end = Time::ZERO;
@@ -86,7 +86,7 @@ fn strobes_of_a_revolution_follow_each_other_without_a_gap() {
 }
 
 #[test]
-fn a_period_is_found_from_an_instant() {
+fn a_period_is_found_from_a_time() {
     let display = build(&CONFIG);
     for n in [0, 1, 2, 777] {
         let begin = display.tick(PeriodNumber(n));
@@ -120,7 +120,7 @@ fn a_volume_is_shown_from_the_strobe_0_after_its_request() {
 }
 
 #[test]
-fn a_slice_half_written_is_never_shown() {
+fn an_incomplete_slice_is_never_shown() {
     let mut display = build(&CONFIG);
     let planes = volume(2);
     let all = messages(&planes);
@@ -141,7 +141,7 @@ fn a_slice_half_written_is_never_shown() {
 
 /// Checks that tiles that are not sent are dark, whatever the store held before.
 #[test]
-fn a_map_blanks_what_is_not_sent() {
+fn slices_missing_from_the_map_are_blank() {
     let mut display = build(&CONFIG);
     for (n, buffer) in [(1u32, 1u8), (2, 0), (3, 1), (4, 0)] {
         let planes = volume(n);
@@ -156,7 +156,7 @@ fn a_map_blanks_what_is_not_sent() {
 }
 
 #[test]
-fn messages_that_make_no_sense_are_faults_and_change_nothing() {
+fn invalid_messages_are_faults_and_change_nothing() {
     let mut display = build(&CONFIG);
     let planes = volume(1);
     let all = messages(&planes);
@@ -195,7 +195,7 @@ fn messages_that_make_no_sense_are_faults_and_change_nothing() {
 }
 
 #[test]
-fn numbers_that_no_display_has_are_named() {
+fn impossible_numbers_of_a_display_are_refused_by_name() {
     let cases = [
         (PerspectaConfig { slices: 395, ..CONFIG }, "perspecta.slices: expected an even number, found 395"),
         (PerspectaConfig { slices: 2, ..CONFIG }, "perspecta.slices must be 4 to 4096, found 2"),

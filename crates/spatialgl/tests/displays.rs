@@ -1,4 +1,4 @@
-//! Tests with the same recording on three displays, of connectedness (case 28), and of the time model.
+//! Tests of one recording on three displays, of connectedness (numbered case 28), and of the time model.
 
 mod support;
 
@@ -7,7 +7,7 @@ use pxpl5_scene::builtin;
 use spatialgl::*;
 use support::*;
 
-/// Returns a recording of the sphere of section 6: 24 x 48 facets, r = 300.
+/// Returns a recording of a sphere with 24 x 48 facets and a radius of 300 pixels.
 fn sphere() -> CommandBuffer {
     let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 24, [255; 3]);
     let mut context = DrawContext::default();
@@ -22,11 +22,12 @@ fn connected_percent(clip: SliceClip, projection: Projection, coverage: Coverage
     connected(&display, &sphere(), &frame).expect("colours kept").percent()
 }
 
-/// Checks case 28 and the table of section 6 for the sphere. The specification does not define where the samples lie on
-/// a curve. Our samples lie in the middle of equal steps of each facet's part, and give 18.3, 18.8 and 25.4 %. The
-/// specification has 18.7, 19.3 and 26.0 %. With other random eyes, jitter gives the same percentages.
+/// Checks the numbered case 28: the percentages of connected samples on a sphere. The expected percentages, such as
+/// 18.7, 19.3 and 26.0, come from an independent computation, which does not state where the samples lie on a curve.
+/// Samples in the middle of equal steps of each facet's part give 18.3, 18.8 and 25.4 %. With other random eyes, jitter
+/// gives the same percentages.
 #[test]
-fn case_28_connected_surfaces_of_a_sphere() {
+fn case_28_a_sphere_has_the_expected_percentages_of_connected_samples() {
     let jittered = Projection::Jittered(Jitter::new(1));
     let sampled = |clip, projection| connected_percent(clip, projection, Coverage::Sampled);
     let cases = [
@@ -53,7 +54,7 @@ fn case_28_connected_surfaces_of_a_sphere() {
 /// facet per slice around it has the same gaps in every slice of an orthographic projection. If each slice has a
 /// different eye, the gaps differ.
 #[test]
-fn jitter_makes_gaps_of_neighbouring_slices_unlike() {
+fn jitter_gives_neighbouring_slices_different_gaps() {
     let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 198, [255; 3]);
     let mut context = DrawContext::default();
     context.draw_indexed(&VertexBuffer::new(vertices).expect("finite"), &indices, Topology::Triangles).expect("valid");
@@ -84,7 +85,7 @@ fn a_stack_of_planes_divides_a_triangle_among_its_slabs() {
 
 /// Checks that a flat screen shows the nearer of two squares in either order of drawing.
 #[test]
-fn a_flat_screen_hides_what_is_behind() {
+fn a_flat_screen_shows_the_nearer_of_two_squares() {
     let square = |z: f64, size: f64, colour: [u8; 3]| {
         [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| ColouredVertex::new(DVec3::new(x * size, y * size, z), colour))
@@ -108,7 +109,7 @@ fn a_flat_screen_hides_what_is_behind() {
 /// Checks that one recording can be shown on a swept screen, a stack of planes and a flat screen. The scene is the Mig,
 /// which has 417 triangles.
 #[test]
-fn a_scene_does_not_know_the_display() {
+fn a_scene_does_not_depend_on_the_display() {
     let scene = builtin("mig").expect("built in");
     let commands = record_scene(&scene, 384.0, true).expect("valid");
     assert_eq!(commands.primitives(), 417);
@@ -126,9 +127,9 @@ fn a_scene_does_not_know_the_display() {
     }
 }
 
-/// Checks the formulas of section 6 for 396 slices of 768 x 768 pixels, from counts alone.
+/// Checks the formulas of the time model for 396 slices of 768 x 768 pixels, from counts alone.
 #[test]
-fn the_model_of_time_is_the_specifications() {
+fn the_time_model_gives_the_expected_rates_for_given_counts() {
     let size = [768, 768];
     let pixels = 768 * 768 * 396;
     let stats = VolumeStats {
@@ -150,7 +151,8 @@ fn the_model_of_time_is_the_specifications() {
     let tenth = VolumeStats { bytes_sent: pixels / 20, pixels_packed: pixels / 10, ..stats.clone() };
     near(model.packed(&tenth, size, 32).readback_ms, 58.4);
     near(all.gpu_ms - model.packed(&tenth, size, 32).gpu_ms, 36.5 - 3.65 + 0.005);
-    // 396 colour targets 36.5 ms and 99 stencils a quarter of it, filling queries 9.1 ms, 57,024 queries 114.0 ms.
+    // 396 colour targets take 36.5 ms, 99 stencils a quarter of a target each, the fill for queries 9.1 ms, and 57,024
+    // queries 114.0 ms.
     near(
         model.packed(&VolumeStats { pixels_packed: 0, ..stats.clone() }, size, 32).gpu_ms,
         36.5 * 1.25 + 9.12 + 114.05,
@@ -163,7 +165,7 @@ fn the_model_of_time_is_the_specifications() {
 }
 
 #[test]
-fn a_table_beyond_its_limits_is_refused() {
+fn a_timing_table_with_a_number_outside_its_limits_is_refused() {
     let timing = GpuTiming { fill_mpixels: 0, ..GpuTiming::PAPERS };
     let error = TimeModel::new(timing).expect_err("zero").to_string();
     assert!(error.contains("fill_mpixels"), "{error}");
@@ -181,17 +183,16 @@ fn planes_of_few_bits_leave_a_dead_zone() {
         // In the plane of slice 0 A = B = r S.
         let first = (1..10_000).map(|i| f64::from(i) * 1e-3).find(|r| display.accepts(0, DVec3::new(*r, 0.0, 0.0)));
         assert!((first.expect("somewhere") - radius).abs() < 0.002 + radius * 0.002, "{first:?}");
-        // The columns whose centres (0.5, 1.5 ...) lie inside, whatever is drawn.
+        // The dead zone has the columns whose centres (0.5, 1.5 ...) lie inside the radius, whatever is drawn.
         assert_eq!(dead_zone_radius(&display), Some((radius + 0.5).floor() as u32));
     }
     let exact = swept(SliceClip::ShaderPlanes, Projection::Orthographic);
     assert_eq!(dead_zone_radius(&exact), Some(0), "a property of the display, not of what is lit");
 }
 
-/// Checks section 1 of the specification. Near the axis, the prism is bright and exact planes are dark. The hyperbola
-/// is neither.
+/// Checks the brightness near the axis: the prism is bright and exact planes are dark. The hyperbola lies between both.
 #[test]
-fn brightness_over_radius_by_variant() {
+fn near_the_axis_the_prism_is_brighter_than_the_hyperbola_and_the_exact_planes_are_darkest() {
     let wall = [[-300.0, -200.2, 1.3], [300.1, -200.2, 1.3], [0.6, 280.7, 1.3]];
     let rings = |clip| {
         let display = swept(clip, Projection::Orthographic);

@@ -1,5 +1,5 @@
-//! Tests of cases 13 to 20 and 25 of the specification: fragments of every clip variant, by the reference model and by
-//! the fast rasterizer.
+//! Tests of the numbered cases 13 to 20 and 25, computed by hand: fragments of every clip variant, by the reference
+//! model and by the fast rasterizer.
 
 mod support;
 
@@ -10,8 +10,8 @@ const ORTHOGRAPHIC: Projection = Projection::Orthographic;
 const EXACT: SliceClip = SliceClip::ShaderPlanes;
 const HYPERBOLA: SliceClip = SliceClip::Hyperbolic(0.25);
 
-/// Checks that two numbers of fragments are equal within the specification's tolerance. This tolerance allows for other
-/// orders of the same sums in double precision.
+/// Checks that two numbers of fragments are equal within a tolerance. The tolerance allows for other orders of the same
+/// sums in double precision.
 fn same(found: u64, expected: u64, what: &str) {
     assert!(found.abs_diff(expected) <= 2, "{what}: {found}, not {expected}");
 }
@@ -27,27 +27,27 @@ fn check(name: &str, triangle: Triangle, expected: [(u64, u64); 5]) {
 }
 
 #[test]
-fn case_13_a_wall_off_the_axis() {
+fn case_13_a_wall_off_the_axis_has_the_computed_fragments_for_each_clip() {
     check("T1", T1, [(50_066, 108), (240_867, 164), (88_976, 140), (65_331, 130), (83_457, 140)]);
 }
 
 #[test]
-fn case_13_a_triangle_in_the_plane_of_a_slice() {
+fn case_13_a_triangle_in_the_plane_of_a_slice_has_the_computed_fragments_for_each_clip() {
     check("T2", T2, [(31_375, 1), (110_101, 7), (37_719, 3), (31_375, 1), (33_363, 3)]);
 }
 
 #[test]
-fn case_13_a_triangle_across_the_axis() {
+fn case_13_a_triangle_across_the_axis_has_the_computed_fragments_for_each_clip() {
     check("T4", T4, [(16_656, 192), (242_377, 198), (55_013, 198), (43_272, 198), (52_239, 198)]);
 }
 
 #[test]
-fn case_13_a_sliver_beside_the_axis() {
+fn case_13_a_sliver_beside_the_axis_has_the_computed_fragments_for_each_clip() {
     check("T5", T5, [(234, 68), (15_558, 130), (2_454, 84), (2_235, 84), (2_413, 84)]);
 }
 
 #[test]
-fn case_14_a_wall_in_single_slices() {
+fn case_14_a_wall_has_the_computed_fragments_in_single_slices() {
     for (clip, expected) in [(EXACT, [209, 282, 0, 342, 0]), (HYPERBOLA, [237, 282, 318, 342, 0])] {
         let frame = both(&swept(clip, ORTHOGRAPHIC), &recording(&[T1]), &half(VolumeConfig::plain()));
         for (slice, expected) in [13, 50, 70, 90, 99].into_iter().zip(expected) {
@@ -83,7 +83,7 @@ fn bins_keep_a_triangle_in_a_bin_plane() {
 }
 
 #[test]
-fn case_16_a_triangle_with_an_edge_on_the_axis() {
+fn case_16_a_triangle_with_an_edge_on_the_axis_has_the_computed_fragments() {
     let triangle = [[0.0, -100.2, 0.0], [0.0, 100.3, 0.0], [200.4, 0.1, 10.0]];
     let (count, slices) = fragments(&[triangle], EXACT, ORTHOGRAPHIC);
     same(count, 20_100, "exact");
@@ -94,7 +94,7 @@ fn case_16_a_triangle_with_an_edge_on_the_axis() {
 }
 
 #[test]
-fn case_17_a_triangle_over_the_rim() {
+fn case_17_a_triangle_over_the_rim_has_256_fragments_for_every_clip() {
     let triangle = [[380.2, -30.2, 1.0], [400.7, -30.2, 1.0], [380.2, 40.3, 1.0]];
     for clip in SliceClip::ALL {
         let frame = volume(&swept(clip, ORTHOGRAPHIC), &recording(&[triangle]), &half(VolumeConfig::plain()));
@@ -105,7 +105,7 @@ fn case_17_a_triangle_over_the_rim() {
 }
 
 #[test]
-fn case_18_a_floor_is_lost_without_an_eye_aside() {
+fn case_18_a_floor_is_lost_if_the_eye_is_not_moved_aside() {
     assert_eq!(fragments(&[T3], HYPERBOLA, ORTHOGRAPHIC), (0, 0));
     let (count, slices) = fragments(&[T3], HYPERBOLA, ASIDE);
     same(count, 4_554, "hyperbola");
@@ -113,13 +113,13 @@ fn case_18_a_floor_is_lost_without_an_eye_aside() {
 }
 
 #[test]
-fn case_19_a_triangle_seen_from_aside() {
+fn case_19_a_triangle_seen_from_the_side_has_the_computed_fragments() {
     same(fragments(&[T4], EXACT, ASIDE).0, 16_865, "exact");
     same(fragments(&[T4], HYPERBOLA, ASIDE).0, 43_680, "hyperbola");
 }
 
 #[test]
-fn case_20_a_quad_is_the_same_by_either_diagonal() {
+fn case_20_a_quad_has_the_same_fragments_with_either_diagonal() {
     let [a, b, c, d] = [[-150.2, -80.1, 60.3], [140.7, -80.1, 20.6], [140.7, 90.4, 20.6], [-150.2, 90.4, 60.3]];
     for (clip, expected) in [(EXACT, 38_420), (SliceClip::Prism, 177_820), (HYPERBOLA, 48_790)] {
         let one = fragments(&[[a, b, c], [a, c, d]], clip, ORTHOGRAPHIC).0;
@@ -130,7 +130,7 @@ fn case_20_a_quad_is_the_same_by_either_diagonal() {
 }
 
 #[test]
-fn case_25_tiles_of_a_wall() {
+fn case_25_a_wall_occupies_the_computed_number_of_tiles() {
     for (clip, single, batched) in [(EXACT, 1_810, 774), (HYPERBOLA, 2_238, 798)] {
         for (batch, expected) in [(1, single), (4, batched)] {
             let tiling = Tiling { tile: Some(32), batch };
@@ -145,7 +145,7 @@ fn case_25_tiles_of_a_wall() {
 
 /// Checks figure P5: the number of times that the commands are replayed for a slice.
 #[test]
-fn passes_are_as_published() {
+fn the_number_of_passes_is_as_published() {
     let passes = |clip| {
         let stats = volume(&swept(clip, ORTHOGRAPHIC), &recording(&[T5]), &half(VolumeConfig::plain())).stats;
         assert_eq!(stats.draws, 198 * stats.passes);
@@ -157,7 +157,7 @@ fn passes_are_as_published() {
 /// Checks the number of generated fragments. Clip variants with one pass generate every fragment between the near and
 /// far planes. Clip planes generate only accepted fragments.
 #[test]
-fn what_is_generated_and_not_accepted() {
+fn plane_clips_accept_all_generated_fragments() {
     let stats = |clip| volume(&swept(clip, ORTHOGRAPHIC), &recording(&[T1]), &half(VolumeConfig::plain())).stats;
     let prism = stats(SliceClip::Prism);
     assert_eq!(prism.fragments_generated, prism.fragments_accepted);

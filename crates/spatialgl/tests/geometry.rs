@@ -1,4 +1,5 @@
-//! Tests of cases 1 to 11 and 26 of the specification: slices, tie rules, clip variants and projections as numbers.
+//! Tests of the numbered cases 1 to 11 and 26, computed by hand: slices, tie rules, clip variants and projections as
+//! numbers.
 
 mod support;
 
@@ -19,7 +20,7 @@ fn planes_of(display: &SweptDisplay, x: f64, z: f64) -> Vec<usize> {
 }
 
 #[test]
-fn case_1_the_wedge_of_396_slices() {
+fn case_1_the_wedge_of_396_slices_has_the_computed_sine_cosine_and_tangent() {
     let wedge = HalfWedge::new(396, 384.0);
     close(wedge.sin, 0.007_933_231_6, 5e-11);
     close(wedge.cos, 0.999_968_531_4, 5e-11);
@@ -49,7 +50,7 @@ fn case_2_each_point_lies_in_its_plane() {
 }
 
 #[test]
-fn case_3_distances_from_the_boundary_planes() {
+fn case_3_points_have_the_computed_distances_from_the_boundary_planes() {
     let display = swept(EXACT, Projection::Orthographic);
     let distances = |k: usize, p: [f64; 3]| {
         let SliceVolume::Wedge(planes, _) = display.views()[k].volume else { panic!("a wedge") };
@@ -70,7 +71,7 @@ fn case_3_distances_from_the_boundary_planes() {
 }
 
 #[test]
-fn case_4_half_thickness_of_the_slab() {
+fn case_4_the_slab_of_each_clip_has_the_computed_half_thickness() {
     let wedge = HalfWedge::new(396, 384.0);
     let cases = [
         (EXACT, [0.0, 0.253_87, 0.793_35, 3.046_46]),
@@ -87,7 +88,7 @@ fn case_4_half_thickness_of_the_slab() {
 
 /// Checks that a slice's volume test agrees with the formula of the thickness, just inside and just outside.
 #[test]
-fn a_slice_accepts_up_to_its_half_thickness() {
+fn the_volume_of_a_slice_ends_at_the_computed_half_thickness() {
     for clip in SliceClip::ALL {
         let display = swept(clip, Projection::Orthographic);
         let wedge = display.config().half_wedge();
@@ -103,7 +104,7 @@ fn a_slice_accepts_up_to_its_half_thickness() {
 }
 
 #[test]
-fn case_5_planes_that_show_a_point() {
+fn case_5_the_number_of_slices_that_show_a_point_falls_with_its_radius() {
     let cases = [
         (SliceClip::Prism, [198, 83, 39, 19, 11, 5, 3, 1]),
         (SliceClip::Hyperbolic(0.25), [31, 13, 7, 3, 1, 1, 1, 1]),
@@ -139,7 +140,7 @@ fn integer_points(ties: TieRule, radius: i32) -> (usize, usize, Vec<usize>) {
 }
 
 #[test]
-fn case_6_integer_points_within_100() {
+fn case_6_the_integer_points_within_a_radius_of_100_lie_in_exactly_one_slice() {
     let (points, memberships, each) = integer_points(TieRule::HalfOpen, 100);
     assert_eq!((points, memberships), (31_416, 31_416));
     assert_eq!([0, 1, 49, 50, 99, 149].map(|k| each[k]), [200, 144, 92, 232, 200, 232]);
@@ -147,7 +148,7 @@ fn case_6_integer_points_within_100() {
 }
 
 #[test]
-fn case_7_integer_points_within_384() {
+fn case_7_the_integer_points_within_a_radius_of_384_lie_in_exactly_one_slice() {
     let (points, memberships, each) = integer_points(TieRule::HalfOpen, 384);
     assert_eq!((points, memberships), (463_188, 463_188));
     assert_eq!([each[0], each[50]], [2_340, 2_614]);
@@ -156,7 +157,7 @@ fn case_7_integer_points_within_384() {
 
 /// Checks figure P4 as printed, at the points where the printed rule is ambiguous.
 #[test]
-fn the_two_printed_tie_rules_treat_a_boundary_plane_as_they_say() {
+fn the_printed_tie_rules_give_different_numbers_of_slices_for_points_of_a_boundary_plane() {
     let accepting = |ties: TieRule, x: f64, z: f64| {
         let config = SweptConfig { ties, ..SweptConfig::perspecta(EXACT, Projection::Orthographic) };
         planes_of(&SweptDisplay::new(config).expect("valid"), x, z).len()
@@ -168,7 +169,7 @@ fn the_two_printed_tie_rules_treat_a_boundary_plane_as_they_say() {
 }
 
 #[test]
-fn case_9_an_eye_aside_and_a_shear() {
+fn case_9_points_seen_by_an_eye_moved_aside_have_the_computed_positions() {
     let display = swept(SliceClip::Prism, ASIDE);
     let seen = |u: f64, v: f64, s: f64| {
         let clip = display.views()[0].projection * DVec3::new(u, v, s).extend(1.0);
@@ -185,7 +186,7 @@ fn case_9_an_eye_aside_and_a_shear() {
     close(z, 0.090_012, 5.1e-7);
     let [u, v, z, _] = seen(-120.0, 64.0, -3.0);
     close(u, -119.720_858, 5.1e-7);
-    // The specification prints 63.283430; to six digits it is 63.283431 (63.28343080).
+    // The value computed by hand is 63.283430; to six digits it is 63.283431 (63.28343080).
     close(v, 63.283_430_8, 5.1e-8);
     close(z, 0.992_405, 5.1e-7);
 }
@@ -201,7 +202,7 @@ fn area(projection: Projection, corners: Triangle) -> f64 {
 }
 
 #[test]
-fn cases_10_and_11_areas_of_triangles_on_edge() {
+fn cases_10_and_11_triangles_seen_edge_on_have_the_computed_areas() {
     let ahead = Projection::Perspective { eye: [0.0; 2], distance: 1536.0, shear: [0.0; 2] };
     let upright = [[100.0, 50.0, -2.0], [200.0, 50.0, -1.0], [150.0, 50.0, 2.0]];
     close(area(Projection::Orthographic, upright), 0.0, 1e-9);
@@ -215,7 +216,7 @@ fn cases_10_and_11_areas_of_triangles_on_edge() {
 
 /// Checks the wall z = 40.1. A slice accepts it from u = c / (sin + T cos) to u = c / (sin - T cos), and nowhere else.
 #[test]
-fn case_26_where_a_wall_crosses_a_slice() {
+fn case_26_a_wall_crosses_a_slice_at_the_computed_positions() {
     let display = swept(EXACT, Projection::Orthographic);
     for (k, from, width) in [(20, 125.480_794, 6.212_201), (50, 55.829_419, 0.878_760), (90, 40.466_199, 0.092_422)] {
         let (sin, cos) = sin_cos_of_turn(k, 396);
@@ -232,7 +233,7 @@ fn case_26_where_a_wall_crosses_a_slice() {
 }
 
 #[test]
-fn the_plane_of_a_slice_stays_where_it_is_whatever_the_eye() {
+fn the_plane_of_a_slice_does_not_depend_on_the_eye() {
     for projection in [Projection::Orthographic, ASIDE, Projection::Jittered(Jitter::new(7))] {
         let display = swept(SliceClip::Hyperbolic(0.25), projection);
         for view in display.views().iter().step_by(29) {

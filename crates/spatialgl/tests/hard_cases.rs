@@ -1,4 +1,4 @@
-//! Tests of the hard cases in section 8 of the specification, and of all kinds of input that cannot be drawn.
+//! Tests of hard cases, and of all kinds of input that cannot be drawn.
 
 mod support;
 
@@ -31,7 +31,7 @@ fn everywhere(triangles: &[Triangle]) -> Vec<u64> {
 }
 
 #[test]
-fn slivers_of_any_width_are_drawn_alike() {
+fn slivers_of_any_width_are_drawn_as_in_the_reference_model() {
     for width in [1.0, 1e-2, 1e-4, 1e-6] {
         everywhere(&[[[-30.0, -20.3, 9.1], [-30.0 + width, -20.3, 9.1], [31.0, 24.9, 10.2]]]);
         everywhere(&[[[10.0, -20.3, 9.1], [10.0, -20.3 + width, 9.1], [10.0, 24.9, -30.2]]]);
@@ -39,16 +39,16 @@ fn slivers_of_any_width_are_drawn_alike() {
 }
 
 #[test]
-fn triangles_without_area_leave_nothing() {
+fn triangles_without_area_draw_nothing() {
     let [a, b] = [[-20.3, -10.1, 4.0], [30.1, 12.7, 5.0]];
     let middle = [0, 1, 2].map(|i| (a[i] + b[i]) / 2.0);
     assert!(everywhere(&[[a, a, a], [a, b, a], [a, b, b]]).iter().all(|count| *count == 0));
-    // Three points on a line are one only up to rounding: at most a stray sample.
+    // Because of rounding, three points on a line may form a thin triangle with at most one sample.
     assert!(everywhere(&[[a, middle, b]]).iter().all(|count| *count <= 1));
 }
 
 #[test]
-fn vertices_in_special_places_are_drawn_alike() {
+fn vertices_on_the_axis_the_rim_or_pixel_centres_are_drawn_as_in_the_reference_model() {
     let rim = 48.0;
     let (sin, cos) = sin_cos_of_turn(1, 72);
     everywhere(&[[[0.0, -20.0, 0.0], [0.0, 20.0, 0.0], [30.0, 5.0, 2.0]]]);
@@ -58,7 +58,7 @@ fn vertices_in_special_places_are_drawn_alike() {
 }
 
 #[test]
-fn corners_a_million_pixels_away_are_drawn_alike() {
+fn corners_a_million_pixels_away_are_drawn_as_in_the_reference_model() {
     let far = 1e6;
     let counts = everywhere(&[[[-far, -far, 3.0], [far, -far, 3.0], [0.0, far, 3.0]]]);
     assert!(counts.iter().all(|count| *count > 0));
@@ -66,23 +66,23 @@ fn corners_a_million_pixels_away_are_drawn_alike() {
 }
 
 #[test]
-fn corners_behind_the_eye_are_drawn_alike() {
-    // The eye of `everywhere` is 40 px off the slice; these corners lie up to 400 px off some of them.
+fn corners_behind_the_eye_are_drawn_as_in_the_reference_model() {
+    // The eye of `everywhere` is 40 px off the slice. These corners lie up to 400 px off some slices.
     let counts = everywhere(&[[[-20.0, -20.0, -400.0], [20.0, -20.0, 400.0], [0.0, 25.0, 10.0]]]);
     assert!(counts.iter().any(|count| *count > 0));
     everywhere(&[[[-300.0, -20.0, 100.0], [300.0, -20.0, 120.0], [0.0, 25.0, 400.0]]]);
 }
 
 #[test]
-fn a_plane_through_pixel_centres_perpendicular_to_the_screen_leaves_nothing() {
-    // v = 0.5 exactly: a degenerate triangle of which every edge runs through samples.
+fn a_plane_perpendicular_to_the_screen_draws_nothing() {
+    // All corners have v = 0.5 exactly, so the triangle has no area and its edges run through samples.
     let floor = [[-20.3, 0.5, -10.4], [25.6, 0.5, -15.3], [3.7, 0.5, 26.9]];
     let display = SweptDisplay::new(config(36, 96, 64, SliceClip::Prism, ORTHOGRAPHIC)).expect("valid");
     assert_eq!(both(&display, &recording(&[floor]), &VolumeConfig::plain()).stats.fragments_accepted, 0);
 }
 
 #[test]
-fn few_slices_and_odd_sizes_are_drawn_alike() {
+fn small_displays_of_unusual_size_are_drawn_as_in_the_reference_model() {
     for (slices, width, height, batch) in [(4, 40, 17, 4), (6, 72, 33, 5), (398, 104, 50, 4), (44, 64, 64, 1000)] {
         for projection in [ORTHOGRAPHIC, Projection::Jittered(Jitter::new(3))] {
             let clip = SliceClip::Hyperbolic(0.25);
@@ -169,7 +169,7 @@ fn lines_and_points_have_their_size_on_the_slice() {
 }
 
 #[test]
-fn strips_and_fans_make_the_triangles_of_gl() {
+fn strips_and_fans_give_the_triangles_of_opengl() {
     let corners: Vec<ColouredVertex> =
         (0..5).map(|i| ColouredVertex::new(DVec3::new(f64::from(i), 0.0, 0.0), [255; 3])).collect();
     let buffer = VertexBuffer::new(corners).expect("finite");
@@ -190,7 +190,7 @@ fn strips_and_fans_make_the_triangles_of_gl() {
 }
 
 #[test]
-fn settings_that_no_display_has_are_named() {
+fn impossible_settings_of_a_display_are_refused_by_name() {
     let valid = SweptConfig::perspecta(SliceClip::Hyperbolic(0.25), ORTHOGRAPHIC);
     let clip = |clip| SweptConfig { clip, ..valid };
     let at = |distance| SweptConfig {
@@ -228,7 +228,7 @@ fn settings_that_no_display_has_are_named() {
 }
 
 #[test]
-fn vertices_and_indices_that_cannot_be_drawn_are_named() {
+fn invalid_vertices_and_indices_are_refused_by_name() {
     let bad =
         vec![ColouredVertex::new(DVec3::ONE, [0; 3]), ColouredVertex::new(DVec3::new(0.0, f64::NAN, 1.0), [0; 3])];
     let error = VertexBuffer::new(bad).expect_err("not finite").to_string();

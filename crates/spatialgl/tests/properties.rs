@@ -1,4 +1,4 @@
-//! Tests of the properties in section 8 of the specification, on random triangles, points and settings.
+//! Tests of general properties of volumes, on random triangles, points and settings.
 
 mod support;
 
@@ -29,7 +29,7 @@ fn projections() -> impl Strategy<Value = Projection> {
         Just(ORTHOGRAPHIC),
         any::<u64>().prop_map(|seed| Projection::Jittered(Jitter::new(seed))),
         Just(Projection::Perspective { eye: [10.0, -15.0], distance: 60.0, shear: [0.05, 0.1] }),
-        // Near enough for corners behind the eye.
+        // The eye is so near that corners can lie behind the eye.
         Just(Projection::Perspective { eye: [3.0, 5.0], distance: 12.0, shear: [0.0, 0.0] }),
     ]
 }
@@ -59,7 +59,7 @@ fn kept(config: VolumeConfig) -> VolumeConfig {
     VolumeConfig { keeps_colours: true, ..config }
 }
 
-/// Returns index of the slice and index of the pixel for every drawn voxel.
+/// Returns the index of the slice and the index of the pixel for every drawn voxel.
 fn drawn(frame: &VolumeFrame) -> std::collections::BTreeSet<(usize, u32)> {
     let slices = frame.colours.as_ref().expect("kept").iter().enumerate();
     slices.flat_map(|(k, samples)| samples.iter().map(move |sample| (k, sample.pixel))).collect()
@@ -69,7 +69,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
     #[test]
-    fn the_fast_path_draws_every_voxel_of_the_reference_model(
+    fn the_fast_model_draws_every_voxel_of_the_reference_model(
         triangles in mesh(), clip in clips(), projection in projections(),
         combine in prop::sample::select(vec![Combine::Last, Combine::Max, Combine::Add]),
         bits in prop::option::of(2u32..12),
@@ -98,7 +98,7 @@ proptest! {
     }
 
     #[test]
-    fn max_and_add_do_not_depend_on_the_order(triangles in mesh(), clip in clips(), projection in projections()) {
+    fn max_and_add_do_not_depend_on_drawing_order(triangles in mesh(), clip in clips(), projection in projections()) {
         let display = small(clip, projection);
         for combine in [Combine::Max, Combine::Add] {
             let forward = mixed(&triangles, combine);
@@ -110,7 +110,7 @@ proptest! {
     }
 
     #[test]
-    fn exact_lies_in_the_hyperbola_and_that_in_the_parallel_planes(triangles in mesh(), q in 0.05f64..1.5) {
+    fn the_hyperbola_contains_the_exact_clip_and_lies_in_the_parallel_planes(triangles in mesh(), q in 0.05f64..1.5) {
         let commands = recording(&triangles);
         let set = |clip| drawn(&volume(&small(clip, ORTHOGRAPHIC), &commands, &kept(VolumeConfig::plain())));
         let exact = set(EXACT);
@@ -120,7 +120,7 @@ proptest! {
     }
 
     #[test]
-    fn without_a_bias_all_variants_are_exact(triangles in mesh()) {
+    fn without_offset_and_bias_all_clips_equal_the_exact_clip(triangles in mesh()) {
         let commands = recording(&triangles);
         let draw = |clip| volume(&small(clip, ORTHOGRAPHIC), &commands, &VolumeConfig::plain()).planes;
         let exact = draw(EXACT);
@@ -130,14 +130,14 @@ proptest! {
     }
 
     #[test]
-    fn two_passes_of_user_planes_are_one_shader_pass(triangles in mesh(), projection in projections()) {
+    fn two_passes_with_user_planes_equal_one_shader_pass(triangles in mesh(), projection in projections()) {
         let commands = mixed(&triangles, Combine::Max);
         let draw = |clip| volume(&small(clip, projection), &commands, &kept(VolumeConfig::plain())).colours;
         prop_assert!(draw(SliceClip::UserPlanes) == draw(EXACT));
     }
 
     #[test]
-    fn the_second_half_turn_mirrors_the_first(triangles in mesh(), clip in clips()) {
+    fn the_second_half_turn_shows_mirrored_slices_of_the_first_half_turn(triangles in mesh(), clip in clips()) {
         let frame = volume(&small(clip, ORTHOGRAPHIC), &recording(&triangles), &kept(VolumeConfig::plain()));
         let mirrored: std::collections::BTreeSet<(usize, u32)> = drawn(&frame)
             .into_iter()
@@ -163,7 +163,7 @@ proptest! {
     fn a_shared_edge_is_lit_by_one_of_its_triangles(
         x in prop::array::uniform4(-28i32..28), y in prop::array::uniform4(-28i32..28),
     ) {
-        // Multiples of a half pixel, so that edges run through pixel centres.
+        // Coordinates are multiples of half a pixel, so that edges run through pixel centres.
         let [a, b, c, d] = [0, 1, 2, 3].map(|i| [f64::from(x[i]) / 2.0, f64::from(y[i]) / 2.0, 0.0]);
         let side = |p: [f64; 3]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
         prop_assume!(side(c) * side(d) < 0.0);
@@ -179,9 +179,8 @@ proptest! {
         prop_assert_eq!(fragments, one + other);
     }
 
-    /// Checks that unpacking the words gives the halftoned colours, pixel by pixel.
     #[test]
-    fn packed_bits_are_the_halftone_of_the_colours(triangles in mesh()) {
+    fn packed_bits_equal_the_halftone_of_the_colours(triangles in mesh()) {
         let frame = volume(&small(SliceClip::Hyperbolic(0.25), ORTHOGRAPHIC), &mixed(&triangles, Combine::Last), &kept(VolumeConfig::paper()));
         let halftone = Halftone::bayer(8).expect("valid");
         let mut lit = 0;
@@ -199,7 +198,7 @@ proptest! {
 
 /// Checks that the sum over 198 slices of fragments / |n . e_s| approaches the triangle's area, for the exact clip.
 #[test]
-fn fragments_over_facing_are_the_area() {
+fn the_sum_of_fragments_divided_by_the_cosine_of_the_angle_to_each_slice_is_the_area() {
     let [a, b, c] = T4.map(DVec3::from_array);
     let cross = (b - a).cross(c - a);
     let area = cross.length() / 2.0;

@@ -33,7 +33,7 @@ fn colour(frame: &VolumeFrame, x: u32, y: u32) -> Option<[u8; 3]> {
 /// Checks the brightness of a partly covered pixel. Samples lie at 1/4 and 3/4 of a pixel, or at 1/8, 3/8, 5/8 and 7/8.
 /// The pixel is as bright as the fraction of its samples inside a white rectangle.
 #[test]
-fn a_pixel_is_as_bright_as_it_is_covered() {
+fn the_brightness_of_a_pixel_is_its_coverage() {
     for (samples, beyond, expected) in [(4, 10.5, 128), (16, 10.25, 64), (16, 10.75, 191), (16, 10.5, 128)] {
         let frame = drawn(&rectangle(beyond), samples, "host");
         assert_eq!(colour(&frame, 400, 305), Some([255; 3]));
@@ -82,19 +82,19 @@ fn a_line_keeps_its_width() {
 /// Checks the time model with more samples. Fill, clears and reads grow with the number of samples, but the bytes sent
 /// do not.
 #[test]
-fn more_samples_cost_fill_and_no_bytes() {
+fn more_samples_take_fill_time_and_no_bytes() {
     let size = [768, 768];
     let one = VolumeStats { slices_rendered: 396, bytes_sent: 1000, samples: 1, ..VolumeStats::default() };
     let many = VolumeStats { samples: 16, ..one.clone() };
     let time = |stats| TimeModel::GEFORCE_6800.packed(stats, size, 32);
-    // 396 targets of 768 x 768 at 6.4 Gpixel/s.
+    // This is the time to fill 396 targets of 768 x 768 pixels at 6.4 Gpixel/s.
     assert!((time(&one).gpu_ms - 36.495_36).abs() < 1e-6);
     assert!((time(&many).gpu_ms - 16.0 * 36.495_36).abs() < 1e-6);
     assert_eq!(time(&many).bus_ms().to_bits(), time(&one).bus_ms().to_bits());
 }
 
 #[test]
-fn other_numbers_of_samples_are_refused() {
+fn only_4_or_16_samples_are_accepted() {
     for samples in [0, 1, 2, 9, 64] {
         let error = Supersampled::new(HostRenderer, samples).expect_err("neither 4 nor 16");
         assert_eq!(error.to_string(), format!("draw.samples: expected 4 or 16, found {samples}"));

@@ -37,7 +37,7 @@ fn centre(picture: &RgbImage) -> [f64; 2] {
 }
 
 #[test]
-fn case_8_a_pixel_is_seen_where_its_voxel_is() {
+fn case_8_a_pixel_is_seen_at_the_position_of_its_voxel() {
     let planes = one_pixel(33, 483, 283);
     let (sin, cos) = sin_cos_of_turn(33, 396);
     let world = [99.5 * cos, 100.5, 99.5 * sin];
@@ -49,7 +49,8 @@ fn case_8_a_pixel_is_seen_where_its_voxel_is() {
         let place = camera.project(world);
         assert!((place[0] - expected[0]).abs() < 6e-5 && (place[1] - expected[1]).abs() < 6e-5, "{place:?}");
         let light = view_planes(&planes, &camera, PLAIN, &OneThread).expect("valid");
-        // Bilinear: the light's centre is the place itself, to 1/256 px and 1/255 of brightness.
+        // With bilinear interpolation, the centre of the light is the exact position, to 1/256 px and 1/255 of
+        // brightness.
         let found = centre(&light.picture(255.0));
         assert!((found[0] - expected[0]).abs() < 0.01 && (found[1] - expected[1]).abs() < 0.01, "{found:?}");
         assert!(light.total().iter().all(|sum| (sum - 1.0).abs() < 1e-9), "one pixel's light");
@@ -58,7 +59,7 @@ fn case_8_a_pixel_is_seen_where_its_voxel_is() {
 
 /// Checks the angle of slice k: phase + k d, or phase - k d on a screen that turns the other way.
 #[test]
-fn phase_and_direction_of_the_turn_place_a_slice() {
+fn phase_and_direction_of_rotation_determine_the_place_of_a_slice() {
     let camera = case_8(40.0, 25.0);
     for (phase_deg, rotation, sign) in
         [(0.0, Rotation::ZToX, -1.0), (30.0, Rotation::XToZ, 1.0), (-71.5, Rotation::ZToX, -1.0)]
@@ -85,7 +86,8 @@ fn the_second_half_turn_shows_the_same_voxels() {
 #[test]
 fn a_cutaway_leaves_out_a_range_of_angles() {
     let camera = case_8(10.0, 20.0);
-    // The voxel of case 8 is at 30 degrees from +x to +z; the voxel of the mirrored pixel is at 210.
+    // The voxel of the numbered case 8 is at 30 degrees from +x to +z. The voxel of the mirrored pixel is at 210
+    // degrees.
     let total = |x: u32, cut: [f64; 2]| {
         let options = ViewOptions { cut_deg: Some(cut), ..PLAIN };
         view_planes(&one_pixel(33, x, 283), &camera, options, &OneThread).expect("valid").total()[0]
@@ -106,7 +108,8 @@ fn a_cutaway_leaves_out_a_range_of_angles() {
 
 #[test]
 fn lamberts_factor_is_the_cosine_between_screen_and_eye() {
-    // Seen along +z from afar, slice k's screen has e_s = (-sin, 0, cos): |view . e_s| is about |cos theta|.
+    // Seen along +z from far away, the screen of slice k has the normal e_s = (-sin, 0, cos), so |view . e_s| is about
+    // |cos theta|.
     let camera = Camera { azimuth_deg: 0.0, elevation_deg: 0.0, distance: 1e6, focal: 5e5, size: [512, 512] };
     let lambert = ViewOptions { lambert: true, ..PLAIN };
     for k in [0, 33, 66, 99, 150] {
@@ -125,7 +128,7 @@ fn mig(strobes: Strobes) -> VolumeFrame {
 }
 
 #[test]
-fn the_light_does_not_depend_on_threads_and_is_that_of_all_lit_voxels() {
+fn the_light_is_the_sum_of_all_lit_voxels_for_any_number_of_threads() {
     let frame = mig(Strobes::Each);
     let camera = Camera::around(384.0, 40.0, 25.0, 512);
     let alone = view_planes(&frame.planes, &camera, PLAIN, &OneThread).expect("valid");
@@ -165,7 +168,7 @@ fn a_film_turns_around_the_volume() {
 }
 
 #[test]
-fn cameras_that_see_nothing_are_named() {
+fn cameras_that_see_nothing_are_refused() {
     let planes = BitPlanes::dark([64, 64], 4);
     let camera = Camera::around(32.0, 0.0, 0.0, 64);
     for (camera, expected) in [
@@ -195,7 +198,7 @@ fn golden(name: &str, picture: &RgbImage) {
 /// Compares the view, a cutaway and the view without dither with reference pictures. The code uses libm and integers,
 /// so the bits are the same on every host.
 #[test]
-fn the_mig_looks_as_it_did() {
+fn the_picture_of_mig_is_unchanged() {
     let frame = mig(Strobes::Each);
     let camera = Camera::around(384.0, 40.0, 25.0, 256);
     let swept = view_planes(&frame.planes, &camera, PLAIN, &OneThread).expect("valid");

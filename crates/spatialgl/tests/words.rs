@@ -1,4 +1,4 @@
-//! Tests of cases 23 and 24 of the specification: the words that the projector receives.
+//! Tests of the numbered cases 23 and 24: the words that the projector receives.
 
 use spatialgl::{
     Combine, CommandBuffer, OneThread, PlaneStack, SliceImage, SliceRenderer, SliceStats, SliceView, SliceWork, Tiling,
@@ -31,13 +31,13 @@ fn bytes(colours: fn(u32) -> [u8; 3], row: usize, word: usize) -> [u8; 4] {
 }
 
 #[test]
-fn case_23_eight_equal_pixels() {
+fn case_23_eight_equal_pixels_are_packed_into_the_computed_bytes() {
     assert_eq!(bytes(|_| [128, 64, 255], 0, 1), [0xAA, 0xAA, 0xFF, 0x00]);
     assert_eq!(bytes(|_| [128, 64, 255], 1, 1), [0x55, 0x00, 0xFF, 0x00]);
 }
 
 #[test]
-fn case_24_a_ramp() {
+fn case_24_a_ramp_is_packed_into_the_computed_bytes() {
     let ramp = |x: u32| {
         let i = (x % 8) as u8;
         [36 * i, 255 - 36 * i, 255 * (i % 2)]

@@ -15,7 +15,6 @@
 use crate::time::nearest_ps;
 use pxpl5_sim::parameters::{ParameterTable, parameter_table};
 
-/// Converts milliseconds of a parameter table into picoseconds, rounded to the nearest picosecond.
 pub(crate) fn ms_to_ps(ms: f64) -> u64 {
     nearest_ps(ms / 1e3)
 }
@@ -339,7 +338,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_value_lies_in_its_range() {
+    fn every_published_tracking_value_is_in_its_range() {
         for (name, table) in Tables::PAPERS.all().into_iter().chain(FACTS) {
             assert_eq!(table.out_of_range(), [], "{name}");
         }

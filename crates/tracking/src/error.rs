@@ -7,7 +7,6 @@ pub(crate) fn check(what: &str, found: f64, low: f64, high: f64) -> Result<(), S
     SettingError::require((low..=high).contains(&found), what, format_args!("{low} to {high}"), found)
 }
 
-/// Creates the error of two settings that contradict each other. `what` describes both settings.
 pub(crate) fn contradiction(what: &str) -> SettingError {
     SettingError::combination(format_args!("settings contradict each other: {what}"))
 }
@@ -17,7 +16,7 @@ mod tests {
     use super::check;
 
     #[test]
-    fn the_message_says_what_was_expected_and_found() {
+    fn the_message_states_the_expected_and_found_values() {
         let error = check("line rate", f64::NAN, 300.0, 115_200.0).unwrap_err();
         assert_eq!(error.to_string(), "line rate: expected 300 to 115200, found NaN");
     }

@@ -1,4 +1,4 @@
-//! Lists the settings of trackers and predictors as keys and values. The names of experiments derive from this list.
+//! The settings of trackers and predictors as keys and values, from which the names of experiments derive.
 
 use pxpl5_sim::parameters::{Entry, ParameterTable};
 
@@ -116,8 +116,9 @@ impl PredictorConfig {
     }
 }
 
-/// Writes the value of a parameter only if the value differs from the papers' value. Thus an experiment with the
-/// papers' values keeps its identifier from earlier versions, in which the parameter was no setting.
+/// Passes a parameter to `settings` only if the parameter's value differs from the papers' value. Earlier versions
+/// passed no such parameters. With the papers' values, an experiment therefore keeps the hash of its settings from
+/// earlier versions.
 fn write_unusual(settings: &mut SettingSink, of: &str, entry: &Entry) {
     if entry.value != entry.info.papers {
         settings(&format!("{of}.{}", entry.info.name), &entry.value);

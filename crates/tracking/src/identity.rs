@@ -1,5 +1,5 @@
-//! Lists the settings of motions, trackers and predictors as keys and values. The names of experiments derive from
-//! these texts. Renaming a type or a field must therefore not change a text.
+//! The settings of motions, trackers and predictors as keys and values. The names of experiments derive from these
+//! texts, so a text stays the same when a type or field is renamed.
 //!
 //! [`Display`] formats every number. The text of an `f64` is the shortest text that parses to the same number. Each
 //! function names all fields of its struct. If a struct gets a new field, the code does not compile until the function

@@ -1,5 +1,6 @@
-//! Head motion, tracker models and pose prediction for head-mounted displays. The crate also computes pixel errors of a
-//! wrong pose, and measures latency from outside the machine.
+//! Head motion, tracker models and pose prediction for head-mounted displays.
+//!
+//! The crate also computes pixel errors of a wrong pose, and measures latency from outside the machine.
 //!
 //! ```text
 //!  motion ──pose(t)──▶ tracker ──▶ cable ──▶ host port ──Report──▶ predict ──pose(t')──▶ view

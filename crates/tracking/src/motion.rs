@@ -38,12 +38,13 @@ use crate::time::{PS_PER_S, span_s};
 /// motion is then 2 parts in 10^8.
 const HALF_STEP_PS: u64 = 50_000_000;
 
-/// Time between the sampled poses that the default [`Motion::identify`] writes.
+/// Time (ps) between the poses that the default [`Motion::identify`] writes.
 const SAMPLE_PS: u64 = PS_PER_S / 8;
 const SAMPLES: u64 = 512;
 
-/// The motion of a head as a pure function of simulated time. The trait also describes the pendulum of the latency rig,
-/// because this pendulum carries a tracker.
+/// The motion of a head as a pure function of simulated time.
+///
+/// The trait also describes the pendulum of the latency rig, because this pendulum carries a tracker.
 pub trait Motion: Debug {
     /// Returns the pose of the head in the world at `t_ps` (ps of simulated time).
     fn pose(&self, t_ps: u64) -> Pose;
@@ -60,13 +61,13 @@ pub trait Motion: Debug {
         }
     }
 
-    /// Returns the time (ps) at which the motion ends, if a run must stop there. Returns `None` if the motion continues
-    /// for ever or the head stands still at the end.
+    /// Returns the time (ps) at which the motion ends, if a run must stop at this time. Returns `None` if the motion
+    /// continues for ever or the head stands still at the end.
     fn ends_ps(&self) -> Option<u64> {
         None
     }
 
-    /// Returns the first gap of a recording that begins before `until_ps`. The two numbers are the times (ps) of the
+    /// Returns the first gap of a recording that begins before `_until_ps`. The two numbers are the times (ps) of the
     /// last pose before the gap and of the first pose after the gap. A run must not read poses within a gap. Returns
     /// `None` without a gap, or if the head stands still during gaps.
     fn gap_ps(&self, _until_ps: u64) -> Option<(u64, u64)> {
@@ -78,7 +79,7 @@ pub trait Motion: Debug {
         Vec::new()
     }
 
-    /// Returns the latest time (ps) at which the head is known to move. The tuning of a prediction filter needs no
+    /// Returns the time (ps) after which no motion of the head is known. The tuning of a prediction filter needs no
     /// motion after this time. The default is the end of the motion, if the motion has an end.
     fn moves_until_ps(&self) -> Option<u64> {
         self.ends_ps()
@@ -90,9 +91,9 @@ pub trait Motion: Debug {
         false
     }
 
-    /// Returns another motion of the same kind with different random numbers. Returns `None` if the motion has no
-    /// random numbers. Prediction filters are tuned on this other motion, so the evaluated motion has no influence on
-    /// the tuning.
+    /// Returns a motion of the same kind with different random numbers. Returns `None` if the motion has no random
+    /// numbers. Prediction filters are tuned on the returned motion, so the evaluated motion has no influence on the
+    /// tuning.
     fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
         None
     }
@@ -115,7 +116,6 @@ pub trait Motion: Debug {
     }
 }
 
-/// Implements [`Motion`] for pointers to a motion by forwarding every call.
 macro_rules! forward {
     ($($pointer:ty),*) => {$(
         impl<M: Motion + ?Sized> Motion for $pointer {

@@ -1,12 +1,11 @@
-//! The pose of a head: position and orientation.
-
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 use crate::rotation;
 
-/// A position in metres and an orientation (head axes to world axes). Axes are right-handed with y up, and the head
-/// looks along its own -z axis.
+/// A position in metres and an orientation (head axes to world axes).
+///
+/// Axes are right-handed with y up, and the head looks along its own -z axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
     /// Position of the head in the world, metres. This is the point between the eyes, or the eye itself if there is
@@ -49,12 +48,12 @@ impl Pose {
         }
     }
 
-    /// Returns the distance to another pose in metres.
+    /// Returns the distance from this pose to `other` in metres.
     pub fn distance_m(&self, other: &Self) -> f64 {
         self.position.distance(other.position)
     }
 
-    /// Returns the angle to another pose in degrees, 0 to 180.
+    /// Returns the angle between the orientations of this pose and `other` in degrees, 0 to 180.
     pub fn angle_deg(&self, other: &Self) -> f64 {
         rotation::angle_deg(self.orientation, other.orientation)
     }
@@ -76,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn interpolation_meets_both_ends() {
+    fn interpolation_is_exact_at_both_ends() {
         let a = Pose::IDENTITY;
         let b = Pose { position: DVec3::X, orientation: rotation::about_x(1.0) };
         assert!(a.interpolate(&b, 0.0).angle_deg(&a) < 1e-12 && a.interpolate(&b, 1.0).angle_deg(&b) < 1e-12);

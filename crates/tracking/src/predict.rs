@@ -21,7 +21,7 @@ pub use tune::{Training, Tuned, training_seed, tune};
 use crate::pose::Pose;
 use crate::tracker::TrackerReport;
 
-/// A predictor, which computes the head's pose at any instant from past tracker reports.
+/// A method that computes the head's pose at any instant from past tracker reports.
 pub trait Predictor: Send {
     /// Adds a report, in order of arrival. An impossible report is rejected and counted, but causes no error.
     fn observe(&mut self, report: &TrackerReport);

@@ -15,8 +15,8 @@ pub fn bits(seed: u64, index: u64) -> u64 {
     mix(seed.wrapping_add(index.wrapping_mul(INCREMENT)))
 }
 
-/// Returns the seed of the stream of random numbers with the number `name`. Streams with other names or seeds are
-/// independent of this stream. Two rounds of mixing prevent streams of neighbouring seeds from overlapping.
+/// Returns the seed of stream number `name` of random numbers. Streams with different numbers or seeds are independent.
+/// Two rounds of mixing prevent streams of neighbouring seeds from overlapping.
 pub(crate) fn stream(seed: u64, name: u64) -> u64 {
     bits(bits(seed, name), seed)
 }
@@ -63,7 +63,7 @@ mod tests {
 
     // Tolerances are five standard errors of 200,000 draws: 5 / sqrt(n) = 0.011, and sqrt 2 times that for variances.
     #[test]
-    fn normal_and_bell_have_mean_0_and_variance_1() {
+    fn the_normal_and_bell_distributions_have_mean_0_and_variance_1() {
         for (mean, variance) in
             [moments(|i| normal_pair(7, i).0), moments(|i| normal_pair(7, i).1), moments(|i| bell(bits(7, i)))]
         {
@@ -87,14 +87,14 @@ mod tests {
     }
 
     #[test]
-    fn the_first_value_is_that_of_splitmix64() {
+    fn the_first_value_equals_that_of_splitmix64() {
         // Published test vector of SplitMix64 for seed 1234567.
         assert_eq!(bits(1_234_567, 0), 6_457_827_717_110_365_317);
         assert_eq!(bits(1_234_567, 1), 3_203_168_211_198_807_973);
     }
 
     #[test]
-    fn below_stays_below_and_reaches_every_value() {
+    fn bounded_numbers_stay_below_their_bound_and_reach_every_value() {
         let mut seen = [false; 7];
         (0..1000).for_each(|i| seen[below(bits(5, i), 7) as usize] = true);
         assert!(seen.iter().all(|&s| s));

@@ -29,8 +29,8 @@ use crate::tracker::TrackerModel;
 /// fails.
 const PATIENCE_PS: u64 = 10 * PS_PER_S;
 
-/// Divisor of half a swing. Noise may make the detection of the lowest point early by at most half a swing divided by
-/// this number.
+/// Divisor of half a swing, for detections that are early because of noise. A detection up to this part of half a swing
+/// before a pass of the lowest point belongs to this pass.
 const EARLY_PART: u64 = 10;
 
 /// The pendulum rig, which measures latency from outside the machine. The pendulum's pivot and the tracker's origin are
@@ -123,9 +123,9 @@ impl PendulumRig {
         Ok(Measurement::new(self.detection, tracker, place_ps, outside.ok_or(no_light)?, inside))
     }
 
-    /// Returns the instant at which the pendulum passed its lowest point and so caused a step of the host's D/A output.
-    /// The result is the last pass before the step, or the next pass if noise caused an early detection. The result is
-    /// correct for tracking latencies below nine tenths of a half swing, 0.64 s.
+    /// Returns the instant at which the pendulum passed its lowest point and so caused the step of the host's D/A
+    /// output at `dac_ps`. The result is the last pass before the step, or the next pass if noise caused an early
+    /// detection. The result is correct for tracking latencies below nine tenths of a half swing, 0.64 s.
     fn low_point_before(&self, dac_ps: u64) -> u64 {
         let half_ps = self.half_swing_ps();
         let guess = dac_ps.saturating_add(half_ps / EARLY_PART).saturating_sub(half_ps / 2) / half_ps;

@@ -38,7 +38,7 @@ pub fn log(q: DQuat) -> DVec3 {
     v * (2.0 * libm::atan2(sin, q.w) / sin)
 }
 
-/// Returns the world-frame rotation vector (rad) of the shorter rotation from `from` to `to`.
+/// Returns the vector (rad) of the shorter rotation from `from` to `to`, in the world frame.
 pub fn difference(from: DQuat, to: DQuat) -> DVec3 {
     log(to * from.conjugate())
 }
@@ -131,7 +131,7 @@ mod tests {
         }
 
         #[test]
-        fn yaw_pitch_and_roll_come_back(yaw in -3.1..3.1f64, pitch in -1.5..1.5f64, roll in -3.1..3.1f64) {
+        fn yaw_pitch_and_roll_are_recovered_from_the_quaternion(yaw in -3.1..3.1f64, pitch in -1.5..1.5f64, roll in -3.1..3.1f64) {
             let (y, p, r) = to_yaw_pitch_roll(from_yaw_pitch_roll(yaw, pitch, roll));
             prop_assert!((y - yaw).abs() < 1e-10 && (p - pitch).abs() < 1e-10 && (r - roll).abs() < 1e-10);
         }
@@ -143,21 +143,21 @@ mod tests {
     }
 
     #[test]
-    fn slerp_takes_the_shorter_way_through_the_double_cover() {
+    fn interpolation_between_quaternions_takes_the_shorter_path_for_either_sign() {
         let a = about_y(0.2);
         let b = -about_y(0.6);
         assert!(angle_deg(slerp(a, b, 0.5), about_y(0.4)) < 1e-12);
     }
 
     #[test]
-    fn looking_straight_up_is_not_undefined() {
+    fn yaw_pitch_and_roll_are_recovered_for_a_head_that_looks_straight_up() {
         let q = from_yaw_pitch_roll(0.0, PI / 2.0, 0.3);
         let (yaw, pitch, roll) = to_yaw_pitch_roll(q);
         assert!(angle_deg(from_yaw_pitch_roll(yaw, pitch, roll), q) < 1e-6);
     }
 
     #[test]
-    fn positive_yaw_turns_left_and_positive_pitch_up() {
+    fn a_positive_yaw_turns_to_the_left_and_a_positive_pitch_turns_up() {
         assert!((about_y(PI / 2.0) * DVec3::NEG_Z - DVec3::NEG_X).length() < 1e-15);
         assert!((about_x(PI / 2.0) * DVec3::NEG_Z - DVec3::Y).length() < 1e-15);
     }

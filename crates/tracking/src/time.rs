@@ -58,12 +58,12 @@ mod tests {
     }
 
     #[test]
-    fn a_tick_past_the_end_of_time_is_none() {
+    fn a_tick_beyond_the_end_of_time_is_none() {
         assert_eq!(tick_ps(u64::MAX, 1, 1), None);
     }
 
     #[test]
-    fn an_instant_of_a_hundred_days_keeps_its_picoseconds() {
+    fn a_time_of_a_hundred_days_keeps_its_picoseconds() {
         let day_100 = 8_640_000 * PS_PER_S;
         assert_eq!(span_s(day_100 + 7, day_100), -7e-12);
         assert_eq!(nearest_ps(0.008_333_333_333), 8_333_333_333);

@@ -7,7 +7,8 @@ use tracking::rig::{
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, ntsc_lines_ps, seconds};
 use tracking::tracker::{SerialLine, SerialRead, TrackerConfig, TrackerFault, TrackerModel};
 
-/// Returns the instant at which a frame is shown: 57 ms after its start (Rendering Control), at the next field.
+/// Returns the instant at which a frame is shown. This is the start of the next field after 57 ms from the frame's
+/// start (Rendering Control).
 fn pipeline(start_ps: u64) -> u64 {
     (start_ps + 57 * PS_PER_MS).div_ceil(NTSC_FIELD_PS) * NTSC_FIELD_PS
 }
@@ -45,7 +46,7 @@ fn measure(rig: PendulumRig, config: TrackerConfig) -> Measurement {
 }
 
 #[test]
-fn the_low_point_is_seen_within_one_report_of_the_optical_tracker_and_33_ms_of_it() {
+fn the_optical_tracker_detects_the_low_point_33_ms_to_33_ms_plus_one_report_interval_later() {
     let measured = measure(PendulumRig::assumed(), noiseless(TrackerConfig::optical_ceiling()));
     let period_s = 1.0 / 60.0;
     assert!(measured.outside.tracking.min >= 0.033 && measured.outside.tracking.max <= 0.033 + period_s + 1e-9);
@@ -59,7 +60,7 @@ fn the_low_point_is_seen_within_one_report_of_the_optical_tracker_and_33_ms_of_i
 }
 
 #[test]
-fn rendering_is_the_inside_latency_plus_the_photodiodes_place() {
+fn external_rendering_latency_is_internal_latency_plus_the_delay_of_the_photodiode_line() {
     for photodiode_line in [0, 120, 239] {
         let rig = PendulumRig { photodiode_line, ..PendulumRig::assumed() };
         let measured = measure(rig, noiseless(TrackerConfig::optical_ceiling()));
@@ -71,7 +72,7 @@ fn rendering_is_the_inside_latency_plus_the_photodiodes_place() {
 }
 
 #[test]
-fn outside_and_inside_agree_within_the_bound_for_every_tracker_and_line() {
+fn external_and_internal_latencies_agree_within_the_bound_for_every_tracker_and_line() {
     let slow_line = Some(SerialLine { baud: 9600, ..SerialLine::fastrak() });
     for config in [
         TrackerConfig::ideal(),
@@ -98,7 +99,7 @@ fn outside_and_inside_agree_within_the_bound_for_every_tracker_and_line() {
 }
 
 #[test]
-fn with_noise_the_mean_still_agrees() {
+fn with_noise_the_mean_latencies_still_agree() {
     for config in [TrackerConfig::fastrak(), TrackerConfig::flock_of_birds(), TrackerConfig::optical_ceiling()] {
         let measured = measure(PendulumRig::assumed(), config.clone());
         let difference = measured.outside_less_inside_s();
@@ -107,8 +108,9 @@ fn with_noise_the_mean_still_agrees() {
 }
 
 #[test]
-fn the_sign_of_the_velocity_fails_with_a_millimetre_of_noise() {
-    // Crossing is the default because the arc is flat around the low point.
+fn with_a_millimetre_of_noise_the_sign_of_the_velocity_does_not_detect_the_low_point() {
+    // The arc is flat at the low point, so noise changes the sign of the velocity. The default method therefore detects
+    // the crossing.
     let rig = PendulumRig { detection: Detection::VelocitySign, ..PendulumRig::assumed() };
     let measured = measure(rig, TrackerConfig::fastrak());
     let passes = measured.outside_passes.iter().zip(&measured.inside_passes);
@@ -118,7 +120,7 @@ fn the_sign_of_the_velocity_fails_with_a_millimetre_of_noise() {
 }
 
 #[test]
-fn every_low_point_is_seen_once_and_frames_alternate() {
+fn every_low_point_is_detected_once_and_successive_frames_alternate_between_light_and_dark() {
     let rig = PendulumRig::assumed();
     let tracker = TrackerModel::new(TrackerConfig::fastrak()).unwrap();
     let inside = inside(&rig, &tracker, 200);
@@ -146,13 +148,13 @@ fn the_low_points_pulse_lasts_as_long_as_the_bob_is_in_the_beam() {
 fn a_silent_tracker_is_an_error() {
     let faults = vec![TrackerFault::Silence { from_ps: 3 * PS_PER_S }];
     let tracker = TrackerModel::new(TrackerConfig { faults, ..TrackerConfig::fastrak() }).unwrap();
-    // Low points at 0.36 s and every 0.71 s: four before the silence.
+    // Low points come at 0.36 s and every 0.71 s. Four of them come before the tracker falls silent.
     let error = PendulumRig::assumed().sightings(&tracker, 1, 100).unwrap_err();
     assert_eq!(error, RigError::TooFewPasses { expected: 100, found: 4 });
 }
 
 #[test]
-fn a_frame_whose_light_never_comes_is_an_error() {
+fn a_frame_that_never_lights_is_an_error() {
     let rig = PendulumRig::assumed();
     let tracker = TrackerModel::new(TrackerConfig::ideal()).unwrap();
     let inside = inside(&rig, &tracker, 3);
@@ -166,7 +168,7 @@ fn a_frame_whose_light_never_comes_is_an_error() {
 /// Each measurement detects errors of the other. They disagree if they differ by more than the limits, 8.3 and 7.6 ms
 /// here.
 #[test]
-fn an_error_of_one_side_is_found_by_the_other() {
+fn an_error_of_one_measurement_is_found_by_the_other() {
     let rig = PendulumRig::assumed();
     let tracker = TrackerModel::new(noiseless(TrackerConfig::fastrak())).unwrap();
     let truth = inside(&rig, &tracker, 50);
@@ -185,11 +187,11 @@ fn an_error_of_one_side_is_found_by_the_other() {
     assert!(!agree(&scope, shifted(place_too_late)));
     let measured = rig.compare(&tracker, place_ps(&rig), &scope, shifted(place_too_late)).unwrap();
     assert!(measured.with_frames_counted_in_scan(place_ps(&rig) + 6 * PS_PER_MS).agrees());
-    // The pipeline counts a field too few, or stamps its start 20 ms late.
+    // The pipeline counts a field too few, or its time stamp of the start is 20 ms late.
     assert!(!agree(&scope, shifted(-(NTSC_FIELD_PS as i64))));
     let late_stamp = |pass: &InsidePass| InsidePass { started_ps: pass.started_ps + 20 * PS_PER_MS, ..*pass };
     assert!(!agree(&scope, truth.iter().map(late_stamp).collect()));
-    // The photodiode hangs a field late, or the light comes from the frame before.
+    // The signal of the photodiode is a field late, or the light comes from the previous frame.
     let late = truth.iter().map(|pass| pass.shown_ps + place_ps(&rig) + NTSC_FIELD_PS);
     let late = Oscilloscope { screen: ScopeTrace::toggling("screen", late.collect()), ..scope };
     assert!(!agree(&late, truth.clone()));

@@ -33,17 +33,18 @@ fn mean_degrees(kind: PredictorKind, tracker: fn() -> TrackerConfig) -> [f64; 4]
 }
 
 #[test]
-fn without_prediction_errors_grow_1_93_and_3_64_times() {
-    // Published ratios of 100 and 200 ms to 50 ms. The fit of the generator reaches 3 %.
+fn the_errors_at_100_and_200_ms_without_prediction_are_1_93_and_3_64_times_the_error_at_50_ms() {
+    // Published ratios of the errors at 100 and 200 ms to the error at 50 ms. The fitted motion reproduces the ratios
+    // within 3 %.
     let [_, at_50, at_100, at_200] = mean_degrees(PredictorKind::None, TrackerConfig::ideal);
     assert!((at_100 / at_50 / 1.93 - 1.0).abs() < 0.03, "{}", at_100 / at_50);
     assert!((at_200 / at_50 / 3.64 - 1.0).abs() < 0.03, "{}", at_200 / at_50);
 }
 
 #[test]
-fn with_the_kalman_filter_errors_grow_about_as_fast_as_azumas() {
-    // Azuma, behind this tracker: 2.3 and 9 times; a constant-velocity Kalman filter on recorded traces: 2.7 and 7.1.
-    // Other motion: a quarter either way of the two published values is allowed.
+fn the_errors_of_the_kalman_filter_grow_with_the_interval_as_published() {
+    // Azuma's ratios behind this tracker are 2.3 and 9. A constant-velocity Kalman filter on recorded traces has 2.7
+    // and 7.1. The motion here is another one, so a quarter more or less than the published values is allowed.
     let [_, at_50, at_100, at_200] = mean_degrees(PredictorKind::Kalman, TrackerConfig::optical_ceiling);
     println!("growth: {:.2} and {:.2} (Azuma 2.3 and 9)", at_100 / at_50, at_200 / at_50);
     assert!((2.3 * 0.75..2.7 * 1.25).contains(&(at_100 / at_50)), "{}", at_100 / at_50);
@@ -60,7 +61,7 @@ fn below_80_ms_the_kalman_filter_cuts_the_mean_error_2_to_3_times() {
 }
 
 #[test]
-fn far_ahead_prediction_by_acceleration_is_worse_than_none() {
+fn at_200_ms_prediction_with_acceleration_is_worse_than_no_prediction() {
     let none = mean_degrees(PredictorKind::None, TrackerConfig::optical_ceiling);
     let second = mean_degrees(PredictorKind::ConstantAcceleration, TrackerConfig::optical_ceiling);
     assert!(second[3] > none[3]);
@@ -115,7 +116,7 @@ fn after_a_crash_of_the_patched_host_predictors_keep_the_last_pose() {
 }
 
 #[test]
-fn reports_that_cannot_be_true_are_rejected_and_counted() {
+fn impossible_reports_are_rejected_and_counted() {
     for kind in PredictorKind::ALL {
         let mut predictor = build(kind, &TrackerConfig::fastrak());
         (0..20).for_each(|i| predictor.observe(&report(i * 8 * PS_PER_MS, Pose::IDENTITY)));
@@ -161,7 +162,7 @@ fn after_a_gap_old_velocities_are_discarded() {
 }
 
 #[test]
-fn faults_of_all_kinds_cost_accuracy_but_nothing_else() {
+fn tracker_faults_raise_the_error_of_prediction_by_less_than_half() {
     let faults = vec![
         TrackerFault::RandomDropout { probability: 0.05 },
         TrackerFault::NotANumber { probability: 0.05 },
@@ -172,15 +173,16 @@ fn faults_of_all_kinds_cost_accuracy_but_nothing_else() {
         let clean = errors(kind, TrackerConfig::fastrak(), 5, (1, 120));
         let broken = TrackerConfig { faults: faults.clone(), ..TrackerConfig::fastrak() };
         let faulty = errors(kind, broken, 5, (1, 120));
-        // A tenth of the reports useless and a second lost in 120: the mean error at 50 ms rises by less than half.
+        // A tenth of the reports is useless, and one second of 120 is lost. The mean error at 50 ms must rise by less
+        // than half.
         assert!(faulty[1].mean_deg.is_finite() && faulty[1].mean_deg < 1.5 * clean[1].mean_deg, "{kind:?}");
         assert!(faulty[1].max_deg.is_finite() && faulty[1].mean_m < 1.5 * clean[1].mean_m, "{kind:?}");
     }
 }
 
 #[test]
-fn tiny_steps_are_survived() {
-    // Reports of a noisy still head 50 us apart, the least that the gate lets through.
+fn reports_50_microseconds_apart_are_accepted_and_give_finite_predictions() {
+    // A still head with noise has reports 50 us apart, the smallest distance that the gate of the predictors accepts.
     let tracker = TrackerConfig { rate_hz: 10_000, ..TrackerConfig::optical_ceiling() };
     let model = TrackerModel::new(TrackerConfig { serial: None, ..tracker }).unwrap();
     let still = tracking::motion::Still(Pose::IDENTITY);
@@ -196,12 +198,13 @@ fn tiny_steps_are_survived() {
     }
     let mut kalman = build(PredictorKind::Kalman, model.config());
     model.reports(&still, 1).take(20_000).for_each(|r| kalman.observe(&r));
-    // Two seconds of 10 kHz: far more than 100 reports share a moment, so the estimate is 10 times better than one.
+    // Two seconds at 10 kHz give far more than 100 reports of about one moment, so the estimate is 10 times better than
+    // one report.
     assert!(kalman.predict(2 * PS_PER_S + 33 * PS_PER_MS).distance_m(&Pose::IDENTITY) < 2e-3);
 }
 
 #[test]
-fn the_last_five_minutes_of_an_hour_are_predicted_as_well_as_the_first() {
+fn prediction_is_equally_good_in_the_first_and_last_five_minutes_of_an_hour() {
     // Five-minute means of four traces scatter by 3 %.
     for kind in [PredictorKind::ConstantAcceleration, PredictorKind::Kalman] {
         let [first, last] = [(1, 300), (3300, 3600)].map(|span_s| {
@@ -212,7 +215,7 @@ fn the_last_five_minutes_of_an_hour_are_predicted_as_well_as_the_first() {
 }
 
 #[test]
-fn each_prediction_is_for_the_very_instant_it_is_asked_for() {
+fn each_prediction_is_for_the_requested_time() {
     let pan = Pan::at(200.0);
     let mut predictor = build(PredictorKind::ConstantVelocity, &TrackerConfig::ideal());
     (0..20).for_each(|i| predictor.observe(&report(i * PS_PER_MS, pan.pose(i * PS_PER_MS))));

@@ -27,7 +27,7 @@ fn speeds(seed: u64) -> [f64; 4] {
 }
 
 #[test]
-fn speeds_of_17_minutes_are_those_of_recorded_use() {
+fn the_head_speeds_of_the_synthetic_motion_equal_those_of_recorded_use() {
     let HeadSpeeds { mean_turn, turn_95, turn_999, mean_translation, .. } = HeadSpeeds::PAPERS;
     let published = [mean_turn, turn_95, turn_999, mean_translation];
     let traces: Vec<_> = (0..SEEDS).map(speeds).collect();
@@ -63,7 +63,7 @@ fn bin_energy(signal: &[f64], mean: f64, bin: usize) -> f64 {
 
 #[test]
 fn ninety_five_percent_of_the_yaw_energy_is_below_0_14_hz() {
-    // 17-minute figures scatter by 0.006.
+    // The fraction of the energy over 17 minutes scatters by 0.006 between seeds.
     let parts: Vec<_> = (0..8).map(|seed| yaw_energy_below(seed, HeadSpeeds::PAPERS.yaw_energy_95, 5)).collect();
     assert!(parts.iter().all(|part| (part - 0.95).abs() < 0.02), "{parts:?}");
     let mean = parts.iter().sum::<f64>() / 8.0;
@@ -77,8 +77,9 @@ fn practically_all_yaw_energy_is_below_2_hz() {
 }
 
 #[test]
-fn the_last_of_sixty_minutes_wanders_no_farther_than_the_first() {
-    // Six standard deviations of yaw (47 deg and 9 deg) and of place (0.38 m): a drift would leave them.
+fn the_motion_does_not_drift_within_an_hour() {
+    // The limits are six standard deviations of yaw (47 deg and 9 deg) and of the position (0.38 m). A drift would
+    // exceed them.
     let motion = Synthetic::recorded_use(3);
     for t in at_120_hz(60).flat_map(|t| [t, t + 3540 * PS_PER_S]) {
         assert!(motion.yaw_pitch_roll(t).0.x.abs() < 6.0 * 48f64.to_radians());
@@ -87,7 +88,7 @@ fn the_last_of_sixty_minutes_wanders_no_farther_than_the_first() {
 }
 
 #[test]
-fn one_seed_gives_one_motion_and_two_seeds_two() {
+fn the_motion_depends_only_on_the_seed() {
     let t = 1234 * PS_PER_S;
     assert_eq!(Synthetic::recorded_use(5).pose(t), Synthetic::recorded_use(5).pose(t));
     assert!(Synthetic::recorded_use(5).pose(t).distance_m(&Synthetic::recorded_use(6).pose(t)) > 1e-3);

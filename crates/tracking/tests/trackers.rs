@@ -31,7 +31,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 #[test]
-fn an_ideal_report_is_the_truth_at_once() {
+fn an_ideal_report_is_exact_and_immediate() {
     let motion = Synthetic::recorded_use(1);
     for report in reports(TrackerConfig::ideal(), &motion, 0, 1000) {
         assert_eq!(report.arrives_ps, report.measured_ps);
@@ -40,7 +40,7 @@ fn an_ideal_report_is_the_truth_at_once() {
 }
 
 #[test]
-fn a_fastrak_report_arrives_a_transfer_after_5_5_ms_and_was_true_3_75_ms_before_output() {
+fn a_fastrak_report_is_3_75_ms_old_at_its_output_and_arrives_one_transfer_later() {
     for report in reports(TrackerConfig::fastrak(), &HEAD, 0, 100) {
         let output_ps = report.solution * PS_PER_S / 120 + 5_500_000_000;
         assert_eq!(report.measured_ps, output_ps - 3_750_000_000);
@@ -73,14 +73,16 @@ fn the_fastraks_filter_has_the_latencies_of_the_manual() {
     assert!((apparent_latency_ms(1.0) - 3.75).abs() < 1e-6, "without a filter");
 }
 
-/// Every serial tracker exists with both kernels, and `host.poll` affects only the polled kernel.
+/// Every serial tracker exists with a host that polls and with a patched host that does not. `host.poll` affects only
+/// the host that polls.
 #[test]
-fn a_polled_variant_is_later_by_the_wait_for_the_kernel_and_by_nothing_else() {
+fn polling_only_adds_the_wait_for_the_next_poll() {
     let mut slow = Tables::PAPERS;
     slow.host.poll = 60.0;
     for by in [TrackerConfig::fastrak_by, TrackerConfig::flock_of_birds_by, TrackerConfig::polhemus_3space_by] {
         let patched = by(&Tables::PAPERS).without_polling();
-        // The Flock's 10 ms divide the kernel's 30, so that one seed has three waits alone.
+        // The Flock's reports are 10 ms apart and the polls 30 ms, so a run with one seed has only three different
+        // waits.
         let greatest_wait_ms = |tables: &Tables| {
             let waits = (0..60).flat_map(|seed| {
                 let polled = reports(by(tables).with_polling_by(tables), &HEAD, seed, 40);
@@ -108,7 +110,7 @@ fn two_receivers_halve_the_rate() {
 
 #[test]
 fn at_9600_baud_five_of_six_fastrak_solutions_are_dropped() {
-    // 48.96 ms of transfer over 8.33 ms of period: the next ready solution after 5.88 periods is the sixth.
+    // The transfer of 48.96 ms takes 5.88 periods of 8.33 ms, so the next ready solution is the sixth.
     let serial = Some(SerialLine { baud: 9600, ..SerialLine::fastrak() });
     let all = reports(TrackerConfig { serial, ..TrackerConfig::fastrak() }, &HEAD, 0, 100);
     assert!(all.windows(2).all(|w| w[1].solution - w[0].solution == 6));
@@ -131,7 +133,7 @@ fn the_flocks_position_is_5_5_ms_older_than_its_orientation() {
 }
 
 #[test]
-fn the_optical_ceiling_is_33_ms_late() {
+fn the_reports_of_the_optical_tracker_are_33_ms_late() {
     for report in reports(TrackerConfig::optical_ceiling(), &HEAD, 0, 50) {
         assert_eq!(report.arrives_ps - report.measured_ps, 33 * PS_PER_MS);
     }
@@ -146,7 +148,8 @@ fn a_polled_line_adds_0_to_30_ms_uniformly_over_seeds() {
         .map(|r| (r.arrives_ps - r.measured_ps - 33 * PS_PER_MS) as f64 / PS_PER_MS as f64)
         .collect();
     assert!(waits.iter().all(|wait| (0.0..30.0).contains(wait)));
-    // Standard errors: of the mean 8.66 ms / sqrt 3000 = 0.16 ms, of a count of 300 in 3000 16.
+    // The standard error of the mean is 8.66 ms / sqrt 3000 = 0.16 ms. The standard error of a count of 300 in 3000 is
+    // 16.
     assert!((mean(waits.iter().copied()) - 15.0).abs() < 0.65);
     for tenth in 0..10 {
         let n = waits.iter().filter(|w| (**w / 3.0) as i32 == tenth).count();
@@ -155,7 +158,7 @@ fn a_polled_line_adds_0_to_30_ms_uniformly_over_seeds() {
 }
 
 #[test]
-fn polling_never_changes_the_order() {
+fn polling_never_changes_the_order_of_reports() {
     let config = TrackerConfig { host: SerialRead::unix(), ..TrackerConfig::fastrak() };
     let all = reports(config, &HEAD, 7, 2000);
     assert!(all.windows(2).all(|w| w[0].arrives_ps <= w[1].arrives_ps));
@@ -175,7 +178,7 @@ fn noise_has_the_configured_deviation_on_each_axis() {
 }
 
 #[test]
-fn static_accuracy_is_a_bias_the_same_in_every_report_and_another_for_each_installation() {
+fn static_accuracy_is_a_constant_bias_of_each_installation() {
     let config = TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::fastrak() };
     let of_seed = |seed| {
         let all = reports(config.clone(), &HEAD, seed, 50);
@@ -193,7 +196,7 @@ fn static_accuracy_is_a_bias_the_same_in_every_report_and_another_for_each_insta
 }
 
 #[test]
-fn noise_belongs_to_the_seed() {
+fn noise_depends_on_the_seed() {
     let [first, again, other] = [1, 1, 2].map(|seed| reports(TrackerConfig::fastrak(), &HEAD, seed, 10));
     assert_eq!(first, again);
     assert_ne!(first[0].pose, other[0].pose);
@@ -238,7 +241,7 @@ fn a_dropout_leaves_no_report_between_its_ends() {
 }
 
 #[test]
-fn a_dropout_for_all_time_ends_the_reports() {
+fn an_endless_dropout_ends_the_reports() {
     let faults = vec![TrackerFault::Dropout { from_ps: 0, to_ps: u64::MAX }];
     assert_eq!(reports(TrackerConfig { faults, ..TrackerConfig::fastrak() }, &HEAD, 0, 1), []);
 }
@@ -253,7 +256,7 @@ fn is_a_tenth_of_20_000(found: usize) -> bool {
 }
 
 #[test]
-fn random_faults_strike_as_often_as_told() {
+fn random_faults_occur_at_the_stated_rate() {
     let lost = reports(ideal_but_for(TrackerFault::RandomDropout { probability: 0.1 }), &HEAD, 1, 18_000);
     assert!((lost.last().unwrap().solution as f64 - 20_000.0).abs() < 250.0);
     let nan = reports(ideal_but_for(TrackerFault::NotANumber { probability: 0.1 }), &HEAD, 1, 20_000);
@@ -267,7 +270,7 @@ fn random_faults_strike_as_often_as_told() {
 }
 
 #[test]
-fn a_silent_tracker_says_nothing_from_that_instant() {
+fn a_silent_tracker_sends_no_reports_from_the_stated_time() {
     let faults = vec![TrackerFault::Silence { from_ps: PS_PER_S }];
     let all = reports(TrackerConfig { faults, ..TrackerConfig::ideal() }, &HEAD, 0, 5000);
     assert_eq!(all.len(), 1000);
@@ -275,7 +278,7 @@ fn a_silent_tracker_says_nothing_from_that_instant() {
 }
 
 #[test]
-fn the_patched_host_dies_of_the_flock_and_of_no_other() {
+fn the_patched_host_crashes_only_with_the_flock() {
     let all = reports(TrackerConfig::flock_of_birds_on_patched_host(), &HEAD, 0, 5000);
     assert!(all.len() < 5000);
     let first = all[0].arrives_ps;
@@ -286,7 +289,7 @@ fn the_patched_host_dies_of_the_flock_and_of_no_other() {
 }
 
 #[test]
-fn after_an_hour_the_reports_are_still_on_the_grid() {
+fn after_an_hour_the_report_times_are_still_exact_multiples_of_the_report_interval() {
     let tracker = model(TrackerConfig::fastrak());
     let report = tracker.reports(&HEAD, 0).nth(432_000).unwrap();
     assert_eq!(report.measured_ps, 3600 * PS_PER_S + 1_750_000_000);

@@ -34,7 +34,7 @@ fn error(
 }
 
 #[test]
-fn on_a_still_head_a_tuned_filter_is_no_worse_than_none() {
+fn on_a_still_head_a_tuned_filter_has_no_greater_error_than_no_prediction() {
     let still = Still(Pose::IDENTITY);
     for tracker in [model(TrackerConfig::optical_ceiling()), model(TrackerConfig::fastrak())] {
         for interval_ps in [50, 100, 145, 250].map(|ms| ms * PS_PER_MS) {
@@ -63,7 +63,7 @@ fn on_a_still_head_a_tuned_filter_is_no_worse_than_none() {
 }
 
 #[test]
-fn a_tuned_filter_is_near_the_best_of_all_on_motion_and_noise_that_it_has_not_seen() {
+fn a_tuned_filter_is_near_the_optimum_on_unseen_motion_and_noise() {
     let tracker = model(TrackerConfig::optical_ceiling());
     let motion = Synthetic::recorded_use(3);
     for interval_ps in [50, 145].map(|ms| ms * PS_PER_MS) {
@@ -90,7 +90,8 @@ fn a_tuned_filter_is_near_the_best_of_all_on_motion_and_noise_that_it_has_not_se
             found.mean_deg,
             least_deg
         );
-        // Trained on 19 s of another motion of the kind: the means of two such spells differ, but the best jerk hardly.
+        // The filter was trained on 19 s of another motion of the same kind. The mean errors of two such motions
+        // differ, but the best jerk hardly differs.
         assert!(found.mean_m < 1.1 * least_m && found.mean_deg < 1.1 * least_deg);
     }
 }
@@ -111,7 +112,7 @@ fn a_filter_is_never_tuned_on_the_noise_on_which_it_is_evaluated() {
 }
 
 #[test]
-fn tuning_gives_the_same_every_time_and_nothing_where_there_is_nothing_to_tune() {
+fn tuning_is_deterministic_and_skips_predictors_without_parameters() {
     let tracker = model(TrackerConfig::optical_ceiling());
     let motion = Synthetic::recorded_use(1);
     for kind in PredictorKind::ALL {
@@ -172,10 +173,10 @@ fn of_differences(order: u32, w: f64, h: f64, p: f64) -> Complex {
 }
 
 #[test]
-fn errors_on_sine_waves_are_the_closed_forms() {
+fn prediction_errors_on_sine_waves_follow_the_closed_forms() {
     let tracker = model(TrackerConfig::ideal());
     let h = 1e-3;
-    // Sampled 1,000 times a second, the greatest error is found to (pi f / 1000)^2 / 2 at least.
+    // With 1,000 samples a second, the greatest error is found with a relative accuracy of (pi f / 1000)^2 / 2.
     for (hz, p_ms) in [(1.0, 50), (1.0, 100), (2.0, 100), (2.0, 200)] {
         let motion = Sinusoid { sway_m: 0.1, ..Sinusoid::of_yaw(5.0, hz) };
         let w = TAU * hz;
@@ -209,9 +210,10 @@ fn errors_on_sine_waves_are_the_closed_forms() {
 }
 
 #[test]
-fn growth_of_the_error_with_the_interval_is_reported_beside_azumas() {
-    // Azuma: 2.3 times at 100 and 9 times at 200 ms what it is at 50 ms; recorded traces behind a constant-velocity
-    // filter 2.7 and 7.1. Other motion: a quarter either way of the two, as for the filter that is tuned once.
+fn the_growth_of_prediction_errors_with_the_interval_is_near_azumas_growth() {
+    // Azuma's errors at 100 and 200 ms are 2.3 and 9 times the error at 50 ms. Recorded traces behind a
+    // constant-velocity filter have 2.7 and 7.1. The motion here is another one, so a quarter more or less than both is
+    // allowed. The filter that is tuned once has the same limits.
     let tracker = model(TrackerConfig::optical_ceiling());
     let mean = |config: fn(&dyn Motion, &TrackerModel, u64) -> PredictorConfig, ms: u64| {
         let each = (0..4).map(|seed| {
@@ -230,6 +232,7 @@ fn growth_of_the_error_with_the_interval_is_reported_beside_azumas() {
         assert!((2.3 * 0.75..2.7 * 1.25).contains(&by_100), "{by_100}");
         assert!((7.1 * 0.75..9.0 * 1.25).contains(&by_200), "{by_200}");
     }
-    // Training has not seen the lively spells of some seeds, so their errors may differ slightly in either direction.
+    // The training has not seen the fast movements of some seeds, so their errors may differ slightly in either
+    // direction.
     assert!(for_each[2] < 1.05 * once[2], "tuned for 200 ms: {for_each:?}, for 50 ms: {once:?}");
 }

@@ -43,7 +43,7 @@ fn the_left_eye_is_32_mm_left_of_the_head() {
 }
 
 #[test]
-fn a_view_direction_is_rigid() {
+fn the_transform_from_world_to_eye_is_a_rigid_motion() {
     for view in hmd().stereo(&turned_left()) {
         let m = view.world_to_eye;
         let product = m * m.inverse();
@@ -86,7 +86,7 @@ fn disparity_is_eye_separation_times_focal_length_over_depth() {
 }
 
 #[test]
-fn an_orientation_of_any_length_counts_by_its_direction() {
+fn an_orientation_quaternion_may_have_any_length() {
     let mut head = turned_left();
     head.orientation *= 7.0;
     let view = hmd().mono(&head);
@@ -96,7 +96,7 @@ fn an_orientation_of_any_length_counts_by_its_direction() {
 }
 
 #[test]
-fn numbers_out_of_range_are_named() {
+fn numbers_out_of_range_are_refused_by_name() {
     type Damage = fn(&mut HmdConfig);
     let damage: [(&str, Damage); 10] = [
         ("eye_separation_m", |c| c.eye_separation_m = -0.1),
@@ -128,7 +128,7 @@ fn unknown_keys_of_a_configuration_are_errors() {
 /// The middle of the picture is pixel 320. Half the eye distance is 32 mm, and cot 30 degrees is 1.732: at 2 m the
 /// point is 8.87 pixels off the middle with parallel axes.
 #[test]
-fn eyes_that_converge_see_the_point_where_their_axes_meet_in_the_middle() {
+fn with_converging_eyes_the_point_where_the_eye_axes_meet_is_in_the_middle_of_both_pictures() {
     let head = turned_left();
     let meeting = Vec3::new(-1.0, 2.0, 3.0);
     let places = |convergence_m| {

@@ -59,7 +59,7 @@ fn main() -> Fallible<()> {
 fn context() -> Fallible<glow::Context> {
     /// EGL_PLATFORM_SURFACELESS_MESA, of EGL_MESA_platform_surfaceless.
     const SURFACELESS: khronos_egl::Enum = 0x31DD;
-    // SAFETY: libEGL is what its name says.
+    // SAFETY: the library with the name libEGL implements EGL.
     let egl = unsafe { khronos_egl::DynamicInstance::<khronos_egl::EGL1_5>::load_required()? };
     // SAFETY: this platform takes the default display, and no attributes.
     let display =
@@ -79,7 +79,7 @@ fn context() -> Fallible<glow::Context> {
             egl.get_proc_address(name).map_or(std::ptr::null(), |f| f as *const _)
         })
     };
-    // The library has to stay.
+    // The library must stay loaded after this function.
     std::mem::forget(egl);
     Ok(gl)
 }

@@ -6,7 +6,6 @@ use super::registers::{Candidate, Registers};
 use crate::composition::{Composition, CompositionOrder};
 use crate::face::TexelAddress;
 
-/// Reads the four texels of a pixel from the four banks of each memory.
 pub(super) fn read(
     registers: &mut Registers,
     memories: &[BankedMemory],
@@ -56,7 +55,6 @@ fn nearer(first: Candidate, second: Candidate) -> Candidate {
     nearest
 }
 
-/// Interpolates the four texels of each memory that the comparators have not yet eliminated.
 pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) {
     let Some(footprint) = registers.footprint else { return };
     let products = footprint.weights(composition.weight_bits);
@@ -75,8 +73,8 @@ pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) 
     registers.colour = registers.candidates.first().map_or(0, |candidate| candidate.colours[0]);
 }
 
-/// Returns the final colour of the pixel. If even the smallest depth of all display memories is the depth of an empty
-/// texel, the background is visible.
+/// Returns the final colour of the pixel. If depths were interpolated before the comparison, the nearest candidate may
+/// be empty, and then the background is visible.
 pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[BankedMemory]) -> u32 {
     let farthest = memories.first().map_or(0, BankedMemory::farthest);
     match (composition.order, registers.candidates.first()) {
@@ -91,7 +89,6 @@ pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[
     }
 }
 
-/// Rule for rounding a number when its lowest bits are removed.
 #[derive(Clone, Copy)]
 enum Rounding {
     Nearest,
@@ -106,7 +103,7 @@ fn mixed(colours: [u32; 4], weights: [Option<u64>; 4], bits: u64) -> u32 {
 /// Returns the weighted sum of four values. The weights add up to 2^bits. If a weight is `None`, returns the mean of
 /// the other three values.
 fn weighed(values: [u32; 4], weights: [Option<u64>; 4], bits: u64, rounding: Rounding) -> u32 {
-    // Beyond a corner, take the mean of the other three.
+    // If a texel is beyond a corner, take the mean of the other three texels.
     if weights.contains(&None) {
         let three: u64 = (0..4).filter(|k| weights[*k].is_some()).map(|k| u64::from(values[k])).sum();
         let remainder = three % 3;

@@ -5,7 +5,7 @@ use crate::address::Footprint;
 use crate::face::CubeFace;
 use crate::orientation::MatrixWords;
 
-/// The four texels of a memory in the comparators. After interpolation, all four are equal.
+/// A candidate for the nearest memory, with its four texels. After interpolation, all four are equal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) depths: [u32; 4],

@@ -33,13 +33,13 @@ impl Cell {
     }
 }
 
-/// Returns the coordinate at which the column of cells with index `number` begins, in metres.
+/// Returns the coordinate, in metres, at which the cells of column `number` begin.
 pub(crate) fn border(number: i64, side_m: f64) -> f64 {
     number as f64 * side_m
 }
 
-/// Returns the index of the column of cells that contains a coordinate. The result is the last column that begins at or
-/// before the coordinate.
+/// Returns the number of the column of cells that contains a coordinate. The result is the last column that begins at
+/// or before the coordinate.
 ///
 /// Comparisons correct the rounding errors of the division.
 pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
@@ -49,20 +49,17 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
     near.saturating_add(after - before)
 }
 
-/// Assignment of cells to memories by rings of cells. The home cell contained the eye at the time of the assignment,
-/// and all cells at the same distance from the home cell form a ring of cells.
+/// Assignment of cells to memories by rings of cells. The home cell contained the eye at the time of the assignment.
+/// All cells at the same distance from the home cell form a ring of cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellAssignment {
-    /// The home cell, which contained the eye at the time of the assignment and is the centre of all rings of cells.
     pub home: Cell,
-    /// Side of a cell (square of the floor) in metres.
     pub side_m: f64,
     /// Number of rings of cells around the home cell that memory 0 holds.
     pub inner_rings: u64,
-    /// Number of rings of cells in a memory divided by the number in the previous memory, from memory 2 on. Memory 1
-    /// holds one ring of cells, memory 2 holds `ring_growth` rings of cells, and so on.
+    /// Number of rings of cells in memory k divided by the number of rings in memory k - 1, for k of 2 or more. Memory
+    /// 1 holds one ring of cells, memory 2 holds `ring_growth` rings of cells, and so on.
     pub ring_growth: u64,
-    /// Number of memories.
     pub memories: usize,
 }
 
@@ -74,8 +71,8 @@ impl CellAssignment {
         (0..self.memories - 1).find(|memory| ring <= self.last_ring(*memory)).unwrap_or(self.memories - 1)
     }
 
-    /// Returns the number of the outermost ring of cells that memory k = `memory` holds. The value does not apply to
-    /// the last memory (the least often drawn), which has no outer limit.
+    /// Returns the number of the outermost ring of cells that memory k = `memory` holds. The last memory (the least
+    /// often drawn) has no outer limit, so the result does not apply to this memory.
     ///
     /// The result is the number of inner rings of cells plus 1 + g + g^2 + ... + g^(k-1), where g is
     /// [`CellAssignment::ring_growth`].
@@ -97,8 +94,8 @@ impl CellAssignment {
     }
 
     /// Returns the horizontal distance, in metres, from a position inside the outer border of memory k = `memory` to
-    /// this border. Beyond the border lie the cells of memory k + 1, which is drawn less often. Outside the border, the
-    /// distance is 0.
+    /// this border. Memory k + 1 holds the cells beyond the border, and is drawn less often. For a position beyond the
+    /// border, the distance is 0.
     ///
     /// Returns `None` for the last memory (the least often drawn), which has no outer border.
     #[must_use]
@@ -139,14 +136,14 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Creates the policy for a world. The scene lies in the cells of `occupied`.
+    /// Creates the policy for a scene. `occupied` lists the cells in which the scene has content.
     ///
     /// With `has_cascade`, an update of a memory makes all memories that are drawn more often due for an update as
     /// well. Warping requires such a cascade.
     #[must_use]
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;
-        // The first frame assigns the cells around the real home cell.
+        // The first frame will assign the cells around the viewer's own cell.
         let dealing = CellAssignment {
             home: Cell { x: 0, z: 0 },
             side_m: timing.cell_m,
@@ -200,7 +197,7 @@ impl Cells {
         distances
     }
 
-    /// Computes one frame of the policy for an eye position. Returns the memories to draw.
+    /// Computes the updates of one frame for an eye position. Returns the memories to draw.
     pub fn frame(&mut self, eye: DVec3) -> Update {
         let memories = self.dealing.memories;
         let is_first = self.drawn_from[0].is_none();
@@ -224,7 +221,7 @@ impl Cells {
                 *due |= changed;
             }
         }
-        // With a cascade, all memories faster than a due one are due.
+        // With a cascade, all memories that are drawn more often than a due memory are due.
         if self.has_cascade
             && let Some(slowest) = due.iter().rposition(|due| *due)
         {
@@ -236,8 +233,8 @@ impl Cells {
         Update { due, together, deals_anew: deals_anew && !is_first }
     }
 
-    /// Assigns cells to memories around another home cell. Returns, for each memory, true if the cells of the memory
-    /// have changed.
+    /// Assigns cells to memories around `home`, the new home cell. Returns, for each memory, true if the cells of the
+    /// memory have changed.
     fn deal(&mut self, home: Cell) -> Vec<bool> {
         let before = self.dealing;
         self.dealing.home = home;

@@ -1,4 +1,4 @@
-//! Parameters of all policies.
+//! Parameters of the policies that decide when the display memories are drawn.
 
 use pxpl5_sim::parameters::{ParameterTable, SettingError};
 
@@ -51,7 +51,6 @@ impl PriorityTiming {
         if self.falloff_m == 0.0 { self.cell_m } else { self.falloff_m }
     }
 
-    /// Returns the duration of a frame in seconds.
     #[must_use]
     pub fn frame_s(&self) -> f64 {
         1.0 / self.frame_hz

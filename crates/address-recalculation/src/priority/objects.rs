@@ -1,10 +1,11 @@
-//! The policy `objects`: each object is in the least often drawn display memory that keeps the object's image right.
+//! The policy `objects`: each object is in the least often drawn display memory in which the object's image stays
+//! correct.
 
 use crate::priority::config::PriorityTiming;
 use crate::priority::update::Update;
 use crate::priority::validity::level;
 
-/// State of the policy `objects`: the memory of each object, and the time until which the object's image is right.
+/// State of the policy `objects`: the memory of each object, and the time until which the object's image is correct.
 #[derive(Clone, Debug)]
 pub struct Objects {
     frame_s: f64,
@@ -17,7 +18,6 @@ pub struct Objects {
 }
 
 impl Objects {
-    /// Creates the policy for a number of objects.
     #[must_use]
     pub fn new(timing: &PriorityTiming, objects: usize) -> Self {
         let memories = timing.memories as usize;
@@ -37,12 +37,12 @@ impl Objects {
         [self.moved, self.draws]
     }
 
-    /// Computes the policy for frame number `frame`, counted from 0. `periods_s` holds the validity period of each
+    /// Computes the updates of frame number `frame`, counted from 0. `periods_s` holds the validity period of each
     /// object from now on, in seconds.
     ///
     /// An object changes its memory only in a frame that draws both the old and the new memory. Memory k can be drawn
-    /// in every 2^k-th frame. The memory is not drawn in this frame if the images of all its objects stay right for
-    /// another 2^k frames.
+    /// in every 2^k-th frame. Such a frame does not draw the memory if the images of all its objects stay correct for
+    /// 2^k more frames.
     pub fn frame(&mut self, frame: u64, periods_s: &[f64]) -> Update {
         let mut together = vec![false; self.memories];
         // Move objects between memories first.

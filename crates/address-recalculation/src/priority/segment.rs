@@ -9,7 +9,6 @@ use std::collections::BTreeMap;
 /// Largest coordinate, in metres, of a mesh that [`Segmentation::new`] can cut.
 const FARTHEST_M: f64 = 1e6;
 
-/// Largest number of pieces that the triangles of one mesh may be cut into.
 const MOST_PIECES: f64 = 1e7;
 
 /// A vertex that a cut has created on the line between two other vertices. Each of these two vertices can itself come
@@ -60,8 +59,8 @@ impl Segmentation {
         Ok(Self { vertices: cutter.vertices, cuts: cutter.cuts, segments })
     }
 
-    /// Returns the memory that must hold the uncut mesh: the most often drawn memory of all cells that the mesh
-    /// touches. Returns `None` for an empty mesh.
+    /// Returns the memory that must hold the uncut mesh. Of the memories whose cells the mesh touches, this memory is
+    /// drawn most often. Returns `None` for an empty mesh.
     #[must_use]
     pub fn fastest_memory(&self, dealing: &CellAssignment) -> Option<usize> {
         self.segments.keys().map(|cell| dealing.memory(*cell)).min()
@@ -92,7 +91,6 @@ fn check(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<(), 
     Ok(())
 }
 
-/// Returns the number of cells that the bounding rectangle of a triangle can touch.
 fn most_pieces(corners: [DVec3; 3], side_m: f64) -> f64 {
     let [a, b, c] = corners;
     let size = (a.max(b).max(c) - a.min(b).min(c)) / side_m;
@@ -120,7 +118,7 @@ struct Cutter {
     side_m: f64,
     vertices: Vec<DVec3>,
     cuts: Vec<CutVertex>,
-    /// Indices of the vertices that cuts have created so far, by line, axis and border.
+    /// Indices of the vertices that cuts have created so far. The key has the cut line, the axis and the border.
     made: BTreeMap<([u32; 2], Axis, i64), u32>,
 }
 
@@ -183,7 +181,7 @@ impl Cutter {
 
     /// Returns the vertex at which a line crosses a border. All polygons with this line get the same vertex.
     fn vertex(&mut self, line: [u32; 2], axis: Axis, number: i64) -> u32 {
-        // The order of the ends must not matter, so sort them.
+        // The order of the edge's ends must not matter, so the ends are sorted.
         let between = [line[0].min(line[1]), line[0].max(line[1])];
         if let Some(made) = self.made.get(&(between, axis, number)) {
             return *made;

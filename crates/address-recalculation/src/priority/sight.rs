@@ -27,8 +27,8 @@ fn angle_to_arc(view: DVec3, from: DVec3, to: DVec3) -> f64 {
     let foot = view - normal * across;
     let is_between = from.cross(foot).dot(normal) >= 0.0 && foot.cross(to).dot(normal) >= 0.0;
     if is_between {
-        // If the direction is perpendicular to the arc's plane, the foot is only a rounding error. Its length is still
-        // usable.
+        // If the direction is perpendicular to the arc's plane, `foot` contains only rounding errors. Its length is
+        // still usable.
         return libm::atan2(across.abs(), foot.length());
     }
     angle_between(view, from).min(angle_between(view, to))

@@ -8,7 +8,7 @@ pub struct Update {
     /// Flag of each memory: true if this memory exchanged content with another memory. All such memories must become
     /// visible together.
     pub together: Vec<bool>,
-    /// True if cells (squares of the floor) were assigned to memories anew, in rings of cells around another cell.
+    /// True if cells (squares of the floor) were assigned to memories anew, around a new home cell.
     pub deals_anew: bool,
 }
 

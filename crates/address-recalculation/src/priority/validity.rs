@@ -7,11 +7,8 @@ use serde::{Deserialize, Serialize};
 pub struct Threshold {
     /// Largest accepted angular error in radians.
     pub angle: f64,
-    /// Rule for how far the eye may move before the direction of a point is wrong.
     pub translation: Translation,
-    /// Rule for the apparent size of an object.
     pub size: SizeRule,
-    /// Rule for measuring the distance to an object.
     pub distance: Distance,
 }
 
@@ -53,14 +50,13 @@ pub enum Distance {
 pub struct ObjectView {
     /// Distance between the eye and the middle of the bounding sphere, in metres.
     pub distance_m: f64,
-    /// Radius of the bounding sphere in metres.
     pub radius_m: f64,
     /// Speed of the object relative to the eye, in m/s.
     pub speed: f64,
     /// Speed of the object's rotation about its own axis, in rad/s.
     pub turn: f64,
-    /// Duration for which the object's animation leaves an image right, in seconds. Infinite for an object without
-    /// animation.
+    /// Duration for which an image of the animated object stays correct, in seconds. The duration is infinite for an
+    /// object without animation.
     pub animation_s: f64,
 }
 
@@ -87,8 +83,8 @@ impl ValidityPeriod {
 }
 
 impl Threshold {
-    /// Returns a threshold of `theta_deg` degrees with the default rules: chord, disc and nearest point. These rules
-    /// are the closest to the papers on priority rendering.
+    /// Returns the threshold for an angular error of `theta_deg` degrees, with the default rules: chord, disc and
+    /// nearest point. These rules are the closest to the papers on priority rendering.
     #[must_use]
     pub fn of_degrees(theta_deg: f64) -> Self {
         let distance = Distance::Nearest;
@@ -126,7 +122,7 @@ impl Threshold {
         }
     }
 
-    /// Returns the duration, in seconds, for which the image of an object stays right while the object rotates at
+    /// Returns the duration, in seconds, for which the image of an object stays correct while the object rotates at
     /// `turn` rad/s.
     #[must_use]
     pub fn turn_s(&self, nearest_m: f64, radius_m: f64, turn: f64) -> f64 {
@@ -160,8 +156,8 @@ fn time_of(way_m: f64, speed: f64) -> f64 {
     if speed == 0.0 { f64::INFINITY } else { way_m / speed.abs() }
 }
 
-/// Returns the index of the least often drawn of `memories` memories that can hold an image with the validity period
-/// `period_s`. Memory k is drawn every 2^k frames.
+/// Returns the index of the least often drawn memory that can hold an image with the validity period `period_s`. Of the
+/// `memories` memories, memory k is drawn every 2^k frames.
 #[must_use]
 pub fn level(period_s: f64, frame_s: f64, memories: usize) -> usize {
     let rests = |k: &usize| f64::from(1_u32 << k) * frame_s <= period_s;

@@ -14,7 +14,8 @@ pub enum Falloff {
     /// The displacement decreases linearly to 0.
     #[default]
     Linear,
-    /// The displacement decreases smoothly to 0, with slope 0 at both ends.
+    /// The displacement decreases smoothly to 0. As a function of the distance, it has slope 0 at the border and where
+    /// it reaches 0.
     Smoothstep,
     /// Full displacement up to a certain distance from the border (the length of the falloff), and no displacement
     /// beyond.
@@ -24,7 +25,6 @@ pub enum Falloff {
 pxpl5_sim::parameters::named!(Falloff, "falloff", Falloff::ALL);
 
 impl Falloff {
-    /// All variants with their command-line names.
     pub const ALL: [(&str, Self); 4] =
         [("none", Self::None), ("linear", Self::Linear), ("smoothstep", Self::Smoothstep), ("step", Self::Step)];
 
@@ -42,8 +42,8 @@ impl Falloff {
     }
 }
 
-/// The displacement of a memory's vertices near a border. Beyond the border lie the objects of the next memory in the
-/// order of indices, which is drawn less often. This memory is called the slower memory.
+/// The displacement of a memory's vertices near a border. Beyond the border lie the objects of the slower memory, the
+/// memory with the next higher index. The slower memory is drawn less often.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionWarp {
     falloff: Falloff,
@@ -52,8 +52,8 @@ pub struct RegionWarp {
 }
 
 impl RegionWarp {
-    /// Creates the warp of a memory. `drawn_from` is the eye position from which this memory was drawn, and
-    /// `slower_from` the eye position from which the slower memory was drawn.
+    /// Creates the warp of a memory. `drawn_from` is the eye position from which this memory was drawn. `slower_from`
+    /// is the eye position from which the slower memory was drawn.
     ///
     /// # Errors
     ///
@@ -66,7 +66,7 @@ impl RegionWarp {
     }
 
     /// Returns the position at which a vertex is drawn. `to_slower_m` is the vertex's distance to the border of the
-    /// slower memory, or `None` if no memory is slower.
+    /// less often drawn memory, or `None` if there is no such memory.
     ///
     /// A vertex on the border moves by the whole displacement. Its direction and depth are then the same in both
     /// memories.

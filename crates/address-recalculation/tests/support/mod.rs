@@ -7,7 +7,6 @@ use address_recalculation::{ArpConfig, CubeFace, DEPTH_FARTHEST, FaceSet, Orient
 use glam::DQuat;
 use pxpl5_sim::SplitMix64;
 
-/// Returns the orientation of a quaternion.
 pub(crate) fn turned(quaternion: DQuat) -> Orientation {
     Orientation::from_quaternion(quaternion.to_array()).expect("a rotation")
 }

@@ -1,9 +1,9 @@
-//! Assembler rules for instructions and their neighbours. On the real chip, a program that breaks a rule has undefined
-//! results.
+//! Assembler rules for instructions and their neighbours. A program that breaks a rule has undefined results on the
+//! real chip.
 //!
-//! * A pair is a floating-point instruction, then a core instruction.
-//! * The halves of a pair write different registers, and only one half sets CC. `bc.t` or `bnc.t` is not paired with a
-//!   compare.
+//! * A pair consists of a floating-point instruction, then a core instruction.
+//! * The two instructions of a pair write different registers, and only one of them sets CC. A pair does not contain a
+//!   compare together with `bc.t` or `bnc.t`.
 //! * A delayed branch has no branch in its delay slot, and the delay slot of a `call` does not write r1.
 //! * The two source registers of `bla` are different.
 //!
@@ -15,8 +15,8 @@
 //! * No result is read from a pipe after a scalar operation has destroyed the contents of the pipe. Programs that empty
 //!   a pipe read destroyed results and ignore these results.
 //!
-//! The rules for pairs are checked in address order. The check does not follow jumps into the middle of
-//! dual-instruction code.
+//! The rules for pairs are checked in address order. The check does not follow jumps into the middle of code that
+//! consists of pairs.
 
 use crate::decoded::float_mask;
 use crate::dual_operation::{MULTIPLIER_ROUTES, ROUTES, Source};
@@ -26,7 +26,7 @@ use std::collections::BTreeSet;
 
 type Located = (u32, usize, Instruction);
 
-/// A rule that some working programs break. The assembler only prints a warning if a program breaks this rule.
+/// A rule that some working programs break. A violation causes only a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rule {
     /// Rule: a `d.` instruction has an address that is a multiple of 8.
@@ -38,18 +38,18 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// All rules with the names that a user writes to turn off the warnings of a rule.
+    /// All rules, with the names by which a user turns off their warnings.
     pub const NAMES: [(&'static str, Self); 3] =
         [("alignment", Self::Alignment), ("multiply-source", Self::MultiplySource), ("lost-result", Self::LostResult)];
 
-    /// Returns the name of this rule, by which a user turns off the rule's warnings.
+    /// Returns the name by which a user turns off the warnings of this rule.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, rule)| *rule == self).map_or("", |(name, _)| name)
     }
 }
 
-/// Returns all violations of rules that are errors. Each violation has the source line and the reason.
+/// Returns all violations of rules that are errors: the source line and the reason.
 pub(super) fn faults(program: &[Located]) -> Vec<(usize, String)> {
     // Check the rules of single instructions first, then of delay slots, then of pairs.
     let same = |i: &Instruction| i.op == Op::Bla && i.src1 == i.src2;
@@ -61,8 +61,8 @@ pub(super) fn faults(program: &[Located]) -> Vec<(usize, String)> {
     faults
 }
 
-/// Returns all violations of rules that are only warnings. Each violation has the source line, the rule and the reason.
-/// `labels` are the addresses to which the program may jump.
+/// Returns all violations of rules that are warnings: the source line, the rule and the reason. `labels` are the
+/// addresses to which the program may jump.
 pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, Rule, String)> {
     let each = program.iter().flat_map(|(address, line, i)| {
         alone(*address, i).into_iter().map(|(rule, reason)| (*line, rule, reason.to_owned()))
@@ -88,8 +88,7 @@ impl PipeFill {
     }
 }
 
-/// Effects of an instruction on the two pipes. In each array, the first element is for the adder's pipe, and the second
-/// element is for the multiplier's pipe.
+/// Effects of an instruction on the pipes of the adder (index 0) and the multiplier (index 1).
 #[derive(Clone, Copy, Default)]
 struct PipeUse {
     scalar: [bool; 2],
@@ -125,8 +124,8 @@ impl PipeUse {
     }
 }
 
-/// Finds results that are read from a pipe after a scalar operation has destroyed these results. The contents of the
-/// pipes are unknown after each label and branch.
+/// Finds instructions that take a result out of a pipe (adder or multiplier) after a scalar operation in the same pipe
+/// has destroyed the result. After each label and branch, the function assumes nothing about the contents of the pipes.
 fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
     let mut pipes = [PipeFill::default(); 2];
@@ -137,7 +136,7 @@ fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, Stri
         }
         let used = PipeUse::of(i);
         let double = i.has(Flags::SOURCE_DOUBLE);
-        // A multiply of doubles uses only two stages, except `pfmul3`.
+        // A multiplication of doubles uses only two stages, except `pfmul3`.
         for (unit, stages) in [(0, 3), (1, if double && i.op != Op::Fmul3 { 2 } else { 3 })] {
             if used.takes[unit] && pipes[unit].is_result_lost(stages) {
                 let name = ["adder", "multiplier"][unit];
@@ -176,7 +175,7 @@ fn alone(address: u32, i: &Instruction) -> Option<(Rule, &'static str)> {
 
 fn slot(two: &[Located]) -> Option<(usize, String)> {
     let [(at, _, branch), (next, line, i)] = two else { return None };
-    // Only the instruction directly after a delayed branch is its delay slot.
+    // The delay slot is the instruction directly after a delayed branch.
     if *next != at.wrapping_add(4) || !branch.is_delayed_branch() || at % 8 == 4 && i.is_floating() {
         return None;
     }
@@ -189,7 +188,7 @@ fn slot(two: &[Located]) -> Option<(usize, String)> {
     }
 }
 
-/// Returns the mask of the registers that an instruction writes: integer registers in the low word, floating-point
+/// Returns the registers that an instruction writes, as a mask: integer registers in the low word, floating-point
 /// registers in the high word.
 fn writes(i: &Instruction) -> u64 {
     let base = if i.has(Flags::AUTOINCREMENT) { integer_mask(i.src2) } else { 0 };
@@ -207,13 +206,14 @@ fn writes(i: &Instruction) -> u64 {
     }
 }
 
-/// Returns a bit mask of the floating-point registers that a destination of `bytes` bytes from register `dest` on
-/// occupies. f0 and f1 are left out, because these registers are always 0.
+/// Returns the mask of the floating-point registers that a destination of `bytes` bytes occupies, from register `dest`
+/// on. f0 and f1 are left out, because they are always 0.
 fn writable_float_mask(dest: u8, bytes: u8) -> u64 {
     float_mask(dest, bytes) & !(3 << 32)
 }
 
-/// Returns the bit of an integer register in a mask of written registers. Returns 0 for r0, which cannot be written.
+/// Returns the bit of integer register `n` in a mask of written registers, or 0 for r0, because writes to r0 have no
+/// effect.
 fn integer_mask(n: u8) -> u64 {
     1 << n & !1
 }
@@ -226,7 +226,7 @@ fn pairs(program: &[Located]) -> Vec<(usize, String)> {
     while let Some((address, line, low)) = program.get(at) {
         let high = program.get(at + 1).filter(|(next, ..)| *next == address.wrapping_add(4));
         let d = low.is_floating() && low.has(Flags::DUAL);
-        // In single-instruction mode, only a D bit at an aligned address matters. The pairs then begin after the next
+        // In single-instruction mode, only a D bit at an aligned address has an effect: pairs begin after the next
         // instruction.
         if !mode.is_dual() {
             let enters = d && address % 8 == 0;
@@ -256,8 +256,8 @@ fn fault(second: bool, reason: &str) -> Option<(bool, String)> {
     Some((second, reason.to_owned()))
 }
 
-/// Returns the description of the rule that a pair breaks, or `None` if the pair breaks no rule. The boolean is true if
-/// the second instruction of the pair causes the error.
+/// Returns the description of the rule that a pair breaks, or `None`. The boolean is true if the second instruction of
+/// the pair causes the error.
 fn pair(low: &Instruction, high: &Instruction) -> Option<(bool, String)> {
     let compares = matches!(low.op, Op::Pfgt | Op::Pfle | Op::Pfeq);
     match () {

@@ -1,7 +1,7 @@
 //! Conditional assembly: `.if`, `.elseif`, `.else` and `.endif`.
 //!
-//! The conditions are evaluated before macros are expanded and before linear stretches (code from `.linear` to
-//! `.endlinear`) are scheduled. The conditions use the constants that the lines above define.
+//! The conditions can use the constants that the lines above them define. They are evaluated before the expansion of
+//! macros, and before linear stretches (code from `.linear` to `.endlinear`) are scheduled.
 
 use super::expression::{Symbols, evaluate};
 use super::source::is_name;
@@ -9,27 +9,23 @@ use std::borrow::Cow;
 
 /// A `.if` directive whose `.endif` was not read yet.
 struct Open {
-    /// Line number of the `.if`.
     line: usize,
-    /// True if this `.if` itself is in assembled code, and not in an excluded branch of an enclosing `.if`.
+    /// True if this `.if` is itself in assembled code, and not in an excluded branch of another `.if`.
     outer: bool,
-    /// True while the lines of the current branch are assembled.
     selected: bool,
-    /// True once a branch of this `.if` was selected. Later branches of the `.if` are then excluded.
+    /// True if a branch of this `.if` was already selected. All later branches are then excluded.
     done: bool,
-    /// True after the `.else` of this `.if`.
     ended: bool,
 }
 
 impl Open {
-    /// Begins another branch of the `.if`, whose condition has the value `holds`.
     const fn branch(&mut self, holds: bool) {
         self.selected = self.outer && holds && !self.done;
         self.done |= self.selected;
     }
 }
 
-/// Replaces excluded lines and the conditional directives themselves by empty lines. Line numbers stay the same.
+/// Replaces excluded lines and all conditional directives by empty lines, so that line numbers stay the same.
 ///
 /// # Errors
 /// Returns the line number and the reason.
@@ -77,8 +73,8 @@ pub(crate) fn select(source: &str) -> Result<Cow<'_, str>, (usize, String)> {
     }
 }
 
-/// Stores the constant that a line defines. A value with an unknown name gives no constant here. The line can be a
-/// statement of a linear stretch, or can use a label whose address is not known yet.
+/// Stores the constant that the line `code` defines. Ignores a value with an unknown name. Such a line can belong to a
+/// linear stretch, or use a label whose address is not known yet.
 fn define(code: &str, constants: &mut Symbols) {
     let equ = code.strip_prefix(".equ").or_else(|| code.strip_prefix(".set"));
     let parts = equ.map_or_else(|| code.split_once('='), |rest| rest.split_once(','));

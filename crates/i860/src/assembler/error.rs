@@ -3,13 +3,12 @@
 use super::check::Rule;
 use std::fmt;
 
-/// An error in an assembler source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{line}: {reason}", if file.is_empty() { "line ".to_owned() } else { format!("{file}:") })]
 pub struct AssemblyError {
     /// File name that was passed to [`assemble`](crate::assemble). Empty for code of [`linear`](crate::linear).
     pub file: String,
-    /// Line number of the error, counted from 1. For text from a macro, this is the line of the macro call.
+    /// Line number, counted from 1. For text from a macro, this is the line of the macro call.
     pub line: usize,
     /// Description of the error, with the expected and the found text.
     pub reason: String,
@@ -22,14 +21,13 @@ impl AssemblyError {
     }
 }
 
-/// A warning that the program breaks a rule that some working programs also break.
+/// A warning that the program breaks a [`Rule`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AssemblyWarning {
     /// File name that was passed to [`assemble`](crate::assemble).
     pub file: String,
-    /// Line number of the warning, counted from 1. For text from a macro, this is the line of the macro call.
+    /// Line number, counted from 1. For text from a macro, this is the line of the macro call.
     pub line: usize,
-    /// Rule that the program breaks.
     pub rule: Rule,
     /// Description of the warning, with the expected and the found text.
     pub reason: String,
@@ -41,11 +39,10 @@ impl fmt::Display for AssemblyWarning {
     }
 }
 
-/// All errors of an assembler source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", lines(.0))]
 pub struct AssemblyErrors(
-    /// Errors sorted by source line. The list has at least one error.
+    /// Errors sorted by source line. There is at least one error.
     pub Vec<AssemblyError>,
 );
 

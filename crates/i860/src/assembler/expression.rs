@@ -2,10 +2,8 @@
 
 use std::collections::BTreeMap;
 
-/// Values of labels and of `.equ` constants, by name.
 pub(super) type Symbols = BTreeMap<String, i64>;
 
-/// Greatest nesting depth of a constant expression.
 const DEPTH: u32 = 64;
 
 struct Parser<'a> {
@@ -14,7 +12,7 @@ struct Parser<'a> {
     depth: u32,
 }
 
-/// Computes the value of an expression of numbers, symbols and operators in 64-bit integer arithmetic.
+/// Computes the value of an expression in 64-bit integer arithmetic.
 pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     let mut parser = Parser { text: text.trim(), symbols, depth: 0 };
     if parser.text.is_empty() {
@@ -27,8 +25,7 @@ pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     }
 }
 
-/// Binary operators in the order of precedence, the lowest precedence first. [`PRODUCTS`] has the operators of the
-/// highest precedence.
+/// Binary operators, grouped by precedence, the lowest precedence first. Only [`PRODUCTS`] have a higher precedence.
 const LEVELS: [&[&str]; 6] = [&["|"], &["^"], &["&"], &["==", "!="], &["<<", ">>"], &["+", "-"]];
 const PRODUCTS: &[&str] = &["*", "/", "%"];
 
@@ -101,7 +98,7 @@ impl Parser<'_> {
             () if self.take("+") => self.unary(),
             () if self.take("~") => Ok(!self.unary()?),
             () if self.take("!") => Ok(i64::from(self.unary()? == 0)),
-            // `ha%` is rounded, because the low half that is added later is signed.
+            // `ha%` rounds the upper half up if the low half, which is signed, is negative.
             () if self.take("ha%") => self.unary().map(|v| v.wrapping_add(0x8000) >> 16 & 0xFFFF),
             () if self.take("h%") => self.unary().map(|v| v >> 16 & 0xFFFF),
             () if self.take("l%") => self.unary().map(|v| v & 0xFFFF),
@@ -142,7 +139,7 @@ mod tests {
     use super::{Symbols, evaluate};
 
     #[test]
-    fn precedence_is_that_of_c() {
+    fn operators_have_the_precedence_of_c() {
         let none = Symbols::new();
         assert_eq!(evaluate("1 + 2 * 3 << 1 | 1", &none), Ok(15));
         assert_eq!(evaluate("-(4 - 6) * 0x10 & ~0", &none), Ok(32));
@@ -151,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn the_adjusted_high_half_and_the_signed_low_half_add_up() {
+    fn the_adjusted_high_half_plus_the_signed_low_half_is_the_value() {
         let symbols = Symbols::from([("x".to_owned(), 0x0001_8004)]);
         assert_eq!(evaluate("h%x", &symbols), Ok(1));
         assert_eq!(evaluate("ha%x", &symbols), Ok(2));
@@ -160,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_are_named() {
+    fn errors_name_the_expression() {
         let none = Symbols::new();
         for (text, reason) in [
             ("", "missing"),

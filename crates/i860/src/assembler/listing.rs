@@ -4,12 +4,11 @@ use super::{Data, DataKind, Program};
 use crate::disassembler::disassemble;
 use std::fmt::Write as _;
 
-/// Width in characters of the column with the instruction text. The source line follows in the next column. The width
-/// is chosen so that nearly all instructions fit.
+/// Width, in characters, of the column with the instruction text. Nearly all instructions fit in this width.
 const TEXT_COLUMNS: usize = 30;
 
 impl Program {
-    /// Returns the data directive whose bytes include an address, or `None` if the address belongs to an instruction.
+    /// Returns the data directive that defines the byte at `address`, or `None` if the byte belongs to an instruction.
     #[must_use]
     pub fn data_at(&self, address: u32) -> Option<&Data> {
         let after = self.data.partition_point(|data| data.address <= address);
@@ -17,7 +16,8 @@ impl Program {
         (address.wrapping_sub(data.address) < data.bytes).then_some(data)
     }
 
-    /// Lists every word with its address and its instruction or data. With `source`, the source line is added.
+    /// Lists every word with its address and its instruction or data. If `source` is given, rows also contain the
+    /// source line.
     ///
     /// ```
     /// let source = "start: mov 3, r5\nend: nop\ntable: .long 7";
@@ -45,7 +45,7 @@ impl Program {
         rows.text
     }
 
-    /// Returns the little-endian number in the `bytes` (at most eight) bytes at an address.
+    /// Returns the little-endian number in `bytes` (at most eight) bytes from `address` on.
     fn number(&self, address: u32, bytes: u32) -> u64 {
         let from = address.wrapping_sub(self.base) as usize;
         let bytes = self.bytes.iter().skip(from).take(bytes as usize);
@@ -55,10 +55,9 @@ impl Program {
 
 struct Rows<'a> {
     text: String,
-    /// Labels that are not listed yet, sorted by address.
     labels: &'a [(String, u32)],
     source: Vec<&'a str>,
-    /// Number of the source line in the row that was written last.
+    /// Source line number of the last row in the listing.
     line: usize,
 }
 
@@ -73,7 +72,7 @@ impl Rows<'_> {
     fn row(&mut self, address: u32, bytes: &str, what: &str, line: usize) {
         self.labels_before(address.saturating_add(1));
         let _ = write!(self.text, "{address:08x}  {bytes:<8}  {what}");
-        // A source line with several rows is printed only beside the first row.
+        // If several rows belong to one source line, print this line only beside the first row.
         if let Some(source) = self.source.get(line.wrapping_sub(1)).filter(|_| line != self.line) {
             let pad = TEXT_COLUMNS.saturating_sub(what.chars().count());
             let _ = write!(self.text, "{:pad$}  {line:>5}  {}", "", source.trim());

@@ -47,10 +47,9 @@ fn need_integer(text: &str) -> Result<u8, String> {
     integer_register(text).ok_or_else(|| format!("expected an integer register, found `{text}`"))
 }
 
-/// Parses the name of a floating-point register that can hold an operand of `bytes` bytes.
 fn need_floating(text: &str, bytes: u8) -> Result<u8, String> {
     let n = register_number(text, 'f').ok_or_else(|| format!("expected a floating-point register, found `{text}`"))?;
-    // A pair or quad must begin at a multiple of its length.
+    // A register pair or quad must begin at a multiple of its length.
     let registers = (bytes / 4).max(1);
     if n % registers == 0 {
         return Ok(n);
@@ -76,8 +75,7 @@ fn signed16(text: &str, symbols: &Symbols) -> Result<i32, String> {
     in_range(value, -0x8000, 0x7FFF)
 }
 
-/// An instruction that the assembler is building. The bit fields of the instruction are filled from the texts of the
-/// operands.
+/// An instruction under construction. The texts of the operands give its bit fields.
 pub(super) struct Filler<'a> {
     pub(super) i: Instruction,
     pub(super) pc: u32,
@@ -86,7 +84,7 @@ pub(super) struct Filler<'a> {
 
 impl Filler<'_> {
     pub(super) fn fill(mut self, operands: &[&str]) -> Result<Instruction, String> {
-        // The operation decides the operands and their order.
+        // The operation determines the number and the order of the operands.
         match (Syntax::from_op(self.i.op), operands) {
             (Syntax::Bare | Syntax::Trap, []) => {}
             (Syntax::Integer, [a, b, d]) => self.integer(a, b, d)?,
@@ -151,7 +149,7 @@ impl Filler<'_> {
     }
 
     fn result(&self) -> u8 {
-        // A pipelined operation writes the result of an earlier operation, which can have another precision.
+        // A pipelined operation writes the result of an earlier operation, whose precision can be different.
         if self.i.op == Op::DualOp || self.i.has(Flags::PIPELINED) {
             return 4;
         }
@@ -201,7 +199,7 @@ impl Filler<'_> {
         Ok(())
     }
 
-    /// Converts the text of a branch target to an offset in words that fits `bits` bits.
+    /// Converts the text of a branch target to a signed offset of `bits` bits, in words.
     fn offset(&self, target: &str, bits: u32) -> Result<i32, String> {
         let address = evaluate(target, self.symbols)? as u32;
         // Offsets count words from the instruction after the branch.
@@ -225,8 +223,8 @@ impl Filler<'_> {
         Err(format!("expected displacement(register), found `{text}`"))
     }
 
-    /// Parses an address: `register(base)` or `displacement(base)`. The suffix `++` is accepted if the operation has
-    /// auto-increment.
+    /// Parses an address: `register(base)` or `displacement(base)`. The suffix `++` (auto-increment) is only legal for
+    /// some operations.
     fn address(&mut self, text: &str) -> Result<(), String> {
         let (plain, increment) = match text.strip_suffix("++") {
             Some(rest) => (rest.trim_end(), true),
@@ -259,7 +257,8 @@ impl Filler<'_> {
         self.check_displacement()
     }
 
-    /// Checks that the low bits of a displacement are zero. These bits of the instruction word encode the operand size.
+    /// Checks that the low bits of a displacement are zero, because they encode the operand size in the instruction
+    /// word.
     fn check_displacement(&self) -> Result<(), String> {
         let unit = match (self.i.op, self.i.size) {
             (Op::LdB | Op::StB, _) => 1,

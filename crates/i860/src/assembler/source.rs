@@ -1,5 +1,4 @@
-//! Preprocessor of assembler sources. The preprocessor removes comments, splits lines at `;`, and expands macros and
-//! repetitions.
+//! Preprocessor of assembler sources. It removes comments, splits lines at `;`, and expands macros and repetitions.
 
 use super::error::AssemblyError;
 use super::operand::split;
@@ -12,22 +11,21 @@ pub(super) struct Line {
     pub(super) text: String,
 }
 
-/// Greatest number of lines that macros and repetitions can produce, including lines of skipped bodies. The limit is
-/// chosen so that a line can be repeated a million times.
+/// Greatest number of lines that macros and repetitions can produce, including lines of skipped bodies. A source can
+/// therefore repeat a line a million times.
 const MOST_STEPS: usize = 1 << 21;
-/// Greatest size of the expanded text, in bytes. The limit is chosen as four times the size of the longest program.
+/// Greatest size of the expanded text, in bytes. The limit is four times the size of the longest program.
 const MOST_TEXT: usize = 64 << 20;
-/// Greatest nesting depth of macros and repetitions.
 const MOST_DEPTH: u32 = 32;
 
-/// The remaining budget of lines and bytes for macro expansion. The error message names the source line that has used
-/// the greatest part, so the budget also records this line.
+/// The number of lines and bytes that macro expansion can still produce. The budget also records the source line that
+/// has used the most, for the error message.
 struct Budget {
     steps: usize,
     text: usize,
-    /// Number of the line that is being expanded, and the remaining budget at the start of this expansion.
+    /// Number of the line that is being expanded, and the budget that was left at the start of this expansion.
     current: (usize, usize),
-    /// Line number of the source line that has used the greatest part of the budget so far, and the used amount.
+    /// The source line that has used the most of the budget so far: its number, and the amount that the line has used.
     largest_user: (usize, usize),
 }
 
@@ -36,7 +34,7 @@ impl Budget {
         Self { steps: MOST_STEPS, text: MOST_TEXT, current: (0, 0), largest_user: (0, 0) }
     }
 
-    /// Returns the remaining budget of lines and bytes as one number in bytes. The line budget is scaled to bytes.
+    /// Returns the unused budget as one number in bytes. Lines are converted to bytes.
     const fn left(&self) -> usize {
         self.steps * (MOST_TEXT / MOST_STEPS) + self.text
     }
@@ -61,7 +59,7 @@ impl Budget {
     }
 }
 
-/// An error of the preprocessor: the number of the wrong source line, and a description.
+/// An error of the preprocessor: the number of the source line, and a description.
 type AssemblyFault = (usize, String);
 
 fn spent() -> String {
@@ -84,13 +82,12 @@ struct Expander<'a> {
     budget: Budget,
 }
 
-/// Iterates over the statements of a line, which are separated by `;`. Text after `//` is a comment and is left out.
+/// Iterates over the statements of a line, which are separated by `;`. Comments, from `//` on, are left out.
 fn statements(line: &str) -> impl Iterator<Item = &str> {
     let code = line.split("//").next().unwrap_or_default();
     code.split(';').map(str::trim).filter(|statement| !statement.is_empty())
 }
 
-/// Expands the macros and repetitions of a source.
 pub(super) fn expand(file: &str, source: &str) -> Result<Vec<Line>, AssemblyError> {
     let lines = (1..).zip(source.lines());
     let lines: Vec<Line> = lines
@@ -118,7 +115,7 @@ impl Expander<'_> {
         let mut at = 0;
         while let Some(line) = lines.get(at) {
             match depth {
-                // Lines of the source itself do not count. Only expansion uses the budget.
+                // Lines of the source itself do not count. Only the expansion uses the budget.
                 0 => self.budget.begin(line.number),
                 _ => self.take(1, line.text.len())?,
             }
@@ -134,7 +131,8 @@ impl Expander<'_> {
     }
 
     /// Returns the index, in `lines`, of the line with the word `close` (for example `.endm`) that ends a macro or
-    /// repetition. The first line of `lines` has the word `open`. Nested macros and repetitions belong to the body.
+    /// repetition. The first line of `lines` contains the word `open`. Nested macros and repetitions belong to the
+    /// body.
     fn body_len(&mut self, lines: &[Line], open: &str, close: &str) -> Result<usize, AssemblyError> {
         let mut depth = 0;
         for (n, line) in lines.iter().enumerate() {
@@ -207,7 +205,7 @@ impl Expander<'_> {
         let mut body = Vec::with_capacity(called.body.len());
         for own in &called.body {
             let text = substitute(&own.text, &called.parameters, &arguments, &unique, self.budget.text);
-            // A line that was cut off uses one byte more than the remaining budget, so that the expansion fails.
+            // A line that was cut off uses one byte more than the budget, so that the expansion fails.
             let taken = text.as_ref().map_or(self.budget.text + 1, String::len);
             self.take(1, taken)?;
             body.extend(text.map(|text| Line { number: line, text }));
@@ -216,8 +214,8 @@ impl Expander<'_> {
     }
 }
 
-/// Replaces `\name` by the argument of this name, and `\@` by a number unique to the macro call. Returns `None` if the
-/// line would exceed `most` bytes.
+/// Replaces each `\name` by the argument of this name, and `\@` by the text `unique`. Returns `None` if the result
+/// would have more than `most` bytes.
 fn substitute(text: &str, parameters: &[String], arguments: &[&str], unique: &str, most: usize) -> Option<String> {
     let mut result = String::new();
     let mut rest = text;
@@ -254,7 +252,6 @@ pub(super) fn split_label(text: &str) -> (Option<&str>, &str) {
     }
 }
 
-/// Returns true if a text is a valid name of a label.
 pub(super) fn is_name(text: &str) -> bool {
     let starts = text.starts_with(|c: char| c.is_ascii_alphabetic() || "_.$".contains(c));
     starts && text.chars().all(|c| c.is_ascii_alphanumeric() || "_.$@".contains(c))

@@ -3,8 +3,8 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
     Adder,
-    /// The multiplier. The multiplier's pipe has two stages for double-precision sources, and three stages for
-    /// single-precision sources.
+    /// The multiplier. Its pipe has two stages for double-precision sources, and three stages for single-precision
+    /// sources.
     Multiplier {
         double: bool,
     },
@@ -17,13 +17,13 @@ pub(super) enum Unit {
 }
 
 impl Unit {
-    /// Returns true if the operation is executed in the floating-point half of a pair.
+    /// Returns true if the unit executes its operations in the floating-point half of a pair.
     pub(super) fn is_floating(self) -> bool {
         matches!(self, Unit::Adder | Unit::Multiplier { .. } | Unit::Graphics | Unit::Seed)
     }
 }
 
-/// Register file of a value, and number of registers that the value takes.
+/// Register file of a value, and number of registers that the value occupies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Width {
     Integer,
@@ -42,18 +42,14 @@ impl Width {
     }
 }
 
-/// The name of an operation in a linear stretch, with the properties of the operation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Name {
     pub(super) unit: Unit,
     pub(super) mnemonic: &'static str,
     pub(super) result: Option<Width>,
-    /// Number of source operands of the operation, without a memory address.
     pub(super) sources: usize,
-    /// True if the operation has a memory address.
     pub(super) addresses: bool,
-    /// Number of clocks from the issue of the operation to the first issue of an instruction that can use the result
-    /// without a freeze.
+    /// Number of clocks from the issue of the operation until another instruction can use the result without a freeze.
     pub(super) latency: u32,
 }
 

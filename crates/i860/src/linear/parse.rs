@@ -6,13 +6,12 @@ use super::settings::Settings;
 use crate::AssemblyError;
 use std::collections::HashMap;
 
-/// An operand in a linear stretch: the value of an earlier line, or the text of a register or constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// The value of an earlier operation: the index of this operation, and the index of one register of the value.
-    /// `None` selects all registers of the value.
+    /// Value of an earlier operation: the index of the operation, and the index of one register of the value (`None`
+    /// selects all registers).
     Value(usize, Option<u8>),
-    /// A register or a constant, as the text in the source.
+    /// Register or constant, as the text in the source.
     Text(String),
 }
 
@@ -21,17 +20,16 @@ pub(super) enum Source {
 pub(super) struct Operation {
     pub(super) name: Name,
     pub(super) sources: Vec<Source>,
-    /// Offset and base register of the operation's memory address. `None` if the operation does not access memory.
+    /// Offset and base register of the memory address. `None` if the operation does not access memory.
     pub(super) address: Option<(String, Source)>,
     /// Indices of the stores that must precede this operation.
     pub(super) after: Vec<usize>,
-    /// Register in which the code after the linear stretch expects the result, or `None`. No other line of the stretch
-    /// reads this register.
+    /// Register in which the code after the linear stretch expects the result. No other line of the stretch may read
+    /// this register.
     pub(super) register: Option<u8>,
 }
 
 impl Operation {
-    /// Iterates over the indices of the operations whose values this operation reads.
     pub(super) fn reads(&self) -> impl Iterator<Item = usize> {
         let base = self.address.iter().map(|(_, base)| base);
         self.sources.iter().chain(base).filter_map(|source| match source {
@@ -45,14 +43,14 @@ fn error<T>(line: usize, reason: impl Into<String>) -> Result<T, AssemblyError> 
     Err(AssemblyError::in_line(line, reason.into()))
 }
 
-/// Parses the registers of a `.pool` line, which lists the integer registers that the scheduler can use.
+/// Parses a `.pool` line, which lists the integer registers that the scheduler can use.
 pub(super) fn pool(line: usize, registers: &[&str]) -> Result<Vec<u8>, AssemblyError> {
     let number = |text: &&str| text.strip_prefix('r').and_then(|n| n.parse().ok()).filter(|n| (1..32).contains(n));
     let found: Option<Vec<u8>> = registers.iter().map(number).collect();
     found.map_or_else(|| error(line, format!("expected r1 to r31, found {registers:?}")), Ok)
 }
 
-/// Parses the parameters of a `.linear` line, which begins a linear stretch.
+/// Parses a `.linear` line, which begins a linear stretch and sets parameters of the scheduler.
 pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, AssemblyError> {
     let numbers: Option<Vec<u32>> = words.iter().map(|word| word.parse().ok()).collect();
     match numbers.as_deref() {
@@ -68,7 +66,6 @@ pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, Assembly
     }
 }
 
-/// Parses the operations of one linear stretch.
 pub(super) fn operations(block: &[(usize, &str)]) -> Result<Vec<Operation>, AssemblyError> {
     let mut parser = Parser::default();
     for (line, text) in repeated(block)? {
@@ -81,7 +78,6 @@ fn without_comment(text: &str) -> &str {
     text.split("//").next().unwrap_or_default().trim()
 }
 
-/// Expands the `for` loops in a linear stretch.
 fn repeated(block: &[(usize, &str)]) -> Result<Vec<(usize, String)>, AssemblyError> {
     let lines: Vec<(usize, String)> = block.iter().map(|(n, text)| (*n, without_comment(text).to_owned())).collect();
     repeat(&lines)
@@ -220,8 +216,8 @@ fn integer_register(text: &str) -> Option<u8> {
     text.strip_prefix('r').and_then(|n| n.parse().ok()).filter(|n| *n < 32)
 }
 
-/// Splits a line into the mark `@name`, which a store can have, and the rest. A load that must wait for the store names
-/// this mark.
+/// Splits a line of a store into its mark `@name` (if any) and the rest. A load that must wait for this store names the
+/// mark.
 fn split_mark(text: &str) -> (&str, Option<&str>) {
     match text.strip_prefix('@').and_then(|text| text.split_once(char::is_whitespace)) {
         Some((mark, rest)) => (rest.trim(), Some(mark)),

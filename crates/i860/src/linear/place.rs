@@ -8,19 +8,19 @@ use super::settings::Settings;
 const STAGES: usize = 3;
 /// Number of stages of the multiplier's pipe for double-precision sources.
 const DOUBLE_STAGES: usize = 2;
-/// Number of clocks after a prefetch in which the scheduler places no memory access. A cache-line fill takes this
-/// number of clocks.
+/// Number of clocks after a prefetch in which the scheduler places no memory access, because a cache-line fill takes
+/// this time.
 const PREFETCH: u32 = 18;
-/// Greatest number of stores that can wait for the bus. A store also occupies the bus for this number of clocks.
+/// Greatest number of stores that can wait for the bus.
 const STORES: u32 = 2;
 const STORE: u32 = 3;
-/// Number of successive clocks without an issued operation after which the scheduler fails with an error.
+/// The scheduler fails with an error if it issues no operation for this number of successive clocks.
 const PATIENCE: u32 = 80;
 
-/// The instruction pairs of a schedule. Each pair holds the text of its floating-point half and of its core half.
+/// The pairs of a schedule: the texts of the floating-point half and of the core half.
 pub(super) type Pairs = Vec<(String, String)>;
 
-/// Chooses the clock of every operation and the registers of every value.
+/// Chooses the clock and the registers of every operation.
 ///
 /// # Errors
 /// Returns a message if the registers cannot hold all values.
@@ -28,13 +28,13 @@ pub(super) fn pairs_of(operations: &[Operation], pool: &[u8], settings: Settings
     Placer::new(operations, pool, settings).run()
 }
 
-/// The location of a value: not computed yet, in a pipe, in registers, or no longer needed.
+/// Location of a value: not computed yet, in a pipe, in registers, or no longer needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Nowhere,
     InPipe,
-    /// The value is in one or more registers. `register` is the number of the first register. Operations can read the
-    /// value from clock `at` on.
+    /// The value is in one or more registers, from number `register` on. Operations can read the value from clock `at`
+    /// on.
     Ready {
         at: u32,
         register: u8,
@@ -42,8 +42,8 @@ enum Place {
     Gone,
 }
 
-/// One register file. Each entry is the first clock at which the register can be written, or `None` while the register
-/// holds a value.
+/// One register file. For each register, the first clock at which the register can be written, or `None` while it holds
+/// a value.
 #[derive(Clone, Debug)]
 struct File {
     free_from: Vec<Option<u32>>,
@@ -63,8 +63,8 @@ impl File {
         (0..32).filter(|n| self.is_free(*n, now)).count()
     }
 
-    /// Finds `count` consecutive free registers and returns the number of the first register. For one or two registers,
-    /// the function prefers a gap beside used registers. The function never selects register `but`.
+    /// Finds `count` consecutive free registers, without register `but`, and returns the number of the first. For one
+    /// or two registers, the function prefers a gap beside used registers.
     fn find(&self, count: usize, now: u32, but: Option<u8>) -> Option<u8> {
         // The first register of a value is a multiple of its number of registers.
         let fits = |first: &usize| (*first..first + count).all(|n| self.is_free(n, now) && Some(n as u8) != but);
@@ -101,22 +101,20 @@ struct Placer<'a> {
     heights: Vec<u32>,
     uses_left: Vec<usize>,
     places: Vec<Place>,
-    /// Clock at which each operation was issued, or `None` before the operation is issued.
+    /// Clock at which each operation was issued. `None` before its issue.
     issued: Vec<Option<u32>>,
     now: u32,
-    /// Index of the first operation that was not issued yet.
     first: usize,
-    /// Number of multiplications, from the next multiplication on, that must not become dual operations. A reciprocal
-    /// approximation (`frcp`, `frsqr`) has destroyed the values in the multiplier's pipe, so a dual operation would
-    /// read a wrong product.
+    /// Number of following multiplications that must not become dual operations. A reciprocal approximation (`frcp`,
+    /// `frsqr`) has destroyed the values in the multiplier's pipe, so a dual operation would read a wrong product.
     after_seed: usize,
-    /// Values in the adder's pipe, the oldest value first. `None` is a result that no operation reads.
+    /// Values in the adder's pipe, the oldest first. `None` is a result that no operation reads.
     adder: Vec<Option<usize>>,
     multiplier: Vec<Option<usize>>,
     multiplies_double: bool,
     multiplier_free: u32,
-    /// First register and register count of the floating-point result of the previous clock. Row 9 of the freeze table
-    /// delays a multiplication whose first source is this result.
+    /// First register and number of registers of the floating-point result of the previous clock. Row 9 of the freeze
+    /// table delays a multiplication whose first source is this result.
     last_result: Option<(u8, usize)>,
     last_result_at: u32,
     last_store: Option<u32>,
@@ -190,7 +188,7 @@ impl<'a> Placer<'a> {
     // ---- choice of the next operation
 
     fn candidates(&self, floating: bool) -> Vec<usize> {
-        // Only operations in the window can issue, the most urgent one first.
+        // Only operations in the window can be issued, the most urgent operation first.
         let window = self.first..self.operations.len().min(self.first + self.settings.window);
         let mut all: Vec<usize> = window
             .filter(|n| self.issued[*n].is_none() && self.operations[*n].name.unit.is_floating() == floating)
@@ -242,7 +240,7 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns true if enough registers other than `but` are free for the value that a push would move out of the pipe.
+    /// Returns true if registers other than `but` are free for the value that a push would move out of the pipe.
     fn can_push(&self, pipe: &[Option<usize>], stages: usize, but: Option<u8>) -> bool {
         match pipe[STAGES - stages] {
             Some(value) => self.floats.find(self.width(value).registers(), self.now, but).is_some(),
@@ -255,8 +253,8 @@ impl<'a> Placer<'a> {
     }
 
     /// Returns true if both sources of a multiplication are the result of the previous operation. Row 9 of the freeze
-    /// table would then delay the multiplication. If only one source is this result, the scheduler swaps the two
-    /// operands instead.
+    /// table would then delay the multiplication. If only one source is this result, the scheduler instead swaps the
+    /// operands.
     fn waits_for_first_source(&self, n: usize) -> bool {
         let sources = &self.operations[n].sources;
         self.is_last_result(&sources[0]) && self.is_last_result(&sources[1])
@@ -303,8 +301,7 @@ impl<'a> Placer<'a> {
         fits && (free >= coming + count + spare || piped && is_oldest)
     }
 
-    /// Returns the number of registers that operation `n` must leave free for operations that precede `n` in the
-    /// source.
+    /// Returns the number of registers that operation `n` must leave free for earlier lines of the source.
     fn spare(&self, n: usize) -> usize {
         let behind = n - self.first;
         if behind == 0 { 0 } else { self.settings.reserve + behind * self.settings.slope / 64 }
@@ -323,8 +320,8 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns the unit (adder or multiplier) whose pipe holds the most urgent value, with the urgency of this value in
-    /// clocks. Returns `None` if no pipe with values can be pushed.
+    /// Returns the unit (adder or multiplier) whose pipe contains the most urgent value, and the urgency of this value
+    /// in clocks. Returns `None` if no pipe with values can be pushed.
     fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
         let double = self.multiplies_double;
         let stages = if double { DOUBLE_STAGES } else { STAGES };
@@ -343,8 +340,8 @@ impl<'a> Placer<'a> {
             .max_by_key(|(height, _)| *height)
     }
 
-    /// Returns the urgency of a pipe, in clocks: the longest path from one of the pipe's values to the end of the
-    /// linear stretch.
+    /// Returns the urgency of a pipe in clocks: the longest path from one of its values to the end of the linear
+    /// stretch.
     fn urgency(&self, pipe: &[Option<usize>]) -> Option<u32> {
         pipe.iter().flatten().map(|n| self.heights[*n].saturating_sub(self.operations[*n].name.latency)).max()
     }
@@ -399,7 +396,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Turns a single-precision addition into a dual operation, which also pushes the multiplier's pipe. Returns
-    /// `mnemonic` unchanged for other operations, and if the push would move no value or lose a result.
+    /// `mnemonic` unchanged for all other operations, and if the push would move no value or lose a result.
     fn with_multiplier(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfadd.ss" => "ra1p2.ss",
@@ -416,7 +413,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Turns a multiplication into a dual operation, which also pushes the adder's pipe. Returns `mnemonic` unchanged
-    /// for other operations, and if the push would move no value or lose a result.
+    /// for all other operations, and if the push would move no value or lose a result.
     fn with_adder(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfmul.ss" => "mm12mpm.ss",
@@ -448,7 +445,7 @@ impl<'a> Placer<'a> {
         self.leave(leaving, None)
     }
 
-    /// Pushes an operation into the multiplier's pipe. A double-precision operation does not use the first of the three
+    /// Pushes an operation into the multiplier's pipe. A double-precision operation skips the first of the three
     /// stages.
     fn push_multiplier(&mut self, n: Option<usize>, double: bool, first_source: Option<u8>) -> String {
         let at = if double { STAGES - DOUBLE_STAGES } else { 0 };
@@ -462,7 +459,7 @@ impl<'a> Placer<'a> {
         self.leave(leaving, first_source)
     }
 
-    /// Moves a value from a pipe to registers other than `but`. Returns the assembler text of the destination register.
+    /// Moves a value from a pipe to registers other than `but`. Returns the text of the destination register.
     fn leave(&mut self, value: Option<usize>, but: Option<u8>) -> String {
         self.last_result = None;
         let Some(value) = value else { return "f0".to_owned() };
@@ -506,8 +503,7 @@ impl<'a> Placer<'a> {
             && read.any(|value| self.width(value) == Width::Integer && self.uses_left[value] == 1)
     }
 
-    /// Frees the integer registers whose last reader is this operation. The result of the operation can overwrite these
-    /// registers.
+    /// Frees the integer registers that operation `n` is the last to read, so that its result can overwrite them.
     fn release_integers(&mut self, n: usize) {
         let read: Vec<usize> = self.operations[n].reads().collect();
         for value in read {
@@ -541,7 +537,7 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Assigns registers to a result. Returns the assembler text of the destination register.
+    /// Assigns registers to the result of operation `n`. Returns the text of the destination register.
     fn place(&mut self, n: usize, at: u32) -> String {
         let width = self.width(n);
         let (file, letter) = match width {
@@ -557,8 +553,8 @@ impl<'a> Placer<'a> {
         format!("{letter}{register}")
     }
 
-    /// Records the issue of an operation and frees the registers whose last reader is this operation. The registers are
-    /// free from the next clock on. After a store, the registers are free one clock later (row 24 of the freeze table).
+    /// Records the issue of an operation, and frees the registers that no later operation reads. They are free from the
+    /// next clock on, or one clock later after a store (row 24 of the freeze table).
     fn finish_issue(&mut self, n: usize) {
         self.issued[n] = Some(self.now);
         if matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. }) {

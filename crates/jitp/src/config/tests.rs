@@ -37,7 +37,7 @@ fn blocks(block: u32) -> JitpConfig {
 }
 
 #[test]
-fn sizes_are_those_that_a_renderer_has() {
+fn strips_and_blocks_outside_the_limits_are_refused() {
     let refusal = |config: JitpConfig| config.check().expect_err("refused").to_string();
     for rows in [1, 128] {
         assert_eq!(strips(rows).check(), Ok(()));
@@ -56,7 +56,7 @@ fn sizes_are_those_that_a_renderer_has() {
 }
 
 #[test]
-fn no_two_strips_of_any_fields_have_one_number() {
+fn strip_numbers_are_unique_over_all_fields() {
     let numbers =
         (0..3).flat_map(|field| (0..240).map(move |strip| JitpConfig::view_number(PeriodNumber(field), strip)));
     let numbers: Vec<ViewNumber> = numbers.collect();
@@ -73,7 +73,7 @@ fn a_field_is_cut_into_strips_and_a_frame_into_squares() {
 }
 
 #[test]
-fn strips_hold_all_rows_and_all_regions_once() {
+fn strips_cover_each_row_and_region_once() {
     for strip_rows in [1, 7, 64, 100, 128] {
         let config = strips(strip_rows);
         let n = 240_u32.div_ceil(strip_rows);
@@ -87,7 +87,7 @@ fn strips_hold_all_rows_and_all_regions_once() {
 }
 
 #[test]
-fn renderers_take_regions_in_turn_and_regions_go_to_the_one_buffer() {
+fn renderers_take_regions_in_turn_and_send_them_to_one_frame_buffer() {
     let config = strips(64);
     let nodes = [0, 1, 2, 3, 7].map(|region| config.renderer_of(RegionId(region)).0);
     assert_eq!(nodes, [20, 21, 22, 20, 21]);
@@ -104,13 +104,13 @@ fn renderers_take_regions_in_turn_and_regions_go_to_the_one_buffer() {
 }
 
 #[test]
-fn blocks_come_in_the_order_that_was_said() {
+fn blocks_are_drawn_in_the_chosen_order() {
     let DrawingSchedule::Roam { order, .. } = blocks(16).schedule else { panic!("blocks") };
     assert_eq!([order.at(0), order.at(5)], [RegionId(7), RegionId(12)]);
 }
 
 #[test]
-fn instants_of_strips_and_fields_are_those_of_their_pixels() {
+fn strips_and_fields_have_the_times_of_their_first_pixels() {
     let config = strips(100);
     let field = PeriodNumber(3);
     // Strip 1 has rows 100 to 199. Strip 2 has the remaining rows up to row 239.
@@ -134,7 +134,7 @@ fn instants_of_strips_and_fields_are_those_of_their_pixels() {
 }
 
 #[test]
-fn strips_are_ordered_a_strip_time_for_each_slave_ahead_and_never_over_what_is_scanned() {
+fn the_lead_of_strip_orders_grows_with_the_slaves_and_never_reaches_lines_still_to_be_scanned() {
     let margin = 1_000;
     let lead = |slaves: u16, strip_rows: u32, racing: bool| {
         config(DrawingSchedule::Beam { viewpoint: Viewpoint::Strip, racing, strip_rows }, slaves).lead(racing)

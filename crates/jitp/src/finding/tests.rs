@@ -269,7 +269,7 @@ impl Scene {
 }
 
 #[test]
-fn what_code_finds_on_a_strip_is_what_the_native_firmware_draws() {
+fn code_selects_the_same_primitives_on_a_strip_as_the_native_firmware() {
     for (seed, rows) in [1, 7, 8, 50, 120].into_iter().enumerate() {
         for version in VERSIONS {
             for field in 0..2 {
@@ -284,7 +284,7 @@ fn what_code_finds_on_a_strip_is_what_the_native_firmware_draws() {
 }
 
 #[test]
-fn what_code_finds_in_blocks_is_what_the_native_firmware_draws() {
+fn code_selects_the_same_primitives_in_blocks_as_the_native_firmware() {
     for (seed, block) in [16, 24, 128].into_iter().enumerate() {
         for version in VERSIONS {
             let mut scene = Scene::new(&blocks(block), version, 20 + seed as u64, [600, 40]);
@@ -300,7 +300,7 @@ fn what_code_finds_in_blocks_is_what_the_native_firmware_draws() {
 
 /// Tests more windows than a table holds, and a region with more commands than a message holds.
 #[test]
-fn many_windows_are_searched_for_in_several_passes_and_many_entries_make_several_messages() {
+fn many_windows_need_several_passes_and_a_region_with_many_entries_needs_several_messages() {
     let mut scene = Scene::new(&blocks(128), CodeVersion::Compiled, 5, [3_000, 100]);
     let all = scene.all_regions();
     assert!(scene.search(&all).messages.iter().all(|messages| *messages > 1));
@@ -310,7 +310,7 @@ fn many_windows_are_searched_for_in_several_passes_and_many_entries_make_several
 }
 
 #[test]
-fn a_list_of_nothing_or_of_one_kind_is_searched_too() {
+fn empty_lists_and_lists_of_one_kind_are_searched() {
     for primitives in [[0, 0], [40, 0], [0, 40]] {
         let config = strips(8);
         let mut scene = Scene::new(&config, CodeVersion::Scheduled, 7, primitives);
@@ -324,7 +324,7 @@ fn a_list_of_nothing_or_of_one_kind_is_searched_too() {
 /// Tests strips at five times: before the first view, at each of the two views, and between them. The large rotations
 /// move the corners of triangles on curved paths across the screen.
 #[test]
-fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draws() {
+fn code_draws_a_strip_between_two_views_as_the_native_firmware_does() {
     for (seed, (rows, turn)) in (40..).zip([(1, 0.05), (8, 0.05), (7, 0.8), (1, 1.5)]) {
         for interpolation in [Interpolation::Screen, Interpolation::View] {
             for field in 0..2 {
@@ -343,7 +343,7 @@ fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draw
 /// Tests that the search counts as many triangles as are drawn, for large rotations. The corners of a triangle then
 /// move on strongly curved paths across the screen.
 #[test]
-fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
+fn the_counts_of_a_strip_between_two_views_equal_the_drawn_primitives() {
     let config = strips(1);
     let mut scene = Scene::new(&config, CodeVersion::Compiled, 60, [600, 0]);
     for interpolation in [Interpolation::Screen, Interpolation::View] {
@@ -363,7 +363,7 @@ fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
 
 /// Tests that the time of a strip between two views is the time of the interpolation plus the time of the search.
 #[test]
-fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
+fn a_strip_between_two_views_takes_the_time_of_interpolation_plus_the_time_of_the_search() {
     let spans = [false, true].map(|is_one_work| {
         let config = strips(8);
         let mut scene = Scene::new(&config, CodeVersion::Compiled, 80, [150, 10]);
@@ -392,7 +392,7 @@ fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
 /// from a straight path by up to 7 pixels. A triangle can therefore touch a strip between the views and lie far from
 /// the strip in both views. The search must find such triangles.
 #[test]
-fn nothing_that_meets_a_strip_between_two_views_is_left_out_for_being_far_at_both() {
+fn primitives_that_cross_a_strip_between_two_views_are_kept() {
     let config = strips(1);
     let scene = Scene::new(&config, CodeVersion::Compiled, 90, [3_000, 0]);
     let views = [-10_f32, 10.0].map(|degrees| {

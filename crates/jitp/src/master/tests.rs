@@ -6,7 +6,7 @@ use crate::rig::{FIELD_US, MASTER, ROW_US, Rig, SLAVE, config, us, view};
 use pxpl5_gp::{CodeVersion, GpBoard};
 
 #[test]
-fn an_order_lasts_as_long_as_the_slaves_last_one_and_its_blocks_stand_for_a_pass() {
+fn the_time_of_an_order_is_that_of_the_last_order_of_the_same_slave() {
     let mut flight = OrderTimes::new(2, 3);
     // A pass has three orders. Each pair has the slave and the time of an order.
     let orders = [(0, 100), (1, 130), (1, 190), (0, 260), (0, 400), (1, 430)];
@@ -18,7 +18,7 @@ fn an_order_lasts_as_long_as_the_slaves_last_one_and_its_blocks_stand_for_a_pass
 }
 
 #[test]
-fn nothing_is_before_time_begins() {
+fn times_before_the_start_are_clamped_to_zero() {
     assert_eq!(before(Time(5), Span(3)), Time(2));
     assert_eq!(before(Time(3), Span(5)), Time::ZERO);
 }
@@ -45,7 +45,7 @@ fn ordered(rig: &Rig) -> Vec<(Time, DrawingOrder)> {
 /// Tests that the master sends the order for a field one field earlier if the boards run i860 code. Without code, the
 /// order would come one strip and one margin before the field.
 #[test]
-fn by_code_a_field_is_ordered_a_field_before_its_first_strip_is() {
+fn with_i860_code_the_order_of_a_field_is_sent_one_field_earlier() {
     const MARGIN_US: u64 = 400;
     let mut rig = master_of(Viewpoint::Field, MARGIN_US * 1_000, Some(CodeVersion::Scheduled), None);
     rig.run_to(7 * FIELD_US);
@@ -62,7 +62,7 @@ fn by_code_a_field_is_ordered_a_field_before_its_first_strip_is() {
 /// Tests a display that shows all lines at the retrace. With a margin of 0 ns, an order could only be sent at the
 /// deadline of its strip, so there is no order.
 #[test]
-fn no_strip_is_ordered_when_its_beam_is_there() {
+fn a_strip_is_not_ordered_if_its_deadline_has_come() {
     let retrace = |field: PeriodNumber| us(field.0 * FIELD_US);
     for (margin_ns, is_ordered) in [(0, false), (1, true)] {
         let at_once = Beam::new(move |field, _, _| retrace(field), retrace);

@@ -53,7 +53,6 @@ fn drawn_after(rig: &mut Rig, us: u64) -> usize {
     rig.sent_to(RENDERER).len() - before
 }
 
-/// Tests that a strip is drawn as soon as TRANSFORM of its field has ended.
 #[test]
 fn a_strip_waits_for_the_transforms_of_its_field() {
     let (mut rig, _) = slave_of(Viewpoint::Field);
@@ -81,7 +80,7 @@ fn the_last_three_fields_stay_transformed() {
 /// Tests that a new field never overwrites one of the stored fields. The board's memory has one part for each stored
 /// field and one for the new field. Dual lists need a fifth part for interpolated strips.
 #[test]
-fn fields_that_stay_transformed_lie_apart() {
+fn a_new_field_never_overwrites_a_stored_transformed_field() {
     assert_eq!(OF_STRIP, MemoryPart::of(4, 5));
     for (viewpoint, views, of) in [(Viewpoint::Field, 1, 4), (DUAL, 2, 5)] {
         let (mut rig, state) = slave_of(viewpoint);
@@ -99,7 +98,7 @@ fn fields_that_stay_transformed_lie_apart() {
 
 /// Tests an order with one view under dual lists, which normally have two views for each field.
 #[test]
-fn a_field_of_one_view_is_drawn_from_it() {
+fn with_dual_lists_a_field_with_one_view_is_drawn_from_this_view() {
     let messages = [Viewpoint::Field, DUAL].map(|viewpoint| {
         let (mut rig, _) = slave_of(viewpoint);
         rig.deliver(&order_of_field(1, 1));
@@ -112,7 +111,7 @@ fn a_field_of_one_view_is_drawn_from_it() {
 /// Tests that a strip is drawn only if its TRANSFORM ends before its deadline. The end of TRANSFORM follows from the
 /// timing table.
 #[test]
-fn a_strip_that_is_transformed_when_its_beam_is_there_is_not_drawn() {
+fn a_strip_is_drawn_only_if_its_transform_ends_before_the_deadline() {
     let timing = GpTiming::PAPERS;
     let work = timing.message_ns + timing.pass_ns + TRIANGLES as u64 * timing.triangle_ns;
     let transformed = us(100) + Span::from_ns(work);

@@ -28,8 +28,8 @@ pub struct Tie<'a> {
 }
 
 impl IdealPicture {
-    /// Returns the image. If several primitives are nearest at a pixel, the image has the colour of the first in the
-    /// display list.
+    /// Returns the image. If several primitives are nearest at a pixel, the image has the colour of the primitive that
+    /// comes first in the display list.
     #[must_use]
     pub const fn image(&self) -> &RgbImage {
         &self.image
@@ -73,13 +73,11 @@ struct Nearest {
     paint: Paint,
 }
 
-/// The nearest primitive so far at each pixel.
 #[derive(Debug)]
 pub(crate) struct DepthBuffer {
     width: u32,
     far: u32,
     nearest: Vec<Option<Nearest>>,
-    /// Colours or surfaces of further primitives with the same depth as the nearest primitive, by row and column.
     tied: BTreeMap<[u32; 2], Vec<Paint>>,
 }
 

@@ -1,5 +1,3 @@
-//! Ideal pictures of display lists, drawn primitive by primitive.
-
 use crate::oracle::picture::{DepthBuffer, IdealPicture};
 use crate::oracle::shade::{Paint, Surface, component, normal};
 use crate::oracle::sphere::SpherePoint;
@@ -13,8 +11,8 @@ use std::ops::Range;
 /// Returns the ideal picture of a display list for one eye of a view. `eye` is 0 for a single or left eye, 1 for a
 /// right eye.
 ///
-/// `picture` defines the lines, the shading and the layout of pixel memory. The fields `binning` and `pixels` of
-/// `picture` have no effect.
+/// `picture` defines the lines, the shading and the layout of pixel memory. `picture.binning` and `picture.pixels` have
+/// no effect.
 ///
 /// # Panics
 ///
@@ -125,7 +123,6 @@ impl Raster<'_> {
         self.widths.stored_depth(plane.at(x, y) as u32)
     }
 
-    /// Calls `sink` with the column and row of each pixel inside all three edges.
     fn inside(&self, outline: &Outline, edges: &[Linear; 3], mut sink: impl FnMut(i32, i32)) {
         let viewport = &self.picture.viewport;
         let grid = viewport.grid();
@@ -140,7 +137,6 @@ impl Raster<'_> {
         }
     }
 
-    /// Calls `sink` for each pixel of `regions`, which contain a sphere.
     fn around(&self, regions: RegionMask, mut sink: impl FnMut(i32, i32)) {
         let grid = self.picture.viewport.grid();
         for region in regions.iter() {
@@ -152,7 +148,7 @@ impl Raster<'_> {
     }
 }
 
-/// Returns the columns or rows that a triangle may cover, and one more at each end.
+/// Returns the columns or rows that a triangle may cover, plus one column or row at each end.
 ///
 /// `corners` are the positions of the triangle's corners in subpixels. Row r is line `first + r * step` of the frame.
 /// The picture has `count` rows.

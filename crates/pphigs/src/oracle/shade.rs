@@ -12,7 +12,6 @@ pub(crate) enum Paint {
     Surface(Surface),
 }
 
-/// Normal and colour of a surface at a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
     /// x, y and z of the normal, each in 12 bits.
@@ -49,7 +48,6 @@ pub(crate) fn two_s_complement(value: i32, bits: u32) -> i32 {
 }
 
 impl Surface {
-    /// Returns the colour under a light source, by the formula of [`Shade`].
     fn lit(&self, shade: &Shade) -> [u8; 3] {
         let diffuse = self.cosine(shade.light);
         let highlight = (0..SQUARINGS).fold(self.cosine(shade.half), |cosine, _| (cosine * cosine) >> 10);

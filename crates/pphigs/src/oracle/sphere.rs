@@ -19,7 +19,6 @@ pub(crate) struct SpherePoint {
 }
 
 impl SpherePoint {
-    /// Returns the values at a pixel, or `None` if the pixel is outside the sphere.
     pub(crate) fn at(setup: &SphereSetup, x: i32, y: i32, widths: Widths) -> Option<Self> {
         let silhouette = u64::try_from(setup.silhouette.at(x, y)).ok()?;
         let missing = ROOT_BITS - widths.root_bits;
@@ -45,7 +44,6 @@ impl SpherePoint {
         })
     }
 
-    /// Returns the z component of the normal.
     pub(crate) fn normal_z(&self) -> i32 {
         self.upper_root(NORMAL_ROOT_BITS)
     }

@@ -16,7 +16,6 @@ impl Widths {
         Self { z_bits: layout.plan().z.width.into(), root_bits: layout.root_bits().map_or(ROOT_BITS, u32::from) }
     }
 
-    /// Returns the bits of a depth that pixel memory stores.
     pub(crate) const fn stored_depth(self, depth: u32) -> u32 {
         depth >> (Z_FRACTION_BITS + Z_BITS - self.z_bits)
     }

@@ -147,7 +147,6 @@ pub(crate) fn strips(lengths: &[usize], size: f32, seed: u64) -> Vec<Strip> {
     lengths.iter().map(strip).collect()
 }
 
-/// Returns all triangles of strips, each with its own corners.
 pub(crate) fn triangles_of(strips: &[Strip]) -> Vec<Triangle> {
     strips.iter().flat_map(Strip::triangles).collect()
 }
@@ -224,9 +223,7 @@ fn heads(surface: KernelSurface) -> Heads {
 
 /// A processor with a kernel and triangles in its memory.
 pub(crate) struct Bench {
-    /// Processor with the kernel in its memory.
     pub(crate) cpu: Cpu,
-    /// The kernel with its symbols.
     pub(crate) program: Program,
     ram: Ram,
     /// Number of triangles. In a bench for strips, the number of vertices.

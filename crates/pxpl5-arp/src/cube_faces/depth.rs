@@ -33,7 +33,8 @@ impl DepthRange {
         self.far_m
     }
 
-    /// Returns the coefficients (a, b) of the depth a + b/w. The depth is 0 at the near plane and 1 at the far plane.
+    /// Returns the coefficients (a, b) of the depth a + b/w, where w is the distance along the face's axis. The depth
+    /// is 0 at the near plane and 1 at the far plane.
     #[must_use]
     pub(crate) fn linear(&self) -> [f64; 2] {
         let scale = self.far_m / (self.far_m - self.near_m);
@@ -49,8 +50,7 @@ impl DepthRange {
         (distance_m > 0.0 && (0.0..1.0).contains(&depth)).then_some((depth * f64::from(DEPTH_FARTHEST)) as u32)
     }
 
-    /// Returns the distance along the axis in metres that belongs to the 24-bit depth `word`. The distance belongs to
-    /// the middle of the depth step.
+    /// Returns the distance along the axis, in metres, in the middle of the depth step with the 24-bit depth `word`.
     #[must_use]
     pub fn distance_m(&self, word: u32) -> f64 {
         let [a, b] = self.linear();

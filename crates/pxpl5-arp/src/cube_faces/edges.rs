@@ -57,7 +57,8 @@ impl Edges {
         Some(Self { edges: edges.map(|edge| Linear::of(edge * sign)), determinant: determinant.abs() })
     }
 
-    /// Returns 1/w as a linear function over the face, for points of the triangle.
+    /// Returns 1/w as a linear function over the face, for points of the triangle. w is the distance along the face's
+    /// axis.
     pub(crate) fn reciprocal(&self) -> Linear {
         Linear::sum(self.edges, [1.0 / self.determinant; 3])
     }

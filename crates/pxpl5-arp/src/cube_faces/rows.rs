@@ -1,5 +1,5 @@
-//! Rasterization of a triangle on a face, row by row. Covered texels, their colours and depths are computed several at
-//! a time.
+//! Rasterization of a triangle on a face, row by row. Colours and depths of covered texels are computed for several
+//! texels at a time.
 
 use crate::cube_faces::edges::{Columns, Crossing, Linear};
 use address_recalculation::{CubeFace, DEPTH_FARTHEST, FaceSet, TexelAddress};
@@ -11,29 +11,25 @@ const RUN: usize = 64;
 /// Number of doubles in a vector register. Texels are computed in multiples of this number.
 const LANES: usize = 4;
 
-/// Colours of one triangle on a face.
 pub(crate) enum Shade {
-    /// One colour for the whole triangle.
     Flat(u32),
-    /// Red, green and blue, each divided by w.
+    /// Red, green and blue as functions over the face, each divided by w, the distance along the face's axis.
     Smooth([Linear; 3]),
 }
 
-/// A triangle on a face, prepared for drawing.
 pub(crate) struct OnFace {
     pub(crate) face: CubeFace,
     pub(crate) columns: Columns,
-    /// Number of texels in a row.
     pub(crate) texels: i64,
     pub(crate) crossings: [Crossing; 3],
-    /// 1/w as a function over the face.
+    /// 1/w as a function over the face, where w is the distance along the face's axis.
     pub(crate) reciprocal: Linear,
-    /// Coefficients (a, b) of the depth a + b/w. The depth of a drawn texel is between 0 and 1.
+    /// Coefficients (a, b) of the depth a + b/w, where w is the distance along the face's axis. The depth of a drawn
+    /// texel is between 0 and 1.
     pub(crate) depth: [f64; 2],
     pub(crate) shade: Shade,
 }
 
-/// Colours and depths of consecutive texels of a row.
 struct Run {
     colours: [u32; RUN],
     depths: [u32; RUN],

@@ -6,7 +6,7 @@ use crate::cube_faces::rows::{OnFace, Shade, draw};
 use address_recalculation::{CubeFace, FaceGeometry, FaceSet};
 use glam::DVec3;
 
-/// A corner of a triangle.
+/// A vertex of a triangle, with its shaded colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// Position in the world in metres.
@@ -15,7 +15,7 @@ pub struct Corner {
     pub colour: u32,
 }
 
-/// Counts of triangles and texels of a drawing.
+/// Counts of the triangles and texels that were drawn on cube faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DrawCounts {
     /// Number of triangles to draw, visible or not.
@@ -28,7 +28,6 @@ pub struct DrawCounts {
 }
 
 impl DrawCounts {
-    /// Adds the counts of another drawing.
     pub const fn add(&mut self, other: Self) {
         self.triangles += other.triangles;
         self.on_faces += other.on_faces;
@@ -36,17 +35,13 @@ impl DrawCounts {
     }
 }
 
-/// Size of the faces, and range of drawn depths.
+/// The geometry and the range of depths of the six faces around the viewer's head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeView {
-    /// Number of texels along an edge of a face, and number of guard texels (a margin that repeats the neighbouring
-    /// face).
     pub geometry: FaceGeometry,
-    /// Distances of the near and far plane.
     pub depth: DepthRange,
 }
 
-/// One face: its axes, and the values that all triangles on it share.
 struct FaceView {
     face: CubeFace,
     axes: [DVec3; 3],
@@ -63,7 +58,7 @@ impl CubeView {
     ///
     /// # Panics
     ///
-    /// Panics if the faces have another number of texels than `geometry`.
+    /// Panics if the number of texels along an edge of the faces differs from the number in `geometry`.
     pub fn draw(
         &self,
         eye: DVec3,
@@ -140,7 +135,6 @@ impl FaceView {
         [(row(range[0]) - 1.0).clamp(0.0, last).floor() as i64, (row(range[1]) + 2.0).clamp(0.0, last).ceil() as i64]
     }
 
-    /// Draws a triangle, and returns the number of texels that it covers.
     fn triangle(&self, places: [DVec3; 3], colours: [u32; 3], faces: &mut FaceSet) -> u64 {
         let Some(edges) = Edges::new(places) else { return 0 };
         let triangle = OnFace {

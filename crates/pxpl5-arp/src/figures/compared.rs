@@ -8,7 +8,6 @@ use address_recalculation::{CubeFace, FaceSet, TexelAddress};
 use glam::{DQuat, DVec3};
 use pxpl5_sim::parameters::SettingError;
 
-/// Number of texels along the edge of the compared faces.
 const TEXELS: u32 = 128;
 
 fn small(settings: &WalkSettings) -> WalkSettings {
@@ -42,13 +41,13 @@ pub(super) fn composite_differs(world: &World, settings: &WalkSettings, eye: DVe
     Ok(all.filter(|texel| composed(*texel) != one.texel(*texel)).count() as u64)
 }
 
-/// Number of frames after which the stalled renderer has drawn all memories once.
+/// Number of simulated frames. In this time, even the very slow renderer draws all memories once.
 const FRAMES: u64 = 200;
-/// Triangles that the stalled renderer draws per second.
+/// Triangles that the very slow (stalled) renderer draws per second.
 const STALLED_TRIANGLES_PER_S: f64 = 700.0;
 
-/// Counts the pixels that differ between the pictures of an ideal renderer and of a stalled renderer, while a head at a
-/// fixed position rotates.
+/// Counts the pixels that differ between the pictures of an ideal renderer and of a very slow renderer, while a head at
+/// a fixed position rotates.
 pub(super) fn turned_differ(world: &World, settings: &WalkSettings, eye: DVec3) -> Result<u64, SettingError> {
     // Simulate both renderers with the eye at rest until the slow one has drawn all memories.
     let ideal = small(settings);

@@ -19,19 +19,19 @@ fn definition(id: &'static str, statement: String, value: f64, unit: &'static st
 #[must_use]
 pub fn definitions() -> Vec<Definition> {
     let mut all = Vec::new();
-    // A4 and A17 follow from the order of the stages: no drawing stage lies between the latch and the light.
+    // Statements A4 and A17 follow from the order of the stages: no drawing stage lies between the latch and the light.
     let drawn = "share of rendering and buffer swap in rotational latency, by the order of the stages".to_owned();
     all.push(definition("A4", drawn, 0.0, "ms"));
     let stages =
         "from the latch to the light: 26 stages, whose clock is assumed so that this is below the printed 1 us"
             .to_owned();
     all.push(definition("A17", stages, ArpTiming::PAPERS.depth().0 as f64 / 1e6, "us"));
-    // D1 follows from the rates of table 1.
+    // Definition D1 follows from the rates of table 1.
     for (memory, rate) in RATES_HZ.into_iter().enumerate() {
         all.push(definition("D1", format!("mean period of memory {memory}: 60 / A12"), 60.0 / rate, "frames"));
         all.push(definition("D1", format!("way walked in one period of memory {memory}: A9 / A12"), 1e3 / rate, "mm"));
     }
-    // D2 to D4 follow from tables 1 and 2.
+    // Definitions D2 to D4 follow from tables 1 and 2.
     for (segments, (id, kind)) in SEGMENTS.iter().zip([("A13", "cut"), ("A14", "uncut")]) {
         let sum = segments.iter().sum::<u64>() as f64;
         let draws = draws_per_s(&RATES_HZ, segments);

@@ -85,7 +85,7 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          moves segments to slower memories and saves drawing, and the cuts cause tears.\n\n\
          The table has only rows for which the code under test could have given another value. The section\n\
          [Definitions](#definitions) lists the numbers that follow from other numbers by arithmetic.\n\n\
-         The model meets {met} of {} rows that can be reproduced. Of the {} rows that cannot be reproduced, {shown} have the printed shape.\n\n",
+         The model reproduces {met} of the {} rows that can be reproduced. Of the {} rows that cannot be reproduced, {shown} have the printed shape.\n\n",
         numbers.count(),
         shapes.count()
     );
@@ -103,7 +103,7 @@ const COLUMNS: [TableColumn<FigureRow>; 9] = [
     ("", |row| verdict(row).to_owned()),
 ];
 
-/// Returns the rows as a Markdown table with a heading.
+/// Returns the figures as a Markdown table.
 #[must_use]
 pub fn table(rows: &[FigureRow]) -> String {
     figures::table(&COLUMNS, rows)
@@ -172,11 +172,12 @@ fn fits(text: &mut String, all: &Experiments) {
 #[must_use]
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
-         The paper CPR05 does not print the widths of the rings of cells, how distances are measured, the path or the hall. The\n\
-         table of rules combines each set of rules with each of four halls and paths. For each combination, the side of a cell is\n\
-         fitted to the rates of memories 1 to 3. The error of a fit is the root mean square over memories 1 to 3. For the column\n\
-         *left out*, each rate is predicted with the side of a cell that fits the other two rates best. The rules are ranked by\n\
-         their mean error over all four halls and paths, because the paper's hall and path are unknown.\n\n"
+         The paper CPR05 does not print the widths of the rings of cells or the rule by which distances are measured. The paper\n\
+         also does not print the hall and the viewer's path through the hall. The table of rules combines each set of rules with\n\
+         each of four pairs of a hall and a path. For each combination, the side of a cell is fitted to the rates of memories 1\n\
+         to 3. The error of a fit is the root mean square over memories 1 to 3. For the column *left out*, each rate is predicted\n\
+         with the side of a cell that fits the other two rates best. The rules are ranked by their mean error over all four\n\
+         pairs, because the paper's hall and path are unknown.\n\n"
         .to_owned();
     // The table has one column for each hall and path.
     let situations = Situation::ALL.map(Situation::text).join(" | ");
@@ -236,7 +237,6 @@ fn best_of_all(all: &Interpretations) -> String {
     text
 }
 
-/// Returns the reasons for the rules that this project chose among the interpretations, as Markdown.
 fn chosen(all: &Interpretations) -> String {
     let place = all.usual().map_or_else(String::new, |(place, ranked)| {
         format!(
@@ -291,7 +291,7 @@ fn thresholds(text: &mut String, all: &Experiments) {
 }
 
 /// Writes two constraints on table 2 of the paper CPR05, which prints the number of segments in each memory. Both
-/// follow because the same segments are drawn with and without cutting, only in different memories.
+/// constraints follow from one fact: the same segments are drawn with and without cutting, only in different memories.
 fn conservation(text: &mut String, all: &Experiments) {
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();
@@ -321,7 +321,7 @@ fn conservation(text: &mut String, all: &Experiments) {
         ours[0].iter().sum::<f64>(),
         ours[1].iter().sum::<f64>()
     );
-    // The second constraint compares sums over the fastest memories.
+    // The sums over the fastest memories give the second constraint.
     let up_to = |segments: &[f64], memory: usize| segments[..=memory].iter().sum::<f64>();
     for memory in 0..4 {
         let [a, b, c, d] = [&cut[..], &uncut[..], &ours[0], &ours[1]].map(|segments| up_to(segments, memory));
@@ -329,7 +329,8 @@ fn conservation(text: &mut String, all: &Experiments) {
     }
     let _ = write!(
         text,
-        "\nThe printed numbers violate the constraint of equal sums, so the two columns do not describe the same set of sections.\n\
+        "\nThe printed numbers violate the first constraint, because the sums of the two columns differ. So the two columns do not\n\
+         describe the same set of sections.\n\
          The printed saving of draws is 31.3 %. One part of the saving of draws comes from {:.0} missing sections. The other part of\n\
          the saving of draws is the saving for each section. With segmentation, a section needs {with:.1} draws per second. Without\n\
          segmentation, a section needs {without:.1}, so the saving is {:.1} %. Three of the four numbers of a column are independent,\n\
@@ -407,8 +408,8 @@ fn sizes(text: &mut String, all: &Experiments) {
     }
 }
 
-/// Writes the ratios of size to distance that belong to statement A8 of the papers. For larger ratios, the growth of
-/// the object on the screen determines the validity period.
+/// Writes the ratios of size to distance that belong to statement A8 of the papers on priority rendering. For larger
+/// ratios, the growth of the object on the screen determines the validity period.
 fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     text.push_str(
         "\nStatement A8, \"about ten times the distance\", leaves two questions open. One question is which angle describes the size\n\

@@ -23,7 +23,6 @@ pub const EXPERIMENT_FRAMES: u64 = 7_200;
 /// Settings and results of one simulated walk of the viewer.
 #[derive(Clone, Debug)]
 pub struct NamedWalk {
-    /// Name of the viewer's walk in tables and documents.
     pub name: &'static str,
     pub settings: WalkSettings,
     pub tally: WalkTally,
@@ -33,7 +32,6 @@ pub struct NamedWalk {
 /// The side of a cell (square of the floor), fitted to one update rate in table 1 of the paper CPR05.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellFit {
-    /// Rules with which the cell side was fitted.
     pub rules: Rules,
     /// Fitted side of a cell, in metres.
     pub cell_m: f64,
@@ -41,10 +39,9 @@ pub struct CellFit {
     pub rates_hz: Vec<f64>,
 }
 
-/// Results with a renderer of limited speed.
+/// The update rates of all display memories with a renderer of limited speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlowRendererResult {
-    /// Triangles that the renderer draws per second.
     pub triangles_per_s: f64,
     /// Updates per second of each display memory.
     pub rates_hz: Vec<f64>,
@@ -52,10 +49,11 @@ pub struct SlowRendererResult {
     pub missed: Vec<u64>,
 }
 
-/// Results of all simulated experiments.
+/// The results of all experiments that reproduce the papers' figures.
 #[derive(Clone, Debug)]
 pub struct Experiments {
-    /// Two fits of the cell side in the gallery: with this project's rules, and with rings of cells of equal width.
+    /// Two fits of the cell side in the gallery: with this project's rules, and with one ring of cells in each memory
+    /// after memory 0.
     pub fits: [CellFit; 2],
     /// All interpretations of table 1 of the paper CPR05 (update rates).
     pub interpretations: Interpretations,
@@ -63,8 +61,8 @@ pub struct Experiments {
     pub thresholds: Vec<ThresholdRow>,
     /// Number of segments (parts of objects) into which the fitted cells cut the gallery.
     pub segments: usize,
-    /// Four walks with the fitted cells: objects cut without warping, cut with warping, uncut, and warped without a
-    /// cascade. In a cascade, an update of a memory also updates all more often drawn memories.
+    /// Four walks with the fitted cells. Objects are cut without warping, cut with warping, uncut, or cut with warping
+    /// but without a cascade. In a cascade, an update of a memory also updates all more often drawn memories.
     pub walks: Vec<NamedWalk>,
     /// Walks with renderers of decreasing speed.
     pub slowed: Vec<SlowRendererResult>,
@@ -166,7 +164,7 @@ const POINTS: usize = 20_000;
 #[must_use]
 pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
     let numbers = PriorityTiming { memories, theta_deg: THETA_DEG, ..PriorityTiming::PAPERS };
-    // A point is valid for the time the walker needs to exceed the threshold.
+    // The image of a point is valid until the walker's movement exceeds the threshold.
     let threshold = Threshold::of_degrees(numbers.theta_deg);
     let distances = (0..POINTS).map(|point| 100.0 * libm::sqrt((point as f64 + 0.5) / POINTS as f64));
     let periods: Vec<f64> = distances.map(|distance_m| threshold.way(distance_m) / speed).collect();
@@ -183,13 +181,14 @@ pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
 pub struct SizeRow {
     /// Diameter of the object, divided by the distance of its middle.
     pub size_over_distance: f64,
-    /// Time until translation changes the image by the threshold, computed from the distance of the middle, in seconds.
+    /// Time in seconds until the eye's translation makes the image wrong by the threshold. The time is computed with
+    /// the distance of the object's middle.
     pub translation_s: f64,
     /// Time until the growth of the object's image reaches the threshold, for a disc and for a sphere, in seconds.
     pub size_s: [f64; 2],
 }
 
-/// Returns rows for diameters from 0.1 to 20 times the distance.
+/// Returns rows for objects with diameters from 0.1 to 20 times their distance from the eye.
 #[must_use]
 pub fn size_rows() -> Vec<SizeRow> {
     let threshold = Threshold::of_degrees(THETA_DEG);
@@ -215,11 +214,11 @@ pub struct SizeLimit {
     /// Allowed change of the angle that the sphere's radius covers, divided by the threshold for translation of the
     /// eye. Both are angles.
     pub factor: f64,
-    /// Greatest ratio of the sphere's diameter to the distance of its middle at which translation, not growth, limits
-    /// the validity period.
-    pub of_middle: f64,
-    /// Greatest ratio of the sphere's diameter to the distance of its nearest point at which translation, not growth,
+    /// Greatest diameter of the sphere, divided by the distance of its middle, for which translation and not growth
     /// limits the validity period.
+    pub of_middle: f64,
+    /// Greatest diameter of the sphere, divided by the distance of its nearest point, for which translation and not
+    /// growth limits the validity period.
     pub of_nearest: f64,
 }
 

@@ -64,7 +64,7 @@ pub(super) fn rates_hz(
 ///
 /// Fails in the same cases as [`policy_rates_hz`].
 pub fn fitted_cell_m(scene: &Scene, path: &Walk, rules: &Rules, frames: u64) -> Result<(f64, Vec<f64>), SettingError> {
-    // Keep the side, its rates and its error.
+    // Keep the side of a cell with the smallest error, its rates and its error.
     let mut best = (f64::NAN, Vec::new(), f64::INFINITY);
     for tenths in TENTHS {
         let cell_m = f64::from(tenths) / 10.0;

@@ -9,7 +9,6 @@ use tracking::motion::Walk;
 /// 191 segments (parts of objects in one cell). The two rows of table 2 of the paper CPR05 have 183 and 213 segments.
 const HALL_SCALE: f64 = 0.5;
 
-/// Returns the scaled gallery, and the viewer's path through the gallery.
 pub(crate) fn gallery() -> Result<(Scene, Walk), SettingError> {
     let scene = builtin("gallery")?;
     let scene = scaled(&scene, HALL_SCALE)?;

@@ -32,7 +32,6 @@ pub enum Situation {
 /// Number of cells along a side of every hall except the gallery.
 const CELLS_ACROSS: i64 = 7;
 
-/// Number of frames of the viewer's walk through the gallery.
 const GALLERY_FRAMES: u64 = 3_600;
 
 impl Situation {
@@ -112,7 +111,6 @@ const COMPARED: [usize; 3] = [1, 2, 3];
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tried {
     pub rules: Rules,
-    /// Hall through which the viewer walks, and path of the viewer.
     pub situation: Situation,
     /// Results for every cell side that was tried.
     #[serde(skip)]
@@ -133,20 +131,19 @@ pub struct RankedRules {
     pub mean_error_percent: f64,
     /// Mean cross-validation error over all halls and paths, in percent.
     pub mean_left_out_percent: f64,
-    /// Results for each hall and path.
     pub tried: Vec<Tried>,
 }
 
-/// An update rate, predicted by the fit that is best for the other two rates.
+/// The update rate of one memory, predicted by the fit that is best for the update rates of the other two memories.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeftOutRate {
     /// Index of the memory whose update rate was left out of the fit.
     pub memory: usize,
-    /// Rules of the best fit to the other two rates.
+    /// Rules of the fit that is best for the other two memories.
     pub rules: Rules,
-    /// Hall and path of the best fit to the other two rates.
+    /// Hall and path of the fit that is best for the other two memories.
     pub situation: Situation,
-    /// Cell side and update rates of the best fit to the other two rates.
+    /// Cell side and update rates of the fit that is best for the other two memories.
     pub trial: Trial,
     /// Relative error of the predicted update rate, in percent.
     pub error_percent: f64,
@@ -196,7 +193,7 @@ impl Tried {
     }
 }
 
-/// Returns the indices of all memories whose update rates are compared with the paper, except `memory`.
+/// Returns the indices of all memories whose update rates are compared with the paper CPR05, except `memory`.
 fn others(memory: usize) -> Vec<usize> {
     COMPARED.into_iter().filter(|other| *other != memory).collect()
 }
@@ -263,15 +260,14 @@ pub const PIXEL_DEG: f64 = 60.0 / 640.0;
 /// Angle of a texel of an ideal face in degrees, averaged over an edge of the face.
 const TEXEL_DEG: f64 = 90.0 / 512.0;
 
-/// A threshold of the image error, with the cell side and the tears (gaps between memories) that follow. The product of
-/// threshold and cell side is fixed, because it fits the update rates in table 1 of the paper CPR05.
+/// A threshold of the image error, and the cell side and the tears (gaps between memories) that result from this
+/// threshold. The product of threshold and cell side is fixed, because it fits the update rates in table 1 of the paper
+/// CPR05.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThresholdRow {
     /// The threshold of the image error as text, in pixels of the display or texels of an ideal face.
     pub threshold: &'static str,
-    /// The threshold of the image error in degrees.
     pub theta_deg: f64,
-    /// Side of a cell in metres.
     pub cell_m: f64,
     /// Widest tear (gap between two memories) if each update is shown in the frame in which the update is due, in
     /// pixels of the display.
@@ -281,8 +277,8 @@ pub struct ThresholdRow {
     pub frame_late_px: f64,
 }
 
-/// Returns several thresholds in pixels or texels, with their consequences. `fitted_cell_m` is the cell side that fits
-/// table 1 of the paper CPR05 at the default threshold.
+/// Returns the rows of several thresholds, which are given in pixels or texels. `fitted_cell_m` is the cell side that
+/// fits table 1 of the paper CPR05 at the default threshold.
 #[must_use]
 pub fn threshold_rows(fitted_cell_m: f64) -> Vec<ThresholdRow> {
     let product = fitted_cell_m * PriorityTiming::PAPERS.theta_deg;

@@ -1,4 +1,4 @@
-//! Rows of the comparison: published number, simulated number, and how the simulated number was obtained.
+//! Rows of the comparison: the published number, the simulated number, and the provenance of the simulated number.
 
 use pxpl5_sim::figures::{Basis, FigureRow, around};
 
@@ -17,8 +17,8 @@ pub fn row(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2]
     FigureRow { basis, cause, ..FigureRow::new(id, statement.to_owned(), unit, both, accepted) }
 }
 
-/// Creates a row for a number that cannot be reproduced. `holds` is true if the shape of its curve or table agrees with
-/// the paper.
+/// Creates a row for a number that cannot be reproduced. `holds` is true if the shape of the simulated curve or table
+/// agrees with the published shape.
 #[must_use]
 pub fn shape(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], holds: bool) -> FigureRow {
     FigureRow { is_met: holds, ..row(id, statement, unit, both, Basis::Shape) }
@@ -33,7 +33,7 @@ pub fn limit(id: &'static str, statement: &str, unit: &'static str, both: [f64; 
 /// Returns the outcome of a row's comparison: `met`, `within`, `shape` or `**missed**`.
 ///
 /// `within` means that the published number lies in the interval of all interpretations. `shape` means that the number
-/// cannot be reproduced, but the shape of its curve or table agrees with the paper.
+/// cannot be reproduced, but the shape of the simulated curve or table agrees with the published shape.
 #[must_use]
 pub const fn verdict(row: &FigureRow) -> &'static str {
     match (row.is_met, row.basis) {

@@ -1,4 +1,4 @@
-//! All rows of the comparison between published and simulated numbers, by experiment.
+//! All rows that compare published numbers with simulated numbers, by experiment.
 
 use super::definitions::SEGMENTS;
 use super::experiments::{CellFit, Experiments};
@@ -40,8 +40,8 @@ fn composition(all: &Experiments) -> Vec<FigureRow> {
     vec![row("fig. 2", statement, "texels", [0.0, all.composite_differs as f64], Basis::Free)]
 }
 
-/// Compares statement A8 of the papers on the size of objects ("about ten times the distance") with the limits of size
-/// for spheres. The distance of a sphere is measured to its nearest point.
+/// Compares statement A8 of the papers on priority rendering with the limits of size for spheres. The statement gives a
+/// size of "about ten times the distance". The distance of a sphere is measured to its nearest point.
 fn sizes(all: &Experiments) -> Vec<FigureRow> {
     let limits = all.size_limits.iter().map(|limit| limit.of_nearest);
     let [least, most] = [limits.clone().fold(f64::INFINITY, f64::min), limits.fold(0.0, f64::max)];
@@ -54,7 +54,7 @@ fn sizes(all: &Experiments) -> Vec<FigureRow> {
 }
 
 fn reductions(all: &Experiments) -> Vec<FigureRow> {
-    // A5 requires that slower memories have fewer updates.
+    // Statement A5 requires that slower memories have fewer updates.
     let ratios = &all.walks[0].tally.memories;
     let falls = ratios.windows(2).all(|pair| pair[0].updates >= pair[1].updates);
     let fastest = all.walks[0].report.memories[0].updates_hz;
@@ -83,7 +83,7 @@ fn rate(all: &Experiments, memory: usize) -> FigureRow {
 
 fn table_2(all: &Experiments) -> Vec<FigureRow> {
     let mut rows = Vec::new();
-    // Walk 0 is cut, and walk 2 is uncut.
+    // In walk 0 the objects are cut into segments, and in walk 2 they are uncut.
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();
         memories.map(|memory| memory.segments).collect::<Vec<f64>>()
@@ -112,7 +112,7 @@ fn table_2(all: &Experiments) -> Vec<FigureRow> {
 }
 
 fn tears(all: &Experiments) -> Vec<FigureRow> {
-    // Walk 0 is torn, walk 1 warped and walk 2 uncut.
+    // Walk 0 has tears, walk 1 has warped segments, and walk 2 has uncut objects.
     let widest = |walk: usize| all.walks[walk].report.tears_px.after.map_or(0.0, |tears| tears.max);
     let [warped, uncut] = [1, 2].map(widest);
     let pixels = widest(0) * all.walks[0].settings.texel_deg() / PIXEL_DEG;

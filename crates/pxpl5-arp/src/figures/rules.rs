@@ -8,11 +8,11 @@ use serde::Serialize;
 pub struct Rules {
     /// Number of rings of cells around the viewer's cell in memory 0.
     pub inner_rings: u64,
-    /// Number of rings of cells in a memory, divided by the number of rings of cells in the memory before it, which is
-    /// drawn more often.
+    /// Number of rings of cells in memory k (2 or more), divided by the number of rings in memory k - 1. Memory k - 1
+    /// is drawn more often.
     pub ring_growth: u64,
-    /// True if distances are measured to cells that hold segments (parts of objects). False if distances are measured
-    /// to the border of a block of cells.
+    /// Way of measuring the distance that determines when a memory is due. True: to the nearest cell with segments
+    /// (parts of objects). False: to the border of a block of cells.
     pub to_held_cells: bool,
     /// True if an update of a memory makes all more often drawn memories due for an update.
     pub has_cascade: bool,
@@ -29,8 +29,8 @@ impl Rules {
 
     /// Returns all sets of rules that are compared.
     ///
-    /// Rings of equal width are combined with 0, 1 or 2 inner rings of cells, and doubling rings of cells with 1 inner
-    /// ring.
+    /// In some sets, memory 0 holds 0, 1 or 2 inner rings of cells, and every other memory holds one ring. In other
+    /// sets, memory 0 holds 1 inner ring, and the number of rings doubles from memory to memory.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let flags = [(false, false), (false, true), (true, false), (true, true)];
@@ -45,7 +45,6 @@ impl Rules {
         rules.collect()
     }
 
-    /// Returns the rules as text for tables.
     #[must_use]
     pub fn text(&self) -> String {
         let rings = if self.ring_growth == 1 { "equal rings" } else { "rings that double" };

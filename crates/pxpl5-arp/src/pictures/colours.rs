@@ -1,4 +1,4 @@
-//! Colours that represent numbers.
+//! Colours that represent display memories.
 
 /// Colours for display memories 0 to 7. People with colour blindness can distinguish these colours.
 pub(crate) const MEMORY_COLOURS: [u32; 8] =

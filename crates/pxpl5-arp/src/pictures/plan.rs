@@ -19,7 +19,6 @@ fn colour(memory: usize) -> String {
     format!("#{:06x}", MEMORY_COLOURS[memory % MEMORY_COLOURS.len()])
 }
 
-/// Mapping from the floor of the hall to a drawing.
 struct Plan {
     low: [f64; 2],
     size: [f64; 2],
@@ -160,7 +159,6 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
             );
         }
         (0..memories).for_each(|memory| mark(&mut svg, outcome, memory, x));
-        // Label every 15th frame.
         if frame % 15 == 0 {
             let _ = writeln!(svg, "<text x=\"{x:.0}\" y=\"{:.0}\">{frame}</text>", height - 30.0);
         }
@@ -174,7 +172,6 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
     svg
 }
 
-/// Draws the rectangle that stands for the update of a memory in one frame.
 fn mark(svg: &mut String, outcome: &FrameOutcome, memory: usize, x: f64) {
     let top = 22.0 + 34.0 * memory as f64;
     let place = format!("x=\"{x:.0}\" y=\"{top:.0}\" width=\"6\" height=\"24\"");

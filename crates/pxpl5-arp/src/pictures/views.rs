@@ -1,4 +1,4 @@
-//! Views that the eye sees, and pictures of their errors.
+//! Pictures of the views that the eye sees, and of the errors in these views.
 
 use super::colours::MEMORY_COLOURS;
 use crate::content::angle;
@@ -10,14 +10,11 @@ use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 use pxpl5_sim::parameters::SettingError;
 
-/// A view of the cube faces of all memories.
+/// The cube faces of all memories, seen by an eye with an orientation and through a lens.
 #[derive(Clone, Debug)]
 pub struct MemoryViews<'a> {
-    /// Faces of all memories.
     pub faces: &'a WalkFaces,
-    /// Orientation of the head.
     pub orientation: DQuat,
-    /// Lens through which the eye looks.
     pub lens: Lens,
 }
 
@@ -92,7 +89,6 @@ impl MemoryViews<'_> {
     }
 }
 
-/// Returns the number of pixels per radian in the middle of a picture.
 fn pixels_per_radian(lens: &Lens, screen: &LensPicture) -> f64 {
     let view = |x: u32| DVec3::from_array(lens.view(screen, x.min(screen.width - 1), screen.height / 2));
     let middle = screen.width / 2;

@@ -44,7 +44,7 @@ pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, scre
     svg
 }
 
-/// Returns all edges as pairs of vertices. The flag of an edge is true if it lies on a border of cells.
+/// Returns all edges as pairs of vertices. The value of an edge is true if the edge lies on a border of cells.
 fn edges(world: &World, side_m: f64) -> BTreeMap<[u32; 2], bool> {
     let mut edges = BTreeMap::new();
     for three in world.segments.iter().flat_map(|segment| &segment.triangles) {

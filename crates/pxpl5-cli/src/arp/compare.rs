@@ -1,5 +1,5 @@
-//! The command `pxpl5 arp compare`, which compares all policies (rules for what is drawn when) and warps on one walk of
-//! a viewer through a scene.
+//! The command `pxpl5 arp compare`, which compares all policies and warps on one walk of a viewer through a scene. A
+//! policy decides which parts of the scene are drawn when. A warp closes gaps between display memories.
 
 use super::run::widths;
 use super::settings::WalkArgs;
@@ -53,7 +53,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
         (false, true) => {}
         (false, false) => print(&text(&comparison))?,
     }
-    // A variant that cannot be walked is named, and the command fails after all others were walked.
+    // The command names each variant whose walk failed, and fails after all walks.
     for (variant, reason) in &comparison.failed {
         print_error(&format!("pxpl5: {variant}: {reason}\n"));
     }
@@ -63,7 +63,6 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     }
 }
 
-/// Name of a table column, with the function that formats the column's cell for a row.
 type Column = (&'static str, fn(&ComparedRow) -> String);
 
 const COLUMNS: [Column; 10] = [

@@ -1,4 +1,5 @@
-//! The command `pxpl5 arp figures`, which compares the papers' figures with an ideal renderer.
+//! The command `pxpl5 arp figures`, which compares figures of the papers on address recalculation with an ideal
+//! renderer.
 
 use super::settings::put;
 use crate::error::CliError;
@@ -51,7 +52,7 @@ pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
         folder.commit()?;
     }
     bar.finish_and_clear();
-    // `--check` fails when the document in the repository is not what the figures give.
+    // `--check` fails if the document in the repository differs from the new document.
     if let Some(path) = &args.check {
         fresh(path, &markdown, "arp figures")?;
     }

@@ -1,5 +1,5 @@
-//! The command `pxpl5 arp interpretations`. The paper on priority rendering leaves questions open about its table 1.
-//! The command ranks the possible answers.
+//! The command `pxpl5 arp interpretations`. Table 1 of the paper on priority rendering can be interpreted in several
+//! ways. The command ranks these interpretations.
 
 use crate::error::CliError;
 use crate::terminal::{advance, print, progress};

@@ -112,10 +112,8 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
         "missed",
         "eye age, mm"
     );
-    // One line for each memory.
     report.memories.iter().enumerate().for_each(|(k, memory)| line(&mut text, k, memory));
     let priority = &report.priority;
-    // Totals over all memories.
     let rows = [
         ("segments drawn per second", format!("{:.0} ({:.1} % saved)", priority.draws_per_s, priority.saved_percent)),
         ("triangles drawn per second", format!("{:.0}", outcome.triangles_per_s())),
@@ -139,8 +137,8 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
     text
 }
 
-/// Returns the mean latency from a step (translation) of the head until the picture of each display memory is lit, in
-/// ms, as text.
+/// Formats the mean latency of each display memory, in ms. The latency is the time from a translation of the head until
+/// the picture of the memory is lit.
 fn steps(report: &ArpReport) -> String {
     let totals = report.memories.iter().map(|memory| memory.translation_latency_ms.total);
     let totals: Vec<String> = totals.map(|total| or_none(total.map(|ms| format!("{ms:.1}")))).collect();
@@ -160,8 +158,8 @@ fn or_none(text: Option<String>) -> String {
     text.unwrap_or_else(|| "-".to_owned())
 }
 
-/// Formats the median, the 95th percentile and the maximum of a set of widths. Widths below 1e-6 are rounding errors
-/// and appear as 0.
+/// Formats the median, the 95th percentile and the maximum of the widths of tears. Widths below 1e-6 are rounding
+/// errors and appear as 0.
 pub(super) fn widths(widths: Option<TearWidths>) -> String {
     let number = |width: f64| if width < 1e-6 { "0".to_owned() } else { format!("{width:.2}") };
     or_none(widths.map(|TearWidths { p50, p95, max }| [p50, p95, max].map(number).join(", ")))

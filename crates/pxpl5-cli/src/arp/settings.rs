@@ -1,4 +1,4 @@
-//! Options of `pxpl5 arp` that describe the walk of a viewer. Each option stands for a path of `--set`.
+//! Options of `pxpl5 arp` that describe the walk of a viewer. Each option is a short form of a path of `--set`.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -63,18 +63,14 @@ pub(super) struct WalkArgs {
     pub(super) quiet: bool,
 }
 
-/// Path of the lens setting. The value of this setting can name a file with a lens table.
+/// Path of a setting whose value can name a file with a lens table.
 const LENS: &str = "arp.lens";
 
-/// Settings as tuples of path, value, and origin: the file or option that gave the value.
+/// Settings as tuples of path, value, and the file or option that gave the value.
 type GivenSettings = Vec<(String, String, String)>;
 
 impl WalkArgs {
-    /// Returns the scene, and all settings of the walk. Prints a warning for every number outside its documented range.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error that names the wrong file, option or setting, the expected value and the value found.
+    /// Returns the scene and all settings of the walk. Prints a warning for each number outside its documented range.
     pub(super) fn gather(&self) -> Result<(Arc<Scene>, WalkPlan), CliError> {
         let (scene, given) = self.given()?;
         let mut plan = WalkPlan::usual();
@@ -98,24 +94,16 @@ impl WalkArgs {
         Ok((scene, plan))
     }
 
-    /// Returns an error if the estimated time or memory of several walks exceeds the budget. `walks` is the number of
-    /// walks.
-    ///
-    /// # Errors
-    ///
-    /// Returns the estimate and advice on how to reduce the work.
+    /// Returns an error if the estimated time or memory of this number of walks exceeds the budget. The error contains
+    /// the estimate and advice to reduce the work.
     pub(super) fn admit(&self, plan: &WalkPlan, scene: &Scene, walks: u64) -> Result<(), CliError> {
         let one = WalkWork::of(plan, scene).estimate();
         let all = Estimate { seconds: walks as f64 * one.seconds, ..one };
         self.budget.admit_estimate(all, "walk fewer frames (--set walk.frames)")
     }
 
-    /// Returns the parameters of the display with cube faces. `lens` and `sets` are the values of the options `--lens`
-    /// and `--set`.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`WalkArgs::gather`].
+    /// Returns the settings of the address recalculation display. `lens` and `sets` are the values of the options
+    /// `--lens` and `--set`.
     pub(super) fn of_display(lens: Option<&String>, sets: &[String]) -> Result<ArpConfig, CliError> {
         let mut plan = WalkPlan::usual();
         lens.map(|lens| plan.set(LENS, lens, "--lens")).transpose()?;
@@ -125,7 +113,7 @@ impl WalkArgs {
         Ok(plan.settings()?.display)
     }
 
-    /// Returns the scene's name, and all settings in the order in which they apply: file, options, `--set`.
+    /// Returns the name of the scene, and all settings in the order in which they apply: file, options, `--set`.
     fn given(&self) -> Result<(String, GivenSettings), CliError> {
         let mut given = GivenSettings::new();
         let mut scene = "gallery".to_owned();
@@ -143,7 +131,7 @@ impl WalkArgs {
                 }
             }
         }
-        // Each option is short for one path.
+        // Each option stands for one path.
         let options = [
             ("policy", "--policy", &self.policy),
             ("segment", "--segment", &self.segment),
@@ -182,11 +170,7 @@ fn load(name: &str) -> Result<Arc<Scene>, CliError> {
     Ok(choice.load()?)
 }
 
-/// Writes pictures into a folder. Each PNG file also holds the settings that reproduce the picture.
-///
-/// # Errors
-///
-/// Fails when a picture cannot be encoded or written.
+/// Writes pictures as PNG files into a folder. Each file also holds the settings that reproduce the picture.
 pub(super) fn put(
     folder: &mut OutputFolder,
     pictures: &[ArpPicture],

@@ -62,8 +62,8 @@ fn quaternion(degrees: [f64; 3]) -> [f64; 4] {
     [cy * sp * cr + sy * cp * sr, sy * cp * cr - cy * sp * sr, cy * cp * sr - sy * sp * cr, cy * cp * cr + sy * sp * sr]
 }
 
-/// Returns the four texels that a pixel shows, with weights that sum to 1. At a cube corner the fourth texel does not
-/// exist (`None`). The weight of the fourth texel then applies to the mean of the other three texels.
+/// Returns the four texels that a pixel shows, with weights that sum to 1. At a corner of the cube, the fourth texel is
+/// `None`. Its weight then applies to the mean of the other three texels.
 fn texels(display: &ArpConfig, footprint: &Footprint) -> [(Option<TexelAddress>, f64); 4] {
     let weights = footprint.weights(display.timing.weight_bits);
     let one = f64::from(1_u32 << (2 * display.timing.weight_bits));

@@ -1,4 +1,4 @@
-//! Citations as BibTeX.
+//! Writer of citations in the format of BibTeX.
 
 use super::works::{Kind, WORKS, Work};
 use super::{AUTHOR, REPOSITORY, TITLE};
@@ -35,7 +35,8 @@ fn of(work: &Work) -> String {
     entry(kind, work.key, &fields)
 }
 
-/// Protects the capital letters of a title, because bibliography styles change capital letters to small letters.
+/// Puts the capital letters of a title in braces, because bibliography styles change unprotected capital letters to
+/// small letters.
 fn protected(title: &str) -> String {
     format!("{{{title}}}")
 }
@@ -54,7 +55,7 @@ mod tests {
 
     /// Tests that paper/paper.bib begins with the output of `pxpl5 cite --format bibtex`.
     #[test]
-    fn the_bibliography_of_the_paper_begins_with_these_entries() {
+    fn the_bibliography_of_the_paper_begins_with_the_output_of_cite() {
         let paper = include_str!("../../../../paper/paper.bib");
         assert!(
             paper.starts_with(&entries()),

@@ -1,4 +1,4 @@
-//! Citations in the Citation File Format, version 1.2: the file CITATION.cff.
+//! Writer of citations in the Citation File Format, version 1.2, for the file CITATION.cff.
 
 use super::works::{Kind, Name, WORKS, Work};
 use super::{AUTHOR, REPOSITORY, TITLE};
@@ -58,7 +58,7 @@ fn authors(names: &[Name]) -> String {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn citation_cff_is_what_the_command_writes() {
+    fn citation_cff_equals_the_output_of_the_command() {
         let file = include_str!("../../../../CITATION.cff");
         assert!(file == super::file(), "CITATION.cff is stale: pxpl5 cite --format cff > CITATION.cff");
     }

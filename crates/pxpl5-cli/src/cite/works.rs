@@ -13,15 +13,13 @@ pub(super) enum Kind {
 
 #[derive(Debug)]
 pub(super) struct Work {
-    /// Short name, as the documents of the project use it. The same name is the key in BibTeX.
+    /// Short name in the documents of the project, which is also the key in BibTeX.
     pub(super) key: &'static str,
-    /// Systems that the emulator models from this work.
     pub(super) systems: &'static str,
     pub(super) kind: Kind,
     pub(super) authors: &'static [Name],
     pub(super) title: &'static str,
     pub(super) venue: &'static str,
-    /// Number of a technical report.
     pub(super) number: Option<&'static str>,
     pub(super) year: u16,
     pub(super) pages: Option<[u16; 2]>,
@@ -30,7 +28,7 @@ pub(super) struct Work {
 
 const UNC: &str = "University of North Carolina at Chapel Hill";
 
-/// All cited papers. docs/sources.md lists the same papers, and also all other sources of the project.
+/// All cited papers. docs/sources.md lists these papers and all other sources of the project.
 pub(super) const WORKS: &[Work] = &[
     Work {
         key: "F89",

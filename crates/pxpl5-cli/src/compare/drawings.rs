@@ -1,4 +1,4 @@
-//! The files of a comparison: CSV tables and SVG charts.
+//! Writer of the CSV tables and SVG charts of a comparison.
 
 use pxpl5::Cause;
 use pxpl5::compare::{Comparison, ComparisonRow};
@@ -7,7 +7,6 @@ use pxpl5::views::charts::{ChartAxes, Curve, MarkedPoint, curve_chart, point_cha
 use pxpl5::views::results::csv_table;
 use serde_json::Value;
 
-/// Returns the names and contents of all CSV and SVG files of a comparison.
 pub(super) fn files(comparison: &Comparison) -> [(&'static str, String); 6] {
     [
         ("rows.csv", rows_csv(comparison)),
@@ -19,7 +18,7 @@ pub(super) fn files(comparison: &Comparison) -> [(&'static str, String); 6] {
     ]
 }
 
-/// Returns the rows in which at least one pixel was evaluated.
+/// Returns the rows of pipelines with at least one evaluated pixel.
 fn evaluated(comparison: &Comparison) -> impl Iterator<Item = &ComparisonRow> {
     comparison.pipelines.iter().filter(|row| row.was_evaluated())
 }
@@ -82,7 +81,6 @@ fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAx
     ChartAxes { title, across: across.to_owned(), up: up.to_owned() }
 }
 
-/// Name of a table column, with the function that formats the column's cell for a row.
 type Column = (&'static str, fn(&ComparisonRow) -> String);
 
 const COLUMNS: [Column; 29] = [
@@ -117,9 +115,9 @@ const COLUMNS: [Column; 29] = [
     ("failure", |row| row.failure.clone().unwrap_or_default()),
 ];
 
-/// Returns the text of rows.csv. Each line is for one pipeline, and columns have the names of comparison.json. The last
-/// columns hold the error under each predictor and by each cause. A cell is empty if its row has no evaluated pixels,
-/// or if the comparison did not ask for predictors or causes.
+/// Returns the text of rows.csv, with one line for each pipeline. The columns have the names of comparison.json. The
+/// last columns hold the error under each predictor and by each cause. A cell is empty if no pixels were evaluated, or
+/// if the comparison did not include predictors or causes.
 fn rows_csv(comparison: &Comparison) -> String {
     let causes: Vec<Option<Cause>> = Cause::ALL.into_iter().map(Some).chain([None]).collect();
     // Names of columns equal the JSON paths of the same numbers.
@@ -143,12 +141,11 @@ fn rows_csv(comparison: &Comparison) -> String {
     csv_table(columns.collect::<Vec<String>>(), rows)
 }
 
-/// Returns a name as it is spelled in the JSON output.
 fn written(name: serde_json::Result<Value>) -> String {
     name.ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
-/// Returns the text of errors.csv. Each line holds the errors of one display field of one pipeline, for the first seed.
+/// Returns the text of errors.csv. Each line holds the errors of one pipeline in one display field, for the first seed.
 fn errors_csv(comparison: &Comparison) -> String {
     let rows = evaluated(comparison).flat_map(|row| {
         row.by_field.iter().map(|field| {
@@ -164,12 +161,10 @@ fn errors_csv(comparison: &Comparison) -> String {
     csv_table(["pipeline", "field", "time_s", "error_px_mean", "error_px_centre"], rows)
 }
 
-/// Formats a count as a cell. The cell is empty for `None`.
 fn count(value: Option<impl ToString>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-/// Formats a number as a cell. The cell is empty for NaN and infinity.
 fn number(value: f64) -> String {
     if value.is_finite() { value.to_string() } else { String::new() }
 }

@@ -1,4 +1,4 @@
-//! The page gallery.html, which shows the pictures of all pipelines side by side.
+//! Writer of the page gallery.html, which shows the pictures of all pipelines side by side.
 
 use crate::error::CliError;
 use crate::numbers::count_of;
@@ -9,11 +9,7 @@ use pxpl5::compare::{Comparison, ComparisonRow, LastPicture};
 use pxpl5::views::page::{PagePicture, PageTable, html_of_tables};
 use pxpl5::views::png_bytes;
 
-/// Writes a picture for each row, the ideal pictures, and a page that shows all these pictures.
-///
-/// # Errors
-///
-/// Fails when a file cannot be written.
+/// Writes the picture of each row, the ideal pictures, and a page that shows all these pictures.
 pub(super) fn put(folder: &mut OutputFolder, comparison: &Comparison) -> Result<(), CliError> {
     let mut gallery = Gallery { folder, comparison, pictures: Vec::new(), ideals: Vec::new() };
     // The ideal picture precedes the first picture with the same shading.
@@ -37,7 +33,7 @@ struct Gallery<'a> {
     folder: &'a mut OutputFolder,
     comparison: &'a Comparison,
     pictures: Vec<PagePicture>,
-    /// Ideal pictures that are already on the page. Pipelines with the same shading share one ideal picture.
+    /// Ideal pictures that are already on the page, because pipelines with equal shading share one ideal picture.
     ideals: Vec<&'a RgbImage>,
 }
 
@@ -72,7 +68,6 @@ impl<'a> Gallery<'a> {
     }
 }
 
-/// Returns the caption of a picture: the pipeline, its latency from head to display, and its error in pixels.
 fn caption(row: &ComparisonRow, last: &LastPicture) -> String {
     let mut caption = row.pipeline.clone();
     if !last.is_complete {
@@ -88,7 +83,7 @@ fn caption(row: &ComparisonRow, last: &LastPicture) -> String {
     caption
 }
 
-/// Returns lines of text that describe the run, and a line for each row without a picture.
+/// Returns lines of text about the run, and a line for each row without a picture.
 fn about(comparison: &Comparison) -> Vec<String> {
     let Comparison { triangles, machine, fields, seeds, pipelines, .. } = comparison;
     let seed = seeds.first().copied().unwrap_or_default();

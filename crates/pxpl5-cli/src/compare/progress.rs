@@ -10,19 +10,19 @@ pub(super) struct CompareProgress {
     bar: ProgressBar,
     quiet: bool,
     begun: Instant,
-    /// Number of finished rows, and the number of all rows.
+    /// Number of finished rows, and number of all rows.
     rows: (AtomicU64, u64),
-    /// Number of finished runs, and the number of all runs.
+    /// Number of finished runs, and number of all runs.
     runs: (AtomicU64, AtomicU64),
 }
 
-/// Maximum number of plain lines about finished runs, with one line after each tenth of the runs. Additional lines
-/// report finished rows.
+/// Maximum number of lines about finished runs on an output that is not a terminal: one after each tenth of the runs.
+/// Lines about finished rows come in addition.
 const LINES: u64 = 10;
 
 impl CompareProgress {
-    /// Shows the progress of a comparison of `rows` rows. If the comparison is resumed, `found` of these rows were
-    /// already finished.
+    /// Shows the progress of a comparison of `rows` rows. `found` is the number of rows that an earlier, interrupted
+    /// command has finished.
     pub(super) fn new(found: usize, rows: usize, quiet: bool) -> Self {
         let progress = Self {
             bar: terminal::progress(0, "runs", quiet),
@@ -37,7 +37,6 @@ impl CompareProgress {
         progress
     }
 
-    /// Shows that `done` of the `of` planned runs have ended.
     pub(super) fn finished(&self, done: u64, of: u64) {
         self.bar.set_length(of);
         self.bar.set_position(done);
@@ -74,7 +73,6 @@ impl CompareProgress {
     }
 }
 
-/// Returns the name of a row, its mean error, and the number of due pictures that were not shown.
 fn result(row: &ComparisonRow) -> String {
     let error = row.error.mean_px.mean;
     let error = if error.is_finite() { format!("error {error:.2} px") } else { "no error".to_owned() };

@@ -5,7 +5,7 @@ use pxpl5::Cause;
 use pxpl5::compare::{Comparison, ComparisonRow, IntervalMethod, MeanInterval};
 use std::fmt::Write as _;
 
-/// Name of each column, its unit, and its width in characters.
+/// Name, unit, and width in characters of each column.
 const COLUMNS: [(&str, &str, usize); 15] = [
     ("to light", "ms", 9),
     ("sd", "ms", 6),
@@ -24,10 +24,8 @@ const COLUMNS: [(&str, &str, usize); 15] = [
     ("triangles", "possible", 10),
 ];
 
-/// Name of the column with the best predictor.
 const BEST_WITH: &str = "best with";
 
-/// Width in characters of the column with the pipelines' names.
 const NAME: usize = 24;
 
 pub(super) fn text(comparison: &Comparison) -> String {
@@ -45,14 +43,14 @@ pub(super) fn text(comparison: &Comparison) -> String {
          faces reads at scan-out; figure 19: sum of two means as in the papers, from the pose to its report and from an eye's TRANSFORM to\n\
          the swap, without the wait for the pipeline, SEND, EDIT and the scan; predicts: time from the newest measurement to the instant\n\
          for which a picture is drawn; updates: new pictures per second (frameless rendering: passes over all blocks of the screen,\n\
-         docs/results.md); interval: range of the mean; n: evaluated pixels; best with (--predictors): the predictor with the least error for\n\
-         the first seed; - : no sample was evaluated; ! : some due pictures were not shown, so the error covers only the others; + : evaluated from\n\
-         a later field on than the other rows. Rows with a mark are never the best.\n",
+         docs/guide/counted-pictures.md); interval: range of the mean; n: evaluated pixels; best with (--predictors): the predictor with\n\
+         the least error for the first seed; - : no sample was evaluated; ! : some due pictures were not shown, so the error covers only the\n\
+         others; + : evaluated from a later field on than the other rows. Rows with a mark are never the best.\n",
     );
     text
 }
 
-/// Returns a sentence for each statistical method of confidence intervals, with the rows that use the method.
+/// Returns a sentence for each method of confidence intervals. The sentence lists the rows that use the method.
 fn intervals(comparison: &Comparison) -> String {
     let confidence = percent(comparison.confidence);
     let mut text = String::new();
@@ -72,16 +70,15 @@ fn percent(share: f64) -> f64 {
     (share * 1e8).round() / 1e6
 }
 
-/// Returns the name of a row. If a bootstrap gave the row's confidence interval, two lengths in fields follow. The
-/// first is the length of the row's series of errors. The second is the length of the bootstrap's blocks.
+/// Returns the name of a row. If the confidence interval comes from a bootstrap, two lengths in fields follow. The
+/// first is the length of the series of errors. The second is the length of the blocks of the bootstrap.
 fn with_blocks(row: &ComparisonRow) -> String {
     let blocks =
         row.error.bootstrap.map(|size| format!(" ({} fields in blocks of {})", size.fields, size.block_fields));
     format!("{}{}", row.pipeline, blocks.unwrap_or_default())
 }
 
-/// Returns sentences about the number of seeds of each row, if the comparison added seeds to reach the precision of
-/// `--until-precision`.
+/// Returns sentences about the number of seeds of each row. The text is empty without the option `--until-precision`.
 fn imprecise(comparison: &Comparison) -> String {
     let Some(width) = &comparison.until_precision else { return String::new() };
     let rows = |precise: bool| {
@@ -121,19 +118,19 @@ fn header(comparison: &Comparison) -> String {
     format!("{:<NAME$}{names}\n{:<NAME$}{units}", "pipeline", "")
 }
 
-/// Returns true if the table has this column. The predictors have a column only if the comparison ran them.
+/// Returns true if the table has the column. The column with the best predictor is left out if the comparison ran no
+/// predictors.
 fn is_shown(comparison: &Comparison, column: &str) -> bool {
     column != BEST_WITH || comparison.pipelines.iter().any(|row| !row.predictors.is_empty())
 }
 
-/// Returns the name of a row, followed by its marks (symbols that refer to remarks).
+/// Returns the name of a row, followed by symbols that refer to the remarks below the table.
 fn name(comparison: &Comparison, row: &ComparisonRow) -> String {
     let missing = if row.shows_all() { "" } else { "!" };
     let late = if comparison.starts_late(row) { "+" } else { "" };
     format!("{}{missing}{late}", row.pipeline)
 }
 
-/// Returns a sentence that names the row with the least mean error.
 fn best(comparison: &Comparison) -> String {
     let Some(best) = comparison.best() else {
         return "\nNo row showed every picture that was due.\n".to_owned();

@@ -36,7 +36,6 @@ pub(super) enum Command {
     Quit,
 }
 
-/// The length of a step of the debugger's command `step`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepOf {
     Event,
@@ -44,7 +43,6 @@ pub(super) enum StepOf {
     Field,
 }
 
-/// A pane (rectangular part) of the debugger's screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pane {
     Time,
@@ -55,7 +53,6 @@ pub(super) enum Pane {
 }
 
 impl Pane {
-    /// All panes (parts of the debugger's screen) with their names, in screen order.
     pub(super) const ALL: [(&'static str, Self); 5] = [
         ("time", Self::Time),
         ("boards", Self::Boards),
@@ -65,7 +62,7 @@ impl Pane {
     ];
 }
 
-/// Forms and explanations of all commands. A test compares them with the table in the guide.
+/// Syntax and explanation of each command. A test compares this list with the table in the guide.
 pub(super) const HELP: [(&str, &str); 19] = [
     ("run", "run to the end, or until code reaches a breakpoint"),
     ("run to TIME", "run to a time: 12.5ms, 300us, 40ns, or +1ms from now"),
@@ -94,17 +91,14 @@ pub(super) const HELP: [(&str, &str); 19] = [
     ("quit", "leave the debugger"),
 ];
 
-/// Splits a text into commands at line ends and semicolons. Comments and empty commands are left out.
+/// Splits a text into commands at line ends and semicolons. The result has no comments and no empty commands.
 pub(super) fn split(text: &str) -> Vec<String> {
     let commands = text.lines().flat_map(|line| line.split('#').next().unwrap_or_default().split(';'));
     commands.map(|command| command.trim().to_owned()).filter(|command| !command.is_empty()).collect()
 }
 
-/// Parses a command. A time with a leading `+` is counted from `now`.
-///
-/// # Errors
-///
-/// Returns the expected form and the text found.
+/// Parses a command. A time with a leading `+` is counted from `now`. An error states the expected syntax and the text
+/// found.
 pub(super) fn parse(text: &str, now: Time) -> Result<Command, String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let Some((name, rest)) = words.split_first() else { return Ok(Command::Nothing) };
@@ -138,7 +132,7 @@ pub(super) fn parse(text: &str, now: Time) -> Result<Command, String> {
     }
 }
 
-/// Returns the error message for a line that is not a command. The message shows the forms of the command `name`, or
+/// Returns the error message for a line that is not a command. The message shows the syntax of the command `name`, or
 /// all command names if `name` is unknown.
 fn unknown(name: &str, text: &str) -> String {
     let forms: Vec<&str> =
@@ -152,7 +146,7 @@ fn unknown(name: &str, text: &str) -> String {
     format!("expected {}, found `{text}`", forms.join(" or "))
 }
 
-/// Returns `board` if no words follow the name of the board. Otherwise returns an error.
+/// Returns the board if no words follow its name. Otherwise returns an error.
 fn whole((board, rest): (Board, &[&str])) -> Result<Board, String> {
     match rest {
         [] => Ok(board),
@@ -161,7 +155,7 @@ fn whole((board, rest): (Board, &[&str])) -> Result<Board, String> {
 }
 
 fn pane_of(name: &str) -> Option<Pane> {
-    // The pane shows everything that the ring has as a board, so "show ring" names the pane.
+    // The pane shows all that a board named "ring" could show, so "show ring" names the pane.
     Pane::ALL.iter().find(|(known, _)| *known == name).map(|(_, pane)| *pane)
 }
 
@@ -230,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn every_form_of_the_help_is_understood() {
+    fn every_debugger_command_in_the_help_is_parsed() {
         let examples = [
             ("run", Command::RunToEnd),
             ("run to +1us", Command::RunTo(Time(1_000_007))),
@@ -256,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_command_is_refused_with_what_was_expected_and_found() {
+    fn an_unknown_command_is_refused_with_expected_and_found() {
         for (text, words) in [
             ("jump", ["expected a command (run,", "found `jump`"]),
             ("run backwards", ["expected run or run to TIME", "found `run backwards`"]),

@@ -5,21 +5,20 @@ use pxpl5::{Board, Stepper};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Condition {
-    /// A surface or a display memory has swapped its buffers since the run was resumed.
+    /// A surface or a display memory has swapped its buffers since the last stop of the run.
     Swap,
-    /// A region has arrived at a display since the run was resumed.
+    /// A region has arrived at a display since the last stop of the run.
     Region,
-    /// The number of words in the input FIFO of the renderer with this index satisfies a comparison.
+    /// The number of words in a renderer's input FIFO satisfies a comparison. The first value is the index of the
+    /// renderer.
     Fifo(usize, Comparison),
     /// The number of messages in the inbox of the host or a graphics processor satisfies a comparison.
     Inbox(Board, Comparison),
-    /// The number of occupied ring channels satisfies a comparison.
     Channels(Comparison),
     /// A program on a board waits for an event whose name starts with this text.
     Waits(Board, String),
 }
 
-/// A relation such as "at least", and the number to compare with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Comparison {
     relation: Relation,
@@ -35,7 +34,7 @@ enum Relation {
     More,
 }
 
-/// Numbers of swaps and of arrived regions at the instant when the run was resumed.
+/// Numbers of swaps and of arrived regions at the last stop of the run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Before {
     swaps: usize,
@@ -50,11 +49,7 @@ impl Before {
 }
 
 impl Condition {
-    /// Parses a condition from words.
-    ///
-    /// # Errors
-    ///
-    /// Returns the expected form and the text found.
+    /// Parses a condition from words. An error states the expected syntax and the text found.
     pub(super) fn parse(words: &[&str]) -> Result<Self, String> {
         // The first word selects the kind of condition.
         match words {
@@ -79,7 +74,6 @@ impl Condition {
         }
     }
 
-    /// Returns an error if the condition names a board that the machine does not have.
     pub(super) fn check(&self, stepper: &Stepper) -> Result<(), String> {
         let renderers = stepper.record().renderers().len();
         // Only conditions with a board can be wrong for a machine.
@@ -94,8 +88,7 @@ impl Condition {
         }
     }
 
-    /// Returns true if the condition is satisfied now. `before` has the numbers at the instant when the run was
-    /// resumed.
+    /// Returns true if the condition is satisfied now. `before` was recorded at the last stop of the run.
     pub(super) fn holds(&self, stepper: &Stepper, before: Before) -> bool {
         let observation = stepper.record().observation();
         // Swaps and arrivals count from the instant when the run was resumed.
@@ -148,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn comparisons_hold_at_their_bounds_as_they_say() {
+    fn comparisons_are_exact_at_their_bounds() {
         for (relation, holds) in [
             ("<", [true, false, false]),
             ("<=", [true, true, false]),
@@ -162,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_condition_is_refused() {
+    fn an_invalid_condition_is_refused() {
         for wrong in
             ["", "fifo", "fifo 0", "fifo 0 ~ 3", "channels >= x", "waits gp 1", "waits gp 1 for", "inbox 3 > 1"]
         {

@@ -7,7 +7,6 @@ use pxpl5::snapshots::PixelArray;
 use pxpl5::{Stepper, SurfaceId};
 use std::fmt::Write as _;
 
-/// Number of columns, and of rows, of a renderer's pixel array.
 const SIDE: u64 = 128;
 
 fn array(stepper: &Stepper, renderer: u64) -> Result<(impl PixelArray, usize), String> {
@@ -16,7 +15,7 @@ fn array(stepper: &Stepper, renderer: u64) -> Result<(impl PixelArray, usize), S
     found.ok_or_else(|| format!("renderer {number} has executed no commands that change pixels (or --pixels off)"))
 }
 
-/// Returns the contents of a pixel's memory, divided into named bit fields, as text.
+/// Returns the contents of a pixel's memory as text, divided into named bit fields.
 pub(super) fn pixel(stepper: &Stepper, renderer: u64, x: u64, y: u64) -> Result<String, String> {
     let x = below("column", &x.to_string(), SIDE)?;
     let y = below("row", &y.to_string(), SIDE)?;
@@ -31,11 +30,11 @@ pub(super) fn pixel(stepper: &Stepper, renderer: u64, x: u64, y: u64) -> Result<
     Ok(text)
 }
 
-/// Width and height in pixels of the block that one character of the map represents.
+/// Width and height in pixels of the block that one character of a map of enabled pixels represents.
 const BLOCK: (u64, u64) = (2, 4);
 
-/// Returns a map of enabled pixels: `#` for a block that is fully enabled, `+` for a partly enabled block, `.` for a
-/// disabled block.
+/// Returns a map of the enabled pixels of a renderer. A character stands for 2 x 4 pixels: `#` if all are enabled, `+`
+/// if some are enabled, `.` if none is enabled.
 pub(super) fn enabled(stepper: &Stepper, renderer: u64) -> Result<String, String> {
     let (array, number) = array(stepper, renderer)?;
     let plane = array.enable();
@@ -67,14 +66,15 @@ fn surface(stepper: &Stepper, label: &str) -> Result<SurfaceId, String> {
     })
 }
 
-/// Describes the picture that the display's beam has drawn so far. Saves the picture if `file` is a name.
+/// Describes the picture that the display's beam has drawn so far on the surface `label`. Saves the picture if `file`
+/// is a name.
 pub(super) fn seen(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
     let picture = stepper.seen(id).ok_or_else(|| format!("{label} has no picture yet"))?;
     describe_picture(&picture, label, file)
 }
 
-/// Describes the ideal picture at the current time. Saves the picture if `file` is a name.
+/// Describes the ideal picture of the surface `label` at the current time. Saves the picture if `file` is a name.
 pub(super) fn ideal(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
     let ideal = stepper.ideal_picture(id).ok_or_else(|| format!("{label} has no ideal picture"))?;

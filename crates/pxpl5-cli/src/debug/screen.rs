@@ -16,23 +16,18 @@ struct ScreenState {
     line: String,
     /// Executed command lines, oldest first.
     history: Vec<String>,
-    /// Number of command lines by which the user has moved back in the history.
+    /// Number of command lines by which the user has gone back in the history.
     back: usize,
-    /// Number of lines by which the pane of boards is scrolled.
     scroll: u16,
 }
 
 /// Minimum width of the terminal, in columns, at which panes are placed side by side.
 const WIDE: u16 = 100;
 
-/// Maximum number of output lines that the log keeps.
+/// Maximum number of output lines that are kept.
 const LOG: usize = 2_000;
 
-/// Shows the screen and executes the user's commands until the user quits.
-///
-/// # Errors
-///
-/// Fails when the terminal cannot be used.
+/// Shows the screen and executes the user's commands until the user quits. Fails when the terminal cannot be used.
 pub(super) fn run(session: Session) -> io::Result<()> {
     let mut session = session.interrupted_by(key_waits);
     let mut terminal = ratatui::try_init()?;
@@ -57,13 +52,12 @@ pub(super) fn run(session: Session) -> io::Result<()> {
     result
 }
 
-/// Returns true if the user pressed a key during a run. The session then interrupts the run.
 fn key_waits() -> bool {
     event::poll(Duration::ZERO).unwrap_or(false)
 }
 
 fn pressed(session: &mut Session, talk: &mut ScreenState, key: KeyEvent) {
-    // Letters edit the input line; function keys are short for steps.
+    // Letters edit the input line. Function keys stand for steps.
     match key.code {
         KeyCode::Char('c' | 'd') if key.modifiers.contains(KeyModifiers::CONTROL) => say(session, talk, "quit"),
         KeyCode::Char(letter) => talk.line.push(letter),
@@ -160,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_is_done_and_every_pane_shows_the_machine() {
+    fn typed_commands_are_executed_and_every_pane_shows_the_machine() {
         let mut session = session();
         let mut talk = ScreenState::default();
         type_in(&mut session, &mut talk, "run to field 4");
@@ -182,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_is_not_understood_is_said_and_ends_nothing() {
+    fn an_unknown_command_prints_an_error_and_the_session_continues() {
         let mut session = session();
         let mut talk = ScreenState::default();
         type_in(&mut session, &mut talk, "jump");

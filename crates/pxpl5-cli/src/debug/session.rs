@@ -11,18 +11,16 @@ use pxpl5::{Board, Pause, Span, Stepper, Time};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// A debugger session: the simulated run and the user's breakpoints.
 pub(super) struct Session {
     stepper: Stepper,
     breakpoints: BTreeSet<u32>,
     /// Processors that hit a breakpoint at the most recent stop, with the addresses of the breakpoints.
     hits: Vec<BreakpointHit>,
     is_over: bool,
-    /// Callback that returns true when the user wants to interrupt the run.
     is_interrupted: fn() -> bool,
 }
 
-/// Number of events between two calls of the interrupt callback.
+/// Number of events between two checks for an interrupt by the user.
 const EVENTS_BETWEEN: u64 = 10_000;
 
 impl Session {
@@ -31,22 +29,18 @@ impl Session {
     }
 
     /// Returns the session with an interrupt callback. The run stops when `is_interrupted` returns true. The session
-    /// calls `is_interrupted` once per display field and every 10,000 events.
+    /// calls this function once per display field and every 10,000 events.
     #[cfg(feature = "screen")]
     pub(super) fn interrupted_by(self, is_interrupted: fn() -> bool) -> Self {
         Self { is_interrupted, ..self }
     }
 
-    /// Returns true if the user has quit.
     pub(super) const fn is_over(&self) -> bool {
         self.is_over
     }
 
-    /// Executes a command line and returns its output as lines.
-    ///
-    /// # Errors
-    ///
-    /// Returns the expected form and the text found. After an error the session is unchanged.
+    /// Executes a command line and returns its output as lines. An error states the expected syntax and the text found,
+    /// and leaves the session unchanged.
     pub(super) fn execute_line(&mut self, line: &str) -> Result<String, String> {
         // Only `run`, `next` and `step` change the machine.
         match parse(line, self.stepper.now())? {
@@ -80,7 +74,6 @@ impl Session {
         }
     }
 
-    /// Returns the text of one pane (rectangular part) of the screen.
     pub(super) fn pane(&self, pane: Pane) -> String {
         match pane {
             Pane::Time => views::time(&self.stepper),
@@ -145,7 +138,7 @@ impl Session {
         })
     }
 
-    /// Resumes the run by a call of `piece`, which runs to the next stop. Returns the reason for this stop and its
+    /// Resumes the run with `piece`, which simulates up to the next stop. Returns the reason for this stop and its
     /// simulated time as text.
     fn go(&mut self, piece: impl FnOnce(&mut Stepper) -> Pause) -> String {
         let mut text = match piece(&mut self.stepper) {
@@ -161,7 +154,6 @@ impl Session {
         text
     }
 
-    /// Describes the breakpoints that were hit at the last stop.
     fn met(&self) -> String {
         let mut text = String::new();
         for hit in &self.hits {
@@ -204,7 +196,6 @@ impl Session {
         let state = hit.map(|hit| (*hit.state).clone()).or(of_call).ok_or("no processor")?;
         let origin_of_registers = if hit.is_some() { "at the breakpoint" } else { "after the last call" };
         let mut text = format!("{board}, {origin_of_registers}: pc {:#010x}, psr {:#010x}\n", state.pc, state.psr);
-        // Eight registers in a line.
         for (name, registers) in [("r", &state.r), ("f", &state.f)] {
             for (row, four) in registers.chunks(8).enumerate() {
                 let words: Vec<String> = four.iter().map(|word| format!("{word:08x}")).collect();
@@ -240,7 +231,6 @@ impl Session {
         let begin = views::place_in_code(&self.stepper, Some(board), place)?;
         let words = views::words(processor, begin, count)?;
         let mut text = String::new();
-        // Four words in a line.
         for (row, four) in words.chunks(4).enumerate() {
             let row_words: Vec<String> = four.iter().map(|word| format!("{word:08x}")).collect();
             let _ = writeln!(text, "{:#010x}  {}", begin + 16 * row as u32, row_words.join(" "));

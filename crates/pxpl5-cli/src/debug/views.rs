@@ -1,5 +1,4 @@
-//! Text views of the state of a run. The debugger shows the views on its screen, and scripts of the debugger print
-//! them.
+//! Text views of the state of a run, for the screen of the debugger and for debugger scripts.
 
 use super::words::address;
 use i860::Program;
@@ -9,7 +8,7 @@ use pxpl5::{Board, Stepper};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-/// Returns one line with the current time and display field, and the last event if there is one.
+/// Returns one line with the current time, the display field, and the last event if there is one.
 pub(super) fn place(stepper: &Stepper) -> String {
     let last = stepper.last().map_or_else(String::new, |last| format!(", {}: {}", last.board, last.what));
     format!("{}, field {}{last}\n", ms(stepper.now()), stepper.period())
@@ -41,11 +40,6 @@ pub(super) fn boards(stepper: &Stepper) -> String {
     lines.map(|(name, says)| format!("{name:<12} {says}\n")).collect()
 }
 
-/// Returns the state of one board as text.
-///
-/// # Errors
-///
-/// Fails if the machine does not have the board.
 pub(super) fn board(stepper: &Stepper, board: Board) -> Result<String, String> {
     check(stepper, board)?;
     let Some(says) = stepper.says(board) else { return Ok(ring(stepper)) };
@@ -86,10 +80,9 @@ pub(super) fn ring(stepper: &Stepper) -> String {
     text
 }
 
-/// Maximum number of picture stages that the timeline shows.
 const STAGES: usize = 12;
 
-/// Returns the most recent stages of pictures, newest first. Stages that begin in the future are left out.
+/// Returns the most recent stages of pictures, newest first. Stages with a start in the future are left out.
 pub(super) fn timeline(stepper: &Stepper) -> String {
     let record = stepper.record();
     let mut stages = record.stages();
@@ -112,11 +105,7 @@ pub(super) fn timeline(stepper: &Stepper) -> String {
     text
 }
 
-/// Checks that the machine has a board with this name.
-///
-/// # Errors
-///
-/// Returns the range of boards that the machine has.
+/// Returns an error if the machine does not have the board. The error states the range of boards of the machine.
 pub(super) fn check(stepper: &Stepper, board: Board) -> Result<(), String> {
     let record = stepper.record();
     let (what, number, count) = match board {
@@ -131,11 +120,8 @@ pub(super) fn check(stepper: &Stepper, board: Board) -> Result<(), String> {
     Err(format!("expected {what} 0 to {}, found {board}", count - 1))
 }
 
-/// Returns a processor board that executes i860 code for its timing.
-///
-/// # Errors
-///
-/// Fails if the board executes no code, because the run was started without `--level cycle`.
+/// Returns a processor board that executes i860 code. Fails for a run without `--level cycle`, because its boards
+/// execute no code.
 pub(super) fn with_code(stepper: &Stepper, board: Board) -> Result<&GpBoard, String> {
     check(stepper, board)?;
     let found = stepper.machine().board(board).filter(|gp| gp.with_processor(|_| ()).is_some());
@@ -151,22 +137,14 @@ fn programs_of(board: &GpBoard) -> Vec<Arc<Program>> {
     board.with_processor(|processor| processor.programs().cloned().collect()).unwrap_or_default()
 }
 
-/// Returns the base address of the code that a board executed last.
-///
-/// # Errors
-///
-/// Fails if the board has run no code yet.
+/// Returns the base address of the code that a board executed last. Fails if the board has executed no code yet.
 pub(super) fn base_of_code(stepper: &Stepper, board: Board) -> Result<u32, String> {
     let program = program_of(with_code(stepper, board)?);
     program.map(|program| program.base).ok_or_else(|| format!("{board} has run no code yet"))
 }
 
-/// Returns the address that `text` denotes, as a number or a label. A label is looked up in the code of `board`, or in
-/// the code of all graphics processors if `board` is `None`.
-///
-/// # Errors
-///
-/// Returns an error that lists the known labels.
+/// Returns the address that `text` denotes, as a number or a label. The function searches for a label in the i860 code
+/// of `board`, or of all graphics processors if `board` is `None`. An error lists the known labels.
 pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str) -> Result<u32, String> {
     let all = (0..stepper.record().ports().gps.len()).map(Board::Gp);
     let boards = board.map_or_else(|| all.collect(), |board| vec![board]);
@@ -195,11 +173,7 @@ pub(super) fn labels(board: &GpBoard, at: u32) -> Vec<String> {
     labels.filter(|(_, place)| *place == at).map(|(name, _)| name).collect()
 }
 
-/// Returns `count` words of a board's memory, beginning at address `at`.
-///
-/// # Errors
-///
-/// Fails if a word lies outside the memory.
+/// Returns `count` words of a board's memory from address `at` on. Fails if a word lies outside the memory.
 pub(super) fn words(board: &GpBoard, at: u32, count: u64) -> Result<Vec<u32>, String> {
     let read = board.with_processor(|processor| processor.read(at, count as usize));
     read.ok_or("no processor")?.map_err(|error| error.to_string())

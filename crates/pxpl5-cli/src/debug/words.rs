@@ -10,8 +10,7 @@ pub(super) fn time(text: &str, now: Time) -> Result<Time, String> {
     span(length).map(|span| begin + span).ok_or_else(refused)
 }
 
-/// Parses a duration exactly, in picoseconds. A text with digits below one picosecond is an error, so that nothing is
-/// rounded.
+/// Parses a duration. A text with digits below one picosecond is an error, because the result is exact.
 fn span(text: &str) -> Option<Span> {
     // Split the number from its unit.
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
@@ -42,7 +41,6 @@ pub(super) fn number(what: &str, text: &str) -> Result<u64, String> {
     parsed.map_err(|_| format!("{what}: expected a whole number, found `{text}`"))
 }
 
-/// Parses a whole number that must be less than `bound`.
 pub(super) fn below(what: &str, text: &str, bound: u64) -> Result<u64, String> {
     let found = number(what, text)?;
     if found < bound {
@@ -90,14 +88,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_time_is_refused() {
+    fn an_invalid_time_is_refused() {
         for wrong in ["", "5", "ms", "-1ms", "1.5ps", "1e3us", "1.2.3ms", "99999999999999999999s", "5 ms", "0.0001ns"] {
             assert!(time(wrong, Time::ZERO).is_err(), "{wrong}");
         }
     }
 
     #[test]
-    fn boards_are_read_in_one_word_or_two() {
+    fn the_name_of_a_board_may_be_one_word_or_two_words() {
         assert_eq!(board(&["gp", "3", "0x10"]), Ok((Board::Gp(3), &["0x10"][..])));
         assert_eq!(board(&["gp3", "0x10"]), Ok((Board::Gp(3), &["0x10"][..])));
         assert_eq!(board(&["ring"]), Ok((Board::Ring, &[][..])));

@@ -1,4 +1,4 @@
-//! Conversion of addresses and labels of i860 programs from and to text.
+//! Converters between addresses or labels of i860 programs and text.
 
 use ::i860::Program;
 
@@ -12,7 +12,6 @@ pub(super) fn address(text: &str) -> Result<u32, String> {
     parsed.map_err(|_| format!("expected a 32-bit address such as 0x1000, found `{text}`"))
 }
 
-/// Returns one line of text for each label at an address.
 pub(super) fn labels_at(program: &Program, pc: u32) -> String {
     program.labels.iter().filter(|(_, at)| *at == pc).map(|(name, _)| format!("{name}:\n")).collect()
 }

@@ -15,10 +15,8 @@ pub(super) struct RunOptions {
     pub(super) quiet: bool,
 }
 
-/// Default number of changed memory words that the report lists.
 const CHANGED_SHOWN: usize = 64;
 
-/// A range of consecutive memory words, with the address of the first word.
 struct Span {
     address: u32,
     words: Vec<u32>,
@@ -30,16 +28,13 @@ struct Run<'a> {
     outcome: RunEnd,
     stop: u32,
     memory: Vec<Span>,
-    /// Number of changed memory words that the report leaves out.
+    /// Number of changed memory words that are not in the list, because the list is full.
     changed_besides: usize,
 }
 
-/// Runs a program. Returns the report, and the result of the execution. The inner result is an error if the program did
-/// not reach its stop address.
-///
-/// # Errors
-///
-/// Fails if the program does not fit in memory, or if an option is neither a label nor an address.
+/// Executes a program and returns the report. The inner result is an error if the program did not reach its stop
+/// address. The outer result is an error if the program does not fit in memory or an option is neither a label nor an
+/// address.
 pub(super) fn execute(program: &Program, options: &RunOptions) -> Result<(String, Result<(), String>), String> {
     let mut ram = Ram::new(0, options.memory as usize);
     let size = program.bytes.len();
@@ -64,8 +59,8 @@ pub(super) fn execute(program: &Program, options: &RunOptions) -> Result<(String
     Ok((text, run.result()))
 }
 
-/// Returns the address that `option` states. Without an option, returns the address of the default label, or
-/// `otherwise` if the program lacks this label.
+/// Returns the address in `option`. Without an option, returns the address of the default label, or `otherwise` if the
+/// program lacks this label.
 fn place(program: &Program, option: Option<&str>, label: &str, otherwise: u32) -> Result<u32, String> {
     match option {
         None => Ok(program.symbol(label).unwrap_or(otherwise)),
@@ -104,8 +99,8 @@ fn read(ram: &Ram, (address, count): (u32, usize)) -> Result<Span, String> {
     Ok(Span { address, words })
 }
 
-/// Returns the first [`CHANGED_SHOWN`] changed memory words, joined into ranges, and the number of all other changed
-/// words.
+/// Returns the first [`CHANGED_SHOWN`] changed memory words, joined into ranges, and the number of the remaining
+/// changed words.
 fn changed(before: &Ram, after: &Ram) -> (Vec<Span>, usize) {
     let words = |ram: &'_ Ram| -> Vec<u32> {
         ram.bytes().chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
@@ -140,7 +135,6 @@ impl Run<'_> {
         }
     }
 
-    /// Formats an address, together with the nearest label before the address if one exists.
     fn named(&self, address: u32) -> String {
         label_of(self.program, address)
             .map_or_else(|| format!("{address:#x}"), |label| format!("{address:#x} ({label})"))
@@ -155,7 +149,8 @@ impl Run<'_> {
         text
     }
 
-    /// Returns each label of the program, with the clocks spent from this label to the label that follows.
+    /// Returns each label of the program, with the clocks that the program spent between this label and the label after
+    /// it.
     fn clocks_by_label(&self) -> Vec<(&str, u64)> {
         let labels: Vec<(&str, u32)> = self.program.labels.iter().map(|(name, at)| (name.as_str(), *at)).collect();
         let by_label = self.cpu.watched().map(|watched| watched.by_label(&labels)).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Output files that get their final names together. All files that the command writes pass through this module.
+//! Output files that get their final names together. All files that the commands write pass through this module.
 
 use super::target::{Place, Target};
 use crate::error::CliError;
@@ -8,16 +8,14 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Output files that are complete but do not have their final names yet.
 #[derive(Debug)]
 pub(super) struct Batch {
-    /// Description of the output, and the option that names it, for error messages.
     place: Place,
     files: Vec<Staged>,
-    /// Files of the previous run, which are deleted after all new files have their final names.
+    /// Files of the previous run, which are deleted after all new files have got their final names.
     gone: Vec<PathBuf>,
-    /// Targets such as pipes and standard output, with the data for each target. These data are written last, because
-    /// such a write cannot be undone.
+    /// Targets such as pipes, with the bytes for each target. These bytes are written last, because writing to a pipe
+    /// cannot be undone.
     streams: Vec<(Target, Vec<u8>)>,
 }
 
@@ -25,28 +23,25 @@ pub(super) struct Batch {
 struct Staged {
     temporary: PathBuf,
     name: PathBuf,
-    /// Locked handle of the file, or `None` if no handle exists. The lock shows other processes that the process that
-    /// writes the file still runs.
+    /// Locked handle of the file, or `None` if the file is not locked. The lock shows that the writing process still
+    /// runs.
     lock: Option<File>,
 }
 
-/// A file that `commit` has renamed to its final name, with the path of a copy of the previous contents.
 struct Placed {
     name: PathBuf,
     before: Option<PathBuf>,
 }
 
-/// Prefix of the name of every temporary file.
 const TEMPORARY: &str = ".pxpl5-";
 
-/// Returns a path in the folder of `path` with a file name that no process uses for any other output.
+/// Returns a path in the folder of `path`. The file name contains `end` and differs from all other names in use.
 fn beside(path: &Path, end: &str) -> PathBuf {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
     path.with_file_name(format!("{TEMPORARY}{}-{number}.{end}", std::process::id()))
 }
 
-/// Returns true if a file name has the form that [`beside`] returns.
 fn is_temporary(name: &OsStr) -> bool {
     let parts = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY)?.rsplit_once('.'));
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
@@ -57,10 +52,10 @@ fn is_temporary(name: &OsStr) -> bool {
     })
 }
 
-/// Removes temporary files of processes that have ended. Such a file is recognized by its lock, which no process holds.
+/// Removes the temporary files of processes that have ended. No process holds a lock on such a file.
 ///
-/// The folder must be locked during the call. Otherwise, another process may have created a file without having locked
-/// it yet, or may be replacing files.
+/// The folder must be locked during the call. Otherwise, another process may have created a file and not yet locked the
+/// file, or may be replacing files.
 pub(super) fn remove_leftover_files(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| is_temporary(&entry.file_name())) {
@@ -79,12 +74,8 @@ impl Batch {
         Self { place, files: Vec::new(), gone: Vec::new(), streams: Vec::new() }
     }
 
-    /// Writes data for a regular file under a temporary name. Data for any other target are kept until
+    /// Writes bytes for a regular file under a temporary name. Keeps bytes for any other target until
     /// [`Batch::commit`].
-    ///
-    /// # Errors
-    ///
-    /// Fails when the file cannot be written.
     pub(super) fn put(&mut self, target: &Target, bytes: &[u8]) -> io::Result<()> {
         if let Target::File(name) = target {
             return self.stage(name, bytes);
@@ -93,11 +84,7 @@ impl Batch {
         Ok(())
     }
 
-    /// Checks that a folder is writable by writing a temporary file.
-    ///
-    /// # Errors
-    ///
-    /// Fails when the folder is not writable.
+    /// Writes a temporary file to check that a folder is writable.
     pub(super) fn try_in(&mut self, folder: &Path) -> io::Result<()> {
         self.stage(&folder.join("tried"), b"")?;
         self.discard();
@@ -114,23 +101,17 @@ impl Batch {
         written
     }
 
-    /// Moves the most recently added file to the front, so that it is renamed first.
     pub(super) fn rename_last_file_first(&mut self) {
         let last = self.files.pop();
         self.files.splice(..0, last);
     }
 
-    /// Schedules a file for removal after all new files have their names.
     pub(super) fn remove_on_commit(&mut self, path: PathBuf) {
         self.gone.push(path);
     }
 
-    /// Renames all files to their final names, then writes to devices, pipes and standard output. After a failure every
+    /// Renames all files to their final names, then writes to devices, pipes and standard output. After an error, each
     /// file name has its previous contents.
-    ///
-    /// # Errors
-    ///
-    /// Fails when a file cannot be renamed, or a device, pipe or standard output cannot be written.
     pub(super) fn commit(&mut self) -> Result<(), CliError> {
         let mut placed = Vec::new();
         let result = self.place_all(&mut placed).and_then(|()| self.write_streams());
@@ -177,7 +158,7 @@ impl Batch {
         })
     }
 
-    /// Removes all files that have no final name yet, and drops the data for devices, pipes and standard output.
+    /// Removes all files without a final name, and drops the bytes for devices, pipes and standard output.
     pub(super) fn discard(&mut self) {
         self.streams.clear();
         self.gone.clear();
@@ -189,14 +170,13 @@ impl Batch {
     }
 }
 
-/// Removes temporary files, so that an uncommitted batch leaves no trace.
 impl Drop for Batch {
     fn drop(&mut self) {
         self.discard();
     }
 }
 
-/// Keeps the current contents of the file `name` under a second name, so that a failed commit can restore them. Copies
+/// Keeps the contents of the file `name` under a second name, so that a failed commit can restore the contents. Copies
 /// the permissions of `name` to the file `next`. Returns the second name, or `None` if `name` does not exist.
 fn kept(name: &Path, next: &Path) -> io::Result<Option<PathBuf>> {
     match name.symlink_metadata() {

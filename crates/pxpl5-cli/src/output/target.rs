@@ -1,30 +1,24 @@
-//! Resolves output paths through links to files, devices and standard output.
+//! Resolver of output paths through links to files, devices and standard output.
 
 use crate::error::CliError;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The target of an output path after all links are resolved.
+/// A file, device or pipe at which an output path ends after all links are followed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Target {
-    /// A regular file, or a path at which no file exists yet. The new contents get this path by one rename.
+    /// A regular file, or a path at which no file exists yet. One rename replaces the contents.
     File(PathBuf),
-    /// A device, a pipe or a socket. Data are written into the device, pipe or socket, because no file may replace it.
+    /// A device, a pipe or a socket, into which the bytes are written, because no file may replace it.
     Through(PathBuf),
-    /// Standard output of this process, named by a path such as /dev/stdout.
     StandardOutput,
 }
 
-/// Maximum number of links that are followed. A chain of more links is treated as a circle.
+/// Maximum number of links that are followed. A longer chain is treated as a circle.
 const MOST_LINKS: usize = 40;
 
 impl Target {
-    /// Resolves a path to its target.
-    ///
-    /// # Errors
-    ///
-    /// Fails when the path leads to a folder, or a link cannot be followed.
     pub(super) fn of(path: &Path, place: &Place) -> Result<Self, CliError> {
         match path.metadata() {
             Ok(found) if found.is_dir() => Err(place.refused(path, &"it is a folder")),
@@ -37,8 +31,7 @@ impl Target {
     }
 }
 
-/// Returns the file to which a path leads after all links. The file need not exist. The links stay in place when the
-/// returned file is written.
+/// Returns the file to which a path leads after all links. This file need not exist, and writing to it changes no link.
 fn behind_links(path: &Path, place: &Place) -> Result<PathBuf, CliError> {
     let mut path = path.to_path_buf();
     for _ in 0..MOST_LINKS {
@@ -49,7 +42,7 @@ fn behind_links(path: &Path, place: &Place) -> Result<PathBuf, CliError> {
     Err(place.refused(&path, &"its symbolic links form a loop"))
 }
 
-/// Returns true if `found` describes the same file, pipe or device as standard output.
+/// Returns true if `found` is the metadata of the file, pipe or device behind standard output.
 #[cfg(unix)]
 fn is_standard_output(found: &std::fs::Metadata) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -62,11 +55,10 @@ fn is_standard_output(_: &std::fs::Metadata) -> bool {
     false
 }
 
-/// Names an output in error messages, together with the option that contains the output's path.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     option: &'static str,
-    /// Name of the file in the option's path. `None` if the option names a folder.
+    /// Name of the file in the path, or `None` if the option requires a folder.
     file: Option<PathBuf>,
 }
 
@@ -79,7 +71,7 @@ impl Place {
         Self { option, file: Some(path.to_path_buf()) }
     }
 
-    /// Returns the error for a path that cannot be written, with advice to choose another path.
+    /// Returns the error for a path that cannot be written. The error advises the user to choose another path.
     pub(super) fn refused(&self, path: &Path, reason: &dyn Display) -> CliError {
         let path = self.file.as_deref().unwrap_or(path).display();
         CliError::failure(format!("{path} cannot be written: {reason}; choose another place with {}", self.option))

@@ -1,11 +1,9 @@
-//! Converts groups of rows to the series of a chart.
-
 use super::PlotArgs;
 use super::question::{Group, text};
 use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 
-/// Returns the chart of groups of rows. Each group is one point of a curve. Numbers on the x axis are sorted. Names
-/// keep the order of the rows.
+/// Returns the chart of groups of rows, in which each group is one point of a curve. Numbers on the x axis are sorted.
+/// Names on the x axis have the order of the rows.
 pub(super) fn chart(args: &PlotArgs, groups: &[Group]) -> Chart {
     let names = names_across(groups);
     let mut curves: Vec<&[String]> = Vec::new();
@@ -14,7 +12,7 @@ pub(super) fn chart(args: &PlotArgs, groups: &[Group]) -> Chart {
             curves.push(&group.by);
         }
     }
-    // A name in the legend without a point would look like a point that another one covers.
+    // A curve without points is left out, because its name in the legend would suggest hidden points.
     let series = curves.iter().map(|by| series_of(by, groups, names.as_deref())).filter(has_a_point).collect();
     let axes = ChartAxes {
         title: args.title.clone(),
@@ -25,7 +23,7 @@ pub(super) fn chart(args: &PlotArgs, groups: &[Group]) -> Chart {
     Chart { axes, across, up: args.y_scale.scale(), series, size: ChartSize::Column { width_mm: args.width } }
 }
 
-/// Returns the distinct names on the x axis, in the order of the rows. Returns `None` if all x values are numbers.
+/// Returns the distinct names on the x axis in the order of the rows, or `None` if all x values are numbers.
 fn names_across(groups: &[Group]) -> Option<Vec<String>> {
     if groups.iter().all(|group| group.x.is_number() || group.x.is_null()) {
         return None;
@@ -59,8 +57,8 @@ fn series_of(by: &[String], groups: &[Group], names: Option<&[String]>) -> Chart
     ChartSeries { name: by.join(", "), points, look }
 }
 
-/// Returns the point of a group on the chart. The point is hollow if the group has due pictures that were not shown,
-/// because the mean covers only shown pictures.
+/// Returns the point of a group. The point is hollow if some due pictures of the group were not shown, because the mean
+/// covers only shown pictures.
 fn point(group: &Group, across: f64) -> ChartPoint {
     ChartPoint { at: (across, group.mean), interval: group.interval, is_hollow: group.counts.has_missing_pictures() }
 }

@@ -16,11 +16,7 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// Returns the format for the extension of a file name.
-    ///
-    /// # Errors
-    ///
-    /// Fails for an unknown extension, and for PNG and PDF without the feature `print`.
+    /// Returns the format for the extension of a file name. PNG and PDF need the feature `print`.
     pub(super) fn of(path: &Path) -> Result<Self, CliError> {
         let ending = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         // PNG and PDF need the feature `print`.
@@ -44,11 +40,6 @@ impl Format {
     }
 }
 
-/// Converts a figure from SVG to a file format, and returns the bytes of the file.
-///
-/// # Errors
-///
-/// Fails if the drawing cannot be converted.
 pub(super) fn bytes(svg: &str, format: Format) -> Result<Vec<u8>, CliError> {
     match format {
         Format::Svg => Ok(svg.as_bytes().to_vec()),

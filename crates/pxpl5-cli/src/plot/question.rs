@@ -1,4 +1,4 @@
-//! The columns to plot, and the groups of rows that become the points of the plot.
+//! The columns to plot, and the groups of rows, each of which becomes one point of the plot.
 
 use crate::error::CliError;
 use crate::rows::{ResultRows, Row, RowsKind, value};
@@ -8,51 +8,43 @@ use pxpl5_sim::parameters::nearest;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Names of the columns to plot, by role.
 #[derive(Clone, Debug)]
 pub(super) struct Question {
-    /// Column whose values are on the x axis.
     pub(super) x: String,
-    /// Column whose numbers are on the y axis.
     pub(super) y: String,
-    /// Columns that separate the curves. Each combination of their values gives one curve.
+    /// Columns that define the curves. Each combination of their values gives one curve.
     pub(super) by: Vec<String>,
-    /// Columns over which the mean is taken.
+    /// Columns whose rows are combined into one mean.
     pub(super) band: Vec<String>,
-    /// Filters: pairs of a column name and the text of the required value.
+    /// Filters: the name of a column and the required value as text.
     pub(super) only: Vec<(String, String)>,
-    /// Confidence of intervals, between 0 and 1.
     pub(super) confidence: f64,
 }
 
-/// The rows that are combined into one point of one curve.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
-    /// Values of the columns `Question::by`, as text.
+    /// Values of the columns in `Question::by`, as text.
     pub(super) by: Vec<String>,
     pub(super) x: Value,
-    /// Number of rows that have a number in the y column.
     pub(super) n: usize,
-    /// Number of rows without a number in the y column, because the run failed or nothing was evaluated.
+    /// Number of rows without a number in the y column, because the run failed or no pixel was evaluated.
     pub(super) missing: usize,
     /// Mean of the numbers in the y column. NaN if `n` is 0.
     pub(super) mean: f64,
-    /// Standard deviation of the numbers in the y column. NaN if `n` is below 2, or if the rows have no standard
+    /// Standard deviation of the numbers in the y column. NaN if `n` is below 2 or the rows contain no standard
     /// deviation.
     pub(super) sd: f64,
-    /// Confidence interval of the mean. NaN in the same cases as `sd`.
+    /// Confidence interval of the mean. NaN if `sd` is NaN.
     pub(super) interval: (f64, f64),
     pub(super) counts: Counts,
 }
 
-/// Sums of counts over all rows of a group. A sum is `None` if no row has the count.
+/// Sums of counts over all rows of a group. A sum is `None` if no row contains the count.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counts {
-    /// Number of pictures that were due.
+    /// Number of due pictures, each of which had to be shown at a certain retrace.
     pub(super) due: Option<u64>,
-    /// Number of due pictures that were not shown.
     pub(super) not_shown: Option<u64>,
-    /// Number of evaluated pixels.
     pub(super) samples: Option<u64>,
 }
 
@@ -69,18 +61,14 @@ impl Counts {
         Self { due, not_shown, samples }
     }
 
-    /// Returns true if pictures that were due were not shown.
     pub(super) fn has_missing_pictures(&self) -> bool {
         self.not_shown.is_some_and(|missed| missed > 0)
     }
 }
 
 impl Question {
-    /// Returns the groups of rows, in the order in which the groups first occur.
-    ///
-    /// # Errors
-    ///
-    /// Fails if no row has a named column, or if another setting varies within a group.
+    /// Returns the groups of rows in the order of their first rows. Fails if no row has a named column, or if a setting
+    /// that is not named varies within a group.
     pub(super) fn groups(&self, results: &ResultRows) -> Result<Vec<Group>, CliError> {
         self.check_names(results)?;
         let counted: Vec<&Row> = results.rows.iter().filter(|row| self.counts(row)).collect();
@@ -135,8 +123,7 @@ impl Question {
         Ok(Group { by, x, n: numbers.len(), missing, mean: of_all.mean, sd, interval, counts })
     }
 
-    /// Returns the group of one row of a comparison. A row of a comparison is already a mean over seeds, with an
-    /// interval.
+    /// Returns the group for one row of a comparison. This row already holds a mean over seeds and an interval.
     fn of_row(&self, by: Vec<String>, x: Value, rows: &[&Row], missing: usize) -> Group {
         let row = rows[0];
         let number = |name: &str| value(row, name).and_then(Value::as_f64);
@@ -148,8 +135,7 @@ impl Question {
         Group { by, x, n, missing, mean, sd: beside("sd").unwrap_or(f64::NAN), interval, counts }
     }
 
-    /// Returns an error if a setting of the sweep varies within a group, unless `--band` takes the mean over this
-    /// setting.
+    /// Returns an error if a setting varies within a group and `--band` does not name this setting.
     fn check_others(&self, results: &ResultRows, rows: &[&Row]) -> Result<(), CliError> {
         let axes = results.about.get("axes").and_then(Value::as_array).into_iter().flatten();
         let paths = axes.filter_map(|axis| axis["paths"].as_array()).flatten().filter_map(Value::as_str);
@@ -168,7 +154,6 @@ impl Question {
     }
 }
 
-/// Returns a JSON value as text without quotes.
 pub(super) fn text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),

@@ -1,4 +1,4 @@
-//! Access to the files of a results folder that belong to its run, as listed in its manifest.
+//! Reader of the files in a results folder. Only files that the folder's manifest lists belong to the run.
 
 use crate::error::CliError;
 use crate::terminal::print_error;
@@ -6,20 +6,15 @@ use pxpl5::lab::manifest::{MANIFEST_FILE, Manifest};
 use std::fs;
 use std::path::Path;
 
-/// A results folder. Only files that are listed in the folder's manifest (list of a run's files) are used.
+/// A results folder. Files that the manifest (list of a run's files) does not list are left out.
 pub(crate) struct Files<'a> {
     folder: &'a Path,
     manifest: Option<Manifest>,
-    /// True if warnings about left-out files are not printed.
     quiet: bool,
 }
 
 impl<'a> Files<'a> {
-    /// Reads the manifest of a folder.
-    ///
-    /// # Errors
-    ///
-    /// Fails when the manifest file exists but is not a valid manifest.
+    /// Reads the manifest of a folder. Fails if the manifest file exists but is not valid.
     pub(crate) fn of(folder: &'a Path, quiet: bool) -> Result<Self, CliError> {
         Ok(Self { folder, manifest: Manifest::read(folder)?, quiet })
     }
@@ -28,12 +23,7 @@ impl<'a> Files<'a> {
         self.folder
     }
 
-    /// Reads the main results file. Without a manifest (list of a run's files), only this file is used, because all
-    /// other files may belong to another run.
-    ///
-    /// # Errors
-    ///
-    /// Fails when the file cannot be read, or differs from the file that the manifest lists.
+    /// Reads the main results file, even without a manifest. Fails if the file differs from its entry in the manifest.
     pub(crate) fn first(&self, name: &str) -> Result<Vec<u8>, String> {
         let Some(manifest) = &self.manifest else {
             let bytes = fs::read(self.folder.join(name)).map_err(|error| error.to_string())?;
@@ -46,7 +36,7 @@ impl<'a> Files<'a> {
         })
     }
 
-    /// Prints a warning if the folder has no manifest, because its other files are then left out.
+    /// Prints a warning if the folder has no manifest. All files except the main results file are then left out.
     pub(crate) fn warn_if_unlisted(&self) {
         if self.manifest.is_none() {
             self.warn(&format!(
@@ -61,8 +51,8 @@ impl<'a> Files<'a> {
         self.manifest.iter().flat_map(Manifest::names)
     }
 
-    /// Returns the contents of a file in the manifest. Returns `None` if the manifest does not list the file. Returns
-    /// `None` and prints a warning if the file has changed.
+    /// Returns the contents of a file, or `None` if the manifest does not list the file. Returns `None` with a warning
+    /// if the file has changed.
     pub(crate) fn read(&self, name: &str) -> Option<Vec<u8>> {
         match self.manifest.as_ref()?.read_file(self.folder, name) {
             Ok(bytes) => bytes,

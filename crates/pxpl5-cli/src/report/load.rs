@@ -1,5 +1,3 @@
-//! Reader of results folders written by `pxpl5 run` or `pxpl5 demo`.
-
 use super::files::Files;
 use crate::error::CliError;
 use crate::run::INCOMPLETE;
@@ -7,11 +5,8 @@ use pxpl5::views::page::{PagePicture, PageRun, latencies_ms};
 use serde_json::Value;
 use std::path::Path;
 
-/// Returns the experiments in a results folder. All files except `report.json` are optional.
-///
-/// # Errors
-///
-/// Fails when `report.json` is missing, is not a report, or differs from its entry in the manifest (list of files).
+/// Returns the experiments in a results folder of `pxpl5 run` or `pxpl5 demo`. Only `report.json` is necessary. Fails
+/// if `report.json` is not a report or differs from its entry in the manifest.
 pub(super) fn runs(files: &Files<'_>) -> Result<Vec<PageRun>, CliError> {
     let path = files.folder().join(REPORT);
     let bytes = files.first(REPORT).map_err(|error| no_report(&path, &error))?;
@@ -53,7 +48,7 @@ fn run(files: &Files<'_>, name: &str, prefix: &str, report: &Value, published: &
     }
 }
 
-/// Returns the last picture of every surface. `prefix` is the beginning of the pictures' file names.
+/// Returns the last picture of every surface. `prefix` is the start of the file names.
 fn pictures_of(files: &Files<'_>, prefix: &str) -> Vec<PagePicture> {
     let names = files.names().filter_map(|name| Some((name, name.strip_prefix(prefix)?.strip_suffix(".png")?)));
     let pictures = names.filter_map(|(name, surface)| {

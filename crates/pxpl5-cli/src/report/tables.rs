@@ -7,14 +7,9 @@ use pxpl5::sweep::ROWS_FILE;
 use pxpl5::views::page::{PagePicture, PageTable};
 use serde_json::Value;
 
-/// Maximum number of rows of a sweep that a page shows. Larger tables need a spreadsheet.
 const MOST_ROWS: usize = 5_000;
 
 /// Returns the tables of a results folder, or `None` if the folder holds neither a sweep nor a comparison.
-///
-/// # Errors
-///
-/// Fails when the results file cannot be read or has another format.
 pub(super) fn of(files: &Files<'_>) -> Result<Option<Vec<PageTable>>, CliError> {
     let Some(results) = rows::of(files.folder())? else { return Ok(None) };
     let table = match results.kind {
@@ -37,8 +32,8 @@ fn sweep(results: &ResultRows) -> PageTable {
     tabular(title, about, &flat)
 }
 
-/// Returns the table of a comparison, with one row for each pipeline. Columns of numbers come first, columns of text
-/// last.
+/// Returns the table of a comparison with one row for each pipeline. Columns with numbers come before columns with
+/// text.
 fn comparison(results: &ResultRows) -> PageTable {
     let flat: Vec<Vec<(String, String)>> = results.rows.iter().map(numbers_first).collect();
     let around =
@@ -57,8 +52,8 @@ fn numbers_first(row: &Row) -> Vec<(String, String)> {
     numbers.into_iter().chain(texts).collect()
 }
 
-/// Returns a table. Each row is a list of pairs of a column's name and a cell's text. Columns are in the order in which
-/// their names first occur.
+/// Returns a table. Each row is a list of pairs of a column name and the text of a cell. The columns have the order in
+/// which their names first occur.
 fn tabular(name: &str, about: Vec<String>, rows: &[Vec<(String, String)>]) -> PageTable {
     let mut columns: Vec<String> = Vec::new();
     for (key, _) in rows.iter().flatten() {
@@ -92,7 +87,7 @@ fn pairs(settings: &Value) -> String {
     all.map(|(key, value)| format!("{key} = {}", shown(value))).collect::<Vec<_>>().join(", ")
 }
 
-/// Adds the charts and pictures that the manifest lists to a table, sorted by name.
+/// Adds the charts and pictures in the manifest to a table, sorted by name.
 fn with_pictures(table: PageTable, files: &Files<'_>) -> PageTable {
     files.warn_if_unlisted();
     let mut names: Vec<&str> = files.names().collect();

@@ -1,5 +1,5 @@
-//! The command `pxpl5 volume compare`, which draws one volume with every clip (way to cut the scene into slices) and
-//! projection, and compares the results.
+//! The command `pxpl5 volume compare`. It draws one volume with each combination of a clip (a rule that cuts the scene
+//! into slices) and a projection, and compares the results.
 
 use super::settings::VolumeSettingArgs;
 use crate::error::CliError;
@@ -78,7 +78,6 @@ fn pictures(folder: &mut OutputFolder, comparison: &VolumeComparison) -> Result<
     Ok(())
 }
 
-/// Name of a table column, with the function that formats the column's cell for a row.
 type Column = (&'static str, fn(&VariantRow) -> String);
 
 const COLUMNS: [Column; 16] = [
@@ -100,8 +99,8 @@ const COLUMNS: [Column; 16] = [
     ("volumes_hz_overlapped", |row| format!("{:.2}", row.volumes_hz_overlapped)),
 ];
 
-/// Returns the brightness of a volume relative to the volume with exact clipping, as a mean over some rings around the
-/// axis. Rings in which exact clipping shows nothing are left out.
+/// Formats the brightness of a volume divided by the brightness with exact clipping, as a mean over the rings `rings`
+/// around the axis. Rings in which exact clipping lights no pixel are left out.
 fn over_exact(row: &VariantRow, rings: std::ops::Range<usize>) -> String {
     let rings = row.brightness_over_exact.get(rings).unwrap_or_default();
     let known: Vec<f64> = rings.iter().flatten().copied().collect();
@@ -183,9 +182,8 @@ fn laid_out<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> Strin
     padded.collect::<String>().trim_end().to_owned()
 }
 
-/// Returns a chart of the number of lit pixels over the distance from the axis. The number is divided by the width of a
-/// ring in pixels. The chart has one curve for each clip (way to cut the scene into slices), projected along the
-/// normal.
+/// Returns a chart of the number of lit pixels over the distance from the axis, divided by the width of a ring in
+/// pixels. The chart has one curve for each clip (a rule that cuts the scene into slices), projected along the normal.
 fn brightness(comparison: &VolumeComparison) -> String {
     let axes = ChartAxes {
         title: format!("Lit pixels over radius: {}, along the normal", comparison.scene),

@@ -1,4 +1,4 @@
-//! The command `pxpl5 volume figures`, which compares the figures of the SpatialGL paper with the model.
+//! The command `pxpl5 volume figures`, which compares figures of the SpatialGL paper with the model.
 
 use super::settings::load;
 use crate::error::CliError;
@@ -40,7 +40,6 @@ pub(super) struct FiguresArgs {
     quiet: bool,
 }
 
-/// Scenes on which the figures are measured.
 const SCENES: [&str; 3] = ["mig", "head", "molecules"];
 
 pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {

@@ -1,5 +1,4 @@
-//! The command `pxpl5 volume view --head`, which compares a volume with a head-mounted display, as a moving head sees
-//! both.
+//! The command `pxpl5 volume view --head`, which compares a volume with a head-mounted display for a moving head.
 
 use super::settings::{VolumeSettingArgs, origin};
 use crate::error::CliError;
@@ -33,7 +32,7 @@ pub(super) struct HeadArgs {
     frames: u32,
 }
 
-/// Number of instants, for each picture of the film, at which errors are evaluated.
+/// Number of instants per picture of the film at which errors are evaluated.
 const INSTANTS_PER_FRAME: u32 = 8;
 
 pub(super) fn run(
@@ -81,7 +80,6 @@ pub(super) fn run(
     if options.settings.quiet { Ok(()) } else { print(&text(&study, name, out)) }
 }
 
-/// Name of a column of errors.csv, with the function that returns the column's value for a sample.
 type Column = (&'static str, fn(&HeadSample) -> Option<f64>);
 
 const COLUMNS: [Column; 12] = [
@@ -105,8 +103,7 @@ fn errors_csv(study: &HeadStudy) -> String {
     csv_table(COLUMNS.map(|(name, _)| name), rows)
 }
 
-/// Returns a chart of angles over time. The chart compares the error due to latency with the sizes of voxels and of
-/// dither cells.
+/// Returns a chart of angles over time: the error due to latency, the size of a voxel and the size of a dither cell.
 fn errors_svg(study: &HeadStudy, motion: &str) -> String {
     let axes = ChartAxes {
         title: format!(

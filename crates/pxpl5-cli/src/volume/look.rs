@@ -1,5 +1,5 @@
-//! The commands `pxpl5 volume view` and `pxpl5 volume film`, which show a volume as an eye in front of the display sees
-//! the volume.
+//! The commands `pxpl5 volume view` and `pxpl5 volume film`, which draw a volume as seen by an eye in front of the
+//! display.
 
 use super::heads::{self, HeadArgs};
 use super::settings::{VolumeSettingArgs, origin};
@@ -95,7 +95,7 @@ fn cut(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl EyeArgs {
-    /// Checks that the eye can see the volume, and returns the settings of the eye.
+    /// Returns the settings of the eye. Fails if the eye cannot see the volume.
     fn look(&self, settings: &VolumeSettings) -> Result<Look, CliError> {
         let mut look = Look::around(settings, self.azimuth, self.elevation, self.size);
         look.camera.distance = self.distance * settings.radius();

@@ -1,4 +1,4 @@
-//! The command `pxpl5 volume run`, which draws one volume and reports its counts.
+//! The command `pxpl5 volume run`, which draws one volume and prints a report about the volume.
 
 use super::settings::{VolumeSettingArgs, png};
 use crate::error::CliError;
@@ -59,8 +59,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// Returns a text about the work of the renderers, and about the part of the machine that limits the number of volumes
-/// per second.
+/// Describes the work of the renderers, and the part of the machine that limits the number of volumes per second.
 fn bounds(planes: &PixelPlanesReport) -> String {
     let work = &planes.counts.work;
     let mut text = format!(
@@ -91,7 +90,7 @@ fn bounds(planes: &PixelPlanesReport) -> String {
     if planes.simulated.is_empty() {
         return text;
     }
-    // The bounds ignore waiting; the simulation event by event shows how close the machine comes.
+    // The bounds ignore waiting. The simulation of all events shows how close the machine comes to the bounds.
     let _ = writeln!(
         text,
         "\nOne volume event by event\n{:>10} {:>11} {:>13} {:>12} {:>11} {:>16} {:>17} {:>16}",
@@ -134,7 +133,7 @@ fn slices_csv(volume: &Volume) -> String {
     csv_table(columns, rows)
 }
 
-/// Text for quantities that exist only if a GPU drew the volume.
+/// Cell of a quantity that exists only if a GPU drew the volume.
 const NOT_COUNTED: &str = "- (no GPU drew it)";
 
 fn fragments(report: &VolumeReport) -> String {

@@ -1,5 +1,5 @@
-//! Options that describe a volume (a scene drawn as slices for a volumetric display). Each option stands for a path of
-//! `--set`.
+//! Options that describe a volume (a scene drawn as slices for a volumetric display). Each option is a short form of a
+//! path of `--set`.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -56,8 +56,8 @@ pub(super) struct SettingOptions {
     /// Slices that are drawn: each slice, or mirror (half of the slices, beyond the paper); default each.
     #[arg(long, value_name = "STROBES")]
     strobes: Option<String>,
-    /// Renderer of the volume: host or pixel-planes; default host. pixel-planes is beyond the paper, and supports only
-    /// the hyperbolic clip and the orthographic projection.
+    /// Renderer of the volume: host or pixel-planes; default host. The SpatialGL paper does not describe the renderer
+    /// pixel-planes, which supports only the hyperbolic clip and the orthographic projection.
     #[arg(long, value_name = "RENDERER")]
     on: Option<String>,
     /// Set any number or choice by its path, such as display.slices=200, clip.bias_px2=1, tile.size=16 or
@@ -74,15 +74,11 @@ pub(super) struct SettingOptions {
     pub(super) quiet: bool,
 }
 
-/// Advice on how to reduce the cost of a volume.
 pub(super) const SMALLER: &str = "draw fewer or smaller slices (--set display.slices, display.width, display.height)";
 
 impl SettingOptions {
-    /// Returns an error if the estimated time or memory to draw `volumes` volumes exceeds the budget.
-    ///
-    /// # Errors
-    ///
-    /// Returns the estimate and advice on how to reduce the work.
+    /// Returns an error if the estimated time or memory to draw `volumes` volumes exceeds the budget. The error
+    /// contains the estimate and advice to reduce the work.
     pub(super) fn admit(&self, settings: &VolumeSettings, scene: &Scene, volumes: usize) -> Result<(), CliError> {
         let threads = self.threads();
         let one = VolumeWork::of(settings, scene, threads.0.get()).estimate();
@@ -90,12 +86,8 @@ impl SettingOptions {
         self.budget.admit_estimate(Estimate { seconds, ..one }, SMALLER)
     }
 
-    /// Returns the paper's settings, changed by the options. `--set` is applied last. Prints a warning for every number
-    /// outside its documented range.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error that names the wrong option, the expected value and the value found.
+    /// Returns the settings of the SpatialGL paper after all options. `--set` is applied last. Prints a warning for
+    /// each number outside its documented range.
     pub(super) fn gather(&self) -> Result<VolumeSettings, CliError> {
         let mut settings = VolumeSettings::paper();
         let options = [
@@ -131,11 +123,6 @@ impl SettingOptions {
 }
 
 impl VolumeSettingArgs {
-    /// Returns the scene, loaded and reduced to the requested number of primitives.
-    ///
-    /// # Errors
-    ///
-    /// Fails when the scene does not exist or its file cannot be used.
     pub(super) fn load_scene(&self) -> Result<Arc<Scene>, CliError> {
         let scene = load(&self.scene, self.triangles)?;
         scenes::print_warnings(&scene, self.settings.quiet);
@@ -171,12 +158,11 @@ pub(super) fn scene_choice(name: &str, triangles: Option<u64>) -> SceneChoice {
     }
 }
 
-/// Returns a picture as PNG, with the settings that reproduce it.
 pub(super) fn png(picture: &RgbImage, volume: &Volume) -> Result<Vec<u8>, CliError> {
     png_bytes(picture, &origin(volume)).map_err(CliError::failure)
 }
 
-/// Returns the text chunks of a picture file of a volume. The chunks state the settings that reproduce the picture.
+/// Returns the text chunks of a PNG file of a volume, which state the settings that reproduce the picture.
 pub(super) fn origin(volume: &Volume) -> Vec<(&'static str, String)> {
     let settings = &volume.settings;
     let overrides: Vec<String> = settings.overrides().iter().map(|set| format!("{}={}", set.path, set.value)).collect();

@@ -84,7 +84,7 @@ pub(super) fn slice(args: SliceArgs) -> Result<(), CliError> {
     say(args.volume.settings.quiet, &args.out, &format!("slice {slice} of {}", volume.scene))
 }
 
-/// Returns the division of each slice into tiles. A volume that is not drawn in tiles counts as a single tile.
+/// Returns the division of each slice into tiles. A slice that is not drawn in tiles counts as one tile.
 fn tiling(volume: &Volume) -> Tiling {
     let size = volume.settings.tile.size as u32;
     Tiling { tile: (size > 0).then_some(size), batch: 1 }
@@ -94,7 +94,6 @@ pub(super) fn write(file: OutputFile, picture: &RgbImage, volume: &Volume) -> Re
     file.write(&png(picture, volume)?)
 }
 
-/// Prints the path and a description of the written file.
 pub(super) fn say(quiet: bool, path: &Path, what: &str) -> Result<(), CliError> {
     if quiet { Ok(()) } else { print(&format!("{}: {what}.\n", path.display())) }
 }

@@ -1,5 +1,5 @@
-//! The command `pxpl5 volume sweep`, which draws a volume at every point of a parameter space. The output folder, the
-//! rows, the shards and `--resume` are the same as for `pxpl5 sweep`.
+//! The command `pxpl5 volume sweep`, which draws a volume at each point of a parameter space. Output folder, rows,
+//! shards and `--resume` are the same as for `pxpl5 sweep`.
 
 use super::settings::{SMALLER, scene_choice};
 use crate::budget::BudgetArgs;
@@ -47,15 +47,13 @@ pub(super) fn run(args: SweepArgs) -> Result<(), CliError> {
     let threads = args.threads.and_then(|threads| NonZero::new(threads as usize)).map_or_else(Threads::all, Threads);
     let sweep = VolumeSweep::load(&args.folder.file, &args.folder.sets, threads, args.budget)?;
     let header = sweep.header()?;
-    // A volume uses all threads, so volumes follow each other.
+    // A volume uses all threads, so volumes are drawn one after the other.
     let command = SweepCommand { name: "volume sweep", verb: "drawn", parallel: 1, threads: args.threads };
     args.folder.run(&sweep, header, &command)
 }
 
-/// Keys of the experiment file that are not settings of the volumetric display.
 const OWN: [&str; 2] = ["scene", "triangles"];
 
-/// Quantities of a volume that are measured by default.
 const MEASURED: [&str; 6] = [
     "fragments_accepted",
     "tile_occupancy_percent",
@@ -65,13 +63,12 @@ const MEASURED: [&str; 6] = [
     "volumes_hz_overlapped",
 ];
 
-/// A sweep of volumes: the settings that all points share, and the space of the settings that change.
+/// A sweep of volumes: the settings that all points share, and the space of the varied settings.
 #[derive(Debug)]
 struct VolumeSweep {
     title: Option<String>,
     /// Paths of the measured quantities in the JSON report.
     measure: Vec<String>,
-    /// Settings that all points share, including `scene` and `triangles`.
     settings: BTreeMap<String, toml::Value>,
     space: SweepSpace,
     scenes: SceneCache,
@@ -80,7 +77,7 @@ struct VolumeSweep {
 }
 
 impl VolumeSweep {
-    /// Reads an experiment file with a sweep of volumes. `sets` are settings of the command line, which override
+    /// Reads an experiment file with a sweep of volumes. The settings in `sets` come from the command line and replace
     /// settings of the file.
     fn load(path: &Path, sets: &[String], threads: Threads, budget: BudgetArgs) -> Result<Self, CliError> {
         let place = path.display().to_string();
@@ -128,11 +125,7 @@ impl VolumeSweep {
         Ok(header.with_hash("", self.measure.iter().map(String::as_str), &inputs))
     }
 
-    /// Returns the measured quantities with their definitions.
-    ///
-    /// # Errors
-    ///
-    /// Fails if a report lacks one of the quantities.
+    /// Returns the measured quantities with their definitions. Fails if a report lacks one of the quantities.
     fn definitions(&self) -> Result<BTreeMap<String, String>, CliError> {
         // A tiny volume without primitives yields a report with all names.
         let mut settings = VolumeSettings::paper();
@@ -202,7 +195,7 @@ impl Swept for VolumeSweep {
     }
 }
 
-/// Returns the value in a JSON report at a path of names separated by dots.
+/// Returns the value of a JSON report at a path, in which dots separate the names.
 fn value_of<'a>(report: &'a Value, path: &str) -> Option<&'a Value> {
     path.split('.').try_fold(report, |value, name| value.get(name))
 }
@@ -215,7 +208,6 @@ fn measure(value: Option<toml::Value>, place: &str) -> Result<Vec<String>, Setti
         .ok_or_else(|| SettingError::value("measure", "a list of names of the report's numbers", &value).at(place))
 }
 
-/// Returns the path of a key, or an error if there is no such key.
 fn known_key(keys: &[String], path: &str, place: &str) -> Result<String, SettingError> {
     let all = || keys.iter().map(String::as_str).chain(OWN);
     if all().any(|key| key == path) {

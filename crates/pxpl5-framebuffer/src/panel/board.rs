@@ -10,10 +10,10 @@ use pxpl5_wire::display::{
 };
 use pxpl5_wire::{NodeId, PeriodNumber};
 
-/// Panels with their frame buffer boards, which share a sync generator. There is one board, or two boards for the eyes
-/// of a stereo pair.
+/// A panel for a single picture, or two panels for the eyes of a stereo pair, which share a sync generator.
 ///
-/// A board writes regions into the buffer that is not shown. A swap request takes effect at the next retrace.
+/// Each panel has a frame buffer board, which writes regions into the buffer that is not shown. A swap request takes
+/// effect at the next retrace.
 ///
 /// **Not modelled:** pixels that arrive while their line is scanned.
 #[derive(Debug)]
@@ -25,13 +25,13 @@ pub struct Panel {
     surfaces: Vec<Surface>,
     /// One board for each surface. Port n belongs to the board with index n modulo the number of boards.
     boards: Vec<DoubleBuffer>,
-    /// Copies of the boards of an interlaced panel, made one period ago. The previous period lit the lines that the
+    /// Copies of the boards of an interlaced panel, from one period ago. The previous period lit the lines that the
     /// current period skips.
     older: Vec<DoubleBuffer>,
     scans: u64,
 }
 
-/// Builds a panel from parameters that were already checked. The order of the ring ports is: the first ports of all
+/// Builds a panel from parameters that were already checked. The list of ring ports contains the first ports of all
 /// boards, then the second ports of all boards, and so on.
 ///
 /// # Errors
@@ -67,14 +67,13 @@ impl Panel {
         self.numbers.interlace == 1
     }
 
-    /// Returns the index of the first line that a period lights, and the distance between lit lines (1, or 2 if
-    /// interlaced).
+    /// Returns the first line that a period lights, and the distance between lit lines (1, or 2 if interlaced).
     const fn rows(&self, period: PeriodNumber) -> (u64, u64) {
         if self.is_interlaced() { (period.0 % 2, 2) } else { (0, 1) }
     }
 
-    /// Returns the number of pixels that a rolling scan lights before pixel (x, y). For a global scan the result is the
-    /// number of all pixels, because all pixels are lit at the end of the scan.
+    /// Returns the number of pixels that a rolling scan lights before pixel (x, y). For a global scan, the result is
+    /// the number of all pixels, because they are lit at the end of the scan.
     fn order(&self, x: u64, y: u64, rows: (u64, u64)) -> u64 {
         let [columns, lines] = [self.numbers.width, self.numbers.height / rows.1];
         let line = (y - rows.0) / rows.1;
@@ -97,8 +96,8 @@ impl Panel {
         picture
     }
 
-    /// Returns the times at which the corner pixels of a surface are lit in a period. The first and the last light of
-    /// the surface are among these times for every direction of the scan.
+    /// Returns the times at which the corner pixels of a surface are lit in a period. They include the first and the
+    /// last light of the surface, in every direction of the scan.
     fn corners(&self, surface: usize, period: PeriodNumber) -> impl Iterator<Item = Time> {
         let [right, low] = [self.numbers.width as u32 - 1, (self.numbers.height as u32).saturating_sub(2)];
         let bottom = self.numbers.height as u32 - 1;
@@ -138,7 +137,7 @@ impl Display for Panel {
                     self.older.clone_from(&self.boards);
                 }
                 for (surface, board) in self.boards.iter_mut().enumerate() {
-                    // A board swaps only if a request arrived before this tick.
+                    // A board swaps only if a request arrived before this retrace.
                     if let Some(buffer) = board.swap(context.now()) {
                         context.output(at, DisplayOutput::Swapped { surface, buffer, tick });
                     }

@@ -10,8 +10,7 @@ const MOST_REGIONS: u64 = 128;
 
 const US_PER_S: u64 = 1_000_000;
 
-/// The parameters of a panel, a display without NTSC timing. [`PanelNumbers::of`] reads these parameters from a table
-/// and uses a default for each missing parameter.
+/// The parameters of a panel, a display without NTSC timing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelNumbers {
     /// Width of the panel: visible pixels in each line.
@@ -32,7 +31,7 @@ pub struct PanelNumbers {
     pub active_permille: u64,
     /// Time for which a pixel is switched on in each scan, in microseconds.
     pub persistence_us: u64,
-    /// Time constant, in microseconds, of the change of a pixel's brightness after the pixel is switched on or off.
+    /// Time constant, in microseconds, of a pixel's brightness after the pixel is switched on or off.
     pub response_us: u64,
     /// Number of ring ports of one board.
     pub ports: u64,
@@ -45,9 +44,9 @@ pub struct PanelNumbers {
 impl PanelNumbers {
     /// Reads the parameters of a panel from a table.
     ///
-    /// A parameter that is missing from the table has its default. The default scan is rolling, shows every line from
-    /// the top, and fills the period. A pixel shines for an instant and has 24 bits. A board has one port that receives
-    /// 20 million words per second.
+    /// A missing parameter has its default. By default, the scan is rolling, runs from the top, shows every line and
+    /// fills the period. A pixel has 24 bits and shines for an instant. A board has one port, which receives 20 million
+    /// words per second.
     #[must_use]
     pub fn of(table: &dyn ParameterTable) -> Self {
         let number = |name: &str, default: u64| match table.get(name) {
@@ -70,7 +69,7 @@ impl PanelNumbers {
         }
     }
 
-    /// Returns the order in which pixels are lit, and how long each pixel shines.
+    /// Returns the order in which pixels are lit, and the time for which each pixel shines.
     #[must_use]
     pub const fn light(&self) -> PixelLight {
         let scan = match (self.scan, self.direction) {
@@ -99,7 +98,7 @@ impl PanelNumbers {
             }
         }
         let size = u64::from(REGION_SIZE);
-        // Firmware has one bit for each region in a mask of fixed size.
+        // Firmware has a mask with one bit for each region, and the mask has a fixed size.
         let regions = self.width.div_ceil(size).saturating_mul(self.height.div_ceil(size));
         if regions > MOST_REGIONS {
             let expected = format!("at most {MOST_REGIONS} regions of {size} x {size}, as many as firmware can number");

@@ -7,9 +7,9 @@ use pxpl5_wire::NodeId;
 use pxpl5_wire::display::{Display, DisplayConfig};
 
 pxpl5_sim::parameters::parameter_table! {
-    /// The high-resolution frame buffer of Pixel-Planes 5: 1280 x 1024 pixels at 72 Hz. Each scan shows every line.
+    /// The high-resolution frame buffer of Pixel-Planes 5: 1280 x 1024 pixels at 72 Hz.
     ///
-    /// The rate is assumed. Blanking is not modelled: the scan fills its whole period.
+    /// Each scan shows every line. The rate is assumed. Blanking is not modelled: the scan fills its whole period.
     pub struct HiResConfig {
         /// Width of the picture: visible pixels in each line.
         width: 1280, "pixels", Published, 1280..=1280 in 1..=1408, "F89";
@@ -56,8 +56,9 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 pxpl5_sim::parameters::parameter_table! {
-    /// An assumed LCD panel for one eye, with numbers between the numbers of two headsets of 2019. A short flash lights
-    /// the panel after all its pixels were written.
+    /// An assumed LCD panel for one eye, with numbers between the numbers of two headsets of 2019.
+    ///
+    /// A short flash lights the panel after all its pixels were written.
     ///
     /// No single headset has these numbers. Oculus Rift S has this size at 80 Hz. Valve Index has this rate and flash,
     /// but its 1440 x 1600 pixels have 156 regions, and firmware supports at most 128 regions.

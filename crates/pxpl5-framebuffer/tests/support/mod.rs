@@ -53,7 +53,6 @@ pub(crate) fn n_parts(target: &CopyTarget) -> u32 {
     (width * height).div_ceil(MAX_MESSAGE_WORDS)
 }
 
-/// A board with its events and outputs.
 pub(crate) struct Board {
     pub(crate) device: FrameBuffer,
     pub(crate) bench: TestBench<FrameBufferEvent, FrameBufferOutput>,
@@ -93,7 +92,6 @@ impl Board {
         self.feed(at, FrameBufferEvent::SwapRequested { buffer });
     }
 
-    /// Sends one message of a region.
     pub(crate) fn part(&mut self, at: Time, target: CopyTarget, image: &Arc<Counted>, part: u32) {
         let image: Arc<dyn PixelSource> = Arc::clone(image) as _;
         let pixels = RegionPixels { target, image, part, parts: n_parts(&target) };

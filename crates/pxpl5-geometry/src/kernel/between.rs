@@ -7,11 +7,11 @@ use super::{COMPILED, Kernel, KernelList, PARAMETERS, PICTURE, SCALAR, Schedule,
 
 /// Number of words that record one triangle in two views.
 ///
-/// The words are: a flag, the least y, the greatest y, a free word, the corners in the first view, and the corners in
-/// the second view. The flag is set if both views have the triangle on the screen.
+/// The words are: a flag, the least y, the greatest y, a free word, and the corners in both views. The flag is set if
+/// both views have the triangle on the screen.
 pub const ENDS_WORDS: usize = 28;
 
-/// Number of words for the corners of a triangle in one of the two views.
+/// Number of words for the corners of a recorded triangle in one view.
 pub const ENDS_VIEW_WORDS: usize = 12;
 
 impl Kernel {

@@ -203,7 +203,8 @@ fn depth_range() -> Case {
     Case { view: pixel_view(1e-3, 1e6), ..case("depth from 10^-3 to 10^6", triangles) }
 }
 
-/// Returns a case with a rotated view of a model, like the view of a user. The model has a given size and place.
+/// Returns a case with a rotated view of a model, like the view of a user. The model has the size `size` and the
+/// position `place`.
 fn placed(name: &'static str, seed: u64, size: f32, place: Vec3) -> Case {
     let random = &mut Random::new(seed);
     let triangles = (0..100)

@@ -11,7 +11,6 @@ use std::ops::RangeInclusive;
 /// Finer and coarser grids with which the formats are tested, in bits of subpixels.
 pub const SUBPIXEL_BITS: [u32; 6] = [0, 2, 4, 6, 8, 12];
 
-/// Measurements of one case.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
     pub triangles: usize,
@@ -138,7 +137,7 @@ impl Row {
         }
     }
 
-    /// Compares the planes with exact planes through the same snapped corners.
+    /// Compares the planes with exact planes through the same corners in subpixels.
     fn plane_errors(&mut self, piece: &Piece, x: i32, y: i32) {
         let depth = piece.plane_value(piece.depth_corners(), x, y) / 256.0;
         self.depth_plane = self.depth_plane.max((f64::from(piece.depth(x, y)) + 0.5 - depth).abs());

@@ -65,7 +65,8 @@ impl Piece {
         (self.planes.rgb[component].at(x, y) >> format::COLOUR_FRACTION_BITS) as u8
     }
 
-    /// Returns the exact value, as numerator and denominator, of the plane through three values at the snapped corners.
+    /// Returns the exact value, as numerator and denominator, of the plane through three values at the corners in
+    /// subpixels.
     pub fn exact_plane(&self, corners: [i128; 3], x: i32, y: i32) -> (i128, i128) {
         let outline = &self.screen.outline;
         let pixel = [16 * i128::from(x) + 8, 16 * i128::from(y) + 8];

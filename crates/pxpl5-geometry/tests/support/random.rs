@@ -2,7 +2,6 @@
 
 use pxpl5_sim::SplitMix64;
 
-/// A generator of random numbers and random geometry.
 #[derive(Clone, Debug)]
 pub struct Random(SplitMix64);
 

@@ -6,11 +6,11 @@ use super::measure::{Row, SUBPIXEL_BITS, measure};
 use super::spheres::{self, SphereCase, SphereRow};
 use pxpl5_geometry::SetupStats;
 use std::fmt::Write;
+use std::thread::ScopedJoinHandle;
 
 const HEAD: &str = include_str!("numerics_head.md");
 const FORMATS: &str = include_str!("numerics_formats.md");
 
-/// Formats a number for a table.
 fn short(v: f64) -> String {
     match v {
         0.0 => "0".into(),
@@ -101,7 +101,6 @@ fn heading(out: &mut String, title: &str, columns: &[&str]) {
     let _ = write!(out, "\n## {title}\n\n| {} |\n| {rule} |\n", columns.join(" | "));
 }
 
-/// Measurements of all cases.
 pub struct Measured {
     pub triangles: Vec<(Case, Row)>,
     pub spheres: Vec<(SphereCase, SphereRow)>,
@@ -109,13 +108,27 @@ pub struct Measured {
 }
 
 impl Measured {
+    /// Measures all cases, with one thread for each case.
     pub fn all() -> Self {
-        Self {
-            triangles: cases::all().into_iter().map(|case| (case.clone(), measure(&case))).collect(),
-            spheres: spheres::all().into_iter().map(|case| (case.clone(), spheres::measure(&case))).collect(),
-            fights: fighting::all(),
-        }
+        std::thread::scope(|scope| {
+            let fights = scope.spawn(fighting::all);
+            let triangles: Vec<_> =
+                cases::all().into_iter().map(|case| scope.spawn(move || (case.clone(), measure(&case)))).collect();
+            let spheres: Vec<_> = spheres::all()
+                .into_iter()
+                .map(|case| scope.spawn(move || (case.clone(), spheres::measure(&case))))
+                .collect();
+            Self {
+                triangles: joined(triangles),
+                spheres: joined(spheres),
+                fights: fights.join().expect("no measurement panics"),
+            }
+        })
     }
+}
+
+fn joined<T>(threads: Vec<ScopedJoinHandle<'_, T>>) -> Vec<T> {
+    threads.into_iter().map(|thread| thread.join().expect("no measurement panics")).collect()
 }
 
 /// Returns the whole text of docs/numerics.md.

@@ -15,14 +15,12 @@ use pxpl5_wire::format;
 const NEAR: f32 = 1.0;
 const FAR: f32 = 16_384.0;
 
-/// A family of spheres.
 #[derive(Clone, Debug)]
 pub struct SphereCase {
     pub name: &'static str,
     pub spheres: Vec<WorldSphere>,
 }
 
-/// Measurements of one family.
 #[derive(Clone, Debug, Default)]
 pub struct SphereRow {
     pub spheres: usize,
@@ -133,7 +131,7 @@ fn family(name: &'static str, seed: u64, pixels: f32, count: usize, on_centre: b
         }
         let scale = 2.0;
         let centre = at_pixel(x, y, scale);
-        // A pixel at this distance is 3 * scale wide.
+        // At the distance of the centre, a pixel is 3 * scale wide.
         WorldSphere { centre, radius: pixels * 3.0 * scale, colour: random.colour() }
     });
     SphereCase { name, spheres: spheres.collect() }

@@ -41,7 +41,7 @@ fn an_endless_loop_ends_with_its_budget() {
 }
 
 #[test]
-fn a_program_that_changed_itself_is_as_new_when_it_is_loaded_again() {
+fn loading_a_program_again_restores_words_that_the_program_has_overwritten() {
     let mut processor = processor();
     // Stores the word at `other` over the word at `here`, and executes `here` afterwards.
     let changing = program(
@@ -63,7 +63,7 @@ fn a_program_that_changed_itself_is_as_new_when_it_is_loaded_again() {
 /// Tests that the caches never hold the addresses of the ring interface. A second read of such an address takes longer
 /// than a second read of any other address.
 #[test]
-fn the_window_of_the_ring_is_in_no_cache() {
+fn the_ring_window_is_not_cached() {
     let mut processor = Processor::new(NodeId(3), 1 << 20, CodeVersion::Compiled, i860::Config::cycle());
     let look = program("start: ld.l 0(r16), r17\n adds r17, r0, r18\n bri r1\n nop");
     let mut looks = |address| {
@@ -82,20 +82,20 @@ fn the_window_of_the_ring_is_in_no_cache() {
 }
 
 #[test]
-fn versions_are_called_as_files_call_them_and_a_processor_prints_its_own() {
+fn code_versions_have_the_names_used_in_experiment_files() {
     let versions = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
     assert_eq!(versions.map(CodeVersion::name), ["unoptimised", "compiled", "scheduled"]);
     assert!(format!("{:?}", processor()).contains("Scheduled"));
 }
 
 #[test]
-fn outputs_take_both_ends_of_what_data_leave_in_whole_lines() {
+fn outputs_use_whole_cache_lines_at_both_ends_of_the_free_memory() {
     let mut processor = processor();
     let end = 1 << 16;
     assert_eq!(processor.place_output(0, 1_001, 100), Ok(1_024));
     // The output begins at the last cache line that starts at least 100 bytes before the end.
     assert_eq!(processor.place_output(1, 1_001, 100), Ok(65_408));
-    // 1,124 to 1,152 is the rest of a line.
+    // The bytes from 1,124 to 1,152 are the rest of a cache line.
     let room = end - 1_152;
     let no_room = |context, needed_bytes, available_bytes| {
         Err(ProcessorFault::NoRoom { gp: NodeId(3), context, needed_bytes, available_bytes })
@@ -109,7 +109,7 @@ fn outputs_take_both_ends_of_what_data_leave_in_whole_lines() {
 }
 
 #[test]
-fn who_writes_over_a_program_changes_it() {
+fn writing_over_a_program_changes_the_program() {
     let mut processor = processor();
     let [adds, doubles] = ["adds 1, r17, r17", "adds r17, r17, r17"]
         .map(|instruction| program(&format!("start: {instruction}\n bri r1\n nop")));
@@ -134,7 +134,7 @@ fn who_writes_over_a_program_changes_it() {
 
 /// Tests that breakpoints are recorded, and that they change neither the time of a call nor its limit of instructions.
 #[test]
-fn a_watched_call_takes_the_same_time_and_the_same_budget() {
+fn breakpoints_change_neither_the_time_nor_the_instruction_limit_of_a_call() {
     let turns = program("start: nop\nagain: adds -1, r16, r16\n btne r0, r16, again\n bri r1\n nop");
     for budget in 1..12 {
         let [mut alone, mut watched] = [processor(), processor()];
@@ -160,7 +160,7 @@ fn a_watched_call_takes_the_same_time_and_the_same_budget() {
 }
 
 #[test]
-fn programs_are_told_as_they_lie_in_memory_and_clocks_are_summed() {
+fn programs_are_listed_by_address_with_summed_clocks() {
     let mut processor = processor();
     let source = "start: bri r1\n nop";
     let at = |base| Arc::new(i860::assemble("at", base, source).expect("it assembles"));
@@ -185,7 +185,7 @@ fn programs_are_told_as_they_lie_in_memory_and_clocks_are_summed() {
 }
 
 #[test]
-fn what_memory_does_not_hold_is_refused() {
+fn programs_that_do_not_fit_in_memory_are_refused() {
     let mut processor = processor();
     assert!(processor.write(0xFFFC, &[1]).is_ok());
     let error = processor.write(0xFFFC, &[1, 2]).expect_err("one word too many");

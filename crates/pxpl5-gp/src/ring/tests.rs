@@ -7,7 +7,7 @@ use pxpl5_wire::{CommandList, CommandRun};
 use std::collections::VecDeque;
 
 const NODE_ID: NodeId = NodeId(37);
-// Variables of ring.s that only the tests read.
+// Addresses of variables of ring.s that only the tests read.
 const WRONG_OF_RECEIVER: u32 = DATA + 24;
 const COMPLETE: u32 = DATA + 44;
 const START: u32 = WINDOW + 8;
@@ -65,7 +65,7 @@ fn call(processor: &mut Processor, entry: &str, registers: &[(usize, Word)]) {
 
 /// Sends messages, interrupts and reads in random order. The program must receive the messages in order of arrival.
 #[test]
-fn a_program_gets_what_arrived_in_order_and_everything_is_given_back() {
+fn messages_are_received_in_order_and_their_buffers_are_freed() {
     let mut numbers = SplitMix64::new(5);
     let mut processor = board();
     let mut slot = 0;
@@ -129,7 +129,7 @@ fn a_program_gets_what_arrived_in_order_and_everything_is_given_back() {
 }
 
 #[test]
-fn a_message_is_received_whole_and_its_buffer_given_back() {
+fn a_message_is_received_whole_and_its_buffer_is_freed() {
     let mut numbers = SplitMix64::new(11);
     let mut processor = board();
     for n in 0..200 {
@@ -147,7 +147,7 @@ fn a_message_is_received_whole_and_its_buffer_given_back() {
 }
 
 #[test]
-fn a_wrong_length_or_kind_is_refused_and_the_next_message_is_received() {
+fn a_message_with_a_wrong_length_or_kind_is_refused_and_the_next_message_is_received() {
     let mut processor = board();
     for (header, wrong) in [
         (0, 1),
@@ -167,7 +167,7 @@ fn a_wrong_length_or_kind_is_refused_and_the_next_message_is_received() {
 
 /// Tests chains of all lengths against a reference model of the descriptors, which lie in a circular buffer.
 #[test]
-fn a_chain_is_the_descriptors_of_its_messages_and_frees_those_of_the_chain_before() {
+fn a_chain_has_a_descriptor_for_each_message_and_frees_the_previous_chain() {
     let mut numbers = SplitMix64::new(23);
     let mut processor = board();
     let mut next = 0;
@@ -232,7 +232,7 @@ fn a_chain_without_room_or_with_a_wrong_length_is_not_started() {
 
 /// Tests a message that is longer than a receive buffer. The interface must stop at the end of the buffer.
 #[test]
-fn a_buffer_has_the_header_and_ends_where_the_next_one_begins() {
+fn a_buffer_starts_with_the_header_and_ends_at_the_next_buffer() {
     let mut processor = board();
     let [first, second] = [BUFFERS, BUFFERS + BUFFER_BYTES];
     let too_long = vec![9; BUFFER_BYTES as usize];
@@ -248,7 +248,7 @@ fn commands(words_each: u32) -> CommandList {
 }
 
 #[test]
-fn a_chain_says_what_each_message_is_and_whether_it_keeps_its_receiver() {
+fn a_chain_has_kind_and_receiver_flag_of_each_message() {
     let mut processor = board();
     let to = |node, words, body| Message { source: NODE_ID, destination: NodeId(node), words, body };
     let chain = [
@@ -279,7 +279,7 @@ fn a_message_of_commands_stops_the_board_with_its_fault() {
 }
 
 #[test]
-fn a_memory_without_room_for_it_is_a_fault_that_says_where() {
+fn a_memory_without_room_is_a_fault_with_the_place() {
     let mut small = Processor::new(NodeId(2), 1 << 16, CodeVersion::Compiled, i860::Config::cycle());
     let error = small.receive_message(NodeId(3), &Body::Words([1].into())).expect_err("no memory there");
     assert_eq!(error.to_string(), "graphics processor at node 2: no memory for 1 words at 0x000f2004");
@@ -287,7 +287,7 @@ fn a_memory_without_room_for_it_is_a_fault_that_says_where() {
 
 /// Tests that a call leaves the interrupt enable bit of the register psr as it was.
 #[test]
-fn interrupts_are_masked_inside_only() {
+fn interrupts_are_masked_only_inside_the_ring_code() {
     let setting = i860::assemble("psr", 0x1000, "set: st.c r16, psr\n bri r1\n nop").expect("it assembles");
     let setting = Arc::new(setting);
     for psr in [0, 0x10] {
@@ -303,8 +303,8 @@ fn interrupts_are_masked_inside_only() {
 }
 
 #[test]
-fn code_and_data_lie_beside_each_other() {
+fn code_and_data_are_adjacent_in_memory() {
     assert!(PROGRAM.base == CODE && CODE + PROGRAM.bytes.len() as u32 <= DATA, "{} bytes", PROGRAM.bytes.len());
-    // An interrupt saves at most all registers of both files at FRAME.
+    // An interrupt saves at most all registers of both register files, at FRAME.
     const { assert!(DATA + 384 + 2 * 32 * 4 <= ENTRIES) };
 }

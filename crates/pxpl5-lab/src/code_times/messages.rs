@@ -1,5 +1,5 @@
-//! Measures the mean software time of a message. The measurement covers all messages that a board receives and sends
-//! around its passes over a scene. The additional time of each bin entry in a sent message is subtracted.
+//! Measures the mean software time of a message, over all messages that a board receives and sends around its passes
+//! over a scene. The time for the bin entries in a sent message is subtracted.
 
 use super::{BOARDS, CodeUse, Rig, VIEWS, parts, picture, solve};
 use pphigs::{BinHandoffWork, FrameView, Pass, RegionEnvelope, region_messages};
@@ -16,11 +16,10 @@ const ORDER: u32 = 3;
 /// Number of words of a token message under Rendering Control.
 const TOKEN: u32 = 6;
 
-/// Node number of the board that exchanges all messages of the measurement with the measured board.
+/// Node number of the board at the other end of all messages of the measurement.
 const OTHER: NodeId = NodeId(2);
 
-/// Total time and number of a board's messages. A received message counts once, and a sent chain of messages counts
-/// once.
+/// Total time and number of a board's messages. A sent chain of messages counts as one message.
 #[derive(Default)]
 pub(super) struct Traffic {
     span: Span,
@@ -29,7 +28,7 @@ pub(super) struct Traffic {
     handed: Vec<[f64; 2]>,
 }
 
-/// Returns the time to send one bin entry, for a slave that has the token, in nanoseconds. The result is the slope of a
+/// Returns the time in nanoseconds in which a slave with the token sends one bin entry. This time is the slope of a
 /// least-squares line over all bins, or 0 if no bin was sent.
 pub(super) fn token_entry_ns(scenes: &[Traffic]) -> f64 {
     let mut handed = scenes.iter().flat_map(|traffic| &traffic.handed).peekable();
@@ -37,8 +36,8 @@ pub(super) fn token_entry_ns(scenes: &[Traffic]) -> f64 {
 }
 
 impl Traffic {
-    /// Returns the mean time of a message in nanoseconds. `token_entry_ns` is the time to send one bin entry, which is
-    /// subtracted for each entry of a sent bin.
+    /// Returns the mean time of a message in nanoseconds. `token_entry_ns` is first subtracted for each entry of a sent
+    /// bin.
     pub(super) fn message_ns(&self, token_entry_ns: f64) -> f64 {
         let [entries, ns] = self.handed.iter().fold([0.0; 2], |[n, sum], [entries, ns]| [n + entries, sum + ns]);
         (self.span.0 as f64 / 1e3 + ns - token_entry_ns * entries) / self.messages as f64
@@ -70,7 +69,6 @@ fn commands(list: CommandList) -> (u32, Body) {
     (list.words(), Body::Commands(list))
 }
 
-/// Measures the messages of one board while the board processes a scene.
 pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Traffic, ExperimentError> {
     let mut rig = Rig::new(version, scene, BOARDS)?;
     let mut traffic = Traffic::default();
@@ -90,7 +88,7 @@ pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<
     Ok(traffic)
 }
 
-/// Executes the messages of a slave for one frame:
+/// Executes the code for the messages of a slave in one frame:
 ///
 /// - The slave receives the frame's head pose from the host.
 /// - The slave receives permission for EDIT and for TRANSFORM, and reports the end of each.
@@ -116,8 +114,8 @@ fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) ->
     Ok(())
 }
 
-/// Executes the messages of one token: the slave receives the token, sends the bin of the region, and passes the token
-/// on. The slave is neither the first nor the last slave that gets the token.
+/// Executes the code for one token. The slave receives the token, sends the bin of the region, and passes the token on.
+/// The slave is neither the first nor the last slave that gets the token.
 fn token(
     processor: &mut Processor,
     pass: &Arc<Pass>,
@@ -136,9 +134,9 @@ fn token(
     traffic.send_words(processor, TOKEN)
 }
 
-/// Executes the messages of one display field on a board under Slats. The board receives the head pose. The board then
-/// sends a chain of messages for each clump (group of triangles) to the regions of both eyes. Finally, the board sends
-/// two chains of copy commands to all renderers.
+/// Executes the code for the messages of one display field under Slats. The board receives the head pose. The board
+/// then sends a chain of messages for each clump to the regions of both eyes. Finally, the board sends two chains of
+/// copy commands to all renderers.
 fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = picture(of).viewport.grid().regions() as u16;
     traffic.receive(&mut rig.processor, view.to_words().len() as u32)?;

@@ -1,5 +1,4 @@
-//! Measures the processor times of just-in-time pixels and frameless rendering by executing their code. The parent
-//! module measures the times of TRANSFORM.
+//! Measures the processor times of just-in-time pixels and frameless rendering by executing their code.
 
 use super::{ExperimentError, Rig, fault, mean};
 use pphigs::{
@@ -12,47 +11,41 @@ use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
 
-/// Scene that is searched for triangles that meet a strip (a group of scan lines).
 const SCENE: &str = "mig";
-/// Number of boards that share the scene in the second measurement. The first measurement gives one board the whole
-/// scene. The difference between both measurements gives the time of one triangle.
+/// Number of boards that share the scene in the second measurement. In the first measurement, one board has the whole
+/// scene. The difference of the two results, divided by the difference of the numbers of triangles, is the time of one
+/// triangle.
 const SMALLER: usize = 12;
 
-/// Time between two head poses in picoseconds: one NTSC field.
 const FIELD_PS: u64 = 16_683_333_333;
 
 /// Memory address at which the display list begins. Smaller addresses belong to the program. An order message consists
 /// of pieces of memory. A piece at this address or above holds the commands of a bin entry.
 const COMMANDS: u32 = 1 << 20;
 
-/// Sizes in words of four kinds of order messages. The messages order a strip (group of scan lines), a strip with a
-/// head pose, blocks of pixels, and a field. An order of blocks has one head pose, and an order of a field has two head
-/// poses for interpolation. The second number of each pair counts the words before the head poses.
+/// Sizes in words of four kinds of orders: a strip, a strip with a head pose, blocks of pixels with a head pose, and a
+/// field with two head poses. The second number of each pair counts the words before the head poses.
 const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 
-/// Times in nanoseconds of the search for triangles in strips (groups of scan lines), and of interpolation between two
-/// head poses.
+/// Times in nanoseconds of the search for triangles in strips, and of the interpolation between two head poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripTimes {
-    /// Time to compare one triangle's bounding box with a strip (group of scan lines) that the box does not meet.
+    /// Time to compare one triangle's bounding box with a strip that the box does not touch.
     pub box_ns: f64,
-    /// Additional time of a bin entry for a triangle that meets one of a strip's five windows (sections of 128 pixels).
-    /// The time includes the search and the transfer of the entry. Nearby triangles that miss the strip also add to
-    /// this time.
+    /// Additional time of a bin entry for a triangle that touches one of the five windows (128 pixels wide) of a strip.
+    /// The time includes the search and the transfer of the entry, and the comparison with nearby triangles that miss
+    /// the strip.
     pub entry_ns: f64,
-    /// Time to create and send the five windows (sections of 128 pixels) of a strip that no triangle meets. A strip is
-    /// a group of scan lines.
+    /// Time to create and send the five windows (128 pixels wide) of a strip without triangles.
     pub windows_ns: f64,
-    /// Time to compute the positions of a triangle on the screen for two successive head poses.
+    /// Time to compute a triangle's positions on the screen for two successive head poses.
     pub ends_ns: f64,
-    /// Time to skip one triangle that is not near a strip (group of scan lines), while triangles are interpolated
-    /// between two head poses.
+    /// Time to skip one triangle that is not near a strip, during interpolation between two head poses.
     pub passed_ns: f64,
-    /// Additional time to interpolate one triangle that is near a strip (group of scan lines). The first number is for
-    /// interpolation on the screen, the second for interpolation in eye space.
+    /// Additional time to interpolate one triangle that is near a strip: on the screen, and in eye space.
     pub interpolated_ns: [f64; 2],
-    /// Times to assemble four kinds of order messages. The messages order a strip (group of scan lines), a strip with a
-    /// head pose, blocks of pixels, and a field that is interpolated between two head poses.
+    /// Times to assemble four kinds of orders: a strip, a strip with a head pose, blocks of pixels, and a field that is
+    /// interpolated between two head poses.
     pub order_ns: [f64; 4],
 }
 
@@ -80,27 +73,24 @@ pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> 
     })
 }
 
-/// Times in nanoseconds for one board's share of a scene.
 struct Measured {
     triangles: f64,
-    /// Mean time to search the triangles for a strip (group of scan lines) that no triangle meets.
+    /// Mean time to test all triangles against a strip that no triangle touches.
     search_ns: f64,
-    /// Additional time of each bin entry, measured in strips (groups of scan lines) that triangles meet.
+    /// Additional time of each bin entry, measured in strips that triangles touch.
     entry_ns: f64,
-    /// Time to compute the positions of all triangles for two successive head poses.
     ends_ns: f64,
-    /// Time to compute the commands for an instant between two head poses, if no triangle is near the strip (group of
-    /// scan lines).
+    /// Time to compute the commands for an instant between two head poses if no triangle is near the strip.
     passed_ns: f64,
-    /// Times to compute the commands for an instant between two head poses, if all triangles are near the strip (group
-    /// of scan lines). The first number is for interpolation on the screen, the second for interpolation in eye space.
+    /// Times to compute the commands for an instant between two head poses if all triangles are near the strip: on the
+    /// screen, and in eye space.
     interpolated_ns: [f64; 2],
 }
 
 fn measured(version: CodeVersion, boards: usize) -> Result<Measured, ExperimentError> {
     let mut rig = Rig::of_triangles(version, SCENE, boards)?;
     let triangles = f64::from(rig.share.counts().triangles);
-    // Strips without entries give the cost of a search, the others the cost of entries.
+    // Strips without entries give the cost of a search. All other strips give the cost of entries.
     let rows = searches(&mut rig).map_err(fault)?;
     let search_ns = mean(rows.iter().filter(|[entries, _]| *entries == 0.0).map(|[_, ns]| *ns));
     let [entries, more_ns] = rows.iter().fold([0.0; 2], |sum, [n, ns]| [sum[0] + n, sum[1] + ns - search_ns]);
@@ -128,8 +118,7 @@ fn ns(span: Span) -> f64 {
     span.0 as f64 / 1e3
 }
 
-/// Returns the number of bin entries and the search time for every strip. In this measurement, a strip is one scan
-/// line.
+/// Returns the number of bin entries and the search time in nanoseconds for each strip. Here, every strip is one line.
 fn searches(rig: &mut Rig) -> Result<Vec<[f64; 2]>, ProcessorFault> {
     let pass = rig.share.transform(&rig.view(0), 0, PICTURE);
     pass.keep(&GpTiming::PAPERS, &mut rig.processor, MemoryPart::WHOLE)?;
@@ -158,8 +147,8 @@ fn ends_ns(rig: &mut Rig) -> Result<f64, ProcessorFault> {
     Ok(keeping.run_code(&GpTiming::PAPERS, &mut rig.processor)?.map_or(0.0, ns))
 }
 
-/// Returns the time in nanoseconds to compute the commands of triangles half way between two head poses. `near` is the
-/// range of scan lines whose triangles are interpolated.
+/// Returns the nanoseconds to compute the commands of triangles half way between two head poses. Triangles on the lines
+/// `near` are interpolated, and all others are skipped.
 fn between_ns(rig: &mut Rig, in_eye_space: bool, near: [i32; 2]) -> Result<f64, ProcessorFault> {
     let [from, to] = views(rig);
     let interpolating = StripInterpolation {
@@ -180,7 +169,7 @@ fn views(rig: &Rig) -> [pphigs::FrameView; 2] {
     [0, 1].map(|number| (rig.views)(ViewNumber(number), Time(number * FIELD_PS)))
 }
 
-/// Returns the time to assemble each kind of order message. A first execution loads the code into the caches.
+/// Returns the nanoseconds to assemble each kind of order. A first execution loads the code into the caches.
 fn order_ns(version: CodeVersion) -> Result<[f64; 4], ExperimentError> {
     let mut rig = Rig::of_triangles(version, SCENE, SMALLER)?;
     let mut times = [0.0; 4];

@@ -1,9 +1,8 @@
-//! Moving-block bootstrap: the interval of a mean over time, from one series of values that depend on each other.
+//! Moving-block bootstrap: a confidence interval for the mean of one series of dependent values.
 //!
-//! Successive fields of a run have similar errors. The values are therefore not independent, and an interval from their
-//! standard deviation would be too narrow. The bootstrap draws blocks of successive values, so that each block keeps
-//! the dependence. H. R. Künsch, "The jackknife and the bootstrap for general stationary observations", Annals of
-//! Statistics 17 (1989).
+//! Successive fields of a run have similar errors. An interval from their standard deviation would therefore be too
+//! narrow. The bootstrap draws blocks of successive values, so that each block keeps the dependence. H. R. Künsch, "The
+//! jackknife and the bootstrap for general stationary observations", Annals of Statistics 17 (1989).
 //!
 //! The block length follows the data: D. N. Politis and H. White, "Automatic block-length selection for the dependent
 //! bootstrap", Econometric Reviews 23 (2004), with the correction of A. Patton, D. N. Politis and H. White, Econometric
@@ -13,27 +12,27 @@ use distrs::{Normal, StudentsT};
 use pxpl5_sim::mix;
 use serde::{Deserialize, Serialize};
 
-/// Number of resampled means.
+/// Number of resampled series that a bootstrap draws from one series of values.
 pub const RESAMPLES: usize = 2_000;
 
-/// Minimum number of values for an interval. Assumed, because a shorter series does not show how its values depend on
-/// each other. In tests with a known dependence, the intervals of shorter series were much too narrow.
+/// Minimum number of values for an interval (assumed). A shorter series does not show how its values depend on each
+/// other. In tests with a known dependence, the intervals of shorter series were much too narrow.
 pub const MIN_BOOTSTRAP_VALUES: usize = 100;
 
 /// Minimum number of blocks in a series for an interval (assumed).
 const MIN_BLOCKS: usize = 10;
 
-/// Seed of the random blocks, so that the same values give the same interval.
+/// Fixed seed of the random blocks, so that the same values give the same interval.
 const SEED: u64 = 0xB10C_B007;
 
-/// Size of a moving-block bootstrap: length of the series, length of a block, and number of resampled means.
+/// Size of a moving-block bootstrap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BootstrapSize {
     /// Number of display fields in the series of values.
     pub fields: usize,
     /// Number of successive display fields whose values form a block.
     pub block_fields: usize,
-    /// Number of resampled means.
+    /// Number of resampled series, each of which gives one mean.
     pub resamples: usize,
 }
 
@@ -45,8 +44,8 @@ pub struct BlockBootstrap {
 }
 
 impl BlockBootstrap {
-    /// Resamples a series of finite numbers. Returns `None` for fewer than [`MIN_BOOTSTRAP_VALUES`] numbers, and for a
-    /// series whose values depend on each other over more than a tenth of its length.
+    /// Resamples a series of finite numbers. Returns `None` for fewer than [`MIN_BOOTSTRAP_VALUES`] numbers, and if
+    /// values depend on each other over more than a tenth of the series.
     #[must_use]
     pub fn of(series: &[f64]) -> Option<Self> {
         if series.len() < MIN_BOOTSTRAP_VALUES {
@@ -63,13 +62,13 @@ impl BlockBootstrap {
         Some(Self { size, means })
     }
 
-    /// Returns the length of the series, the length of a block, and the number of resampled means.
+    /// Returns the lengths of the series and of a block, and the number of resampled series.
     #[must_use]
     pub const fn size(&self) -> BootstrapSize {
         self.size
     }
 
-    /// Returns the variance of the resampled means, an estimate of the variance of the mean.
+    /// Returns the variance of the resampled means, which estimates the variance of the mean.
     #[must_use]
     pub fn variance(&self) -> f64 {
         let centre = self.centre();
@@ -82,8 +81,8 @@ impl BlockBootstrap {
     ///
     /// - Values at the ends of the series are in fewer blocks than other values. The percentiles are therefore shifted,
     ///   so that the mean of the resampled means becomes `mean`. The shift multiplies by a factor if `mean` is positive
-    ///   and all resampled means are at least 0. Otherwise the shift adds a difference. With the factor, the interval
-    ///   of a quantity that is never negative has no negative end.
+    ///   and no resampled mean is negative. Otherwise the shift adds a difference. With the factor, the interval of a
+    ///   quantity that is never negative has no negative end.
     /// - A series of k blocks gives the variance as imprecisely as k independent values do. The distance of both ends
     ///   from the mean is therefore multiplied by two factors. The first is the ratio of Student's t with k - 1 degrees
     ///   of freedom to the normal distribution. The second is the root of k / (k - 1). If a factor shifts the
@@ -100,7 +99,7 @@ impl BlockBootstrap {
         }
     }
 
-    /// Returns the factor by which an interval is widened because the series has few blocks. The factor is at least 1.
+    /// Returns the factor, at least 1, by which an interval is widened because the series has few blocks.
     fn widening(&self, confidence: f64) -> f64 {
         let blocks = self.size.fields as f64 / self.size.block_fields as f64;
         let quantile = 0.5 + confidence / 2.0;
@@ -118,7 +117,7 @@ impl BlockBootstrap {
     }
 }
 
-/// Returns the sums of the first 0, 1, 2, ... numbers. The difference of two sums is the sum of a block.
+/// Returns the sums of the first 0, 1, 2, ... numbers. The sum of a block is the difference of two of these sums.
 fn running_sums(series: &[f64]) -> Vec<f64> {
     let mut sums = vec![0.0];
     let mut sum = 0.0;
@@ -129,8 +128,8 @@ fn running_sums(series: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Returns the mean of random blocks that follow each other up to the length of the series. The last block may be
-/// shortened.
+/// Returns the mean of one resampled series, which consists of random blocks and is as long as the original series. The
+/// last block may be cut.
 fn resampled_mean(sums: &[f64], block: usize, resample: u64) -> f64 {
     let n = sums.len() - 1;
     let starts = (n - block + 1) as u64;
@@ -148,8 +147,8 @@ fn resampled_mean(sums: &[f64], block: usize, resample: u64) -> f64 {
     sum / n as f64
 }
 
-/// Returns the number of values in a block, chosen for the least mean square error of the resampled variance (Politis
-/// and White). The length is at least 1 and at most a third of the length of the series.
+/// Returns the number of values in a block that minimizes the mean square error of the estimated variance (Politis and
+/// White). The number is at least 1 and at most a third of the length of the series.
 fn block_length(series: &[f64]) -> usize {
     let n = series.len() as f64;
     let log = n.log10();
@@ -165,7 +164,7 @@ fn block_length(series: &[f64]) -> usize {
         |lag: usize| (lag + 1..=lag + run).all(|k| covariances.get(k).is_none_or(|c| c.abs() < bound * covariances[0]));
     let flat_from = (0..=greatest).find(|lag| is_flat(*lag)).unwrap_or(greatest);
     let window = (2 * flat_from).clamp(1, greatest);
-    // The flat-top window is 1 up to the half, then falls to 0.
+    // The flat-top window is 1 up to half of its length, then falls to 0.
     let weight = |lag: usize| (2.0 * (1.0 - lag as f64 / window as f64)).clamp(0.0, 1.0);
     let weighted = |of: fn(f64) -> f64| {
         let both_sides: f64 = (1..=window).map(|lag| weight(lag) * of(lag as f64) * covariances[lag]).sum();
@@ -179,7 +178,6 @@ fn block_length(series: &[f64]) -> usize {
     if length.is_finite() { length.ceil().clamp(1.0, most) as usize } else { most as usize }
 }
 
-/// Returns the covariance between each value of a series and the value `lag` places later.
 fn covariance(series: &[f64], lag: usize) -> f64 {
     let mean = series.iter().sum::<f64>() / series.len() as f64;
     let products = series.iter().zip(&series[lag..]).map(|(one, later)| (one - mean) * (later - mean));
@@ -221,7 +219,7 @@ mod tests {
     /// the bootstrap cuts a series into blocks and loses the correlation between blocks. Here they are 6 % too small
     /// for phi = 0.3, and 12 % too small for phi = 0.8.
     #[test]
-    fn the_variance_of_the_mean_of_an_ar1_series_is_that_of_the_closed_form() {
+    fn the_variance_of_the_mean_of_an_ar1_series_equals_the_closed_form() {
         const N: usize = 2_000;
         const SERIES: u64 = 60;
         for phi in [0.0, 0.3, 0.8] {
@@ -235,10 +233,10 @@ mod tests {
     /// Tests the 95 % intervals of 200 correlated series (phi = 0.8). Intervals for independent values would be 3 times
     /// too narrow.
     #[test]
-    fn intervals_of_correlated_series_cover_the_true_mean_about_as_often_as_they_claim() {
+    fn intervals_of_correlated_series_cover_the_true_mean_at_their_confidence() {
         const SERIES: u64 = 200;
         let true_mean = 20.0;
-        // None for a series that seems to have fewer than ten blocks.
+        // The result is `None` for a series that seems to have fewer than ten blocks.
         let covers = |seed: u64| {
             let series: Vec<f64> = ar1(0.8, 600, mix(seed + 991)).iter().map(|x| x + true_mean).collect();
             let mean = series.iter().sum::<f64>() / series.len() as f64;
@@ -248,12 +246,12 @@ mod tests {
         let covering: Vec<bool> = (0..SERIES).filter_map(covers).collect();
         assert!(covering.len() as u64 > SERIES * 9 / 10, "{} of {SERIES} series have an interval", covering.len());
         let share = covering.iter().filter(|covers| **covers).count() as f64 / covering.len() as f64;
-        // Two standard errors of 200 draws are 0.03; a finite series loses some more.
+        // Two standard errors of 200 draws are 0.03. The bootstrap of a finite series covers a little less.
         assert!((0.87..=0.98).contains(&share), "{share}");
     }
 
     #[test]
-    fn blocks_are_longer_for_a_series_with_longer_memory() {
+    fn the_blocks_of_the_bootstrap_are_longer_for_a_series_with_longer_correlation() {
         let [short, long] =
             [0.0, 0.9].map(|phi| BlockBootstrap::of(&ar1(phi, 1_000, 5)).expect("long").size().block_fields);
         assert!(short <= 5 && long >= 3 * short, "{short}, {long}");

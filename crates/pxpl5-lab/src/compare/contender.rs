@@ -1,10 +1,10 @@
-//! The rows of a comparison: pipelines with settings, and the way in which each pipeline shows its pictures.
+//! The rows of a comparison: pipelines with settings.
 
 use pxpl5_measure::Showing;
 use pxpl5_run::Registry;
 use pxpl5_sim::parameters::SettingError;
 
-/// One row of a comparison: a pipeline, with the settings that differ from the shared settings.
+/// A pipeline, with the settings that differ from the shared settings of the comparison.
 #[derive(Clone, Debug)]
 pub(super) struct ComparedPipeline {
     pub(super) name: String,
@@ -13,17 +13,17 @@ pub(super) struct ComparedPipeline {
     pub(super) showing: Showing,
 }
 
-/// Settings with which Slats sends each clump (group of triangles) only to the regions that the clump touches. As
-/// published, every clump goes to all regions. The published rule limits the scene to little more than 100 triangles,
-/// too few to evaluate the raster offset.
+/// Settings with which Slats sends each clump only to the regions that the clump touches. The published rule, every
+/// clump to all regions, limits the scene to about 100 triangles. So few triangles cannot show the effect of a raster
+/// offset.
 const TOUCHED: &[(&str, &str)] = &[("binning", "touched")];
 
 /// Settings of [`TOUCHED`] with a raster offset: the display shifts each picture during the scan by the error of the
 /// predicted pose.
 const SHIFTED: &[(&str, &str)] = &[("binning", "touched"), ("head.raster", "vdrt")];
 
-/// Settings of [`TOUCHED`] without prediction. Instead, the video of the real world is delayed until the picture for
-/// the same instant is ready.
+/// Settings of [`TOUCHED`] without prediction. Instead, the video of the real world is delayed until the picture of the
+/// same instant is ready.
 const DELAYED: &[(&str, &str)] = &[("binning", "touched"), ("head.predict", "none")];
 
 impl ComparedPipeline {
@@ -41,15 +41,14 @@ impl ComparedPipeline {
     }
 }
 
-/// Name of the row in which the viewer sees delayed video of the world, and the error is measured against this video.
-/// This error cannot be ranked with the errors of other rows.
+/// Name of the row with delayed video of the real world. The error of this row is measured against the delayed video,
+/// so that it cannot be ranked with the errors of other rows.
 pub(super) const DELAYED_VIDEO: &str = "delayed-video";
 
-/// Choice of the rows (pipelines with settings) that a comparison runs.
+/// Choice of the rows of a comparison. A row is a pipeline with settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum RowChoice {
-    /// One or two rows for each family of pipelines ([`Registry::is_usual`]), and all rows that are variants of a
-    /// pipeline.
+    /// One or two rows for each family of pipelines ([`Registry::is_usual`]), and all rows with variants of a pipeline.
     #[default]
     Usual,
     /// All rows.
@@ -58,7 +57,7 @@ pub enum RowChoice {
     Named(Vec<String>),
 }
 
-/// Chooses the rows with these names, or the usual rows if there are no names.
+/// Chooses the rows with these names. An empty list chooses the usual rows.
 impl From<Vec<String>> for RowChoice {
     fn from(names: Vec<String>) -> Self {
         if names.is_empty() { Self::Usual } else { Self::Named(names) }
@@ -66,11 +65,7 @@ impl From<Vec<String>> for RowChoice {
 }
 
 impl RowChoice {
-    /// Returns the chosen rows, in the order of the registry.
-    ///
-    /// # Errors
-    ///
-    /// Returns a [`SettingError`] for the first name that no row has.
+    /// Returns the chosen rows in the order of the registry. Fails for a name that no row has.
     pub(super) fn of(&self, registry: &Registry) -> Result<Vec<ComparedPipeline>, SettingError> {
         let mut rows = compared_pipelines(registry);
         match self {
@@ -89,8 +84,8 @@ impl RowChoice {
     }
 }
 
-/// Returns a row for every compared pipeline of the registry, in the order of the registry. The variants of Slats
-/// (touched regions, raster offset, delayed video, ideal pictures) follow Slats.
+/// Returns a row for each compared pipeline, in the order of the registry. The variants of Slats (touched regions,
+/// raster offset, delayed video, ideal pictures) follow Slats.
 fn compared_pipelines(registry: &Registry) -> Vec<ComparedPipeline> {
     let mut all = Vec::new();
     for entry in registry.pipelines().iter().filter(|entry| entry.compared) {

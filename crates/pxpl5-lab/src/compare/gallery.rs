@@ -9,20 +9,19 @@ use pxpl5_wire::SurfaceId;
 /// Last picture of a run for the first eye, and the ideal picture of the same instant.
 #[derive(Clone, Debug)]
 pub struct LastPicture {
-    /// Picture that the eye sees, which may be incomplete.
+    /// Picture on the display, which may be incomplete.
     pub seen: RgbImage,
-    /// Ideal picture of the scene in the middle of the last display period, for the true pose of the head and with the
-    /// pipeline's shading. `None` if the display lit no pixel in the middle of the picture.
+    /// Ideal picture for the true pose of the head in the middle of the last display period, with the shading of the
+    /// pipeline. `None` if the middle of the displayed picture has no lit pixel.
     pub should_be: Option<RgbImage>,
-    /// True if the picture that the eye sees was complete in time.
+    /// True if the displayed picture was complete in time.
     pub is_complete: bool,
 }
 
-/// Display surface (first eye) whose picture is kept.
 const FIRST: SurfaceId = SurfaceId(0);
 
 impl LastPicture {
-    /// Returns the last picture of a run that computed pixels, or `None` if no picture was shown.
+    /// Returns the last picture of a run, or `None` if no picture was shown. The run must have computed pixels.
     pub(super) fn of(outcome: &Outcome, is_complete: bool) -> Option<Self> {
         let seen = outcome.picture(FIRST)?;
         let should_be = middle_of_last(outcome).and_then(|middle| outcome.ideal_picture(FIRST, middle));

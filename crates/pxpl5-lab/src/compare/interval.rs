@@ -10,11 +10,12 @@ use serde::{Deserialize, Serialize};
 pub enum IntervalMethod {
     /// No interval, because the runs are too few or too short.
     None,
-    /// Student's t over the means of the seeds.
+    /// Interval of Student's t distribution, computed from one mean for each seed.
     StudentT,
-    /// Student's t over the means of the seeds, with an interval for the logarithm of the mean (delta method).
+    /// Interval of Student's t distribution, computed from one mean for each seed, for the logarithm of the mean (delta
+    /// method).
     StudentTOfLogarithm,
-    /// Moving-block bootstrap over the fields of one motion ([`BlockBootstrap`](super::BlockBootstrap)).
+    /// Moving-block bootstrap over the fields of one motion of the head ([`BlockBootstrap`](super::BlockBootstrap)).
     MovingBlockBootstrap,
 }
 
@@ -37,7 +38,7 @@ impl IntervalMethod {
 /// A mean over seeds with its confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeanInterval {
-    /// Mean of the seeds' means. NaN if there are no seeds.
+    /// Mean over the means of all seeds. NaN if there are no seeds.
     #[serde(deserialize_with = "number_or_nan")]
     pub mean: f64,
     /// Lower end of the confidence interval. NaN without an interval.
@@ -102,8 +103,7 @@ impl MeanInterval {
     }
 }
 
-/// Returns the quantile of Student's t distribution for a two-sided interval. `freedom` is the number of degrees of
-/// freedom.
+/// Returns the quantile of Student's t distribution with `freedom` degrees of freedom, for a two-sided interval.
 fn quantile_of_t(freedom: usize, confidence: f64) -> f64 {
     StudentsT::ppf(0.5 + confidence / 2.0, freedom as f64)
 }
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_interval_of_five_means_is_that_of_the_tables() {
+    fn the_interval_of_five_means_follows_the_t_table() {
         // Mean 3, sample sd sqrt(2.5); t with 4 degrees of freedom is 2.776 (any table).
         let interval = MeanInterval::of_signed(&[1.0, 2.0, 3.0, 4.0, 5.0], CONFIDENCE);
         let half = 2.776_445 * 2.5f64.sqrt() / 5f64.sqrt();
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interval_of_a_quantity_that_was_zero_once_has_no_negative_end() {
+    fn an_interval_of_a_quantity_with_a_zero_has_no_negative_end() {
         let interval = MeanInterval::of(&[0.0, 10.0, 0.1], CONFIDENCE);
         assert!(interval.low == 0.0 && interval.high > 10.0, "{interval:?}");
     }

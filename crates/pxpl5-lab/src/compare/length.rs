@@ -1,4 +1,4 @@
-//! The number of display fields that each run of a comparison simulates if the head replays a recorded motion.
+//! The length of each run of a comparison, if the head replays a recorded motion.
 
 use super::query::CompareQuery;
 use crate::error::StudyError;
@@ -6,26 +6,24 @@ use crate::experiment_file::Plan;
 use pxpl5_sim::Time;
 use pxpl5_wire::NodeId;
 
-/// Length of the runs in which the head replays a recorded motion.
+/// Length of the runs if the head replays a recorded motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordedLength {
-    /// Number of whole display periods in the recording, which is the length of each run.
+    /// Number of whole display periods that the recording covers, which is the length of each run.
     pub fields: u64,
-    /// Number of fields in the settings, which is more than the recording covers. `None` if the settings state no
-    /// number of fields.
+    /// Number of fields in the settings, which is larger than `fields`. `None` if the settings state no number.
     pub asked: Option<u64>,
 }
 
-/// Number of display fields of each run if neither the settings nor a recording give a length: five seconds.
+/// Number of fields of each run if neither the settings nor a recording give a length: five seconds.
 const USUAL_FIELDS: i64 = 300;
 
 impl CompareQuery {
-    /// Sets the number of fields of the runs if the settings state no number. The number is the length of the recording
-    /// that the head replays, or five seconds without a recording.
+    /// Sets the number of fields of the runs. The settings may state this number. Otherwise the number comes from the
+    /// recording that the head replays, or covers five seconds.
     ///
-    /// If the settings state a number that is larger than the recording's length, the length replaces this number. The
-    /// larger number stays valid only if the head stands still after the last sample. A recording that is repeated
-    /// without end has no length.
+    /// If the stated number is larger than the recording, the length of the recording replaces it. The stated number
+    /// stays valid if the head stands still after the last sample, and if the recording is repeated without end.
     ///
     /// Returns the length if a recording has determined the number of fields.
     ///
@@ -47,9 +45,8 @@ impl CompareQuery {
     }
 }
 
-/// Returns the number of whole display periods in the recording that moves the head of a plan (checked experiment).
-/// Returns `None` if the motion is not a recording, if the recording is repeated without end, or if the display cannot
-/// be built.
+/// Returns the number of whole display periods in the recording that moves the head. Returns `None` if the motion is
+/// not a recording, if the recording is repeated without end, or if the display cannot be built.
 fn recorded_fields(plan: &Plan) -> Option<u64> {
     let head = plan.head.as_ref().filter(|head| head.is_recording())?.head();
     let ends = Time(head.motion().moves_until_ps()?);

@@ -1,5 +1,5 @@
-//! Pictures of a vertical edge while the head turns (pans). The pictures compare conventional and just-in-time pixels,
-//! as computed and as seen on the display.
+//! Pictures of a vertical edge while the head turns (pans), with conventional and with just-in-time pixels. The
+//! pictures are shown as computed and as seen on the display.
 
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgb, RgbImage};
@@ -15,10 +15,10 @@ use tracking::time::span_s;
 use tracking::tracker::TrackerConfig;
 use tracking::view::Hmd;
 
-/// The four pictures of one display field. Each has 640 x 240 pixels, with one row for each scanned line.
+/// Four pictures of one display field. Each has 640 x 240 pixels, with one row for each line of the field.
 #[derive(Clone, Debug)]
 pub struct EdgePictures {
-    /// Picture drawn for one instant. The edge is vertical.
+    /// Picture in which all lines are drawn for one instant. The edge is vertical.
     pub conventional: RgbImage,
     /// The conventional picture as seen by an eye that turns during the scan. The edge is slanted.
     pub conventional_seen: RgbImage,
@@ -28,10 +28,10 @@ pub struct EdgePictures {
     pub just_in_time_seen: RgbImage,
 }
 
-/// Number of the field that is drawn. By then the pipelines are full and the predictor has received many reports.
+/// Number of the field in the pictures. At this field, the pipelines are full and the predictor has received many
+/// reports.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
-/// Distance from the eye to the edge in metres.
 const DISTANCE_M: f32 = 2.0;
 
 /// Returns a scene with a white wall on the left of a vertical edge, and nothing on the right of the edge. The edge
@@ -80,7 +80,7 @@ pub fn edge_pictures(config: &MachineConfig, deg_per_s: f64) -> Result<EdgePictu
     Ok(EdgePictures { conventional, conventional_seen, just_in_time, just_in_time_seen })
 }
 
-/// Returns two pictures of a field: as the display scans the field, and as a turning eye sees the field.
+/// Returns two pictures of a field: as scanned by the display, and as seen by a turning eye.
 fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<(RgbImage, RgbImage), ExperimentError> {
     let video = FrameBufferConfig::NTSC.video.video().map_err(|e| ExperimentError::Scene(e.to_string()))?;
     // Start the pan so that the edge is in the middle of the screen in the middle of the field.
@@ -103,9 +103,9 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
     Ok((picture, seen))
 }
 
-/// Converts a scanned field to the picture that an eye sees while the eye turns with the head. The picture has one row
-/// for each line of the field. Each pixel moves to its position relative to the head at the instant when the middle of
-/// the field is lit. Pixels without content are black.
+/// Converts a scanned field to the picture that a turning eye sees, with one row for each line of the field. Each pixel
+/// moves to its position relative to the head at the instant at which the middle of the field is lit. Pixels without
+/// content are black.
 #[must_use]
 pub fn as_seen(picture: &RgbImage, field: PeriodNumber, video: &Video, motion: &dyn Motion) -> RgbImage {
     let view = Hmd::unc();

@@ -1,24 +1,25 @@
-//! The precision that a comparison requires, which is the greatest width of the interval of a mean error. The module
-//! also estimates the number of seeds that this precision needs.
+//! The precision that a comparison requires, and an estimate of the number of seeds for this precision. The precision
+//! is the greatest width of the confidence interval of a mean error.
 
 use super::interval::{IntervalMethod, MeanInterval};
 use pxpl5_sim::parameters::SettingError;
 use std::fmt;
 use std::str::FromStr;
 
-/// Greatest width of the interval of a mean error, from its lower to its upper end.
+/// Greatest width of the confidence interval of a mean error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Precision {
-    /// Width divided by the mean, above 0.
+    /// Width divided by the mean error, above 0.
     Share(f64),
     /// Width in pixels, above 0.
     Pixels(f64),
 }
 
-/// Goal of a comparison that adds seeds to a row until the interval of the row's mean error is narrow enough.
+/// Goal of a comparison that adds seeds to a row until the confidence interval of the row's mean error is narrow
+/// enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UntilPrecise {
-    /// Greatest width of the interval of the mean error.
+    /// Greatest width of the confidence interval of the mean error.
     pub width: Precision,
     /// Maximum number of seeds for each row of the comparison.
     pub max_seeds: usize,
@@ -29,17 +30,18 @@ pub const MAX_SEEDS: usize = 50;
 
 impl UntilPrecise {
     /// Returns true if the interval exists and is narrow enough. An interval over the fields of one seed does not
-    /// count, because such an interval leaves out the differences between motions.
+    /// count, because it leaves out the differences between motions of the head.
     #[must_use]
     pub fn is_reached(&self, error: &MeanInterval) -> bool {
         let is_over_seeds = error.method != IntervalMethod::MovingBlockBootstrap;
         is_over_seeds && error.width().is_some_and(|width| width <= self.greatest_width(error.mean))
     }
 
-    /// Returns the number of seeds to add to a row, and 0 if the interval is narrow enough or the maximum is reached.
+    /// Returns the number of seeds to add to a row. The number is 0 if the interval is narrow enough or `max_seeds` is
+    /// reached.
     ///
-    /// The width falls with the square root of the number of seeds. A step at most doubles the number, because the
-    /// first widths are uncertain.
+    /// The width falls with the square root of the number of seeds. A step at most doubles the number of seeds, because
+    /// the first widths are uncertain.
     #[must_use]
     pub fn seeds_to_add(&self, error: &MeanInterval, seeds: usize) -> usize {
         if self.is_reached(error) {
@@ -47,7 +49,7 @@ impl UntilPrecise {
         }
         let ratio = error.width().unwrap_or(f64::INFINITY) / self.greatest_width(error.mean);
         let needed = (seeds as f64 * ratio * ratio).ceil();
-        // A number that is too large for an integer, or NaN, is beyond the doubled number.
+        // NaN, or a number that is too large for an integer, counts as more than the doubled number of seeds.
         let needed = if needed <= 2.0 * seeds as f64 { needed as usize } else { 2 * seeds };
         needed.max(seeds + 1).min(self.max_seeds).saturating_sub(seeds)
     }
@@ -63,7 +65,7 @@ impl UntilPrecise {
 impl fmt::Display for Precision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            // Rounded, because 7 % as a share is a little more than 0.07.
+            // The percentage is rounded, because the number for 7 % is a little more than 0.07.
             Self::Share(share) => write!(f, "{}%", (share * 1e8).round() / 1e6),
             Self::Pixels(px) => write!(f, "{px}px"),
         }
@@ -97,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn the_width_is_that_of_the_whole_interval() {
+    fn the_precision_of_a_result_limits_the_whole_width_of_its_interval() {
         assert!(TENTH.is_reached(&error(0.5)) && !TENTH.is_reached(&error(0.51)));
         let pixels = UntilPrecise { width: Precision::Pixels(0.2), max_seeds: 50 };
         assert!(pixels.is_reached(&error(0.0999)) && !pixels.is_reached(&error(0.11)));
@@ -112,7 +114,7 @@ mod tests {
     /// Tests the number of further seeds. If an interval from 5 seeds is 1.2 times too wide, 1.44 times as many seeds
     /// are needed: 7.2, rounded up to 8.
     #[test]
-    fn seeds_grow_with_the_square_of_the_width_and_at_most_double() {
+    fn the_number_of_seeds_grows_with_the_square_of_the_width_and_at_most_doubles() {
         assert_eq!(TENTH.seeds_to_add(&error(0.6), 5), 3);
         assert_eq!(TENTH.seeds_to_add(&error(60.0), 5), 5);
         assert_eq!(TENTH.seeds_to_add(&error(60.0), 40), 10);

@@ -1,4 +1,4 @@
-//! Comparison of all predictors (none, velocity, acceleration, Kalman) on one experiment.
+//! Comparison of all predictors on one experiment.
 
 use super::row::PredictorMean;
 use crate::parallel;
@@ -13,26 +13,26 @@ use tracking::predict::{PredictorConfig, PredictorKind, Training};
 pub struct PredictorError {
     /// Predictor that extrapolates the tracker's reports.
     pub kind: PredictorKind,
-    /// Parameters of the predictor during the run. `None` if the run failed.
+    /// Parameters of the predictor in the run. `None` if the run failed.
     pub numbers: Option<PredictorConfig>,
-    /// Data on which the parameters were tuned. `None` if the settings state the parameters, or if the predictor is not
-    /// tuned.
+    /// Data on which the parameters were tuned. `None` if the settings state the parameters or the predictor needs no
+    /// tuning.
     pub training: Option<Training>,
-    /// Errors of position on the screen in pixels. `None` if no pixel was evaluated.
+    /// Pixel errors of the run. `None` if no pixel was evaluated.
     pub error: Option<PixelErrors>,
-    /// Reason why the predictor has no result in `error`. `None` if the predictor has a result.
+    /// Reason for a missing result. `None` if `error` has a result.
     pub failure: Option<String>,
 }
 
 /// Results of all predictors on one experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Predictors {
-    /// Predictor that the experiment selects.
+    /// Predictor in the settings of the experiment.
     pub chosen: PredictorKind,
-    /// Predictor with the smallest mean error. Among predictors with equal errors, the simplest one is best. `None` if
-    /// no error was evaluated.
+    /// Predictor with the smallest mean error. Among equal errors, the simplest predictor is the best. `None` if no
+    /// pixel was evaluated.
     pub best: Option<PredictorKind>,
-    /// Results of all predictors. The simplest predictor comes first.
+    /// Results of all predictors, with the simplest predictor first.
     pub each: Vec<PredictorError>,
 }
 
@@ -44,9 +44,9 @@ impl Predictors {
     }
 }
 
-/// Runs an experiment once with each predictor. All other settings stay the same. If the experiment's own predictor is
-/// tuned, all predictors are tuned for the pipeline's prediction interval and the motion. Returns `None` for an
-/// experiment without a head. No pixels are computed.
+/// Runs an experiment once with each predictor and without pixels. All other settings stay the same. If the
+/// experiment's own predictor is tuned, each predictor is tuned for the pipeline's prediction interval and the motion.
+/// Returns `None` for an experiment without a head.
 #[must_use]
 pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     let head = experiment.tracked_head()?;
@@ -59,7 +59,7 @@ pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
 }
 
 /// Returns the mean error of an experiment with each predictor. `of_chosen_px` is the mean error with the experiment's
-/// own predictor, known from an earlier run. The mean is NaN if no error was evaluated.
+/// own predictor from an earlier run. The mean is NaN if no pixel was evaluated.
 pub(super) fn predictor_means(experiment: &Experiment, showing: Showing, of_chosen_px: f64) -> Vec<PredictorMean> {
     let Some(head) = experiment.tracked_head() else { return Vec::new() };
     parallel::map(&PredictorKind::ALL, |kind| {

@@ -1,4 +1,4 @@
-//! The number of finished runs of a comparison, and the flag by which another thread stops the runs.
+//! Counter of the finished runs of a comparison, and the flag with which another thread stops the runs.
 
 use crate::error::StudyError;
 use crate::{StopFlag, Workstation};
@@ -6,11 +6,10 @@ use pxpl5_machine::PixelWorker;
 use pxpl5_run::Host;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Number of finished runs of a comparison, and number of all runs. The number of all runs grows when seeds are added.
+/// Number of finished runs and of all runs of a comparison. The number of all runs grows when seeds are added.
 pub(super) struct Progress<'a> {
     done: AtomicU64,
     all: AtomicU64,
-    /// Set when another thread has asked the comparison to stop.
     stop: &'a StopFlag,
     finished: &'a (dyn Fn(u64, u64) + Sync),
 }
@@ -29,23 +28,19 @@ impl<'a> Progress<'a> {
         (self.finished)(done, self.all.load(Ordering::Relaxed));
     }
 
-    /// Returns an error if another thread has stopped the comparison.
     pub(super) fn check_stopped(&self) -> Result<(), StudyError> {
         if self.stop.is_stopped() { Err(StudyError::Stopped) } else { Ok(()) }
     }
 
-    /// Returns the flag by which another thread stops the comparison.
     pub(super) fn stop_flag(&self) -> StopFlag {
         self.stop.clone()
     }
 
-    /// Returns a host on which the comparison's runs can be stopped.
     pub(super) fn host(&self) -> impl Host + use<> {
         StoppableWorkstation { workstation: Workstation::new(), stop: self.stop.clone() }
     }
 }
 
-/// A computer on which another thread can stop the runs of a comparison.
 #[derive(Debug)]
 struct StoppableWorkstation {
     workstation: Workstation,

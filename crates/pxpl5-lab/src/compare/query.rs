@@ -21,39 +21,40 @@ use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Maximum number of fields of a compared run: a little over an hour. The number is limited because a comparison keeps
-/// all observations of a run in memory to evaluate the errors of the run in several ways.
+/// Maximum number of fields of a compared run: a little over an hour. A comparison keeps all observations of a run in
+/// memory, because it evaluates the errors of the run in several ways.
 const MOST_FIELDS: u64 = 250_000;
 
-/// Maximum difference between the first evaluated display periods of two rows. A row with a larger difference starts
-/// late. The difference is allowed because due pictures can be several periods apart.
+/// Delay in display periods from which on the evaluation of a row counts as late. Smaller delays are normal, because
+/// due pictures can be several periods apart.
 const MOST_PERIODS_APART: u64 = 4;
 
 /// Minimum number of seeds for meaningful confidence intervals.
 pub const LEAST_SEEDS: usize = 5;
 
-/// A comparison to run, with the settings shared by all rows. Each row adds its pipeline and a few settings of its own.
+/// A comparison to run, with the settings that all rows share. Each row adds its pipeline and a few settings.
 #[derive(Clone, Debug)]
 pub struct CompareQuery {
     /// Machine, scene, head and number of fields, without a pipeline. The compared pipelines come from the registry of
-    /// the experiment file. If `head.motion` is `synthetic`, every seed has a different motion.
+    /// the experiment file. If `head.motion` is `synthetic`, each seed has a different motion.
     pub shared: ExperimentFile,
-    /// The rows (pipelines with settings) to run.
+    /// The rows to run, which are pipelines with settings.
     pub only: RowChoice,
-    /// Seeds of the random numbers of tracker, host and motion. Every row has one run for each seed.
+    /// Seeds of the random numbers of tracker, host and motion. Each row runs once for each seed.
     pub seeds: Vec<u64>,
     /// True if the comparison also searches for the largest number of triangles that each row can draw.
     pub limits: bool,
     /// True if the error of each row is split by its causes ([`ComparisonRow::causes`]). Each run is then evaluated
     /// once for each cause.
     pub causes: bool,
-    /// True if each row also runs with every other predictor ([`ComparisonRow::predictors`]).
+    /// True if each row also runs with all other predictors ([`ComparisonRow::predictors`]).
     pub predictors: bool,
     /// True if the runs of the first seed compute pixels, for [`ComparisonRow::picture`].
     pub pictures: bool,
     /// Confidence of all intervals, between 0 and 1; usually [`CONFIDENCE`](super::CONFIDENCE).
     pub confidence: f64,
-    /// Goal for which seeds are added to a row. `None` runs [`CompareQuery::seeds`] only.
+    /// Precision of the mean error, for which seeds are added to rows. `None` runs only the seeds in
+    /// [`CompareQuery::seeds`].
     pub until: Option<UntilPrecise>,
 }
 
@@ -72,28 +73,25 @@ pub struct Comparison {
     pub triangles: usize,
     /// Keys of the head's settings with their values.
     pub head: Vec<(String, String)>,
-    /// Numbers of the head-mounted display that the viewer wears.
+    /// Parameters of the head-mounted display.
     pub hmd: HmdConfig,
     /// Number of fields simulated for each seed.
     pub fields: u64,
-    /// Seeds of the runs. Every row ran at least once for each seed ([`ComparisonRow::seeds`]).
+    /// Seeds of the runs. Each row ran with all these seeds, and may have run with more ([`ComparisonRow::seeds`]).
     pub seeds: Vec<u64>,
     /// Confidence of all intervals, between 0 and 1.
     pub confidence: f64,
-    /// Greatest width of the intervals that the query asked for, such as `10%`. `None` if the query asked for no
-    /// precision.
+    /// Required width of the confidence intervals, such as `10%`. `None` if no width was required.
     pub until_precision: Option<String>,
-    /// Maximum number of seeds of a row. `None` if the query did not ask for a precision.
+    /// Maximum number of seeds of a row. `None` if no width of the intervals was required.
     pub max_seeds: Option<usize>,
-    /// First display period in which rows are evaluated. A row can begin a few periods later, with the first picture
-    /// that is due after this period. Rows that start up later are evaluated from a later period on
-    /// ([`ComparisonRow::window`]).
+    /// Earliest display period in which any row is evaluated. The evaluation of a row can begin later, because the
+    /// row's warm-up is longer or because its pictures are due only every few periods ([`ComparisonRow::window`]).
     pub evaluated_from: PeriodNumber,
-    /// Rows with the results of the compared pipelines, in the order of the registry.
+    /// One row for each compared pipeline, in the order of the registry.
     pub pipelines: Vec<ComparisonRow>,
 }
 
-/// Data that the runs of all rows of a comparison share.
 struct Common<'a> {
     scene: Arc<Scene>,
     tunings: Arc<Tunings>,
@@ -101,8 +99,8 @@ struct Common<'a> {
 }
 
 impl Common<'_> {
-    /// Returns the experiment of a plan (checked settings). The predictor's tuning is shared with all other rows, and
-    /// another thread can stop the run.
+    /// Returns the experiment for checked settings. All rows share the tuning of predictors. Another thread can stop
+    /// the run.
     fn experiment(&self, plan: &Plan) -> Experiment {
         let experiment = plan.experiment(Arc::clone(&self.scene)).host(self.progress.host());
         let head = experiment.tracked_head().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
@@ -114,8 +112,7 @@ impl Common<'_> {
 }
 
 impl CompareQuery {
-    /// Creates a comparison of the usual rows with [`LEAST_SEEDS`] seeds. `shared` has the settings that all rows
-    /// share.
+    /// Creates a comparison of the usual rows with [`LEAST_SEEDS`] seeds. All rows share the settings in `shared`.
     #[must_use]
     pub fn new(shared: ExperimentFile) -> Self {
         Self {
@@ -131,10 +128,10 @@ impl CompareQuery {
         }
     }
 
-    /// Runs every row with every seed. After each run, `finished` is called with the number of finished runs and the
-    /// number of all runs.
+    /// Runs each row with each seed. After each run, calls `finished` with the number of finished runs and the number
+    /// of all runs.
     ///
-    /// The result has a row for every pipeline. A pipeline may be unable to run on the machine, or show no picture of
+    /// The result has a row for each pipeline. A pipeline may be unable to run on the machine, or show no picture of
     /// the scene. Its row then holds the reason, and the number of triangles that the pipeline could draw.
     ///
     /// # Errors
@@ -144,8 +141,8 @@ impl CompareQuery {
         self.run_with(finished, |_| {})
     }
 
-    /// Runs every row with every seed, as [`CompareQuery::run`] does. `ended` is called with each row as soon as all
-    /// runs of this row have ended.
+    /// Runs each row with each seed, as [`CompareQuery::run`] does. Calls `ended` with each row after the last run of
+    /// the row.
     ///
     /// # Errors
     ///
@@ -158,8 +155,8 @@ impl CompareQuery {
         self.run_into(None, finished, ended)
     }
 
-    /// Runs every row that is not yet in `store`, the folder of finished rows. A row is stored as soon as all of its
-    /// runs have ended. `ended` is called with each new row after the row is stored.
+    /// Runs each row that is not yet in `store`, the folder of finished rows. Each row is stored after its last run.
+    /// Calls `ended` with each stored row.
     ///
     /// # Errors
     ///
@@ -173,8 +170,8 @@ impl CompareQuery {
         self.run_stoppable(store, &StopFlag::default(), finished, ended)
     }
 
-    /// Runs every row as [`CompareQuery::run_into`] does, until another thread sets `stop`. Runs in progress then
-    /// end after at most 60 fields, and their rows are not stored.
+    /// Runs each row as [`CompareQuery::run_into`] does, until another thread sets `stop`. Runs in progress then end
+    /// after at most 60 fields, and their rows are not stored.
     ///
     /// # Errors
     ///
@@ -194,7 +191,7 @@ impl CompareQuery {
         let missing = compared_pipelines.iter().filter(|contender| held(contender).is_none()).count();
         let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
         let progress = Progress::new((missing * runs_of_a_row) as u64, stop, &finished);
-        // No further row starts after one could not be stored.
+        // After a row could not be stored, no further row starts.
         let is_failed = AtomicBool::new(false);
         // Rows with the same head and prediction interval share the tuning of the predictor.
         let common = Common { scene, tunings: Arc::default(), progress };
@@ -247,15 +244,15 @@ impl CompareQuery {
         Ok(self.identity()?.1)
     }
 
-    /// Returns the plan (checked experiment) of the first row with the first seed, and the names of all rows.
+    /// Returns the checked settings of the first row with the first seed, and the names of all rows.
     pub(super) fn identity(&self) -> Result<(Plan, Vec<String>), StudyError> {
         let rows = self.compared_pipelines()?;
         let plan = self.any_plan(&rows)?;
         Ok((plan, rows.into_iter().map(|row| row.name).collect()))
     }
 
-    /// Returns the plan (checked experiment) of each row with the first seed, from which the cost of the comparison can
-    /// be estimated. Rows that cannot run are left out.
+    /// Returns the checked settings of each row with the first seed, for an estimate of the cost of the comparison.
+    /// Rows that cannot run are left out.
     ///
     /// # Errors
     ///
@@ -266,12 +263,11 @@ impl CompareQuery {
         Ok(compared_pipelines.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
     }
 
-    /// Returns the pipelines to compare, in the order of the registry.
     fn compared_pipelines(&self) -> Result<Vec<ComparedPipeline>, StudyError> {
         Ok(self.only.of(self.shared.registry())?)
     }
 
-    /// Returns the plan (checked experiment) of the first row with the first seed. The number of fields is not checked.
+    /// Returns the checked settings of the first row with the first seed. The number of fields is not checked.
     pub(super) fn first_plan(&self) -> Result<Plan, StudyError> {
         self.plan_of_first(&self.compared_pipelines()?)
     }
@@ -282,8 +278,8 @@ impl CompareQuery {
         Ok(first.plan(&self.shared, seed)?)
     }
 
-    /// Checks the settings that all rows share: the head, the seeds and the number of fields. Returns the plan (checked
-    /// experiment) of the first row with the first seed.
+    /// Checks the settings that all rows share: the head, the seeds and the number of fields. Returns the checked
+    /// settings of the first row with the first seed.
     fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, StudyError> {
         let plan = self.plan_of_first(compared_pipelines)?;
         if plan.head.is_none() {
@@ -301,8 +297,8 @@ impl CompareQuery {
         Ok(plan)
     }
 
-    /// Checks three conditions: all seeds differ, experiment files can hold all seeds, and the maximum number of seeds
-    /// is not below the number of seeds.
+    /// Checks that all seeds differ, that experiment files can hold all seeds, and that the maximum number of seeds is
+    /// not too small.
     fn check_seeds(&self) -> Result<(), StudyError> {
         let mut sorted = self.seeds.clone();
         sorted.sort_unstable();
@@ -322,8 +318,8 @@ impl CompareQuery {
         }
     }
 
-    /// Returns `more` new seeds for a row that has already run with `ran` seeds. The new seeds follow all seeds of the
-    /// row.
+    /// Returns `more` new seeds for a row that has already run with `ran` seeds. The new seeds are greater than all
+    /// seeds of the row.
     fn seeds_after(&self, ran: usize, more: usize) -> Vec<u64> {
         let greatest = self.seeds.iter().copied().max().unwrap_or_default();
         let added = (ran - self.seeds.len()) as u64;
@@ -346,8 +342,7 @@ impl CompareQuery {
         contender.trial(common.experiment(&plan).pixels(pixels), self.causes)
     }
 
-    /// Runs a row: once for each seed, then with more seeds while the interval of its mean is wider than the query
-    /// allows.
+    /// Runs a row with all seeds. Then adds seeds while the confidence interval of the mean error is too wide.
     fn row(&self, contender: &ComparedPipeline, common: &Common<'_>) -> Result<ComparisonRow, StudyError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
         let is_one_motion = !self.shared.has_motion_for_each_seed()?;
@@ -387,7 +382,7 @@ impl CompareQuery {
             row.triangles_possible = triangles.filter(|triangles| *triangles < CEILING);
         }
         let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
-        // A row that showed no picture explains the reason.
+        // If a row showed no picture, its failure states the reason.
         row.failure = error.or_else(|| (shown == 0 && !row.was_evaluated()).then(|| nothing_shown(&row, plan.fields)));
         Ok(row)
     }
@@ -399,7 +394,6 @@ impl ComparedPipeline {
     }
 }
 
-/// Returns the error message of a row that showed no picture in the evaluated part of the run.
 fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     let could = row
         .triangles_possible
@@ -412,7 +406,7 @@ fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     }
 }
 
-/// Returns, in words, the condition under which a number of triangles counts as drawn in time.
+/// Returns, in words, the criterion for drawing a number of triangles in time.
 fn definition(plan: &Plan) -> String {
     let goal = match plan.limit.goal {
         Goal::NoMissedRetrace => "with no retrace missed".to_owned(),
@@ -427,10 +421,10 @@ impl Comparison {
     ///
     /// Four kinds of rows are never the best:
     ///
-    /// - rows with pictures that were due and not shown
-    /// - the row `ideal`, which shows ideal pictures as a reference
-    /// - rows that were evaluated over later display periods than most rows
-    /// - the row of delayed video, whose error leaves out the delay of the world
+    /// - rows with due pictures that were not shown
+    /// - the row `ideal`, which shows ideal pictures for comparison
+    /// - rows whose evaluation begins later than that of most rows
+    /// - the row with delayed video, because its error leaves out the delay of the real world
     #[must_use]
     pub fn best(&self) -> Option<&ComparisonRow> {
         let evaluated =
@@ -447,7 +441,7 @@ impl Comparison {
         row.window.is_some_and(|window| window.first_period.0 >= self.evaluated_from.0 + MOST_PERIODS_APART)
     }
 
-    /// Returns the row that is named `pipeline`, or `None` if the comparison has no such row.
+    /// Returns the row with this name, if any.
     #[must_use]
     pub fn row(&self, pipeline: &str) -> Option<&ComparisonRow> {
         self.pipelines.iter().find(|row| row.pipeline == pipeline)

@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 impl CompareQuery {
-    /// Opens or creates the folder of finished rows. If `resume` is true, the rows are kept; else the rows of a
-    /// complete comparison are replaced.
+    /// Opens or creates the folder of finished rows. If `resume` is true, the finished rows are kept. Otherwise, the
+    /// rows of a complete comparison are deleted.
     ///
     /// # Errors
     ///
@@ -43,7 +43,7 @@ impl CompareQuery {
         put("until_precision", self.until.map_or_else(|| "none".to_owned(), |until| until.width.to_string()));
         put("max_seeds", self.until.map_or_else(|| "none".to_owned(), |until| until.max_seeds.to_string()));
         put("pictures", self.pictures.to_string());
-        // The scene itself, because a model can name further files.
+        // Hash the contents of the scene count, because the file of a model file can refer to other files.
         put("contents of the scene", Fingerprint::of_scene(&*plan.load_scene()?).to_string());
         for (name, contents) in inputs_of(&self.shared) {
             put(&format!("contents of {name}"), contents.to_string());

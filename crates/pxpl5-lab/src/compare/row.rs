@@ -17,8 +17,8 @@ use tracking::predict::PredictorKind;
 pub struct ErrorSpread {
     /// Mean distance of a pixel's content from its ideal position, in pixels.
     pub mean_px: MeanInterval,
-    /// Size of the moving-block bootstrap that gave the interval of `mean_px`. `None` if the interval has another
-    /// method.
+    /// Size of the moving-block bootstrap that gave the interval of `mean_px`. `None` if another method gave the
+    /// interval.
     pub bootstrap: Option<BootstrapSize>,
     /// Mean distance of a pixel's content from its ideal position, in degrees.
     pub mean_deg: MeanInterval,
@@ -31,22 +31,21 @@ pub struct ErrorSpread {
     pub distribution_px: Vec<f64>,
 }
 
-/// Contribution of one cause to the mean error on the screen.
+/// Contribution of one cause to the mean pixel error.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct CauseShare {
-    /// The cause of the error. `None` for the remainder, which is the interaction of all causes.
+    /// The cause of the error. `None` means the interaction of all causes.
     pub cause: Option<Cause>,
-    /// Contribution to the mean error in pixels, as a mean over seeds. Negative if the error is larger without the
-    /// cause.
+    /// Contribution in pixels, as a mean over the seeds. Negative if the error grows when the cause is turned off.
     pub px: MeanInterval,
 }
 
-/// Mean error of a comparison row when another predictor replaces the row's own predictor.
+/// Mean pixel error of a row in a run with a different predictor.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PredictorMean {
-    /// Predictor that replaced the row's own predictor.
+    /// Predictor that replaced the predictor of the row.
     pub kind: PredictorKind,
-    /// Mean error on the screen in pixels. NaN if no pixel was evaluated.
+    /// Mean pixel error. NaN if no pixel was evaluated.
     #[serde(deserialize_with = "number_or_nan")]
     pub mean_px: f64,
 }
@@ -58,28 +57,28 @@ pub struct ComparisonRow {
     pub pipeline: String,
     /// Settings that distinguish this row from other rows of the same pipeline.
     pub settings: String,
-    /// Number of eyes, each with its own frame buffer, that the pipeline draws for.
+    /// Number of eyes for which the pipeline draws pictures.
     pub eyes: usize,
-    /// Number of seeds with which the pipeline of this row ran.
+    /// Number of seeds with which this row ran.
     pub seeds: usize,
-    /// True if the interval of the mean error is as narrow as the query requires. `None` if the query requires no
-    /// width.
+    /// True if the confidence interval of the mean error is narrow enough. `None` if no width was required.
     pub is_precise: Option<bool>,
     /// Definition of the pipeline's latency, in words.
     pub latency_definition: String,
     /// Time in milliseconds from the start of TRANSFORM until the picture is shown, over the complete pictures of all
     /// seeds.
     pub latency_ms: Statistics,
-    /// Latency from the measured pose of the head until the display lights the picture's middle, in milliseconds. All
-    /// complete pictures of all seeds count. For pipelines that draw cube faces, only the position of the head counts.
+    /// Latency from the measured pose of the head until the display lights the middle of the picture, in milliseconds.
+    /// All complete pictures of all seeds count. For pipelines that draw cube faces, only the position of the head
+    /// counts.
     pub head_to_light_ms: Statistics,
-    /// Latency from the measured orientation of the head until the display lights the picture's middle, in
-    /// milliseconds. Cube faces are turned at scan-out with the newest orientation. Other pictures show the orientation
-    /// and the position of the same pose.
+    /// Latency from the measured orientation of the head until the display lights the middle of the picture, in
+    /// milliseconds. At scan-out, cube faces get the newest orientation. Other pictures show the orientation of the
+    /// pose that gave their position.
     pub turn_to_light_ms: Statistics,
-    /// Sum of two mean times in milliseconds, averaged over the seeds. The papers print the same sum. The first time
-    /// lasts from the measurement of a pose to the arrival of the tracker's report. The second time lasts from the
-    /// start of an eye's TRANSFORM to the swap.
+    /// Sum of two mean times in milliseconds, averaged over the seeds, as the papers print it. The first time lasts
+    /// from the measurement of a pose to the arrival of the tracker's report. The second time lasts from the start of
+    /// an eye's TRANSFORM to the swap.
     ///
     /// The sum is shorter than [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline,
     /// SEND, EDIT and the scan.
@@ -89,45 +88,43 @@ pub struct ComparisonRow {
     /// Prediction interval in milliseconds: from the newest measurement of the head to the instant for which a picture
     /// is drawn.
     pub prediction_interval_ms: Statistics,
-    /// Number of new complete pictures per second, averaged over the seeds with at least two pictures. NaN if no seed
-    /// has two.
+    /// Number of new complete pictures per second, averaged over the seeds with at least two pictures. NaN if there are
+    /// no such seeds.
     pub updates_hz: MeanInterval,
-    /// Number of pictures, over all seeds, that were due at a certain retrace. `None` if the pipeline has no such
-    /// deadlines.
+    /// Number of due pictures in all seeds. `None` if the pipeline's pictures have no deadlines.
     pub due: Option<u64>,
     /// Number of due pictures that were late, incomplete or missed. `None` if the pipeline's pictures have no
     /// deadlines.
     pub not_shown: Option<u64>,
     /// Number of regions in all seeds that arrived after their deadline. `None` if regions have no deadline.
     pub late_regions: Option<usize>,
-    /// Error of position on the screen, over a grid of pixels and all evaluated fields.
+    /// Pixel errors on a grid of pixels, over all evaluated fields.
     pub error: ErrorSpread,
     /// Display periods over which the run with the first seed was evaluated. `None` if there is no seed, or if the run
-    /// ended before the evaluation began.
+    /// was too short.
     pub window: Option<ResultWindow>,
-    /// Contributions of all causes to the mean error. The sum of all contributions is the mean error. Empty unless the
-    /// query asked for causes.
+    /// Contributions of all causes to the mean error. The mean error is the sum of all contributions. Empty if the
+    /// comparison did not include causes.
     pub causes: Vec<CauseShare>,
-    /// Mean error of the first seed with each predictor. Empty if the query did not ask for predictors. Also empty for
-    /// the row `ideal`, whose pictures no predictor changes.
+    /// Mean error of the first seed with each predictor. Empty if the comparison did not include predictors. Also empty
+    /// for the row `ideal`, because predictors do not change its pictures.
     pub predictors: Vec<PredictorMean>,
-    /// Largest number of triangles that meets the pipeline's own criterion. `None` if the query did not ask for a
-    /// search, if the search failed, or if the pipeline has no limit.
+    /// Largest number of triangles that satisfies the condition in `triangles_definition`. `None` without a search,
+    /// after a failed search, or if the pipeline has no limit.
     pub triangles_possible: Option<u32>,
-    /// True if the search found no limit: [`CEILING`](crate::limit::CEILING) triangles meet the criterion.
+    /// True if the search found no limit: [`CEILING`](crate::limit::CEILING) triangles satisfy the condition.
     pub has_no_limit: bool,
     /// Criterion of `triangles_possible`, in words.
     pub triangles_definition: String,
-    /// Reason for missing results, with the number of triangles that the pipeline could draw. `None` if all results are
-    /// present.
+    /// Reason for missing results, with the number of triangles that the pipeline could draw. `None` if no result is
+    /// missing.
     pub failure: Option<String>,
-    /// Time in seconds that the runs took on this computer.
+    /// Seconds that the runs took on this computer.
     pub host_seconds: f64,
-    /// Errors of position on the screen in the run with the first seed, for each display field.
+    /// Pixel errors of each display field in the run with the first seed.
     #[serde(skip)]
     pub by_field: Vec<FieldMisregistration>,
-    /// Last picture of the first seed for the first eye. `None` if the query did not ask for pictures, or no picture
-    /// was shown.
+    /// Last picture of the first seed for the first eye. `None` if no picture was kept or shown.
     #[serde(skip)]
     pub picture: Option<LastPicture>,
 }
@@ -206,17 +203,15 @@ impl ComparisonRow {
     }
 }
 
-/// Number and kind of the runs from which a row is computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sampling {
     pub(super) seeds: usize,
-    /// True if the head moves the same way for every seed, for example because the motion is a recording.
+    /// True if the head moves in the same way for each seed, for example because the motion is a recording.
     pub(super) is_one_motion: bool,
-    /// Confidence of all intervals, between 0 and 1.
     pub(super) confidence: f64,
 }
 
-/// Returns the sum of the values that are not `None`. Returns `None` if all values are `None`.
+/// Returns the sum of all values except `None`, or `None` if no other value exists.
 fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> {
     let mut known = values.flatten().peekable();
     known.peek().is_some().then(|| known.sum())
@@ -231,7 +226,7 @@ fn pooled(trials: &[&Trial], values: impl Fn(&Trial) -> &Vec<f64>) -> Statistics
     Statistics::of(trials.iter().flat_map(|trial| values(trial)).copied())
 }
 
-/// Returns the contributions of all causes to the mean error. The interaction of the causes comes last.
+/// Returns the contributions of all causes to the mean error, with the interaction of the causes last.
 fn causes(trials: &[&Trial], sampling: Sampling) -> Vec<CauseShare> {
     let interval = |px: &[f64]| {
         let interval = MeanInterval::of_signed(px, sampling.confidence);
@@ -259,8 +254,8 @@ fn causes(trials: &[&Trial], sampling: Sampling) -> Vec<CauseShare> {
 }
 
 impl ErrorSpread {
-    /// Combines the errors of all runs. Several motions give an interval over the seeds. One motion gives an interval
-    /// over time, because further seeds do not change the motion.
+    /// Combines the errors of all runs. Several motions give a confidence interval over the seeds. One motion gives an
+    /// interval over time, because a different seed would not change the motion.
     pub(super) fn of(trials: &[&Trial], sampling: Sampling) -> Self {
         let confidence = sampling.confidence;
         let evaluated: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.evaluated > 0).collect();
@@ -282,8 +277,8 @@ impl ErrorSpread {
         spread
     }
 
-    /// Replaces the interval of the mean by the interval of a bootstrap over the fields. The interval has no ends if
-    /// the run is too short for a bootstrap.
+    /// Replaces the interval of the mean by the interval of a bootstrap over the fields. A run that is too short for a
+    /// bootstrap gives no interval.
     fn bootstrap_over_time(&mut self, evaluated: &[&Trial], confidence: f64) {
         let mean = self.mean_px.mean;
         let bootstrap = BlockBootstrap::of(&mean_of_fields(evaluated));
@@ -296,7 +291,7 @@ impl ErrorSpread {
     }
 }
 
-/// Returns the mean error of each evaluated field in the order of time, averaged over the seeds.
+/// Returns the mean error of each evaluated field, averaged over the seeds, in the order of time.
 fn mean_of_fields(evaluated: &[&Trial]) -> Vec<f64> {
     let mut fields: BTreeMap<PeriodNumber, (f64, f64)> = BTreeMap::new();
     for field in evaluated.iter().flat_map(|trial| &trial.errors.by_field).filter(|field| field.mean_px.is_finite()) {
@@ -311,7 +306,7 @@ fn mean_of_fields(evaluated: &[&Trial]) -> Vec<f64> {
 /// that is at least as large as p % of all numbers.
 fn hundredths(sorted: &[f64]) -> Vec<f64> {
     let Some(least) = sorted.first() else { return Vec::new() };
-    // Position of the smallest number that the given percentage does not exceed.
+    // Position of the smallest number that is at least as large as `percent` % of all numbers.
     let place = |percent: usize| (sorted.len() * percent).div_ceil(100).max(1) - 1;
     std::iter::once(*least).chain((1..=100).map(|percent| sorted[place(percent)])).collect()
 }
@@ -321,7 +316,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hundredths_of_a_thousand_numbers_are_every_tenth() {
+    fn percentiles_of_a_thousand_numbers_are_every_tenth_number() {
         let sorted: Vec<f64> = (1..=1_000).map(f64::from).collect();
         let hundredths = hundredths(&sorted);
         assert_eq!((hundredths.len(), hundredths[0], hundredths[50], hundredths[100]), (101, 1.0, 500.0, 1_000.0));

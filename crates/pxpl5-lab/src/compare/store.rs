@@ -1,12 +1,12 @@
-//! The finished rows of a comparison in a folder, so that an interrupted comparison can go on.
+//! The finished rows of a comparison in a folder, so that an interrupted comparison can be resumed.
 //!
 //! ```text
-//!  rows/rows.jsonl    header, then one line for each finished row
-//!  rows/1-seen.png    last picture of the row in line 1 after the header, and the ideal picture
+//!   rows/rows.jsonl    header, then one line for each finished row
+//!   rows/1-seen.png    last picture of the row in line 1 after the header, and the ideal picture
 //! ```
 //!
-//! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. The
-//! incomplete line is removed, and only the row of this line is computed again.
+//! Each line is appended by one write. After a crash, the last line may be incomplete. The incomplete line is removed,
+//! and only its row is computed again.
 
 use super::gallery::LastPicture;
 use super::row::ComparisonRow;
@@ -25,17 +25,16 @@ use std::sync::{Mutex, PoisonError};
 /// Name and version of the JSON layout of the rows.
 pub const ROWS_SCHEMA: &str = "pxpl5-comparison-rows/1";
 
-/// Name of the folder with the finished rows, within the folder of a comparison.
+/// Name of the folder with the finished rows, inside the folder of a comparison.
 pub const ROWS_FOLDER: &str = "rows";
 
-/// Settings that identify a comparison, in the first line of the file with its rows.
+/// The first line of the file of finished rows, with the settings that identify a comparison.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Header {
     pub(super) schema: String,
-    /// Version of the program that wrote the rows.
     pub(super) version: String,
     pub(super) rows: Vec<String>,
-    /// Keys and options with their values, and the hashes of the files that the values name.
+    /// Keys and options with their values, and the hashes of files that appear as values.
     pub(super) settings: BTreeMap<String, String>,
     /// Hash of all effective settings of the first row, including the settings from presets.
     pub(super) config_hash: String,
@@ -46,7 +45,6 @@ pub(super) struct Header {
 struct Line {
     row: ComparisonRow,
     by_field: Vec<FieldMisregistration>,
-    /// Last picture of the row. The pictures themselves are in files.
     picture: Option<PictureFiles>,
 }
 
@@ -57,13 +55,10 @@ struct PictureFiles {
     is_complete: bool,
 }
 
-/// The file of finished rows, which is open for writing.
 #[derive(Debug)]
 struct Rows {
     file: File,
-    /// Number of finished rows in the file.
     count: usize,
-    /// Length of the file in bytes.
     end: u64,
 }
 
@@ -71,19 +66,17 @@ struct Rows {
 #[derive(Debug)]
 pub struct CompareStore {
     folder: PathBuf,
-    /// Rows that an earlier process has finished.
+    /// Finished rows of an earlier process.
     found: Vec<ComparisonRow>,
     rows: Mutex<Rows>,
-    /// Lock of the folder, which no other process can open while this object exists.
+    /// Lock of the folder. No other process can open the folder while this object exists.
     _lock: File,
 }
 
 impl CompareStore {
-    /// Opens or creates the folder of finished rows, as [`CompareQuery::open_store`](super::CompareQuery::open_store)
-    /// describes.
     pub(super) fn open(folder: &Path, header: &Header, resume: bool) -> Result<Self, StudyError> {
         fs::create_dir_all(folder).map_err(FileError::io(folder, "cannot be made"))?;
-        // The lock comes before any change to the folder.
+        // The folder is locked before any change.
         let lock = lock(folder)?;
         let path = folder.join(ROWS_FILE);
         let text = whole_lines(&path)?;
@@ -110,24 +103,23 @@ impl CompareStore {
         Ok(Self { folder: folder.to_owned(), found, rows: Mutex::new(rows), _lock: lock })
     }
 
-    /// Returns the number of rows that an earlier process has finished.
+    /// Returns the number of finished rows of an earlier process.
     #[must_use]
     pub const fn found(&self) -> usize {
         self.found.len()
     }
 
-    /// Returns the row with this name, if an earlier process has finished this row.
+    /// Returns the finished row of an earlier process with this name, if any.
     #[must_use]
     pub fn row(&self, name: &str) -> Option<&ComparisonRow> {
         self.found.iter().find(|row| row.pipeline == name)
     }
 
-    /// Appends a finished row. Returns the row as it is read back from the file, so that an interruption changes no
-    /// result.
+    /// Appends a finished row. Returns the row as read back from the file, so that an interruption changes no result.
     pub(super) fn append(&self, row: ComparisonRow) -> Result<ComparisonRow, StudyError> {
         let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
         let number = rows.count + 1;
-        // The pictures come first, because the line names them.
+        // The pictures are stored first, because the line of the row names them.
         let picture = row.picture.as_ref().map(|picture| self.put_picture(number, picture)).transpose()?;
         let text = line_of(&Line { by_field: row.by_field.clone(), picture, row });
         let path = self.folder.join(ROWS_FILE);
@@ -150,13 +142,12 @@ impl CompareStore {
 }
 
 impl Header {
-    /// Compares this header with the header of a file. Returns an error that names the first difference.
     fn check(&self, path: &Path, found: Option<&Self>) -> Result<(), StudyError> {
         let Some(found) = found.filter(|found| *found != self) else { return Ok(()) };
         let value = |header: &Self, key: &str| header.settings.get(key).map_or("not set", String::as_str).to_owned();
         let keys = self.settings.keys().chain(found.settings.keys());
         let settings = keys.map(|key| (key.as_str(), value(self, key), value(found, key)));
-        // The hash comes last, because the name of a key is more helpful in an error.
+        // The hash is compared last, because an error with the name of a key is more helpful.
         let pairs = [
             ("schema", self.schema.clone(), found.schema.clone()),
             ("version", self.version.clone(), found.version.clone()),
@@ -176,7 +167,6 @@ impl Header {
 }
 
 impl Line {
-    /// Returns the row with its pictures, which are read from the folder.
     fn row_in(self, folder: &Path) -> Result<ComparisonRow, StudyError> {
         let read = |name: &String| {
             let path = folder.join(name);
@@ -210,10 +200,10 @@ fn parsed<T: serde::de::DeserializeOwned>(path: &Path, line: usize, text: &[u8])
 }
 
 impl Rows {
-    /// Appends a line. A line that cannot be written completely is removed, so that all earlier lines stay readable.
+    /// Appends a line. An incompletely written line is removed, so that all earlier lines stay readable.
     fn put(&mut self, path: &Path, line: &str) -> Result<(), StudyError> {
         if let Err(error) = self.file.write_all(line.as_bytes()) {
-            // The first error is the one to report.
+            // Only the first error is reported.
             let _ = self.file.set_len(self.end);
             return Err(FileError::io(path, "cannot be written")(error).into());
         }

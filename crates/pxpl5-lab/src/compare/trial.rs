@@ -1,4 +1,4 @@
-//! One run of a compared pipeline, with one seed.
+//! One run of a compared pipeline with one seed.
 
 use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
@@ -29,13 +29,12 @@ pub(super) struct Trial {
     pub(super) late_regions: usize,
     pub(super) host_seconds: f64,
     pub(super) dry_run: Option<Arc<DryRun>>,
-    /// Last picture of the run, if the run computed pixels and showed a picture.
+    /// Last picture of the run. `None` if the run computed no pixels or showed no picture.
     pub(super) picture: Option<LastPicture>,
 }
 
 impl ComparedPipeline {
-    /// Returns the plan (checked experiment) of one run, from the shared settings, the settings of this row, and a
-    /// seed.
+    /// Returns the checked settings of one run, from the shared settings, the settings of this row, and a seed.
     pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, SettingError> {
         let mut file = shared.clone();
         file.set("pipeline", self.pipeline, "compare")?;
@@ -45,7 +44,7 @@ impl ComparedPipeline {
         file.resolve_for(seed)
     }
 
-    /// Runs one experiment of the row. `causes` is true if the error is split by its causes. Returns an error as text.
+    /// Runs one experiment of the row. If `causes` is true, the error is split by its causes.
     pub(super) fn trial(&self, experiment: Experiment, causes: bool) -> Result<Trial, String> {
         let from = common_window_from(experiment.length());
         let outcome =
@@ -54,10 +53,11 @@ impl ComparedPipeline {
     }
 }
 
-/// Returns the first display period in which the rows of a comparison are evaluated. `fields` is the length of each
-/// run. This period comes after a quarter of the run and after the warm-up.
+/// Returns the earliest evaluated display period of runs with `fields` fields. This period comes after a quarter of the
+/// run and after the shortest warm-up.
 ///
-/// All rows are thus evaluated over the same periods, although some pipelines start up later than others.
+/// Most rows are thus evaluated over the same periods. A pipeline with a longer warm-up is evaluated from a later
+/// period.
 pub(super) fn common_window_from(fields: u64) -> PeriodNumber {
     PeriodNumber(WARM_UP_PERIODS.max(fields / 4))
 }
@@ -94,9 +94,9 @@ fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.complete_pictures().map(|times| (times.shown_at - times.transform_at).as_ms()).collect()
 }
 
-/// Returns the times from the measurement of an orientation until its picture is displayed, in milliseconds. For cube
-/// faces, this orientation is chosen at scan-out. Any other picture shows the orientation of the pose for which the
-/// picture was drawn.
+/// Returns the times from the measurement of an orientation until its picture is displayed, in milliseconds. Cube faces
+/// get the newest orientation at scan-out. All other pictures have the orientation of the pose for which they were
+/// drawn.
 fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     if outcome.pipeline().coverage() == Coverage::View {
         return Budget::totals_ms(outcome);
@@ -104,8 +104,8 @@ fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()
 }
 
-/// Returns the prediction intervals in milliseconds. Each interval begins at the newest measurement from which a head
-/// pose was predicted. The interval ends at the instant for which the picture with this pose is drawn.
+/// Returns the prediction intervals in milliseconds. Each interval begins at the newest measurement before the
+/// prediction of a head pose. The interval ends at the instant for which the picture with this pose is drawn.
 fn prediction_intervals_ms(outcome: &Outcome) -> Vec<f64> {
     let Some(head) = outcome.head() else { return Vec::new() };
     // Only views whose pictures were shown completely count.

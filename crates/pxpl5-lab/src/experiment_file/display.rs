@@ -1,4 +1,4 @@
-//! The display in an experiment file: a preset by name, and parameters that change the preset.
+//! Reader of the display in an experiment file: a preset, and parameters that change the preset.
 
 use super::read::wrong;
 use super::{ExperimentFile, Setting};
@@ -7,15 +7,15 @@ use pxpl5_run::DisplayEntry;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, ParameterTable, SettingError, Value as Number};
 use pxpl5_wire::display::DisplayConfig;
 
-/// Name of the display that the experiment uses if the file sets display parameters but names no display.
+/// Name of the display for a file that sets display parameters but names no display.
 const OWN: &str = "panel";
 
-/// A display parameter in an experiment file. The parameter has one name in the file (the last part of the key) and
-/// another name in the display's table of parameters (`parameter`).
+/// A display parameter. Its name in the file is the last part of the key. Its name in the display's table of parameters
+/// is `parameter`.
 struct NumberKey {
     key: Key,
     parameter: &'static str,
-    /// Value in the display's table for a value of 1 in the file.
+    /// Factor that converts a value in the file to the unit of the display's table.
     per_unit: f64,
 }
 
@@ -24,7 +24,7 @@ const fn number(name: &'static str, unit: &'static str, about: &'static str, par
     NumberKey { key: Key { unit, ..Key::new(name, about, KeyValues::NUMBER) }, parameter, per_unit: 1.0 }
 }
 
-/// Creates a key with names. The first name stands for 0 in the display's table, the second for 1, and so on.
+/// Creates a key with names. The first name means 0 in the display's table, the second name means 1, and so on.
 const fn choice(name: &'static str, about: &'static str, values: KeyValues, parameter: &'static str) -> NumberKey {
     NumberKey { key: Key::new(name, about, values), parameter, per_unit: 1.0 }
 }
@@ -81,25 +81,22 @@ impl NumberKey {
         info.map_or(KeyValues::NUMBER, |info| KeyValues::Real(in_file(info.limits.0), in_file(info.limits.1)))
     }
 
-    /// Returns the key with the range of a display's table.
     fn with_limits(&self, table: &dyn ParameterTable) -> Key {
         let is_number = matches!(self.key.values, KeyValues::Real(..));
         Key { values: if is_number { self.limits(table) } else { self.key.values }, ..self.key }
     }
 }
 
-/// Returns the key of every display parameter with its description. The ranges are the ranges of the display `panel`.
+/// Returns each display parameter's key and description, with the ranges of the display `panel`.
 pub(super) fn keys() -> impl Iterator<Item = (&'static str, String)> {
     KEYS.iter().map(|key| (key.key.name, key.with_limits(&PanelConfig::PAPERS).help()))
 }
 
-/// Returns the unit of a display parameter, or `None` if the key is no display parameter.
 pub(super) fn unit_of(name: &str) -> Option<&'static str> {
     KEYS.iter().find(|key| key.key.name == name).map(|key| key.key.unit)
 }
 
-/// Reads the display of an experiment and its parameters. Returns `None` if the file names no display and sets no
-/// display parameter.
+/// Reads the display and its parameters. Returns `None` if the file names no display and sets no display parameter.
 pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig>>, SettingError> {
     let displays: Vec<(&str, &DisplayEntry)> =
         file.registry().displays().iter().map(|entry| (entry.name, entry)).collect();
@@ -112,7 +109,7 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
         set(file, config.as_mut(), key, setting)?;
     }
     if let (Err(error), Some(first)) = (config.check(), given.first()) {
-        // The message names the number of the table; the place is the place of the key that sets this number.
+        // The message names the number in the table. The place is the place of the key that sets this number.
         let name = error.name.rsplit('.').next().unwrap_or_default();
         let (key, setting) = given.iter().find(|(key, _)| key.parameter == name).unwrap_or(first);
         return Err(error.at(setting.place_of(key.key.name)));
@@ -120,7 +117,6 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
     Ok(Some(config))
 }
 
-/// Sets one parameter of the display to the value in the experiment file.
 fn set(
     file: &ExperimentFile,
     config: &mut dyn DisplayConfig,
@@ -148,7 +144,6 @@ fn set(
     if let Some(Ok(())) = set { Ok(()) } else { Err(wrong(name, setting, &expected())) }
 }
 
-/// Returns the position of a name among the names that a key allows.
 fn position(values: KeyValues, found: &str) -> usize {
     let KeyValues::Names(names) = values else { return 0 };
     names.iter().position(|name| *name == found).unwrap_or_default()

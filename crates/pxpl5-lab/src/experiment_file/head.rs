@@ -1,5 +1,5 @@
-//! The tracked head of an experiment: its motion, tracker, predictor and raster. The raster is the correction that the
-//! display applies to pictures during the scan.
+//! Reader of the tracked head: its motion, tracker, predictor and raster. The raster is the correction that the display
+//! applies to pictures during the scan.
 
 use super::read::{beside, plain, wrong};
 use super::scene::SceneChoice;
@@ -36,8 +36,8 @@ const TRACKER: &str = "optical";
 const PREDICT: &str = "kalman";
 
 impl HeadChoice {
-    /// Reads the settings of an experiment's head, and the recording of its motion if there is one. Returns `None` if
-    /// no `head.` or `tracking.` key is set.
+    /// Reads the settings of the head, and the recording of its motion if there is one. Returns `None` if no `head.` or
+    /// `tracking.` key is set.
     pub(super) fn read(
         file: &ExperimentFile,
         pipeline: &dyn Pipeline,
@@ -76,8 +76,8 @@ impl HeadChoice {
         Ok(Some(Self { motion: motion_name, replay, tracker: tracker_name, predict, numbers, head: Arc::new(head) }))
     }
 
-    /// Returns `None` for an experiment without a head motion. Returns an error if a `head.` or `tracking.` key is set
-    /// in such an experiment.
+    /// Returns `None` for an experiment without a head motion. Returns an error if such an experiment sets a `head.` or
+    /// `tracking.` key.
     fn none(file: &ExperimentFile) -> Result<Option<Self>, SettingError> {
         let of_head = file.settings.keys().any(|path| {
             path.starts_with("tracking.") || path.starts_with("head.") && !motion::KEYS.contains(&path.as_str())
@@ -86,7 +86,7 @@ impl HeadChoice {
         if of_head { Err(SettingError::missing("head.motion", how)) } else { Ok(None) }
     }
 
-    /// Returns the head with its tracker and predictor. All runs of one checked experiment share this head.
+    /// Returns the head with its tracker and predictor, which all runs of this experiment share.
     #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)
@@ -98,12 +98,11 @@ impl HeadChoice {
         is_recording(&self.motion)
     }
 
-    /// Returns the warnings about the recording of the head's motion.
     pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
         self.head.motion().warnings().into_iter().map(|warning| format!("{}: {warning}", self.motion))
     }
 
-    /// Returns the parameters of the tracker, the host's port and the predictor.
+    /// Returns the parameters of the tracker, the host's serial port and the predictor.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         self.numbers.clone()
@@ -137,10 +136,10 @@ impl HeadChoice {
     }
 }
 
-/// Prefix of the keys that assign the columns of a recording's file.
+/// Prefix of the keys that name the columns of a recording's file.
 pub(super) const COLUMNS: &str = "head.columns.";
 
-/// Builds the head motion that is called `name`. The motion `walk` follows the path of the scene.
+/// Builds the head motion `name`. The motion `walk` follows the path of the scene.
 fn moving(
     file: &ExperimentFile,
     name: &str,
@@ -158,7 +157,7 @@ fn moving(
     Ok(Arc::new(walk(name, &path).map_err(|error| refused(file, "head.motion", &error))?))
 }
 
-/// Reads the options for replaying a recording: columns, axes and the behaviour at its end.
+/// Reads how a recording is replayed: its columns, its axes and the behaviour at its end.
 fn replay(file: &ExperimentFile) -> Result<Replay, SettingError> {
     let mut columns = Columns::default();
     for (path, setting) in &file.settings {
@@ -170,7 +169,6 @@ fn replay(file: &ExperimentFile) -> Result<Replay, SettingError> {
     Ok(Replay { format, end: file.choice("head.end", &End::NAMES)?.unwrap_or_default() })
 }
 
-/// Returns an error if a key for recordings is set but the motion is not a recording.
 fn refuse_recording_keys(file: &ExperimentFile, motion: &str) -> Result<(), SettingError> {
     let is_of_recordings = |path: &str| ["head.end", "head.axes"].contains(&path) || path.starts_with(COLUMNS);
     match file.settings.iter().find(|(path, _)| is_of_recordings(path) && !is_recording(motion)) {
@@ -179,7 +177,7 @@ fn refuse_recording_keys(file: &ExperimentFile, motion: &str) -> Result<(), Sett
     }
 }
 
-/// Parameters of the predictor that automatic tuning determines.
+/// Parameters of the predictor whose values come from automatic tuning.
 const TUNED: [&str; 7] = [
     "position_jerk",
     "orientation_jerk",
@@ -191,7 +189,7 @@ const TUNED: [&str; 7] = [
 ];
 
 /// Returns true if the predictor is tuned automatically. Tuning starts from the values of `tracking.filter`. Without
-/// `head.filter`, the predictor is tuned unless one of the [`TUNED`] parameters is set.
+/// `head.filter`, the predictor is tuned unless a parameter in [`TUNED`] is set.
 fn is_tuned(file: &ExperimentFile) -> Result<bool, SettingError> {
     let is_given = |name: &str| file.get(&format!("tracking.filter.{name}")).is_some();
     let choice = file.choice("head.filter", &[("tuned", true), ("given", false)])?;

@@ -1,5 +1,3 @@
-//! The head-mounted display of an experiment: its optics and the viewer's eyes.
-
 use super::ExperimentFile;
 use super::read::{not_applicable, wrong};
 use pxpl5_run::{Coverage, Pipeline};
@@ -7,10 +5,10 @@ use pxpl5_scene::{Hmd, HmdConfig};
 use pxpl5_sim::parameters::{Key, KeyValues, SettingError};
 use toml::Value;
 
-/// A parameter of the head-mounted display: its key, and the functions that set and return its value.
+/// A parameter's key, and the functions that set and return its value.
 type Number = (Key, fn(&mut HmdConfig, f64), fn(&HmdConfig) -> f64);
 
-/// Keys of the head-mounted display's parameters. Infinite convergence stands for parallel axes.
+/// Keys of the head-mounted display. An infinite convergence means parallel axes.
 pub(super) const KEYS: [Number; 6] = [
     (
         Key {
@@ -92,12 +90,8 @@ const FAR: &str = "hmd.far";
 const CONVERGENCE: &str = "hmd.convergence";
 const LENS: &str = "hmd.lens";
 
-/// Reads the parameters of the head-mounted display.
-///
-/// # Errors
-///
-/// Fails if a value is out of range. Also fails for a pipeline that draws cube faces around the head, because the
-/// optics of such a display are among that display's own parameters.
+/// Reads the parameters of the head-mounted display. Fails for a pipeline that draws cube faces around the head,
+/// because such a display has optics of its own.
 pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd, SettingError> {
     let mut config = HmdConfig::unc();
     for (key, set, _) in KEYS {

@@ -13,7 +13,7 @@ use tracking::motion::{Axes, Columns, End};
 /// A key of an experiment file, with an explanation for the user.
 #[derive(Clone, Debug)]
 pub struct FileKey {
-    /// Path of the key, as written before the equals sign: `head.path`.
+    /// Path of the key in an experiment file, such as `head.path`.
     pub path: String,
     /// Meaning and valid values of the key, for the user.
     pub about: String,
@@ -209,13 +209,11 @@ const COMMON: &[Key] = &[
     Key::new("published.value", "published value of the quantity", KeyValues::NUMBER),
 ];
 
-/// Returns the key with a name, among the keys that exist for every registry.
 pub(super) fn common(name: &str) -> Option<&'static Key> {
     COMMON.iter().chain(hmd::KEYS.iter().map(|(key, ..)| key)).find(|key| key.name == name)
 }
 
 impl ExperimentFile {
-    /// Returns the value of a key that exists for every registry.
     fn common(&self, name: &str) -> Result<Option<KeyValue>, SettingError> {
         common(name).map_or(Ok(None), |key| self.value(key))
     }
@@ -233,7 +231,7 @@ impl ExperimentFile {
     }
 }
 
-/// Former names of keys, each with the current name. The next version accepts the current names only.
+/// Former and current names of keys. The next version accepts only the current names.
 const RENAMED: [(&str, &str); 6] = [
     ("head.display", "head.raster"),
     ("head.judge_at", "head.evaluate_at"),
@@ -243,13 +241,12 @@ const RENAMED: [(&str, &str); 6] = [
     ("motion.deg_per_s", "head.deg_per_s"),
 ];
 
-/// Returns the current name of a key.
 pub(super) fn renamed(path: &str) -> &str {
     RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now)
 }
 
-/// Returns all keys except the keys of the machine's parameters. A parameter's key is `machine.` followed by a path of
-/// [`MachineConfig::set`].
+/// Returns all keys except those of machine parameters. The key of a machine parameter is `machine.` followed by a path
+/// of [`MachineConfig::set`].
 #[must_use]
 pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
     let pipelines: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();
@@ -272,8 +269,7 @@ pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
     all
 }
 
-/// Returns the full path of a key, or `None` for an unknown key. The prefix `machine.` is optional for a parameter of
-/// the machine.
+/// Returns the full path of a key, or `None` for an unknown key. The prefix `machine.` is optional.
 pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
     // A table `[display]` names its display with the key `preset`. Former names of keys are still accepted.
     let path = if path == "display.preset" { "display" } else { renamed(path) };
@@ -284,26 +280,25 @@ pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
     is_machine_parameter(registry, &long).then_some(long)
 }
 
-/// Returns true if the path is a key but not a parameter of the machine.
 fn is_key(registry: &Registry, path: &str) -> bool {
     common(path).is_some() || keys(registry).iter().any(|key| key.path == path)
 }
 
-/// Returns true if the path is a parameter of a machine with any display of the registry.
+/// Returns true if the path is a machine parameter with any display of the registry.
 fn is_machine_parameter(registry: &Registry, path: &str) -> bool {
     let Some(path) = path.strip_prefix("machine.") else { return false };
     parameters(registry).iter().any(|known| known == path)
 }
 
-/// Returns the paths of all parameters of a machine with every registered display.
+/// Returns the paths of all machine parameters with all displays of the registry.
 fn parameters(registry: &Registry) -> Vec<String> {
     let all_displays = registry.displays().iter().map(|entry| (entry.config)()).collect();
     let machine = MachineConfig { displays: all_displays, ..registry.machine_of(MachineConfig::small_hmd()) };
     machine.settings().into_iter().map(|(path, _)| path).collect()
 }
 
-/// Creates the error of an invalid path, with the most similar valid path. For a parameter of the machine, the
-/// prefix `machine.` is added only if the invalid path is closer to that form.
+/// Creates the error of an invalid path, with the most similar valid path. The suggestion has the prefix `machine.`
+/// only if the invalid path is closer to that form.
 pub(super) fn unknown(registry: &Registry, found: &str) -> SettingError {
     let parameters = parameters(registry);
     let long = parameters.iter().map(|path| format!("machine.{path}"));

@@ -11,7 +11,7 @@ use toml::Value;
 /// A path of the head relative to the scene's centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PathChoice {
-    /// The scene's own path.
+    /// The path that belongs to the scene.
     #[default]
     Scene,
     /// The head stands still in front of the scene.
@@ -42,13 +42,13 @@ pxpl5_sim::parameters::named!(PathChoice, "path of the head", PathChoice::ALL);
 pub struct MotionChoice {
     /// Path of the head.
     pub path: PathChoice,
-    /// Distance from the scene's centre in metres, for the paths still, look and orbit. `None` fits the scene into the
-    /// view.
+    /// Distance from the scene's centre in metres, for the paths still, look and orbit. `None` means the distance at
+    /// which the scene fits into the view.
     pub distance: Option<f64>,
-    /// Rate of the turn in degrees per second, for the paths orbit and pan. `None` for the mean of recorded head
-    /// motion.
+    /// Rate of the turn in degrees per second, for the paths orbit and pan. `None` means the mean rate of recorded head
+    /// motions.
     pub deg_per_s: Option<f64>,
-    /// Scale factor of the head's random sway, 0 to 10. `None` for the default of the path.
+    /// Factor on the head's random sway, 0 to 10. `None` means the default of the path.
     pub sway: Option<f64>,
 }
 
@@ -57,7 +57,7 @@ const DISTANCE: &str = "head.distance";
 const RATE: &str = "head.deg_per_s";
 const SWAY: &str = "head.sway";
 
-/// Keys of the motion in front of the scene. Unlike the other keys of the table `head`, they need no tracked head.
+/// Keys of the motion in front of the scene. All other keys of the table `head` need a tracked head.
 pub(super) const KEYS: [&str; 4] = [PATH, DISTANCE, RATE, SWAY];
 
 impl MotionChoice {
@@ -75,7 +75,6 @@ impl MotionChoice {
         Ok(Self { path, distance: file.number(DISTANCE)?, deg_per_s, sway: file.number(SWAY)? })
     }
 
-    /// Returns the keys with their values. Keys without a value are left out.
     pub(super) fn settings(&self) -> Vec<(&'static str, Value)> {
         let Self { path, distance, deg_per_s, sway } = *self;
         let numbers = [(DISTANCE, distance), (RATE, deg_per_s), (SWAY, sway)];
@@ -83,10 +82,9 @@ impl MotionChoice {
         std::iter::once((PATH, path.to_string().into())).chain(numbers).collect()
     }
 
-    /// Returns the head motion in front of a scene.
     pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, SettingError> {
         let own = scene.motion();
-        // A replaced path loses the scene's own sway.
+        // If the path is replaced, the scene's own sway has no effect.
         let usual = match self.path {
             PathChoice::Scene => own.sway().scale,
             PathChoice::Look => 1.0,

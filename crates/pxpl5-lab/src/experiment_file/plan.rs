@@ -1,4 +1,4 @@
-//! The plan of one experiment: all settings, with values that were checked together.
+//! The plan of one experiment: all settings, after defaults and checks.
 
 use super::head::HeadChoice;
 use super::hmd;
@@ -32,11 +32,11 @@ pub struct Outputs {
 /// A published figure that the experiment reproduces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Published {
-    /// Number of the published figure in the paper. `None` if the paper does not number the figure.
+    /// Number of the figure in the paper. `None` if the paper does not number the figure.
     pub figure: Option<u64>,
     /// Short name of the paper that prints the figure.
     pub source: Option<String>,
-    /// Quantity that the figure states.
+    /// Quantity of the printed value.
     pub quantity: Measure,
     /// Printed value, in the unit of the quantity.
     pub value: f64,
@@ -60,40 +60,40 @@ fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, Sett
     })
 }
 
-/// A checked experiment, in which every setting has a value and no two settings contradict each other.
+/// The settings of an experiment after defaults and checks. No two settings contradict each other.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Title of the experiment in one line, for the user.
+    /// Title of the experiment in one line.
     pub title: Option<String>,
     /// Registry of the pipelines and displays that the experiment can name.
     pub registry: Arc<Registry>,
-    /// Pipeline, built with the values of the pipeline's keys in the file.
+    /// Pipeline with the values of its keys.
     pub pipeline: Arc<dyn Pipeline>,
-    /// Criterion for searching the largest number of triangles that are drawn in time.
+    /// Criterion of a search for the largest number of triangles that are drawn in time.
     pub limit: LimitCriterion,
-    /// Machine: a preset, adapted by the pipeline, with the parameters of the file.
+    /// Machine: a preset, adapted to the pipeline, with the parameters in the file.
     pub machine: MachineConfig,
-    /// Scene by name and settings. The scene itself is not yet loaded.
+    /// Scene by name and settings, not yet loaded.
     pub scene: SceneChoice,
-    /// Number of display fields to simulate; default 120.
+    /// Number of simulated display fields; default 120.
     pub fields: u64,
     /// Seed of the random head motion; default 1.
     pub seed: u64,
-    /// Level of modelling; default transaction.
+    /// Level of detail; default transaction.
     pub level: Level,
-    /// Head with its tracker. `None` if the head follows the scene's own motion, without tracking delay.
+    /// Tracked head. `None` if the head follows the scene's own motion without delay.
     pub head: Option<HeadChoice>,
-    /// Head-mounted display that the viewer wears.
+    /// Head-mounted display of the viewer.
     pub hmd: Hmd,
     /// Choice of the pixels that are computed. By default, only pixels that are read later are computed.
     pub pixels: Pixels,
-    /// Quantities that tables and rows of results contain.
+    /// Quantities in tables and rows of results.
     pub measure: Vec<Measure>,
     /// Files that a run writes in addition to its report.
     pub output: Outputs,
     /// Published figure to compare with, if any.
     pub published: Option<Published>,
-    /// Sentences about settings that have former names in the file.
+    /// Warnings about settings with former names.
     pub notes: Vec<String>,
 }
 
@@ -136,7 +136,7 @@ impl ExperimentFile {
         })
     }
 
-    /// Returns the quantities that the key `measure` names, or the default quantities.
+    /// Returns the quantities in the key `measure`, or the default quantities.
     fn measures(&self) -> Result<Vec<Measure>, SettingError> {
         match self.texts("measure")? {
             Some(names) => names.iter().map(|name| measure(self, "measure", name)).collect(),
@@ -144,7 +144,6 @@ impl ExperimentFile {
         }
     }
 
-    /// Returns the pipeline's registry entry, and the values of the pipeline's keys in the file.
     fn pipeline(&self) -> Result<(&PipelineEntry, PipelineSettings), SettingError> {
         let names: Vec<(&str, &PipelineEntry)> =
             self.registry().pipelines().iter().map(|entry| (entry.name, entry)).collect();
@@ -161,7 +160,6 @@ impl ExperimentFile {
         Ok((entry, given))
     }
 
-    /// Returns an error for a key that belongs to another pipeline.
     fn refuse_keys_of_others(&self, entry: &PipelineEntry) -> Result<(), SettingError> {
         for (key, families) in self.registry().keys() {
             if let Some(setting) = self.get(key.name).filter(|_| !families.contains(&entry.family)) {
@@ -248,7 +246,7 @@ pub(super) const CODES: [(&str, Option<CodeVersion>); 4] = [
     (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
 ];
 
-/// Names of the two sources for times of primitives: the papers (false) or executed code (true).
+/// Names of the two sources of times for primitives: the papers (false) or executed code (true).
 pub(super) const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
 
 impl PartialEq for Plan {
@@ -258,7 +256,7 @@ impl PartialEq for Plan {
 }
 
 impl Plan {
-    /// Generates or reads the scene.
+    /// Generates the scene or reads its file.
     ///
     /// # Errors
     ///
@@ -267,16 +265,15 @@ impl Plan {
         self.scene.load()
     }
 
-    /// Returns all parameters of the experiment. These are the parameters of the machine and, with a tracked head, the
-    /// parameters of the tracker, the host's port and the predictor. Paths of tracking parameters begin with
-    /// `tracking.`.
+    /// Returns all parameters of the machine. With a tracked head, the parameters of the tracker, the host's serial
+    /// port and the predictor follow. Their paths begin with `tracking.`.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(HeadChoice::parameters);
         self.machine.parameters().into_iter().chain(of_head).collect()
     }
 
-    /// Returns the parameters of machine and tracking whose values lie outside the range that their sources allow.
+    /// Returns the parameters with values outside the range that their sources allow.
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(|head| head.head().unsupported_parameters().to_vec());
@@ -284,8 +281,8 @@ impl Plan {
     }
 
     /// Returns warnings about settings that do not represent the real machine. The warnings concern parameters out of
-    /// range, times from a table although executed code was requested, the recording of the head motion, and former
-    /// names of keys.
+    /// range, the recording of the head motion, and former names of keys. A warning also appears if executed code was
+    /// requested but the times come from a table.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let of_table = warning_without_code(self.level, &self.machine, self.pipeline.as_ref());
@@ -294,7 +291,7 @@ impl Plan {
         self.notes.iter().cloned().chain(of_machine).chain(of_table).chain(of_head).collect()
     }
 
-    /// Returns the name of the experiment's level of modelling.
+    /// Returns the name of the level of detail.
     #[must_use]
     pub fn level_name(&self) -> String {
         self.level.name().to_owned()
@@ -306,7 +303,7 @@ impl Plan {
         self.machine.displays.first().map_or("", |display| display.name())
     }
 
-    /// Returns the experiment of this plan with its loaded scene. The experiment runs on this computer.
+    /// Returns the experiment with its loaded scene, for a run on this computer.
     #[must_use]
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();
@@ -325,7 +322,7 @@ impl Plan {
         }
     }
 
-    /// Runs the experiment at its level of modelling, without computing pixels.
+    /// Runs the experiment at its level of detail without computing pixels.
     ///
     /// # Errors
     ///

@@ -16,7 +16,6 @@ impl ExperimentFile {
         setting.value.as_str().map(Some).ok_or_else(|| wrong(key, setting, "text in quotes"))
     }
 
-    /// Returns the value of a key, or `None` if the key is not set.
     pub(super) fn value(&self, key: &Key) -> Result<Option<KeyValue>, SettingError> {
         let Some(setting) = self.get(key.name) else { return Ok(None) };
         let value = &setting.value;
@@ -63,8 +62,8 @@ impl ExperimentFile {
         list.flatten().map(Some).ok_or_else(|| wrong(key, setting, "a list of texts in quotes"))
     }
 
-    /// Returns the value that a key selects by name from `choices`. A number selects the name with the same digits, so
-    /// that `code = 1994` needs no quotes.
+    /// Returns the value with this name in `choices`. A number selects the name with the same digits, so that `code =
+    /// 1994` needs no quotes.
     pub(super) fn choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Result<Option<T>, SettingError> {
         let Some(setting) = self.get(key) else { return Ok(None) };
         let found = plain(&setting.value);
@@ -85,7 +84,6 @@ pub(super) fn wrong(key: &str, setting: &Setting, expected: &str) -> SettingErro
     SettingError::value(key, expected, found).at(&setting.place)
 }
 
-/// Creates the error of a key whose value is not one of the valid names.
 pub(super) fn unknown<'a>(key: &str, setting: &Setting, valid: impl IntoIterator<Item = &'a str>) -> SettingError {
     let what = key.rsplit('.').next().unwrap_or(key);
     let found: String = plain(&setting.value).chars().take(60).collect();
@@ -94,15 +92,14 @@ pub(super) fn unknown<'a>(key: &str, setting: &Setting, valid: impl IntoIterator
     error.at(setting.place_of(key))
 }
 
-/// Creates the error of a key that the chosen pipeline does not have. `applies_to` names the pipelines that have the
-/// key.
+/// Creates the error of a key that does not apply to the chosen pipeline. `applies_to` names the pipelines to which the
+/// key applies.
 pub(super) fn not_applicable(key: &str, pipeline: &str, applies_to: &str) -> SettingError {
     SettingError::combination(format_args!(
         "{key} does not apply to the pipeline {pipeline}; leave it out (it is for {applies_to})"
     ))
 }
 
-/// Returns the path of a file whose name is relative to a folder.
 pub(crate) fn beside(folder: &Path, name: &str) -> String {
     folder.join(name).display().to_string()
 }

@@ -1,5 +1,5 @@
-//! The raster of a tracked head's display: the correction that the display applies to pictures during the scan. The
-//! raster is plain (no correction), the raster offset of VDRT, or a device that moves pictures.
+//! Reader of a raster, which is the correction that a display applies to pictures during the scan. The raster is plain
+//! (no correction), the raster offset of VDRT, or a device that moves pictures.
 
 use super::ExperimentFile;
 use super::read::{not_applicable, wrong};
@@ -7,22 +7,21 @@ use pxpl5_run::{Coverage, Every, Pipeline, Raster, Reprojection, Warp};
 use pxpl5_sim::parameters::SettingError;
 use toml::Value;
 
-/// Key of the part of a scan for which a device takes a new pose to move pictures: a field, a strip or a line.
+/// Key of the part of a scan (a field, a strip or a line) for which a device that moves pictures uses a new pose.
 pub(super) const EVERY: &str = "head.reprojection.every";
 pub(super) const LATENCY: &str = "head.reprojection.latency_us";
 
-/// Key that selects the raster.
 const RASTER: &str = "head.raster";
 
-/// The choice of a raster by its name: a raster without parameters, or a device that moves pictures.
+/// A value of the key `head.raster`: a raster without parameters, or a device that moves pictures.
 #[derive(Clone, Copy)]
 enum Named {
     Raster(Raster),
     Device(Warp),
 }
 
-/// Reads the raster of an experiment (the correction of pictures during the scan). A raster offset requires a pipeline
-/// in which each picture has one head pose.
+/// Reads the raster (the correction of pictures during the scan). A raster offset requires a pipeline in which each
+/// picture has one head pose.
 pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Raster, SettingError> {
     let plain = Raster::ALL.map(|(name, raster)| (name, Named::Raster(raster)));
     let devices = Warp::ALL.map(|(name, by)| (name, Named::Device(by)));
@@ -65,7 +64,6 @@ fn refuse_numbers(file: &ExperimentFile) -> Result<(), SettingError> {
     Ok(())
 }
 
-/// Returns the keys and values that select a raster in an experiment file.
 pub(super) fn settings(raster: Raster) -> Vec<(String, Value)> {
     let Raster::Reprojected(Reprojection { by, every, latency_us }) = raster else {
         return vec![(RASTER.to_owned(), Value::from(raster.to_string()))];

@@ -1,5 +1,3 @@
-//! The scene of an experiment.
-
 use super::ExperimentFile;
 use super::motion::MotionChoice;
 use super::read::{beside, wrong};
@@ -8,22 +6,21 @@ use pxpl5_sim::parameters::SettingError;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The scene of an experiment: its name or file, its number of primitives, and the head motion in front of the scene.
+/// The scene of an experiment: its name or file, its number of primitives, and the motion of the head in front of the
+/// scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneChoice {
     /// Name of a built-in scene, or path of a model file.
     pub name: String,
-    /// Placement of a model file: fitted into the view, or kept at its own coordinates. A built-in scene is never
-    /// moved.
+    /// Placement of a model file: fitted into the view, or at its own coordinates. Built-in scenes are never moved.
     pub placement: Placement,
     /// Number of primitives to which the scene is reduced. `None` keeps all primitives.
     pub triangles: Option<usize>,
     /// True if the back faces of all structures of the scene are removed.
     pub culled: bool,
-    /// Motion of the head if the experiment has no tracker.
+    /// Motion of the head without a tracker.
     pub motion: MotionChoice,
-    /// Contents of the model file ([`ExperimentFile::with_contents`]). If present, the file on this computer is not
-    /// read.
+    /// Contents of the model file ([`ExperimentFile::with_contents`]), which replace the file on this computer.
     pub contents: Option<Arc<[u8]>>,
 }
 
@@ -35,7 +32,7 @@ impl SceneChoice {
         let name = if is_file(name) { beside(&folder, name) } else { name.to_owned() };
         let triangles = file.whole("triangles")?.map(|n| n as usize);
         let placement = if file.flag("fit")?.unwrap_or(true) { Placement::Fitted } else { Placement::AsInFile };
-        // Built-in scenes are already in the view.
+        // The key `fit` is an error for built-in scenes, because they are in the view already.
         if let (Some(setting), false) = (file.get("fit"), is_file(&name)) {
             return Err(wrong("fit", setting, "nothing: only model files are fitted into the view"));
         }
@@ -67,14 +64,14 @@ impl SceneChoice {
         Ok(if self.culled { whole.culled() } else { whole })
     }
 
-    /// Returns the scene `whole` with the number of primitives and the head motion in these settings.
+    /// Returns the scene `whole` with the number of primitives and the head motion of these settings.
     pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, SettingError> {
         let decimated = whole.clone();
         self.prepared_by(whole, |n| decimated.decimated(n))
     }
 
-    /// Returns the scene as [`prepared`](Self::prepared) does. `decimated` reduces the whole scene to a number of
-    /// primitives.
+    /// Prepares the scene as [`prepared`](Self::prepared) does, but reduces the number of primitives with the function
+    /// `decimated`.
     pub(crate) fn prepared_by(
         &self,
         whole: Arc<Scene>,
@@ -96,9 +93,8 @@ impl SceneChoice {
     }
 }
 
-/// Returns true if a scene's name is the path of a file. Such a path contains a separator or a file extension. A
-/// built-in scene has no extension, because a file extension has a letter. The part after the dot in `typical:1.5` has
-/// no letter.
+/// Returns true if a scene's name is the path of a file, which contains a separator or a file extension. A file
+/// extension has a letter. The built-in scene `typical:1.5` has no file extension, because no letter follows its dot.
 pub(crate) fn is_file(name: &str) -> bool {
     let extension = Path::new(name).extension().map(|end| end.to_string_lossy().contains(char::is_alphabetic));
     name.contains(['/', std::path::MAIN_SEPARATOR]) || extension == Some(true)

@@ -15,7 +15,7 @@ fn refusal(text: &str) -> String {
 const RC: &str = "pipeline = \"rendering-control\"\nscene = \"mig\"\n";
 
 #[test]
-fn what_is_not_given_is_what_the_papers_used() {
+fn missing_keys_have_the_values_of_the_papers() {
     let rc = plan(RC);
     assert_eq!(rc.machine, MachineConfig::small_hmd());
     assert_eq!((rc.fields, rc.seed, rc.pixels), (120, 1, Pixels::Lazy));
@@ -24,7 +24,7 @@ fn what_is_not_given_is_what_the_papers_used() {
 }
 
 #[test]
-fn every_machine_parameter_is_reached_with_and_without_its_first_part() {
+fn every_machine_parameter_is_found_with_and_without_its_prefix() {
     for parameter in MachineConfig::small_hmd().parameters().into_iter().filter(|parameter| !parameter.read_only) {
         let mut file = ExperimentFile::parse(RC, "test").expect("TOML");
         // One more than the preset's value is always in range, except for sizes and rates that frame buffers check
@@ -37,7 +37,7 @@ fn every_machine_parameter_is_reached_with_and_without_its_first_part() {
 }
 
 #[test]
-fn errors_name_the_line_and_what_was_expected() {
+fn errors_name_the_line_and_the_expected_value() {
     for (text, says) in [
         ("a.b.c = 1", "test, line 1: there is no key `a.b.c`"),
         (
@@ -96,7 +96,7 @@ fn errors_name_the_line_and_what_was_expected() {
 }
 
 #[test]
-fn what_is_shown_is_a_file_that_means_the_same() {
+fn a_written_file_describes_the_same_experiment() {
     let texts = [
         RC.to_owned(),
         format!("{RC}mono = true\nshading = \"gouraud\"\ntriangles = 9\nseed = 5\n[head]\npath = \"orbit\"\ndistance = 2\nsway = 0.5\n[hmd]\nnear = 0.1\n"),
@@ -115,7 +115,7 @@ fn what_is_shown_is_a_file_that_means_the_same() {
 }
 
 #[test]
-fn the_fingerprint_is_of_what_changes_the_result() {
+fn the_fingerprint_covers_every_setting_that_changes_the_result() {
     let base = plan(RC).fingerprint();
     for same in ["title = \"x\"", "pixels = \"off\"", "output.csv = false", "measure = [\"events\"]"] {
         assert_eq!(plan(&format!("{RC}{same}")).fingerprint(), base, "{same}");
@@ -134,7 +134,7 @@ fn the_fingerprint_is_of_what_changes_the_result() {
 }
 
 #[test]
-fn a_motion_is_round_the_scene() {
+fn an_orbit_keeps_its_distance_from_the_centre_of_the_scene() {
     let scene = plan(&format!("{RC}head.path = \"orbit\"\nhead.distance = 3")).load_scene().expect("built in");
     let (centre, _) = scene.bounding_sphere();
     for time_ps in [0, 1_000_000_000_000, 2_500_000_000_000] {
@@ -145,7 +145,7 @@ fn a_motion_is_round_the_scene() {
 }
 
 #[test]
-fn former_names_of_keys_mean_the_same_and_are_noted() {
+fn a_former_key_has_the_effect_of_the_new_key_and_causes_a_note() {
     let former = plan(&format!("{RC}[motion]\npath = \"orbit\"\nsway = 0.5\n"));
     assert_eq!(former, plan(&format!("{RC}[head]\npath = \"orbit\"\nsway = 0.5\n")));
     let notes = former.warnings();
@@ -172,7 +172,7 @@ fn a_walk_goes_along_the_path_of_the_scene_and_begins_where_the_scene_does() {
 }
 
 #[test]
-fn a_walk_through_a_scene_without_a_path_is_refused_and_so_is_a_speed_that_is_none() {
+fn a_walk_without_a_path_or_with_an_invalid_speed_is_refused() {
     let refused = |scene: &str, motion: &str| {
         let text = format!("pipeline = \"slats\"\nscene = \"{scene}\"\nhead.motion = \"{motion}\"\n");
         let error = ExperimentFile::parse(&text, "e.toml").and_then(|file| file.resolve()).expect_err("refused");
@@ -197,7 +197,7 @@ fn a_scene_file_is_relative_to_the_experiment_file() {
 }
 
 #[test]
-fn every_pipeline_is_called_what_it_calls_itself() {
+fn every_pipeline_has_the_same_name_in_files_and_reports() {
     for entry in crate::registry().pipelines() {
         let pipeline = (entry.build)(&pxpl5_run::PipelineSettings::default());
         assert_eq!((entry.name, entry.name.starts_with(entry.family)), (pipeline.name(), true));
@@ -209,7 +209,7 @@ fn one_more(value: pxpl5_sim::parameters::Value) -> u64 {
 }
 
 #[test]
-fn another_recording_of_the_same_name_is_another_experiment() {
+fn two_recordings_with_the_same_name_and_different_poses_give_different_experiments() {
     let folder = std::env::temp_dir().join(format!("pxpl5-recording-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("writable");
     let text = format!("{RC}head.motion = \"head.csv\"\n");
@@ -223,7 +223,7 @@ fn another_recording_of_the_same_name_is_another_experiment() {
 }
 
 #[test]
-fn a_recording_is_read_beside_its_file_with_the_columns_and_the_end_that_it_says() {
+fn a_recording_is_found_beside_the_file_and_read_with_the_stated_columns_and_end() {
     let folder = std::env::temp_dir().join(format!("pxpl5-recording-columns-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     let poses = "stamp;qx;qy;qz;qw;px;py;pz\n10;0;0;0;1;0;0;0\n1010;0;0;0;1;2000;0;0\n";
@@ -249,7 +249,7 @@ fn a_recording_is_read_beside_its_file_with_the_columns_and_the_end_that_it_says
 }
 
 #[test]
-fn what_is_said_of_a_head_is_checked() {
+fn settings_of_a_head_are_checked() {
     let refusal = |more: &str| {
         let text = format!("pipeline = \"slats\"\nscene = \"room\"\n{more}\n");
         ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect_err("refused").to_string()
@@ -296,7 +296,7 @@ fn the_keys_of_the_head_mounted_display_have_the_limits_and_defaults_of_its_tabl
 }
 
 #[test]
-fn every_key_has_one_description_and_its_values_are_in_it() {
+fn every_key_has_one_description_with_its_values() {
     let keys = ExperimentFile::keys_of(&crate::registry());
     let about = |path: &str| &keys.iter().find(|key| key.path == path).expect(path).about;
     assert!(about("fields").ends_with("; 1 to 10000000; default 120"), "{}", about("fields"));

@@ -1,4 +1,4 @@
-//! Converts a plan (checked experiment) to the text of a complete experiment file.
+//! Converts the plan of an experiment to the text of a complete experiment file.
 
 use super::hmd;
 use super::plan::Plan;
@@ -13,17 +13,19 @@ use std::collections::BTreeMap;
 use std::fmt;
 use toml::Value;
 
-/// Effective settings by path. `Display` writes the settings as the text of an experiment file with the same meaning.
+/// The effective settings of an experiment, by path.
+///
+/// `Display` writes the settings as the text of an experiment file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Values of the settings as TOML, by the path of their key.
+    /// TOML values by the path of their key.
     pub values: BTreeMap<String, Value>,
-    /// Remarks by the path of the key. A remark states unit, provenance and the value in the preset.
+    /// Remarks by the path of the key: unit, provenance and the value in the preset.
     remarks: BTreeMap<String, String>,
 }
 
 impl Plan {
-    /// Returns every setting with its value in the checked experiment, including defaults.
+    /// Returns the effective value of each setting, including defaults.
     #[must_use]
     pub fn settings(&self) -> Settings {
         let mut all = Settings { values: BTreeMap::new(), remarks: BTreeMap::new() };
@@ -51,8 +53,8 @@ impl Plan {
         all
     }
 
-    /// Returns every setting with its effective value, for an experiment file in any folder. File names that are
-    /// relative to the folder of the experiment file become absolute.
+    /// Returns the effective value of each setting, for an experiment file in any folder. Relative file names become
+    /// absolute.
     #[must_use]
     pub fn settings_for_any_folder(&self) -> Settings {
         let mut all = self.settings();
@@ -66,8 +68,8 @@ impl Plan {
         all
     }
 
-    /// Returns a hash of the settings that determine the result. Excluded are settings of pixels, output files, and the
-    /// comparison with a published figure.
+    /// Returns a hash of the settings that determine the result. The hash excludes the settings of pixels, output
+    /// files, and the comparison with a published figure.
     #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
         // These settings do not change the simulated result.
@@ -137,8 +139,8 @@ impl Settings {
         }
     }
 
-    /// Adds a parameter under its key. The remark states unit and provenance. If the value differs from the preset, the
-    /// remark also states the preset's value.
+    /// Adds a parameter under its key, with a remark about its unit and provenance. If the value differs from the
+    /// preset, the remark also states the preset's value.
     fn parameter(&mut self, key: &str, parameter: &Parameter, preset: &[Parameter]) {
         let own = preset.iter().find(|other| other.path == parameter.path).map(|other| other.value);
         let changed = own.filter(|own| *own != parameter.value);
@@ -163,7 +165,6 @@ impl Settings {
     }
 }
 
-/// Converts a parameter's value to TOML.
 fn toml_number(value: Number) -> Value {
     match value {
         Number::Whole(number) => Value::from(i64::try_from(number).unwrap_or(i64::MAX)),

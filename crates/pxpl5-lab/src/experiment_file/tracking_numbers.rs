@@ -1,5 +1,4 @@
-//! Parameters of trackers, predictors and the host's port. An experiment sets these parameters by keys of the form
-//! `tracking.table.name`.
+//! Parameters of trackers, predictors and the host's serial port. Their keys have the form `tracking.table.name`.
 
 use super::{ExperimentFile, Setting};
 use crate::compare::tracker_by;
@@ -10,13 +9,14 @@ use tracking::tracker::{SerialRead, TrackerConfig};
 
 const PREFIX: &str = "tracking.";
 
-/// Names of the tables that apply to every tracker: the host's serial port, the prediction filters, and the gate in
-/// front of the filters.
+/// Tables that apply to every tracker: the host's serial port, the prediction filters, and the gate in front of the
+/// filters.
 const COMMON: [&str; 3] = ["host", "filter", "gate"];
 
-/// Returns every tracking parameter with its published value. Parameters of heads, the measuring rig, the video and the
-/// papers' pictures are read-only. Read-only parameters are published facts for comparison with a model, not settings
-/// of a tracked head.
+/// Returns every tracking parameter with its published value.
+///
+/// Parameters of heads, the measuring rig, the video and the papers' pictures are read-only. They are published facts
+/// for comparison with a model, not settings of a tracked head.
 #[must_use]
 pub fn tracking_parameters() -> Vec<Parameter> {
     let numbers = Tables::PAPERS.all().into_iter().flat_map(|(name, table)| parameters_of(name, table, false));
@@ -28,7 +28,7 @@ fn parameters_of(name: &str, table: &dyn ParameterTable, read_only: bool) -> Vec
     Parameter::of_table(&format!("{PREFIX}{name}"), table, read_only).collect()
 }
 
-/// Returns the parameters that have an effect on a tracker. `own` is the name of the tracker's own table.
+/// Returns the parameters that affect a tracker. `own` is the name of the tracker's own table.
 pub(super) fn parameters_with(tables: &Tables, own: &str, tracker: &TrackerConfig) -> Vec<Parameter> {
     let applying = tables.all().into_iter().filter(|(name, _)| applies(name, own));
     let numbers = applying.flat_map(|(name, table)| parameters_of(name, table, false));
@@ -39,8 +39,7 @@ fn applies(table: &str, own: &str) -> bool {
     table == own || COMMON.contains(&table)
 }
 
-/// Returns the reason why a parameter of the host's port has no effect on a tracker, or `None` if the parameter has
-/// an effect.
+/// Returns the reason why a parameter of the host's serial port does not affect a tracker, or `None` if it does.
 fn without_effect(path: &str, tracker: &TrackerConfig) -> Option<&'static str> {
     match path {
         "tracking.host.poll" if !matches!(tracker.host, SerialRead::Polled { .. }) => {
@@ -57,7 +56,6 @@ pub(super) fn is_tracking_parameter(path: &str) -> bool {
     path.starts_with(PREFIX) && tracking_parameters().iter().any(|parameter| parameter.path == path)
 }
 
-/// Returns the tables of tracking parameters, with the values that a file sets for a tracker.
 pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, SettingError> {
     let mut tables = Tables::PAPERS;
     // The function that builds the tracker refuses an unknown name.

@@ -25,17 +25,13 @@ const KINDS: [Kind; 8] = [TIMES, LENGTHS, ANGLES, RATES, TURNS, SPEEDS, SIZES, P
 
 /// Converts a text such as `20us` to a number in the unit of a key.
 ///
-/// Returns `Ok(None)` if the text is not a number with a unit, or if the key has no unit. In these cases the text is
-/// used unchanged.
-///
-/// # Errors
-///
-/// For a number with a wrong unit, returns a text with the units that the key accepts.
+/// Returns `Ok(None)` if the text is not a number with a unit, or if the key has no unit. In these cases, the text is
+/// used unchanged. The error for a wrong unit lists the units that the key accepts.
 pub(super) fn converted(registry: &Registry, key: &str, text: &str) -> Result<Option<Value>, String> {
     let Some((number, unit)) = split(text) else { return Ok(None) };
     let Some(wanted) = unit_of(registry, key) else { return Ok(None) };
     let size = |kind: Kind, unit: &str| kind.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size);
-    // A unit that is in no kind, such as clocks, is taken as it is written.
+    // A unit without conversions, such as clocks, is accepted only as it is written.
     if unit == wanted {
         return Ok(Some(value(number)));
     }
@@ -48,7 +44,7 @@ pub(super) fn converted(registry: &Registry, key: &str, text: &str) -> Result<Op
     Ok(Some(value(number * from / to)))
 }
 
-/// Splits a text into a number and a unit. Returns `None` if the number or the unit is missing.
+/// Splits a text into a number and a unit. Returns `None` if either is missing.
 fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     // An exponent belongs to the number; no unit begins with e.
@@ -70,7 +66,6 @@ fn value(number: f64) -> Value {
     Value::Float(number)
 }
 
-/// Returns the unit of a key, or `None` if the key has no unit.
 fn unit_of(registry: &Registry, key: &str) -> Option<String> {
     let own = keys::common(key).map(|key| key.unit).or_else(|| display::unit_of(key));
     if let Some(unit) = own {
@@ -98,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_with_units_become_the_unit_of_the_key() {
+    fn numbers_with_units_are_converted_to_the_unit_of_the_key() {
         for (key, text, expected) in [
             ("machine.gp.triangle_ns", "20us", Value::Integer(20_000)),
             ("machine.gp.triangle_ns", "16.7ms", Value::Integer(16_700_000)),
@@ -114,13 +109,13 @@ mod tests {
     }
 
     #[test]
-    fn another_kind_of_unit_is_refused_with_those_that_fit() {
+    fn a_unit_of_another_quantity_is_refused_with_the_possible_units() {
         let error = read("machine.gp.triangle_ns", "20mm").expect_err("a length is no time");
         assert_eq!(error, "a number in ns, or one with a unit: ps, ns, us, ms, s");
     }
 
     #[test]
-    fn texts_and_keys_without_a_unit_stay_as_they_are() {
+    fn texts_and_keys_without_a_unit_are_unchanged() {
         for (key, text) in
             [("scene", "3cubes.ply"), ("head.motion", "pan:200"), ("title", "20us"), ("machine.gp.triangle_ns", "fast")]
         {

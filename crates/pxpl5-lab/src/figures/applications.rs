@@ -1,5 +1,5 @@
-//! A cache of intermediate results that several measurements share. The cache holds application scenes of the papers,
-//! loads of their fly-throughs, measurements of the rig, and results of experiments.
+//! A cache for results that several measurements share. The cache holds application scenes of the papers, loads of
+//! their fly-throughs, measurements of the pendulum rig, and results of experiments.
 
 use super::heads::RigLines;
 use super::measured::{Result, scene_named};
@@ -9,29 +9,29 @@ use pxpl5_scene::Scene;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Cache key: name of a scene, and true if its back faces are removed.
+/// Name of a scene, and true if its back faces are removed.
 type Key = (&'static str, bool);
 
-/// Cache key: name of a scene, true if its back faces are removed, number of seeds, and number of frames.
+/// Name of a scene, true if its back faces are removed, number of seeds, and number of frames.
 type LoadsKey = (&'static str, bool, u64, u64);
 
-/// Loads (amounts of work) of every frame of a fly-through, one list for each seed.
+/// Loads (amounts of work) of all frames of a fly-through, in one list for each seed.
 type LoadsOfSeeds = Arc<Vec<Vec<Load>>>;
 
-/// Cache key of a rig measurement: the master's rule for finished regions, and changed parameters.
+/// The master's rule for finished regions, and the changed parameters.
 pub(super) type RigKey = (FinishedRegions, Vec<(String, u64)>);
 
-/// Results by the number of finished regions that a backing store holds.
+/// Results by the capacity of a backing store, in finished regions.
 ///
-/// If no backing store was full in a run ([`Record::met_full_store`]), larger stores give the same run. One result
-/// therefore serves all larger capacities.
+/// If no backing store was full in a run ([`Record::met_full_store`]), the result is the same for all larger
+/// capacities.
 ///
 /// [`Record::met_full_store`]: pxpl5_machine::Record::met_full_store
 #[derive(Debug)]
 struct ByCapacity<K, T> {
-    /// Results for single capacities. The boolean is true if a backing store was full at some time of the run.
+    /// Results by key and capacity. The boolean is true if a backing store was full at some time of the run.
     exact: Places<(K, u64), (Arc<T>, bool)>,
-    /// Smallest capacity with which no backing store was full in the run, and the result of this run.
+    /// Smallest capacity with which no backing store was full, and the result of this run.
     roomy: Mutex<BTreeMap<K, (u64, Arc<T>)>>,
 }
 
@@ -42,8 +42,8 @@ impl<K, T> Default for ByCapacity<K, T> {
 }
 
 impl<K: Ord + Clone, T> ByCapacity<K, T> {
-    /// Returns the result for a capacity. `make` computes the result, and a boolean that is true if a backing store was
-    /// full in the run or if that is unknown. `make` is not called if a smaller store was never full.
+    /// Returns the result for a capacity. `make` computes the result, and returns true if a backing store may have been
+    /// full. `make` is not called if no backing store was ever full in an earlier run with a smaller capacity.
     fn get(&self, key: K, capacity: u64, make: impl FnOnce() -> Result<(T, bool)>) -> Result<Arc<T>> {
         if let Some((least, known)) = locked(&self.roomy).get(&key)
             && *least <= capacity
@@ -64,10 +64,8 @@ impl<K: Ord + Clone, T> ByCapacity<K, T> {
     }
 }
 
-/// The cached value of one key. `None` until the value is computed.
 type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 
-/// The cached values, by key. A key is added when its value is first requested.
 type Places<K, T> = Mutex<BTreeMap<K, Place<T>>>;
 
 #[derive(Debug, Default)]
@@ -79,13 +77,12 @@ pub(crate) struct Applications {
     limits: Places<String, u32>,
 }
 
-/// Returns the cache key of an experiment with a built-in scene, and the number of finished regions that a backing
-/// store holds. The key and this number contain everything that determines the result: machine, pipeline, scene,
-/// length, seed and level.
+/// Returns a cache key and the capacity of a backing store in finished regions. These values contain everything that
+/// determines the result: machine, pipeline, scene, length, seed and level.
 pub(super) fn key_of(experiment: &Experiment, scene: &str) -> (String, u64) {
     let mut machine = experiment.config().clone();
     let capacity = machine.renderer.backing_regions();
-    // The capacity is a key of its own.
+    // The capacity has its own place in the key.
     machine.renderer.kept_bits = 0;
     let key = format!(
         "{scene} {} {} {:?} {:?} {:?}",
@@ -107,14 +104,14 @@ impl Applications {
         find_or_compute(&self.scenes, (name, culled), make)
     }
 
-    /// Returns the loads (amounts of work) of a scene's fly-through. `make` computes the loads at the first request.
+    /// Returns the loads (amounts of work) of a scene's fly-through. The first request computes the loads with `make`.
     pub(super) fn loads(&self, key: LoadsKey, make: impl FnOnce() -> Result<Vec<Vec<Load>>>) -> Result<LoadsOfSeeds> {
         find_or_compute(&self.loads, key, || make().map(Arc::new))
     }
 
-    /// Returns the measurements with the pendulum rig. `key` holds the rule for finished regions and the changed
-    /// parameters. `kept` is the number of regions that a backing store holds. `make` performs the measurements at the
-    /// first request. The boolean of `make` is true if a backing store was full at some time of the run.
+    /// Returns the measurements with the pendulum rig. `kept` is the number of regions that a backing store holds. The
+    /// first request performs the measurements with `make`. `make` returns the measurements and a boolean. The boolean
+    /// is true if a backing store was full at some time of the run.
     pub(super) fn rig(
         &self,
         key: RigKey,
@@ -124,8 +121,8 @@ impl Applications {
         self.rigs.get(key, kept, make)
     }
 
-    /// Returns the summary of an experiment. `make` runs the experiment at the first request. The boolean of `make` is
-    /// true if a backing store was full in the run, or if that is unknown.
+    /// Returns the summary of an experiment. The first request runs the experiment with `make`. `make` returns the
+    /// summary and a boolean. The boolean is true if a backing store may have been full.
     pub(super) fn summary(
         &self,
         (key, capacity): (String, u64),
@@ -134,7 +131,8 @@ impl Applications {
         self.summaries.get(key, capacity, make)
     }
 
-    /// Returns the result of a search for the largest number of triangles. `make` runs the search at the first request.
+    /// Returns the result of a search for the largest number of triangles. The first request runs the search with
+    /// `make`.
     pub(super) fn limit(&self, key: String, make: impl FnOnce() -> Result<u32>) -> Result<u32> {
         find_or_compute(&self.limits, key, || make().map(Arc::new)).map(|limit| *limit)
     }
@@ -142,8 +140,8 @@ impl Applications {
 
 /// Returns the cached value of a key, or computes it once. Other threads that request the same key wait for the result.
 ///
-/// `make` must not run work on other threads. While the calling thread waits for such work, this thread could take over
-/// other work that requests the same key. The program would then be in a deadlock.
+/// `make` must not run work on other threads. While the calling thread waits for such work, it could take over work
+/// that requests the same key. The program would then be in a deadlock.
 fn find_or_compute<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() -> Result<Arc<T>>) -> Result<Arc<T>> {
     // The outer lock is held only to find the slot; the inner lock is held while the value is computed.
     let place = Arc::clone(locked(all).entry(key).or_default());
@@ -179,7 +177,7 @@ mod tests {
     /// Tests that a run whose backing stores were never full has the same trace as each run with larger stores. Runs
     /// with a full store must differ in more than five cases, or the test would prove nothing.
     #[test]
-    fn a_run_that_met_no_full_store_is_the_run_with_every_larger_store() {
+    fn a_run_without_a_full_store_equals_the_run_with_any_larger_store() {
         let (mut shared, mut differing) = (0, 0);
         for scene in ["full-screen:12", "full-screen:60"] {
             for finished in FinishedRegions::ALL {
@@ -199,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn a_result_serves_larger_stores_alone_and_only_if_no_store_was_full() {
+    fn a_result_is_reused_only_for_larger_stores_and_if_no_store_was_full() {
         let cache = ByCapacity::<&str, u64>::default();
         let get = |capacity, met_full_store| {
             *cache.get("key", capacity, || Ok((capacity, met_full_store))).expect("no run fails")

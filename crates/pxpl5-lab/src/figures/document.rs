@@ -1,4 +1,4 @@
-//! The document ACCURACY.md, generated from the published figures and the model's values.
+//! Writer of ACCURACY.md from the published figures and the model's values.
 
 use super::{Alternatives, Basis, FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
 use crate::application_time::{ApplicationTime, FlyThroughLatency, published};
@@ -11,7 +11,7 @@ use pxpl5_sim::figures::column::{
 use pxpl5_sim::figures::{TableColumn, table};
 use std::fmt::Write as _;
 
-/// Returns the text of ACCURACY.md: a table of all figures, then each miss with its cause.
+/// Returns the text of ACCURACY.md: a table of all figures, and the cause of each missed figure.
 #[must_use]
 pub fn markdown(figures: &Figures, alternatives: &Alternatives) -> String {
     let mut text = String::new();
@@ -30,12 +30,12 @@ pub fn markdown(figures: &Figures, alternatives: &Alternatives) -> String {
     text
 }
 
-/// Minimum change of a figure, in percent, for which the document lists the figure. The change is caused by times of
-/// executed code in place of the timing table.
+/// Minimum change of a figure, in percent, for which the document lists the figure. The change results if the times of
+/// primitives are measured by executing i860 code instead of taken from the timing table.
 const MOVED_PERCENT: f64 = 0.05;
 
-/// Writes the figures that change when the times of executed code are used. Also writes the reason why these times are
-/// not the default.
+/// Writes the figures that change if the times of primitives are measured by executing i860 code. Also writes why these
+/// times are not the default.
 fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     let _ = write!(
         text,
@@ -80,11 +80,11 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     );
 }
 
-/// Number of interpretations of the papers that the document lists.
+/// Number of interpretations in the document.
 const BEST: usize = 12;
 
-/// Writes the table of interpretations, with the figures that each interpretation explains. Also writes the confidence
-/// of the choice.
+/// Writes the table of interpretations with the figures that each interpretation explains, and the confidence of the
+/// choice.
 fn of_readings(text: &mut String, readings: &Readings) {
     // State how likely the default interpretation is, compared with the most likely one.
     let fits = &readings.analytic;
@@ -196,7 +196,7 @@ fn of_application(text: &mut String, times: &[ApplicationTime]) {
     }
 }
 
-/// Number of parameters that the document lists for each figure.
+/// Maximum number of parameters that the document lists for each figure.
 const STRONGEST: usize = 4;
 
 fn sensitivity(text: &mut String, intervals: &[Interval]) {

@@ -1,5 +1,5 @@
-//! Figures of papers about systems other than Pixel-Planes 5. In ACCURACY.md, these figures follow the figures of
-//! Pixel-Planes 5.
+//! Figures of papers about other systems than Pixel-Planes 5, which follow the figures of Pixel-Planes 5 in
+//! ACCURACY.md.
 
 use super::measured::{Result, scene_named};
 use super::{Bench, FigureError};
@@ -16,34 +16,33 @@ use tracking::motion::Pan;
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
-/// Figures of one group of papers about another system than Pixel-Planes 5.
+/// Figures of papers about one other system than Pixel-Planes 5.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FigureFamily {
-    /// Title of the group's section in the document.
+    /// Title of the section in ACCURACY.md.
     pub title: &'static str,
     /// Path of the document with more details.
     pub document: &'static str,
-    /// Table rows of the figures, in the order of the experiments.
+    /// Rows of the table, in the order of the experiments.
     pub rows: Vec<FigureRow>,
 }
 
-/// Numbers of triangles of the spheres that experiment E1 draws. The largest number in the papers' drawing is 1,000.
+/// Triangle counts of the spheres in experiment E1 (`turning`). The papers' diagram ends at 1,000 triangles.
 const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 
-/// Duration of an NTSC field in ms. Pictures of Rendering Control wait for retraces, so a growth of latency below this
-/// duration may be invisible.
+/// Duration of an NTSC field in ms. Rendering Control shows pictures at retraces, so a smaller growth of latency may be
+/// invisible.
 const FIELD_MS: f64 = 1001.0 / 60.0;
 
-/// Number of display fields in a run of experiment E1.
 const FIELDS: u64 = 60;
-/// Number of rotation latencies that each run of experiment E1 must give. The runs are compared field by field, so this
-/// number must be the same for all runs.
+/// Number of compared rotation latencies in each run of experiment E1 (`turning`). All runs must have the same number,
+/// because they are compared field by field.
 const COMPARED: usize = 55;
 
 impl FigureFamily {
-    /// Runs the experiments on address recalculation, priority rendering and region warping. E1 runs on Pixel-Planes 5,
-    /// E2 to E9 with an ideal renderer. Results that follow from the papers' tables by arithmetic are not measured
-    /// here, but stated in the document `document`.
+    /// Runs the experiments on address recalculation, priority rendering and region warping. Experiment E1 runs on
+    /// Pixel-Planes 5, experiments E2 to E9 run with an ideal renderer. Results that follow from the papers' tables by
+    /// arithmetic are stated only in the document `document`.
     ///
     /// # Errors
     ///
@@ -60,7 +59,7 @@ impl FigureFamily {
         })
     }
 
-    /// Returns the family's section of ACCURACY.md.
+    /// Returns this family's section of ACCURACY.md.
     #[must_use]
     pub fn markdown(&self) -> String {
         let shapes = self.rows.iter().filter(|row| row.basis == Basis::Shape).count();
@@ -87,9 +86,9 @@ impl FigureFamily {
     }
 }
 
-/// Runs experiment E1, which measures two latencies for growing numbers of triangles. The first is the latency of the
-/// head's rotation with the display that turns cube faces. The second is the latency of a picture under Rendering
-/// Control. In the second run the viewer always faces the triangles, because triangles out of sight are not drawn.
+/// Runs experiment E1, which measures two latencies for growing numbers of triangles. One is the latency of the head's
+/// rotation with the address recalculation display. The other is the latency of a picture under Rendering Control. For
+/// Rendering Control, the viewer always faces the triangles, because triangles out of sight are not drawn.
 fn turning(bench: &Bench) -> Result<Vec<FigureRow>> {
     let mut turns = Vec::new();
     let mut drawn_ms = Vec::new();

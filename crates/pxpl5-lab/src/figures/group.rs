@@ -1,6 +1,5 @@
 //! Groups of published figures by topic: peak rates, just-in-time pixels, trackers. Each figure is measured by
-//! simulation with events, also if the analytic level is chosen. The mean error of the main table does not include the
-//! figures of groups.
+//! simulation with events, even at the analytic level. The mean error of the main table does not include these figures.
 
 use super::measured::{FigureValue, Result};
 use super::{Basis, Bench, Figure, FigureError, FigureRow};
@@ -16,7 +15,7 @@ use std::fmt::Write as _;
 pub struct FigureGroup {
     /// Name of the topic.
     pub title: &'static str,
-    /// Conditions of the experiments that all rows of the group share, and conditions that the papers do not state.
+    /// Conditions that all experiments of the group share, including conditions that the papers do not state.
     pub about: &'static str,
     /// Table rows of the figures.
     pub rows: Vec<FigureRow>,
@@ -26,8 +25,8 @@ pub struct FigureGroup {
 pub(super) struct Measurement {
     pub(super) figure: Figure,
     pub(super) measure: fn(&Bench) -> Result<FigureValue>,
-    /// Paths of the parameters that are varied for the figure's interval. One parameter at a time takes both ends of
-    /// its range.
+    /// Paths of the parameters that determine the figure's interval. One parameter at a time is set to each end of its
+    /// range.
     pub(super) moved_by: &'static [&'static str],
 }
 
@@ -37,7 +36,7 @@ pub(super) struct Topic {
     pub(super) measurements: Vec<Measurement>,
 }
 
-/// Creates a figure of a group to which no parameter was fitted.
+/// Creates a figure to which no parameter was fitted.
 pub(super) const fn free(
     (id, paper, section): (&'static str, &'static str, &'static str),
     statement: &'static str,
@@ -59,7 +58,7 @@ impl FigureGroup {
         Ok(Self { title: topic.title, about: topic.about, rows })
     }
 
-    /// Returns the group's section of ACCURACY.md.
+    /// Returns this group's section of ACCURACY.md.
     #[must_use]
     pub fn markdown(&self) -> String {
         let missed: Vec<&FigureRow> = self.rows.iter().filter(|row| !row.is_met).collect();
@@ -94,9 +93,9 @@ impl Measurement {
         Ok(FigureRow { interval, ..self.figure.row(measured) })
     }
 
-    /// Returns the minimum and maximum of the figure when one parameter at a time takes either end of its range. The
-    /// result includes `nominal`, the figure for the presets. `nominal` also replaces the result of an experiment that
-    /// fails. Returns `None` if no parameter is varied, or if `bench` leaves out intervals.
+    /// Returns the minimum and maximum of the figure if one parameter at a time is set to each end of its range. The
+    /// value `nominal` for the presets is included, and also replaces the result of a failed experiment. Returns `None`
+    /// if no parameter varies, or if `bench` leaves out intervals.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
         if !bench.intervals {
             return None;

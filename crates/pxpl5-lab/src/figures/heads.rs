@@ -14,9 +14,8 @@ use tracking::predict::PredictorKind;
 use tracking::rig::{Measurement as RigMeasurement, PendulumRig};
 use tracking::tracker::TrackerConfig;
 
-/// Path of the parameter for the position of the photodiode: the visible line of the screen under the photodiode, when
-/// the pendulum rig measures latency (row 17 of ACCURACY.md). The common settings of measurements
-/// ([`Bench::changes`](super::Bench)) may change this parameter.
+/// Path of the parameter for the line of the screen under the photodiode of the pendulum rig (row 17 of ACCURACY.md).
+/// [`Bench::changes`](super::Bench) may change this parameter.
 pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
 /// The measurements of the pendulum rig in one run, with the photodiode under the first, the assumed and the last line
@@ -27,8 +26,7 @@ pub(super) struct RigLines {
 }
 
 impl RigLines {
-    /// Measures the latency with a pendulum and a photodiode. Also returns true if a full backing store has changed the
-    /// run.
+    /// Measures the latency with a pendulum and a photodiode. Also returns true if a backing store was full in the run.
     pub(super) fn measure(machine: &MachineConfig, reading: &Reading, stop: &StopFlag) -> Result<(Self, bool)> {
         let lines = photodiode_lines();
         let (measured, met_full_store) = under_lines(machine, (reading, stop), lines)?;
@@ -37,9 +35,9 @@ impl RigLines {
         Ok((Self { measured }, met_full_store))
     }
 
-    /// Returns the latency that the pendulum rig measures (row 17 of ACCURACY.md), with the photodiode on the
-    /// assumed line. The paper does not print the photodiode's position. The details therefore also state the latency
-    /// with the photodiode on the first and on the last line of the screen.
+    /// Returns the latency from the pendulum rig (row 17 of ACCURACY.md), with the photodiode on the assumed line. The
+    /// paper does not print the photodiode's position. The details therefore also state the latency on the first and on
+    /// the last line of the screen.
     pub(super) fn figure(&self) -> FigureValue {
         let [first, assumed, last] = self.measured.each_ref().map(|(_, measured)| rendering(measured));
         let lines =
@@ -53,14 +51,13 @@ impl RigLines {
         Arc::clone(&self.measured[1].1)
     }
 
-    /// Returns the measurement with the photodiode under a line, or `None` if this line was not measured.
     pub(super) fn under(&self, line: u64) -> Option<Arc<RigMeasurement>> {
         let found = self.measured.iter().find(|(measured, _)| u64::from(*measured) == line);
         found.map(|(_, measured)| Arc::clone(measured))
     }
 }
 
-/// Returns three possible lines of the photodiode: the first, the assumed and the last.
+/// Returns the first, the assumed and the last line of the photodiode.
 fn photodiode_lines() -> [u32; 3] {
     let assumed = PendulumRig::assumed().photodiode_line;
     let table = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE);
@@ -68,14 +65,13 @@ fn photodiode_lines() -> [u32; 3] {
     range.map_or([assumed; 3], |(first, last)| [first as u32, assumed, last as u32])
 }
 
-/// Measures the latency with the photodiode on the line `line` of the screen.
 pub(super) fn under_line(machine: &MachineConfig, of: (&Reading, &StopFlag), line: u64) -> Result<RigMeasurement> {
     let ([measured], _) = under_lines(machine, of, [u32::try_from(line).unwrap_or(u32::MAX)])?;
     Ok(measured)
 }
 
-/// Measures the latency with the photodiode under each of several lines in one run. Also returns true if a full backing
-/// store has changed the run.
+/// Measures the latency with the photodiode under each of several lines in one run. Also returns true if a backing
+/// store was full in the run.
 fn under_lines<const N: usize>(
     machine: &MachineConfig,
     (reading, stop): (&Reading, &StopFlag),
@@ -90,8 +86,7 @@ fn under_lines<const N: usize>(
     Ok((measured, outcome.record().met_full_store()))
 }
 
-/// Returns the latency of rendering: from the start of SEND to the light under the photodiode (row 17 of
-/// ACCURACY.md).
+/// Returns the part of the latency from the start of SEND to the light under the photodiode (row 17 of ACCURACY.md).
 pub(super) fn rendering(measured: &RigMeasurement) -> FigureValue {
     let Statistics { mean, min, max, .. } = measured.outside.rendering;
     let details = vec![
@@ -102,13 +97,13 @@ pub(super) fn rendering(measured: &RigMeasurement) -> FigureValue {
     FigureValue::with(mean * 1e3, details)
 }
 
-/// Number of seeds of the head motion for the measurement of row 18 of ACCURACY.md, the ratio of two errors.
+/// Number of seeds of the head motion for row 18 of ACCURACY.md, the ratio of two errors.
 const SEEDS: u64 = 4;
-/// Duration of the head motion for the measurement of row 18 of ACCURACY.md, in seconds.
+/// Seconds of head motion for row 18 of ACCURACY.md.
 const SECONDS: u64 = 120;
 
-/// Measures row 18 of ACCURACY.md: the ratio of the errors of two systems with 90 and 50 ms from head to light.
-/// Almost all of the error comes from rotation. The position adds little for a point 1 m ahead.
+/// Measures row 18 of ACCURACY.md: the ratio of the errors of two systems with 90 and 50 ms from head to light. Almost
+/// all of the error comes from rotation, because the position adds little for a point 1 m ahead.
 pub(super) fn ratio_of_errors() -> FigureValue {
     let ratio = |seed: u64| {
         let motion = Synthetic::recorded_use(seed);
@@ -119,10 +114,10 @@ pub(super) fn ratio_of_errors() -> FigureValue {
     FigureValue::with(mean, vec![detail("least", min, ""), detail("greatest", max, "")])
 }
 
-/// Number of display fields in the runs that measure the latency of tracker and rendering: ten seconds.
+/// Number of display fields in each measurement of the latency of tracker and rendering: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Measures rows 19 and 19b of ACCURACY.md: the latency of the optical tracker and of rendering, with Rendering
+/// Measures rows 19 and 19b of ACCURACY.md: the latency of the optical tracker and of rendering, under Rendering
 /// Control or Slats. The value is the sum of the stages of the latency that the paper adds. The details state all other
 /// stages.
 pub(super) fn tracker_and_rendering(
@@ -138,8 +133,8 @@ pub(super) fn tracker_and_rendering(
     let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).host(stop.clone()).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, .. } =
         Budget::of(&outcome);
-    // The paper adds its own mean latencies, so rendering is measured like figure 4. Eyes of Slats have no TRANSFORM
-    // of their own.
+    // The paper's sum contains its own mean latency of rendering, so rendering is measured as for figure 4. Eyes of
+    // Slats have no TRANSFORM of their own.
     let of_eyes = outcome.summary();
     let samples = reading.latencies_ms(&of_eyes);
     let rendering_ms =

@@ -1,5 +1,5 @@
-//! Figures of the paper on just-in-time pixels (JITP, by Mine and Bishop). The figures concern errors while the head
-//! turns, the duration of a line, the number of transforms, and the pictures of an edge.
+//! Figures of the paper on just-in-time pixels (JITP, by Mine and Bishop). The figures are errors while the head turns,
+//! the duration of a line, the number of transforms, and the pictures of an edge.
 
 use super::Bench;
 use super::group::{Measurement, free};
@@ -21,24 +21,24 @@ pub(super) const TITLE: &str = "Just-in-time pixels";
 pub(super) const ABOUT: &str = "The head turns by 200 degrees a second, and the view is 60 degrees wide (JITP). The tracker has \
 no error and no delay. So the only cause of errors is the time between the instant for which a pixel is drawn and the instant at \
 which it lights. The error of a pixel is the angle between two directions: the direction that the pixel shows, and the direction \
-that it should show when it lights. The unit of the error is a pixel of the paper JITP, with 600 pixels over 60 degrees. A field \
-or line lasts longer than its lit pixels, because a field and a line also include a retrace. Like the paper, the model scales \
-each angle to the whole time of the field or line.";
+that it should show when it lights. Errors in pixels use the pixel size of the paper JITP: 600 pixels cover 60 degrees, so a \
+pixel is 0.1 degrees. A field or line lasts longer than its lit pixels, because a field and a line also include a retrace. \
+Like the paper, the model scales each angle to the whole time of the field or line.";
 
-/// Rate of a fast turn of the head in degrees per second, published in the paper on just-in-time pixels.
+/// Degrees per second of a fast turn of the head, published in the paper on just-in-time pixels.
 const PAN: f64 = 200.0;
 
-/// Horizontal resolution of the picture in the paper on just-in-time pixels, in pixels per degree.
+/// Horizontal pixels per degree of the picture, published in the paper on just-in-time pixels.
 const PX_PER_DEG: f64 = 10.0;
 
-/// Number of the field that is evaluated. The number is even, and the field is long after the start of the run.
+/// Evaluated field. The number is even, and the field is long after the start of the run.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
-/// Number of the evaluated column in the 640 x 480 picture.
+/// Evaluated column of the 640 x 480 picture.
 const COLUMN: u32 = 320;
-/// Number of the middle line in the 640 x 480 picture.
+/// Middle line of the 640 x 480 picture.
 const MIDDLE_LINE: u32 = 240;
-/// Number of the last line of an even field in the 640 x 480 picture.
+/// Last line of an even field in the 640 x 480 picture.
 const LAST_LINE: u32 = 478;
 
 pub(super) fn measurements() -> Vec<Measurement> {
@@ -96,7 +96,7 @@ fn run(machine: MachineConfig, viewpoint: Viewpoint, aim: Aim, fields: u64) -> R
     experiment.fields(fields).pixels(Pixels::Off).run()
 }
 
-/// Returns the pixel error at one pixel of the evaluated picture, in degrees.
+/// Returns the pixel error at one pixel of the evaluated field, in degrees.
 fn degrees(outcome: &Outcome, x: u32, y: u32) -> Result<f64> {
     let shown = Registration::of(outcome).and_then(|registration| registration.at(x, y, FIELD));
     let nothing = || ExperimentError::Scene(format!("pixel ({x}, {y}) of field {} shows nothing", FIELD.0));
@@ -114,8 +114,8 @@ fn in_pixels(angle: FigureValue) -> Result<FigureValue> {
     Ok((angle.value * PX_PER_DEG).into())
 }
 
-/// Measures row J1 of ACCURACY.md: the head's rotation while the beam draws a field. The rotation is measured
-/// from the first pixel to the last line, and scaled to the time between two retraces.
+/// Measures row J1 of ACCURACY.md: the head's rotation while the beam draws a field. The rotation is measured from the
+/// first pixel to the last line, and scaled to the time between two retraces.
 fn error_of_field(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     let surface = &outcome.record().display().surfaces()[0];
@@ -132,8 +132,8 @@ fn error_of_field(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(turn_deg / scan_s * outcome.field_ms() / 1e3, details))
 }
 
-/// Measures row J2 of ACCURACY.md: the head's rotation while the beam draws a line. The rotation is measured
-/// between the first and the last pixel, and scaled to the duration of the whole line.
+/// Measures row J2 of ACCURACY.md: the head's rotation while the beam draws a line. The rotation is measured between
+/// the first and the last pixel, and scaled to the duration of the whole line.
 fn error_of_line(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Strip, Aim::Middle, FIELD.0 + 2)?;
     let last = outcome.record().display().surfaces()[0].width - 1;
@@ -144,8 +144,7 @@ fn error_of_line(bench: &Bench) -> Result<FigureValue> {
     Ok((ends_deg / active_s * line_s).into())
 }
 
-/// Measures row J3 of ACCURACY.md: the time between two successive lines of a field. Between these lines, the
-/// frame has one line of the other field.
+/// Measures row J3 of ACCURACY.md: the time between two successive lines of a field.
 fn time_of_line(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     Ok((beam_s(&outcome, (0, 0), (0, 2)) * 1e6).into())
@@ -161,8 +160,8 @@ fn slant_removed(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(100.0 * (1.0 - (just_in_time / conventional).abs()), details))
 }
 
-/// Returns the slant of an edge in pixels, from the first row to the last. A straight line is fitted through the right
-/// ends of the white pixels.
+/// Returns the slant of an edge in pixels, from the first row to the last row. A straight line is fitted through the
+/// right ends of the white pixels.
 fn slant(picture: &RgbImage) -> f64 {
     let end = |row| (0..picture.width()).rev().find(|x| picture.get_pixel(*x, row)[0] > 100).map_or(0, |x| x + 1);
     let rows = f64::from(picture.height());
@@ -175,8 +174,8 @@ fn slant(picture: &RgbImage) -> f64 {
     up / down * (rows - 1.0)
 }
 
-/// Measures row J5 of ACCURACY.md: the number of vertex transforms in [`COUNTED`] fields. A shorter run measures
-/// the transforms before these fields, which are subtracted.
+/// Measures row J5 of ACCURACY.md from the number of vertex transforms per field, over [`COUNTED`] fields. The
+/// transforms before these fields are counted in a run without these fields, and then subtracted.
 fn transforms(bench: &Bench) -> Result<FigureValue> {
     let counted = |viewpoint, fields| -> Result<u64> {
         Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
@@ -197,8 +196,8 @@ fn transforms(bench: &Bench) -> Result<FigureValue> {
 /// Number of display fields over which the transforms of vertices are counted.
 const COUNTED: u64 = 20;
 
-/// Returns a machine with one slave. The software of all boards takes no simulated time, because only the number of
-/// transforms is measured.
+/// Returns a machine with one slave. All software takes no simulated time, because only the number of transforms is
+/// measured.
 fn free_slave(bench: &Bench) -> Result<MachineConfig> {
     let mut machine = MachineConfig { n_gps: 2, code: None, ..bench.machine("small-hmd")? };
     for name in ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"] {

@@ -24,43 +24,41 @@ use pxpl5_sim::parameters::{ParameterTable, SettingError, Value};
 use std::sync::Arc;
 use tracking::rig::Measurement as RigMeasurement;
 
-/// Common settings of all measurements of figures: a level of modelling, and changes to the machine's parameters.
+/// Settings of all measurements of figures: the level of detail, and changes of machine parameters.
 #[derive(Clone, Debug)]
 pub struct Bench {
-    /// Level of modelling at which every figure is measured.
+    /// Level of detail at which each figure is measured.
     pub level: Level,
-    /// Paths of parameters, and values that replace the values of the presets. A path that begins with a preset's name
-    /// and a colon changes only that preset. So the times of Rendering Control's graphics library (PPHIGS) can change
-    /// without effect on Slats. The path [`PHOTODIODE_LINE`] changes the pendulum rig instead of a machine.
+    /// Paths of parameters, with values that replace the values of the presets. A path that begins with a preset's name
+    /// and a colon changes only that preset. For example, a time of Rendering Control's graphics library (PPHIGS) can
+    /// change without effect on Slats. The path [`PHOTODIODE_LINE`] changes the pendulum rig instead of a machine.
     pub changes: Vec<(String, u64)>,
     /// Number of seeds of the head motion for the fly-through of the scene "mig" (row 7 of ACCURACY.md).
     pub seeds: u64,
     /// Number of evaluated frames for each seed of the fly-through of the scene "mig" (row 7 of ACCURACY.md).
     pub frames: u64,
-    /// Interpretation of the papers: the answers to the questions that the papers leave open about Rendering Control.
+    /// Answers to the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
     /// True if the figures' intervals are computed too. The intervals take half of the time of all measurements.
     pub intervals: bool,
-    /// Flag by which another thread stops the measurements.
+    /// Flag with which another thread stops the measurements.
     pub stop: StopFlag,
     pub(crate) applications: Arc<Applications>,
 }
 
-/// Times of TRANSFORM and RENDER for one eye in the experiment of row 6 of ACCURACY.md, in milliseconds. Both
-/// stages take longer than COPY. The results for several times are averaged, because the swap waits for a retrace.
+/// Milliseconds of TRANSFORM, and also of RENDER, for one eye in row 6 of ACCURACY.md. Both stages take longer than
+/// COPY. The results for several times are averaged, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
 
-/// Number of display fields in the runs with full bins (rows 16b and 16c of ACCURACY.md), whose frames take
-/// about 30 fields each.
+/// Number of display fields in the runs with full bins (rows 16b and 16c of ACCURACY.md). In these runs, a frame takes
+/// about 30 fields.
 const FIELDS_OF_FULL_BINS: u64 = 600;
 
-/// Paths of the parameters that hold times of the Rendering Control code.
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
 
-/// Number of head poses from which each scene is seen, to count the regions that triangles touch (row 8 of
-/// ACCURACY.md).
+/// Number of head poses for each scene when the regions under triangles are counted (row 8 of ACCURACY.md).
 const VIEWS: u64 = 40;
-/// Time between two head poses from which the regions of triangles are counted, in picoseconds.
+/// Picoseconds between two head poses for row 8 of ACCURACY.md.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 impl Bench {
@@ -79,7 +77,7 @@ impl Bench {
         }
     }
 
-    /// Returns the same settings with other numbers of seeds and frames for the fly-through of the scene "mig".
+    /// Returns the same settings with `seeds` seeds and `frames` frames for the fly-through of the scene "mig".
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
         Self { seeds, frames, ..self }
@@ -91,14 +89,14 @@ impl Bench {
         Self { intervals: false, ..self }
     }
 
-    /// Returns the same settings with a flag by which another thread stops the measurements.
+    /// Returns the same settings with the flag `stop`, with which another thread stops the measurements.
     #[must_use]
     pub fn with_stop(self, stop: StopFlag) -> Self {
         Self { stop, ..self }
     }
 
-    /// Returns the same settings, but with times per triangle and sphere that were measured in executed code. Each
-    /// preset gets the times of its own code.
+    /// Returns the same settings, but with times per triangle and sphere from executed code. Each preset gets the times
+    /// of its own code.
     #[must_use]
     pub fn with_times_of_code(mut self) -> Self {
         // Each preset runs its own code, so each has its own times.
@@ -163,7 +161,7 @@ impl Bench {
         }
     }
 
-    /// Returns the machine of a preset, with the parameters that these settings change.
+    /// Returns the machine of a preset with the changed parameters.
     ///
     /// # Errors
     ///
@@ -183,32 +181,30 @@ impl Bench {
         Ok(machine)
     }
 
-    /// Returns true if `other` gives the same machine for every preset, and the same line of the photodiode. If the
-    /// other settings are equal too, the figures are equal.
+    /// Returns true if `other` has the same machine for every preset, and the same line of the photodiode.
     pub(crate) fn has_machines_of(&self, other: &Self) -> bool {
         let is_same =
             |preset: &Preset| self.machine(preset.name).is_ok_and(|one| other.machine(preset.name) == Ok(one));
         self.photodiode_line() == other.photodiode_line() && PRESETS.iter().all(is_same)
     }
 
-    /// Returns these settings of measurements with another interpretation of the papers.
+    /// Returns the same settings with `reading` as the interpretation of the papers.
     #[must_use]
     pub fn with(&self, reading: Reading) -> Self {
         Self { reading, ..self.clone() }
     }
 
-    /// Runs an experiment with a built-in scene at the chosen level of modelling, without pixels. The result is cached,
-    /// because several figures and interpretations share experiments.
+    /// Runs an experiment with a built-in scene and without pixels. The result is cached, because several figures and
+    /// interpretations share experiments.
     fn run(&self, machine: MachineConfig, pipeline: impl Pipeline, scene: &str, fields: u64) -> Result<Arc<Summary>> {
-        // The key needs an experiment, but the scene is loaded only if the result is not cached.
+        // The key of the cache needs an experiment, but the scene is loaded only if the result is not cached.
         let empty = self.applications.scene("full-screen:1", false)?;
         let experiment = Experiment::new(machine, pipeline, empty).fields(fields).level(self.level);
         let make = || self.summarise(&experiment.clone().with_scene(scene_named(scene)?));
         self.applications.summary(key_of(&experiment, scene), make)
     }
 
-    /// Runs an experiment and returns its summary. The boolean is true if a backing store was full at some time of the
-    /// run, or if that is unknown.
+    /// Runs an experiment and returns its summary. The boolean is true if a backing store may have been full.
     fn summarise(&self, experiment: &Experiment) -> Result<(Summary, bool)> {
         self.stop.check()?;
         let experiment = experiment.clone().pixels(Pixels::Off).level(self.level).host(self.stop.clone());
@@ -228,8 +224,8 @@ impl Bench {
         self.stereo(self.machine("small-hmd")?)
     }
 
-    /// Runs the experiment of rows 16b and 16c of ACCURACY.md. The scene has as many screen-filling triangles as
-    /// fit into the bins according to the papers.
+    /// Runs the experiment of rows 16b and 16c of ACCURACY.md. The scene has as many screen-filling triangles as fit
+    /// into the bins according to the papers.
     fn full_bins(&self) -> Result<Arc<Summary>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
@@ -249,8 +245,8 @@ impl Bench {
         Ok(spread_ms(Statistics::of(self.stereo(machine)?.eye_latencies_ms.iter().copied())))
     }
 
-    /// Computes row 16 of ACCURACY.md: the number of screen-filling triangles whose entries fit in the slaves'
-    /// bins, for one eye or for both.
+    /// Computes row 16 of ACCURACY.md: the number of screen-filling triangles whose entries fit into the slaves' bins,
+    /// for one eye or for both eyes.
     fn most_in_bins(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let slaves = machine.n_gps as u64 - 1;
@@ -259,8 +255,8 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Measures the latency with the pendulum rig (row 17 of ACCURACY.md) for three lines of the photodiode,
-    /// unless the settings choose one line.
+    /// Measures the latency with the pendulum rig (row 17 of ACCURACY.md) for three lines of the photodiode, unless the
+    /// settings choose one line.
     fn rig(&self) -> Result<FigureValue> {
         match self.photodiode_line() {
             Some(_) => self.rig_measurement().map(|measured| heads::rendering(&measured)),
@@ -268,7 +264,8 @@ impl Bench {
         }
     }
 
-    /// Returns the measurement of the pendulum rig under the line that the settings choose, or under the assumed line.
+    /// Returns the measurement of the pendulum rig with the photodiode under the chosen line, or under the assumed line
+    /// if no line is chosen.
     pub(super) fn rig_measurement(&self) -> Result<Arc<RigMeasurement>> {
         let lines = self.rig_lines()?;
         let Some(line) = self.photodiode_line() else { return Ok(lines.assumed()) };
@@ -283,11 +280,11 @@ impl Bench {
         self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE).map(|(_, line)| *line)
     }
 
-    /// Returns the measurements of the pendulum rig in one run. The level of modelling and the definition of latency
-    /// samples do not change these measurements.
+    /// Returns the measurements of the pendulum rig in one run. The measurements depend neither on the level of detail
+    /// nor on the definition of latency samples.
     fn rig_lines(&self) -> Result<Arc<RigLines>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
-        // The line does not change the run, so it is no part of the key.
+        // The line of the photodiode does not change the run, so it is no part of the cache's key.
         let changes = self.changes.iter().filter(|(path, _)| path != PHOTODIODE_LINE).cloned().collect();
         let key = (self.reading.finished, changes);
         self.applications.rig(key, self.reading.kept, || RigLines::measure(&machine, &self.reading, &self.stop))
@@ -296,8 +293,8 @@ impl Bench {
     /// Returns a machine and a scene for which TRANSFORM and RENDER of one eye each take `ms` milliseconds.
     ///
     /// RENDER takes this time because enough triangles cover the screen. Slower renderers would distort the result.
-    /// Commands that wait behind a full input FIFO, such as a copy command, would also wait longer by the same factor.
-    /// TRANSFORM takes this time because its code is slow, which delays nothing else.
+    /// Commands behind a full input FIFO, such as a copy command, would then wait longer by the same factor. TRANSFORM
+    /// takes this time because its code is slow. Slow code of TRANSFORM delays no other stage.
     fn stages_of(&self, ms: f64) -> Result<(MachineConfig, String)> {
         let mut machine = self.machine("small-hmd")?;
         let slaves = machine.n_gps as u64 - 1;
@@ -335,8 +332,8 @@ impl Bench {
         Ok(spread_ms(Statistics::of(means.into_iter())))
     }
 
-    /// Measures rows 7, 7b and 7c of ACCURACY.md: a fly-through of an application scene. The number of seeds in
-    /// the settings is divided by `seeds_of_one`, because larger scenes get fewer fly-throughs.
+    /// Measures rows 7, 7b and 7c of ACCURACY.md: a fly-through of an application scene. The number of seeds is divided
+    /// by `seeds_of_one`, because larger scenes get fewer fly-throughs.
     fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
         let samples_a_frame = if self.reading.samples == LatencySamples::EachEye { 2 } else { 1 };
         let seeds: Vec<u64> = (1..=self.seeds.div_ceil(seeds_of_one)).collect();
@@ -383,8 +380,8 @@ impl Bench {
         Ok((model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()), true))
     }
 
-    /// Returns the experiment of a fly-through. The run has two display fields for each frame (30 Hz). If frames take
-    /// longer, the run has fewer frames.
+    /// Returns the experiment of a fly-through, with two display fields for each frame (30 Hz). If frames take longer,
+    /// the run has fewer frames.
     fn application_experiment(&self, scene: &'static str, seed: u64) -> Result<Experiment> {
         let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
         let machine = self.reading.on(self.machine(self.reading.machine)?)?;
@@ -428,9 +425,8 @@ impl Bench {
     }
 }
 
-/// Measures row 8 of ACCURACY.md: the number of regions that a triangle touches, which is the number of bin
-/// entries per visible triangle. Each scene is seen from poses along its own head motion. The figure is the mean over
-/// three scenes.
+/// Measures row 8 of ACCURACY.md: the number of regions under a triangle, which is the number of bin entries per
+/// visible triangle. Each scene is seen from poses along its own head motion. The figure is the mean over three scenes.
 fn regions_touched() -> Result<FigureValue> {
     let mut details = Vec::new();
     for name in ["mig", "molecules", "head"] {
@@ -468,12 +464,12 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     Ok(entries as f64 / triangles.max(1) as f64)
 }
 
-/// Returns the number of complete pictures shown per second, or 0 if no picture was shown.
+/// Returns the number of complete pictures per second, or 0 if no picture was shown.
 fn rate_hz(summary: &Summary) -> f64 {
     summary.updates_hz.unwrap_or_default()
 }
 
-/// Returns a figure's value: the mean, with standard deviation, minimum and maximum as details.
+/// Returns the mean as the value of a figure, with standard deviation, minimum and maximum as details.
 fn spread_ms(statistics: Statistics) -> FigureValue {
     let Statistics { mean, sd, min, max, .. } = statistics;
     let details =
@@ -506,7 +502,7 @@ mod tests {
 
     /// Tests which changes of parameters require new machines. A change to the preset's own value requires none.
     #[test]
-    fn only_changes_that_reach_a_machine_or_the_photodiode_make_other_machines() {
+    fn only_changes_of_the_machine_or_the_photodiode_need_another_run() {
         let bench = Bench::new(Level::Transaction);
         let with = |path: &str, value| Bench { changes: vec![(path.to_owned(), value)], ..bench.clone() };
         let words = MachineConfig::small_hmd().renderer.fifo_words;
@@ -522,7 +518,7 @@ mod tests {
     }
 
     #[test]
-    fn triangles_of_18_pixels_touch_as_many_regions_as_the_formula_of_their_legs_says() {
+    fn triangles_of_18_pixels_touch_as_many_regions_as_their_formula() {
         let found = touched(&Arc::new(test_scene(TestScene::Typical, 4_000)), 1).expect("it has triangles");
         let expected = expected(TYPICAL_LEG_PX);
         // The 4,000 positions sample the average to a few thousandths.

@@ -1,5 +1,3 @@
-//! Results of the experiments that simulate published figures.
-
 use pxpl5_run::ExperimentError;
 use pxpl5_scene::{Scene, builtin};
 use pxpl5_sim::figures::Detail;
@@ -14,8 +12,8 @@ pub struct FigureValue {
     pub value: f64,
     /// Additional numbers of the same experiment, each with its own unit.
     pub details: Vec<Detail>,
-    /// Minimum and maximum of the figure over a condition of the experiment that the paper does not print. `None` if
-    /// the paper prints all conditions.
+    /// Minimum and maximum of the figure over a condition that the paper does not print. `None` if the paper prints all
+    /// conditions.
     pub unprinted: Option<[f64; 2]>,
 }
 

@@ -1,5 +1,5 @@
 //! Published peak rates: triangles per second of the machine, a renderer and a processor, and operations of the i860.
-//! The total latency that the pendulum rig measures is also in this module.
+//! The total latency from the pendulum rig is also in this module.
 
 use super::group::{Measurement, free};
 use super::measured::{FigureValue, Result, detail, scene_named};
@@ -38,7 +38,7 @@ const OF_PHONG: &[&str] = &[
     "renderer.phong_triangle_clocks",
 ];
 
-/// Paths of the parameters that limit the triangle rate of a single renderer, with Gouraud and with Phong shading.
+/// Parameters that limit the triangle rate of a single renderer, with Gouraud shading and with Phong shading.
 const OF_RENDERER: [&[&str]; 2] = [
     &["renderer.fifo_words", "renderer.triangle_clocks", "renderer.shade_clocks"],
     &["renderer.fifo_words", "renderer.phong_triangle_clocks", "renderer.shade_clocks"],
@@ -158,10 +158,10 @@ fn of_boards() -> Vec<Measurement> {
     ]
 }
 
-/// Number of triangles in a frame of the experiments that measure peak rates.
+/// Number of triangles in a frame.
 const TRIANGLES: u64 = 40_000;
 
-/// Number of display fields in a run, enough for 15 to 20 frames.
+/// Number of display fields in a run, which suffice for 15 to 20 frames.
 const FIELDS: u64 = 44;
 
 fn drawn(machine: MachineConfig, shading: Shading, triangles: u64, fields: u64) -> Result<Outcome> {
@@ -175,8 +175,8 @@ fn triangle_rate(bench: &Bench, preset: &str, shading: Shading) -> Result<Figure
     Ok(FigureValue::with(TRIANGLES as f64 * hz, vec![detail("frames a second", hz, "Hz")]))
 }
 
-/// Measures the number of commands that a renderer executes per second. Only the time in which the pixel array works
-/// counts. Of the 26,000 commands of a frame, all but 80 are triangles.
+/// Measures the rate at which a renderer executes commands, over the time in which its pixel array works. All but 80 of
+/// the 26,000 commands of a frame are triangles.
 fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     let machine = MachineConfig { n_renderers: 1, ..bench.machine("small-hmd")? };
     let outcome = drawn(machine, shading, TRIANGLES / 2, 2 * FIELDS)?;
@@ -188,8 +188,8 @@ fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     Ok(rates.sum::<f64>().into())
 }
 
-/// Measures the number of triangles that a processor transforms per second. Only the time of TRANSFORM counts. The
-/// first frame is left out.
+/// Measures the rate at which a processor transforms triangles, over the time of TRANSFORM. The first frame is left
+/// out.
 fn processor_rate(bench: &Bench) -> Result<FigureValue> {
     let triangles = 2_000;
     let machine = MachineConfig { n_gps: 2, ..bench.machine("small-hmd")? };
@@ -209,9 +209,7 @@ fn rig_total(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(measured.outside.total.mean * 1e3, details))
 }
 
-/// Number of iterations of the i860 loop.
 const TURNS: u32 = 100;
-/// Number of multiply-adds in an iteration of the i860 loop.
 const MULTIPLY_ADDS: usize = 256;
 
 /// Measures the floating-point operations of the i860 in millions per second, at a clock of 40 MHz.
@@ -240,5 +238,4 @@ fn i860_peak() -> Result<FigureValue> {
     Ok((operations / clocks as f64 * 40.0).into())
 }
 
-/// Memory address of the measured program.
 const CODE: u32 = 0x1000;

@@ -1,4 +1,4 @@
-//! Interpretations of the papers: answers to the questions about Rendering Control that the papers leave open.
+//! Interpretations of the papers: answers to the questions that the papers leave open about Rendering Control.
 
 use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::RendererTiming;
@@ -6,13 +6,13 @@ use pxpl5_run::{FinishedRegions, RenderingControl, Summary, retraces};
 use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 
-/// Definition of the single latencies that a paper averages for a printed latency.
+/// Definition of the samples whose mean is a printed latency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LatencySamples {
-    /// Each frame gives one sample, timed from the start of TRANSFORM of its first eye.
+    /// Each frame gives one sample, which begins with TRANSFORM of the first eye.
     FirstEye,
-    /// Each eye of a frame gives one sample, timed from the start of TRANSFORM of this eye.
+    /// Each eye of a frame gives one sample, which begins with TRANSFORM of this eye.
     EachEye,
 }
 
@@ -20,33 +20,32 @@ pub enum LatencySamples {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FieldCount {
-    /// The duration of the latency divided by 1001/60000 s.
+    /// The latency divided by 1001/60000 s.
     Exact,
     /// The number of retraces during the latency, including the retrace of the swap.
     Whole,
 }
 
-/// An interpretation of the papers: one answer to each question that the papers leave open about the figures of
-/// Rendering Control.
+/// One answer to each question that the papers leave open about the figures of Rendering Control.
 ///
 /// The members `samples` and `fields` define the published latencies. All other members concern the machine and the
-/// scenes. All figures are measured with the same interpretation. No answer is chosen for a single figure.
+/// scenes. All figures are measured with the same interpretation, so that no answer is chosen for a single figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Reading {
-    /// Definition of the single latencies that a paper averages for a printed latency.
+    /// Definition of the samples whose mean is a printed latency.
     pub samples: LatencySamples,
     /// Definition of the unit "field" in a published latency.
     pub fields: FieldCount,
     /// Number of finished regions that a renderer keeps in its backing store, 1 to [`ROOM`] (`renderer.kept_bits`).
     pub kept: u64,
-    /// The master's rule for a renderer that has finished its region while the frame buffer is not available.
+    /// The master's rule for a renderer with a finished region while the frame buffer is not available.
     #[serde(serialize_with = "by_name")]
     pub finished: FinishedRegions,
     /// Preset of the machine that drew the application scenes.
     pub machine: &'static str,
     /// True if the back faces of the application scenes were removed before drawing.
     pub culled: bool,
-    /// Number of eyes (1 or 2) whose entries fill the bins when 7,700 triangles are drawn (`gp.bin_bytes`).
+    /// Number of eyes (1 or 2) with entries in the bins when 7,700 triangles fill the bins (`gp.bin_bytes`).
     pub bins: u64,
 }
 
@@ -55,7 +54,7 @@ fn by_name<S: serde::Serializer>(finished: &FinishedRegions, serializer: S) -> R
 }
 
 /// Number of regions that fit in a renderer's backing store. The store has 4,096 bits per pixel, and the colours of a
-/// region take 32 of these bits.
+/// region take 32 bits per pixel.
 pub const ROOM: u64 = RendererTiming::PAPERS.backing_regions();
 
 impl Reading {
@@ -71,17 +70,17 @@ impl Reading {
         bins: 1,
     };
 
-    /// The rules in the text of TR94: a renderer stores its finished region and continues with the next region. The
+    /// The rules in the text of TR94: a renderer stores its finished region and continues with another region. The
     /// theoretical latencies in TR94 (rows 3 and 5 of ACCURACY.md) assume this interpretation.
     pub const THEORY: Self = Self { kept: ROOM, finished: FinishedRegions::Store, ..Self::USUAL };
 
-    /// Returns the interpretations that differ from this interpretation in the answer to exactly one question.
+    /// Returns the interpretations that differ from `self` in the answer to exactly one question.
     #[must_use]
     pub fn neighbours(&self) -> Vec<Self> {
         Self::all().into_iter().filter(|other| self.differences(other) == 1).collect()
     }
 
-    /// Returns all interpretations of the papers: every combination of answers to the open questions.
+    /// Returns all combinations of answers to the open questions.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::USUAL];
@@ -97,7 +96,6 @@ impl Reading {
         varied(&all, &[FieldCount::Exact, FieldCount::Whole], |reading, fields| Self { fields, ..reading })
     }
 
-    /// Returns the answers to the seven questions in words.
     fn answers(&self) -> [String; 7] {
         let samples = if self.samples == LatencySamples::FirstEye { "first eye" } else { "each eye" };
         let fields = if self.fields == FieldCount::Exact { "exact" } else { "whole fields" };
@@ -108,8 +106,7 @@ impl Reading {
         [samples, fields, kept, self.finished.name().to_owned(), machine, faces, bins]
     }
 
-    /// Returns those answers of `self`, in words, that differ from the answers of `other`. The questions are the
-    /// questions that the papers leave open about Rendering Control.
+    /// Returns the answers of `self`, in words, that differ from the answers of `other`.
     #[must_use]
     pub fn difference(&self, other: &Self) -> String {
         let both = self.answers().into_iter().zip(other.answers());
@@ -130,7 +127,7 @@ impl Reading {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the number of kept regions is outside the parameter's limits.
+    /// Returns a [`SettingError`] if `kept` is outside the limits of its parameter.
     pub fn on(&self, mut machine: MachineConfig) -> Result<MachineConfig, SettingError> {
         if self.kept != Self::USUAL.kept {
             machine.set("renderer.kept_bits", machine.renderer.backing_bits / self.kept)?;
@@ -141,8 +138,7 @@ impl Reading {
         Ok(machine)
     }
 
-    /// Returns the latency samples of a run in milliseconds. Each latency ends at the swap. Depending on the
-    /// interpretation, each frame or each eye gives one sample.
+    /// Returns the latency samples of a run in milliseconds, for frames or for eyes. Each latency ends at the swap.
     #[must_use]
     pub fn latencies_ms<'a>(&self, summary: &'a Summary) -> &'a [f64] {
         match self.samples {
@@ -164,11 +160,11 @@ impl Reading {
 /// Presets of machines that could have drawn the application scenes.
 const MACHINES: [&str; 4] = ["small-hmd", "medium", "design-maximum", "large"];
 
-/// Numbers of finished regions that a renderer may keep. The last number fills the backing store.
+/// Possible numbers of finished regions in a renderer's backing store. The last number fills the store.
 const KEPT: [u64; 4] = [1, 2, 3, ROOM];
 
-/// Returns several copies of each interpretation: one for each possible answer to a question. The function `answer`
-/// sets the answer in a copy.
+/// Returns one copy of each interpretation for each answer in `answers`. The function `answer` sets the answer in a
+/// copy.
 fn varied<A: Copy>(readings: &[Reading], answers: &[A], answer: impl Fn(Reading, A) -> Reading) -> Vec<Reading> {
     readings.iter().flat_map(|reading| answers.iter().map(|one| answer(*reading, *one))).collect()
 }
@@ -185,7 +181,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn every_combination_occurs_once_and_the_usual_one_is_among_them() {
+    fn every_combination_of_answers_is_one_interpretation_and_the_usual_interpretation_is_in_the_list() {
         let all = Reading::all();
         assert_eq!(all.len(), 4 * 2 * 2 * 4 * 2 * 2 * 2);
         assert_eq!(all.iter().collect::<BTreeSet<_>>().len(), all.len());
@@ -193,8 +189,9 @@ mod tests {
     }
 
     #[test]
-    fn a_neighbour_answers_one_question_differently() {
-        // Three other machines, three other numbers of regions, and five questions with two answers.
+    fn a_neighbouring_interpretation_differs_in_the_answer_to_one_question() {
+        // The neighbours are three other machines, three other numbers of regions, and the other answer to each of five
+        // questions.
         assert_eq!(Reading::USUAL.neighbours().len(), 3 + 3 + 5);
     }
 }

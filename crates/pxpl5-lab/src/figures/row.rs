@@ -1,10 +1,10 @@
-//! The table row of a published figure, and the definition of a figure that the model misses.
+//! The table row of a published figure, and the definition of a missed figure.
 
 use super::measured::FigureValue;
 use super::table::Figure;
 use pxpl5_sim::figures::{Basis, FigureRow, around};
 
-/// Relative difference in percent above which the model misses a figure, if the paper prints no range.
+/// Error in percent above which the model misses a figure, if the paper prints no range.
 pub const MISS_PERCENT: f64 = 3.0;
 
 impl Figure {
@@ -31,8 +31,8 @@ impl Figure {
     }
 }
 
-/// Returns the mean absolute error in percent over all rows to which nothing was fitted. A figure without a value
-/// counts 100 %.
+/// Returns the mean absolute error in percent over all rows without fitted parameters. A figure without a value counts
+/// as 100 %.
 #[must_use]
 pub fn mean_error_percent(rows: &[FigureRow]) -> f64 {
     let free: Vec<_> = rows.iter().filter(|row| row.basis == Basis::Free).collect();

@@ -6,13 +6,13 @@ use serde::Serialize;
 /// A figure printed in a paper.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// Number of the figure in this project's list, with a letter if one statement of a paper holds several numbers.
+    /// Number of the figure in [`FIGURES`], with a letter if one statement of a paper holds several numbers.
     pub id: &'static str,
     /// Short name of the paper.
     pub paper: &'static str,
     /// Topic of the part of the paper that prints the figure.
     pub section: &'static str,
-    /// Statement in the paper that contains the figure, in a few words.
+    /// Statement of the paper with the figure, in a few words.
     pub statement: &'static str,
     /// Value printed in the paper, in `unit`.
     pub value: f64,
@@ -23,7 +23,7 @@ pub struct Figure {
     pub spread: Option<f64>,
     /// Experiment that simulates the figure.
     pub experiment: &'static str,
-    /// Relation between the figure and the choices made in the model: checked, fitted, or rule chosen.
+    /// Relation between the figure and the choices in the model: checked, fitted, or rule chosen.
     pub basis: Basis,
     /// Known cause of a difference between model and paper. Empty if the model reproduces the figure.
     pub cause: &'static str,
@@ -34,8 +34,8 @@ const SLATS: &str = "Slats";
 const HEAD: &str = "from head to light";
 const FREE: Basis = Basis::Free;
 
-/// Creates a figure of the table, without a cause of a difference between model and paper. The method `because` adds a
-/// cause.
+/// Creates a figure without a known difference between model and paper. The method `because` adds the cause of a
+/// difference.
 const fn figure(
     id: &'static str,
     (paper, section): (&'static str, &'static str),
@@ -284,6 +284,6 @@ pub const FIGURES: [Figure; 26] = [
     ),
 ];
 
-/// Figures without a closed-form formula: a property of the scenes, and figures that need a tracker or a motion. Their
-/// experiments are simulated with events at every level of modelling, and no parameter is varied.
+/// Figures without a closed form: a property of the scenes, and figures that need a tracker or a motion. These figures
+/// are always simulated with events. The intervals at the analytic level omit these figures.
 pub const WITHOUT_CLOSED_FORM: [&str; 5] = ["8", "17", "18", "19", "19b"];

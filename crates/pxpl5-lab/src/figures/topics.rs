@@ -1,5 +1,3 @@
-//! The topics by which published figures are grouped.
-
 use super::group::Topic;
 use super::{Bench, FigureError, FigureGroup, jitp, rates, trackers};
 

@@ -52,14 +52,13 @@ fn model(config: TrackerConfig) -> Result<TrackerModel> {
 
 /// Number of seeds. The timer of the host's operating system has a different phase for each seed.
 const SEEDS: u64 = 200;
-/// Number of tracker reports for each seed.
 const REPORTS: usize = 240;
 
 fn polling(bench: &Bench) -> Result<FigureValue> {
     let patched = TrackerConfig::fastrak();
     let polled = patched.clone().with_polling_by(&Tables::PAPERS);
     let mut waits_ms = Vec::new();
-    // Each seed gives the kernel another phase relative to the tracker.
+    // Each seed gives the timer of the operating system another phase relative to the tracker.
     for seed in 1..=SEEDS {
         let arrivals = |config: &TrackerConfig| {
             let reports: Vec<TrackerReport> =
@@ -81,7 +80,7 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
 /// Number of display fields in a run: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Returns the mean time in ms from the measurement of a head pose until TRANSFORM of the picture for this pose starts.
+/// Returns the mean time in ms from the measurement of a head pose to the start of TRANSFORM for this pose.
 fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
     let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
@@ -92,12 +91,11 @@ fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
     Ok(tracking_ms + waiting_ms + sending_ms)
 }
 
-/// Rate of the head's turn in degrees per second. The rate is low, so that a delay of a quarter of a second is half a
-/// degree.
+/// Rate of the head's turn in degrees per second. The rate is low, so that a quarter of a second is half a degree.
 const SLOW: f64 = 2.0;
 
-/// Measures by how many ms the orientation in a report of the Fastrak is older than the head's orientation at the time
-/// of the report. The head turns steadily. `gain` is the gain of the tracker's filter.
+/// Measures how much older the orientation in a report of the Fastrak is than the head's orientation, in ms. The head
+/// turns steadily. `gain` is the gain of the tracker's filter.
 fn apparent_latency(gain: f64) -> Result<FigureValue> {
     let mut tables = Tables::PAPERS;
     tables.fastrak.filter_gain = gain;

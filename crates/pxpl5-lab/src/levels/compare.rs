@@ -1,4 +1,4 @@
-//! Comparison of the levels of modelling by speed and error, with the same experiments at every level.
+//! Comparison of the levels of detail by speed and error, with the same experiments at every level.
 
 use super::random::{compared_ms, experiment};
 use super::record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
@@ -11,9 +11,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Levels of modelling to compare. The boolean is true if the primitive times in the timing table come from executed
-/// code, instead of published or fitted values. The cycle level does not use the timing table, so that only one entry
-/// has this level.
+/// Levels of detail to compare. The boolean is true if the timing table has times that were measured by executing i860
+/// code, instead of published or fitted times. The cycle level appears once, because it does not use the timing table.
 const VARIANTS: [(Level, bool); 5] = [
     (Level::Analytic, false),
     (Level::Analytic, true),
@@ -22,26 +21,23 @@ const VARIANTS: [(Level, bool); 5] = [
     (Level::Cycle, true),
 ];
 
-/// Choices of the pixels that a run computes, for which the simulation speed is measured. The analytic level has no
-/// pixels.
+/// Choices of computed pixels for which the speed is measured. The analytic level has no pixels.
 const PIXELS: [Pixels; 3] = [Pixels::Off, Pixels::Lazy, Pixels::All];
 
-/// Number of seeds and number of frames of the test scene "mig". Small numbers suffice, because only the levels are
-/// compared.
+/// Number of seeds and of frames of the scene "mig". Small numbers suffice, because only the levels are compared.
 const MIG: (u64, u64) = (2, 60);
 
-/// Number of experiments whose speed is measured. The experiments run one after the other, and the computer does no
-/// other work at the same time.
+/// Number of experiments whose speed is measured. They run one after the other on an otherwise idle computer.
 const TIMED: u64 = 16;
 
-/// Parameters of a comparison of levels of modelling.
+/// Parameters of a comparison of the levels of detail.
 #[derive(Clone, Debug)]
 pub struct LevelQuery {
-    /// Number of random experiments for which each level is compared with the cycle level.
+    /// Number of random experiments in which each level is compared with the cycle level.
     pub experiments: u64,
-    /// True if simulation speeds are measured as well. Speeds are meaningful only on an otherwise idle computer.
+    /// True if speeds are measured as well, which requires an otherwise idle computer.
     pub speeds: bool,
-    /// Flag by which another thread stops the comparison.
+    /// Flag with which another thread stops the comparison.
     pub stop: StopFlag,
 }
 
@@ -51,8 +47,7 @@ impl Default for LevelQuery {
     }
 }
 
-/// Compares all levels on this host. `finished` is called with the number of finished steps and the number of all
-/// steps.
+/// Compares all levels on this host. Calls `finished` with the number of finished steps and the number of all steps.
 ///
 /// # Errors
 ///
@@ -98,7 +93,6 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     })
 }
 
-/// Returns the random experiment with the number `number`, at one of the compared levels of modelling.
 fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Experiment, ExperimentError> {
     let experiment = experiment(number)?.level(level);
     if !times_of_code || level == Level::Cycle {
@@ -109,8 +103,8 @@ fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Expe
     Ok(other.fields(experiment.length()).seed(experiment.motion_seed()).pixels(Pixels::Off).level(level))
 }
 
-/// Runs the random experiment with the number `number`, and returns the time that is compared between levels of
-/// modelling, in milliseconds. The value is NaN if no picture is shown.
+/// Runs the random experiment `number`, and returns the time that is compared between levels, in milliseconds. The
+/// value is NaN if no picture is shown.
 fn value(variant: (Level, bool), number: u64, stop: &StopFlag) -> Result<f64, ExperimentError> {
     stop.check()?;
     let experiment = of_variant(variant, number)?.host(stop.clone());
@@ -121,7 +115,6 @@ fn value(variant: (Level, bool), number: u64, stop: &StopFlag) -> Result<f64, Ex
     }
 }
 
-/// Measures all published figures at one of the compared levels.
 fn rows_of(
     (level, times_of_code): (Level, bool),
     stop: &StopFlag,
@@ -137,7 +130,6 @@ fn rows_of(
     parallel::map(&FIGURES, row).into_iter().collect()
 }
 
-/// Measures the simulation speed of a level for each choice of the pixels that a run computes.
 fn speeds(variant: (Level, bool), query: &LevelQuery) -> Result<Vec<LevelSpeed>, ExperimentError> {
     let choices = if variant.0 == Level::Analytic { &PIXELS[..1] } else { &PIXELS[..] };
     let speed = |pixels: &Pixels| {
@@ -148,7 +140,7 @@ fn speeds(variant: (Level, bool), query: &LevelQuery) -> Result<Vec<LevelSpeed>,
     choices.iter().map(speed).collect()
 }
 
-/// Runs all timed experiments, and returns the number of simulated seconds per second of computing time.
+/// Runs all timed experiments, and returns the simulated seconds per second of computing time.
 fn speed(variant: (Level, bool), pixels: Pixels, stop: &StopFlag) -> Result<f64, ExperimentError> {
     let registry = crate::registry();
     let (mut simulated, mut taken) = (0.0, 0.0);
@@ -163,7 +155,7 @@ fn speed(variant: (Level, bool), pixels: Pixels, stop: &StopFlag) -> Result<f64,
             experiment.run().map(|_| ())
         };
         taken += begin.elapsed().as_secs_f64();
-        // Runs that are too short take time like all others.
+        // The time of runs that are too short counts too.
         match result {
             Ok(()) | Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => {}
             Err(error) => return Err(error),

@@ -1,4 +1,4 @@
-//! Random experiments that every level of modelling supports.
+//! Random experiments that every level of detail supports.
 //!
 //! The experiments run Rendering Control and Slats on NTSC displays without a tracker. Their machines and scenes are
 //! small enough for the cycle level. Parameters lie anywhere in the ranges of their sources. The number of an
@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// frames at 20 Hz after the warm-up.
 const FIELDS: (u64, u64) = (48, 14);
 
-/// Returns the random experiment with the number `number`, without pixels. Even numbers give experiments with Rendering
-/// Control, odd numbers give experiments with Slats.
+/// Returns the random experiment `number` without pixels. Even numbers give experiments with Rendering Control, odd
+/// numbers give experiments with Slats.
 ///
 /// # Errors
 ///
@@ -72,8 +72,8 @@ fn machine(preset: &str, random: &mut SplitMix64, gps: (u64, u64)) -> Result<Mac
 }
 
 /// Returns the quantity that is compared between levels, in milliseconds. Under Rendering Control, the quantity is the
-/// mean latency. Slats always has a latency of one field. Under Slats, the quantity is therefore the time from the
-/// beginning of a field to the first copy. The value is NaN if no picture was shown in time.
+/// mean latency. Under Slats, whose latency is always one field, the quantity is the time from the start of a field to
+/// the first copy. The value is NaN if no picture was shown in time.
 #[must_use]
 pub fn compared_ms(experiment: &Experiment, summary: &Summary) -> f64 {
     if summary.latencies_ms.is_empty() {

@@ -1,4 +1,4 @@
-//! A measurement of all levels of modelling (speed and error), stored in a file.
+//! A stored measurement of the speed and error of all levels of detail.
 
 use pxpl5_run::{Level, Pixels};
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
@@ -7,57 +7,58 @@ use serde::{Deserialize, Serialize};
 /// Name and version of the record's JSON layout.
 pub const SCHEMA: &str = "pxpl5-levels/2";
 
-/// Measurement of all levels of modelling, with date and host. Missing values are null.
+/// Measurement of all levels of detail, with date and host. Missing values are null.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelRecord {
     /// Name and version of the JSON layout.
     pub schema: String,
-    /// Number of random experiments from which each [`LevelReport::from_cycle_percent`] is computed.
+    /// Number of random experiments that give each [`LevelReport::from_cycle_percent`].
     pub experiments: u64,
     /// Remarks for the reader, such as missing values.
     pub note: Option<String>,
     /// Date of the measurement, such as 2026-11-25.
     pub date: Option<String>,
-    /// Host on which the levels were measured.
+    /// Computer of the measurement.
     pub host: Option<String>,
-    /// Reports of the levels of modelling. A level that uses the timing table has two reports, one for each source of
-    /// the table's times.
+    /// Reports of the levels of detail. A level that uses the timing table has two reports, one for each source of the
+    /// table's times.
     pub levels: Vec<LevelReport>,
 }
 
-/// Errors and speeds of one level of modelling.
+/// Errors and speeds of one level of detail.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelReport {
-    /// Level of modelling that was measured.
+    /// Level of detail of this report.
     pub level: Level,
-    /// True if the primitive times in the timing table come from executed code, instead of published or fitted values.
+    /// True if the timing table has times that were measured by executing i860 code, instead of published or fitted
+    /// times.
     pub times_of_code: bool,
-    /// Mean absolute error in percent over the published figures to which nothing was fitted.
+    /// Mean absolute error in percent over the published figures without fitted parameters.
     pub published_error_percent: Option<f64>,
-    /// Absolute deviations of this level from the cycle level, in percent, over random experiments.
+    /// Absolute deviations from the cycle level, in percent, over random experiments.
     pub from_cycle_percent: Option<Spread>,
-    /// Simulation speeds for each choice of pixels. The choice of pixels does not change simulated times.
+    /// Speeds for each choice of computed pixels. The choice does not change simulated times.
     pub speeds: Vec<LevelSpeed>,
 }
 
-/// Simulation speed of a level of modelling for one choice of pixels.
+/// Speed of a level of detail for one choice of computed pixels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelSpeed {
     /// Choice of the pixels that are computed.
     pub pixels: Pixels,
-    /// Simulated seconds per second of computing time, on one simulating thread. Further threads, one for each core of
-    /// the computer, compute the pixels.
+    /// Simulated seconds per second of computing time. One thread simulates, and other threads, one for each core,
+    /// compute the pixels.
     pub simulated_seconds_per_second: Option<f64>,
 }
 
-/// Median of a set of values, and the interval that contains the middle 90 % of the values.
+/// Median, and interval of the middle 90 %, of a set of values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// Median of the set of values.
+    /// Median of the values.
     pub median: f64,
-    /// 5th percentile of the set of values.
+    /// 5th percentile of the values.
     pub low_5: f64,
-    /// 95th percentile of the set of values.
+    /// 95th percentile of the values.
     pub high_95: f64,
 }
 
@@ -96,14 +97,14 @@ impl LevelRecord {
 }
 
 impl LevelReport {
-    /// Returns the name of this level of modelling, for tables and charts.
+    /// Returns the name of this level of detail, for tables and charts.
     #[must_use]
     pub fn name(&self) -> String {
         let times = if self.times_of_code && self.level != Level::Cycle { ", times of code" } else { "" };
         format!("{}{times}", self.level.name())
     }
 
-    /// Returns advice on when to use this level of modelling, and when not.
+    /// Returns advice on the use of this level of detail.
     #[must_use]
     pub const fn advice(&self) -> &'static str {
         match (self.level, self.times_of_code) {
@@ -131,7 +132,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_spread_has_the_middle_and_the_ends_of_its_values() {
+    fn a_spread_has_the_median_and_the_5th_and_95th_percentiles_of_its_values() {
         let spread = Spread::of((0..=20).rev().map(f64::from).collect()).expect("there are some");
         assert_eq!(spread, Spread { median: 10.0, low_5: 1.0, high_95: 19.0 });
         assert_eq!(Spread::of(vec![7.0, 8.0]).map(|spread| spread.median), Some(7.5));
@@ -139,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_is_read_as_it_was_written_with_what_is_missing() {
+    fn a_record_is_read_as_written_including_missing_values() {
         let report = LevelReport {
             level: Level::Cycle,
             times_of_code: true,

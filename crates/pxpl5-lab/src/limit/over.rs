@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The values of a setting that a search can try. The values are equally spaced and begin at `from`.
+/// Equally spaced values of a setting, of which a search tries some.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Values {
     /// Smallest value that a search can try.
@@ -38,7 +38,7 @@ impl Values {
         (step > 0.0 && step.is_finite()).then_some(Self { from, step, count: STEPS + 1 })
     }
 
-    /// Returns the value with the index `number` among the values that a search can try. The index is counted from 0.
+    /// Returns the value with the index `number`, counted from 0.
     #[must_use]
     pub fn value(&self, number: u64) -> f64 {
         self.from + self.step * number as f64
@@ -61,14 +61,14 @@ impl Values {
     }
 }
 
-/// Limit below which a 64-bit floating-point number represents every whole number exactly.
+/// Limit below which a 64-bit floating-point number represents every whole number.
 const MAX_WHOLE: f64 = 1e15;
 
 /// Number of steps between the ends of a range of real numbers.
 pub const STEPS: u64 = 64;
 
-/// Estimated number of values that a search tries: five values, and the values of two bisections. For a setting with
-/// fractions, a bisection divides the range into 64 steps.
+/// Estimated number of tried values: five values, and the values of two bisections. For a setting with fractions, a
+/// bisection divides the range into 64 steps.
 pub const USUAL_VALUES: u64 = 12;
 
 /// A search for the values of one setting with which an experiment reaches a goal.
@@ -78,26 +78,26 @@ pub struct OverQuery {
     pub file: ExperimentFile,
     /// Path of the varied setting, such as `machine.n_gps`.
     pub key: String,
-    /// The values of the setting that can be tried.
+    /// Values of the varied setting, of which the search tries some.
     pub values: Values,
     /// Goal that the experiment must reach.
     pub goal: Goal,
-    /// Flag by which another thread stops the search.
+    /// Flag with which another thread stops the search.
     pub stop: StopFlag,
 }
 
 /// Result of a search for the values of a setting that reach a goal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OverLimit {
-    /// Smallest value that reaches the goal. `None` if no value reaches the goal, or if the search found no miss below
-    /// the values that reach the goal.
+    /// Smallest value that reaches the goal. `None` if no value reaches the goal, or if no smaller value misses the
+    /// goal.
     pub least: Option<f64>,
-    /// Greatest value that reaches the goal. `None` if no value reaches the goal, or if the search found no miss above
-    /// the values that reach the goal.
+    /// Greatest value that reaches the goal. `None` if no value reaches the goal, or if no greater value misses the
+    /// goal.
     pub most: Option<f64>,
     /// True if at least one tried value reaches the goal.
     pub reached: bool,
-    /// All tried values in ascending order, each with true if the value reaches the goal.
+    /// All tried values in ascending order. The boolean is true if the value reaches the goal.
     pub tried: Vec<(f64, bool)>,
     /// A value that misses the goal: the value next to the limit, or the best value if all values miss.
     pub missed_at: Option<f64>,
@@ -105,7 +105,6 @@ pub struct OverLimit {
     pub because: Option<String>,
 }
 
-/// Result of the experiment with one value of the setting.
 struct Trial {
     reached: bool,
     /// Closeness of the result to the goal, in the unit of the goal. A greater score is better.
@@ -114,8 +113,8 @@ struct Trial {
 }
 
 impl OverQuery {
-    /// Returns the values of a setting from `from` to `to`. Whole numbers are tried if both ends are whole. An end that
-    /// is `None` has the default value of that end.
+    /// Returns the values of a setting from `from` to `to`. Whole numbers are tried if both ends are whole. `None`
+    /// means the default value of an end.
     ///
     /// For a number of boards, the default values end at the number in the largest preset. For any other parameter, the
     /// default values cover the range that the sources of the parameter allow.
@@ -162,12 +161,12 @@ impl OverQuery {
         })
     }
 
-    /// Searches for the limit. `progress` is called with the number of values tried so far, and with an estimate of the
-    /// number of all values.
+    /// Searches for the limit. Calls `progress` with the number of tried values, and with an estimate of the number of
+    /// all values.
     ///
     /// The search first tries the ends of the range and three values between them. If one of these values reaches the
-    /// goal, the search bisects the range on both sides of this value. The limit is therefore exact if all values on
-    /// one side of the limit reach the goal and all values on the other side miss.
+    /// goal, the search bisects the range on both sides of this value. The limit is exact if all values on one side of
+    /// the limit reach the goal and all values on the other side miss.
     ///
     /// # Errors
     ///
@@ -184,7 +183,7 @@ impl OverQuery {
         self.stop.check()?;
         let reached = search.trials.iter().filter(|(_, trial)| trial.reached).map(|(number, _)| *number).max();
         let Some(inside) = reached else { return search.none() };
-        // Towards smaller values, then towards greater ones.
+        // Search towards smaller values, then towards greater values.
         let misses = |search: &Search<'_>, down: bool| {
             let of = search.trials.iter().filter(|(_, trial)| !trial.reached).map(|(number, _)| *number);
             if down { of.filter(|number| *number < inside).max() } else { of.filter(|number| *number > inside).min() }
@@ -224,19 +223,17 @@ impl OverQuery {
     }
 }
 
-/// A search in progress, with the results of the tried values.
 struct Search<'a> {
     query: &'a OverQuery,
     trials: BTreeMap<u64, Trial>,
     /// The error of the last value with which no experiment could run.
     refused: Option<StudyError>,
-    /// The scene that was loaded last, with the settings of this scene.
     scene: Option<(crate::SceneChoice, Arc<Scene>)>,
 }
 
 impl Search<'_> {
-    /// Returns true if the experiment with this value reaches the goal. A value that cannot be run does not reach the
-    /// goal.
+    /// Returns true if the experiment with the value of index `number` reaches the goal. A value without a valid
+    /// experiment misses the goal.
     fn reaches(&mut self, number: u64) -> bool {
         if let Some(trial) = self.trials.get(&number) {
             return trial.reached;
@@ -293,8 +290,8 @@ impl Search<'_> {
         self.trials.iter().map(|(number, trial)| (self.query.values.value(*number), trial.reached)).collect()
     }
 
-    /// Returns the result of the search if all values of the setting miss the goal. The run with the best value then
-    /// determines the limiting resource.
+    /// Returns the result of a search in which all values miss the goal. The run with the best value determines the
+    /// limiting resource.
     fn none(mut self) -> Result<OverLimit, StudyError> {
         let is_refused = self.trials.values().all(|trial| trial.score == f64::NEG_INFINITY);
         if let Some(error) = self.refused.take().filter(|_| is_refused) {
@@ -314,8 +311,6 @@ impl Search<'_> {
     }
 }
 
-/// Returns the closeness of a run to the goal, in the unit of the goal. A run with a greater score is closer to the
-/// goal.
 fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
     let score = match goal {
         Goal::NoMissedRetrace => summary.due.map(|due| -(due.not_shown() as f64)),
@@ -329,8 +324,8 @@ fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
 /// leave up to 5 % of a short run idle.
 const FULL: f64 = 0.95;
 
-/// Returns the limiting resource of a run in words: a board that is always busy, or else the longest wait in the
-/// latency with the busiest board of this resource.
+/// Returns the limiting resource of a run in words. This resource is a board that is always busy. If no board is always
+/// busy, it is the resource with the longest wait in the latency.
 fn because(outcome: &Outcome) -> Option<String> {
     let Utilisation { renderers, gps, ports, ring, .. } = Utilisation::of(outcome.record())?;
     let (renderer, gp) = (("renderer", renderers.executing), ("GP", gps.busy));
@@ -353,7 +348,6 @@ fn because(outcome: &Outcome) -> Option<String> {
     Some(format!("limited by {}{busiest}", path.limited_by))
 }
 
-/// Returns the utilisation of the busiest board of a kind in words.
 fn busy((board, shares): &(&str, Shares)) -> String {
     let idle = if shares.idle > 0 { format!(", {} are idle", shares.idle) } else { String::new() };
     format!("{board} {} is {:.0} % busy{idle}", shares.busiest, shares.max * 100.0)
@@ -364,14 +358,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn whole_numbers_are_written_without_a_point() {
+    fn whole_numbers_are_printed_without_a_decimal_point() {
         let values = Values::whole(2, 50).expect("a range");
         assert_eq!((values.count, values.text(values.value(3))), (49, "5".to_owned()));
         assert_eq!(Values::whole(5, 5), None);
     }
 
     #[test]
-    fn real_numbers_go_in_equal_steps_to_the_end() {
+    fn real_numbers_advance_in_equal_steps_to_the_end_of_the_range() {
         let values = Values::real(0.0, 16.0).expect("a range");
         assert_eq!((values.value(1), values.last(), values.text(0.25)), (0.25, 16.0, "0.25".to_owned()));
         assert_eq!(Values::real(1.0, 1.0), None);

@@ -1,59 +1,56 @@
-//! Searches for the smallest number of triangles (size of a scene) that misses a goal, by simulating scenes of several
-//! sizes.
+//! Search for the smallest number of triangles that misses a goal, by simulating scenes of several sizes.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Result of a search for the largest number of triangles, with facts about the sizes that were tried.
+/// Result of a search for the largest number of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Limit {
-    /// Largest number of triangles below the first miss. Every tried size up to this size reached the goal. 0 if one
-    /// triangle already misses the goal.
+    /// Largest number of triangles below the first miss. All smaller tried sizes reached the goal. 0 if one triangle
+    /// already misses the goal.
     pub triangles: u32,
     /// Smallest tried number of triangles that missed the goal. `None` if all tried sizes reached the goal.
     pub first_miss: Option<u32>,
     /// Largest tried number of triangles above the first miss that nevertheless reached the goal, if any.
     pub island: Option<u32>,
-    /// Smallest number of triangles from which on all sizes up to `triangles` were tried. Below this size only some
-    /// sizes were tried.
+    /// Smallest number of triangles from which on all sizes up to `triangles` were tried. Only some smaller sizes were
+    /// tried.
     pub unbroken_from: u32,
-    /// Number of scene sizes that were simulated.
+    /// Number of simulated scene sizes.
     pub tried: usize,
 }
 
 impl Limit {
-    /// Returns true if a number of triangles missed the goal, or if the search ended below [`CEILING`](super::CEILING)
-    /// at the last triangle of a model. Otherwise the pipeline has no limit.
+    /// Returns true if a number of triangles missed the goal. Also returns true if the search ended below
+    /// [`CEILING`](super::CEILING) at the last triangle of a model. Otherwise the pipeline has no limit.
     #[must_use]
     pub const fn has_limit(&self) -> bool {
         self.first_miss.is_some() || self.triangles < super::CEILING
     }
 }
 
-/// Hints about the limit, which reduce the number of trials. Hints do not change the result of any trial.
+/// Hints about the limit, which reduce the number of simulations but do not change their results.
 #[derive(Clone, Debug, Default)]
 pub struct Hints {
-    /// Number of triangles near the limit. Without this hint the search starts with one triangle.
+    /// Number of triangles near the limit. Without this hint, the search starts with one triangle.
     pub near: Option<u32>,
-    /// Numbers of triangles that may miss the goal although larger numbers reach the goal. The search tries these
-    /// numbers too.
+    /// Numbers of triangles that may miss the goal although larger numbers of triangles reach the goal. The search
+    /// therefore tries these numbers.
     pub doubtful: Vec<u32>,
 }
 
-/// Maximum number of sizes (numbers of triangles) directly below the result that are all tried: 60 sizes, or two clumps
-/// of 30 triangles. The search also tries about as many sizes above the result, because some of these may reach the
-/// goal.
+/// Maximum number of consecutive sizes that are tried below the result: 60 sizes, or two clumps of 30 triangles. About
+/// as many sizes are tried above the result, because some may reach the goal.
 const LOOK: u32 = 60;
 
-/// Maximum sum of the triangles of all scenes that are tried directly below the result. Larger scenes take longer to
-/// simulate, so fewer large scenes are tried.
+/// Maximum sum of the triangles of all consecutive scenes below the result. The simulation time grows with the size of
+/// the scene. The limit therefore allows fewer scenes if the scenes are large.
 const TRIANGLES_IN_A_ROW: u32 = 60_000;
 
-/// Minimum number of consecutive scene sizes that are tried directly below the result.
+/// Minimum number of consecutive scene sizes below the result.
 const LEAST_IN_A_ROW: u32 = 4;
 
-/// The scene sizes (numbers of triangles) that were tried so far. The boolean of a size is true if the size reached the
-/// goal.
+/// The tried scene sizes. The boolean is true if the size reached the goal.
 struct Tried<F> {
     answers: BTreeMap<u32, bool>,
     reached: F,
@@ -72,12 +69,11 @@ impl<F> Tried<F> {
         Ok(answer)
     }
 
-    /// Returns the smallest tried size (number of triangles) that missed the goal.
     fn first_miss(&self) -> Option<u32> {
         self.answers.iter().find(|(_, reached)| !**reached).map(|(size, _)| *size)
     }
 
-    /// Returns the largest tried number of triangles below `size`, or 0 if no smaller number was tried.
+    /// Returns the largest tried number of triangles below `size`, or 0 if there is none.
     fn before(&self, size: u32) -> u32 {
         self.answers.range(..size).next_back().map_or(0, |(size, _)| *size)
     }
@@ -102,7 +98,7 @@ impl<F> Tried<F> {
         Ok(())
     }
 
-    /// Bisects the gap below the first miss, until the number of triangles directly before the first miss was tried.
+    /// Bisects the gap below the first miss, until the number directly before the first miss was tried.
     fn bisect<E>(&mut self) -> Result<(), E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -152,7 +148,7 @@ impl<F> Tried<F> {
         let first_miss = self.first_miss();
         let triangles = first_miss.map_or(ceiling, |miss| miss - 1);
         let island = self.answers.iter().rev().find(|(size, reached)| **reached && **size > triangles);
-        // Walk down while every size was tried.
+        // Go to smaller sizes as long as every size was tried.
         let mut unbroken_from = triangles;
         while unbroken_from > 1 && self.answers.contains_key(&(unbroken_from - 1)) {
             unbroken_from -= 1;
@@ -161,8 +157,7 @@ impl<F> Tried<F> {
     }
 }
 
-/// Searches for the first miss: the smallest size (number of triangles) up to `ceiling` for which `reached` returns
-/// false, which means that the goal is missed.
+/// Searches for the first miss: the smallest number of triangles up to `ceiling` for which `reached` returns false.
 ///
 /// Sizes above the first miss may reach the goal, because a nearly empty clump (group of triangles) costs as many
 /// messages as a full clump. The search tries only some sizes, but guarantees three facts:
@@ -171,7 +166,7 @@ impl<F> Tried<F> {
 /// - All sizes from [`Limit::unbroken_from`] to the size before the first miss were tried and reached the goal.
 /// - No smaller size that was tried missed the goal.
 ///
-/// Below [`Limit::unbroken_from`] the search tries the sizes of the hints, and five sizes at growing distances. A miss
+/// Below [`Limit::unbroken_from`], the search tries the sizes of the hints and five sizes at growing distances. A miss
 /// at any size between them is not found.
 ///
 /// # Errors
@@ -180,7 +175,7 @@ impl<F> Tried<F> {
 pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<Limit, E> {
     let mut tried = Tried { answers: BTreeMap::new(), reached };
     tried.find_limit(ceiling, hints)?;
-    // Islands above the first miss do not change the limit, but the result reports them.
+    // Islands (sizes above the first miss that reach the goal) do not change the limit, but the result reports them.
     let limit = tried.limit(ceiling).triangles;
     for size in above(limit, ceiling) {
         tried.ask(size)?;
@@ -188,8 +183,8 @@ pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<b
     Ok(tried.limit(ceiling))
 }
 
-/// Returns [`Limit::triangles`] of [`most`], without a search for islands (sizes above the first miss that reach the
-/// goal). An island never changes the limit, so about half of the trials are left out.
+/// Returns [`Limit::triangles`] of [`most`], without the sizes above the first miss. These sizes never change the limit
+/// and are about half of all tried sizes.
 ///
 /// # Errors
 ///
@@ -200,7 +195,7 @@ pub fn most_triangles<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -
     Ok(tried.limit(ceiling).triangles)
 }
 
-/// Returns the limit found by bisection alone, as a hint for a search at another level of modelling.
+/// Returns the limit found by bisection alone, as a hint for a search at another level of detail.
 pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<u32, E> {
     let mut tried = Tried { answers: BTreeMap::new(), reached };
     tried.bracket(1, ceiling)?;
@@ -208,18 +203,17 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
     Ok(tried.limit(ceiling).triangles)
 }
 
-/// Returns the numbers of triangles to try below `limit`: consecutive numbers directly below `limit`, the numbers in
-/// `doubtful`, and five numbers whose distances from `limit` double. According to the hints, doubtful numbers may miss
-/// the goal.
+/// Returns the numbers of triangles to try below `limit`. These are consecutive numbers directly below `limit`, the
+/// numbers in `doubtful`, which may miss the goal, and five numbers at doubling distances.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
-    // All sizes directly below, from the largest down.
+    // Try all sizes directly below the limit, from the largest to the smallest.
     let near = (limit.saturating_sub(in_a_row)..limit).rev();
     let far = (1..=5).rev().map(move |halvings| limit - (limit >> halvings));
     near.chain(doubtful.iter().copied().filter(move |size| *size < limit)).chain(far).filter(|size| *size > 0)
 }
 
-/// Returns how many numbers of triangles to try on either side of `limit`. The numbers below `limit` are consecutive.
+/// Returns the number of consecutive sizes to try below `limit`. About as many sizes are tried above `limit`.
 fn in_a_row(limit: u32) -> u32 {
     (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(LEAST_IN_A_ROW, LOOK)
 }
@@ -249,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_monotone_limit_is_found_exactly() {
+    fn the_search_finds_a_limit_without_islands_exactly() {
         for limit in [0, 1, 2, 63, 110, 4_096, 900_000] {
             let found = of(CEILING, |size| size <= limit);
             assert_eq!((found.triangles, found.first_miss, found.island), (limit, Some(limit + 1), None));
@@ -257,8 +251,8 @@ mod tests {
     }
 
     #[test]
-    fn the_answer_lies_below_an_island() {
-        // The sizes 796 to 806 miss because of an almost empty clump. 807 does not miss.
+    fn a_search_returns_the_largest_size_below_the_misses_and_not_an_island_above() {
+        // The sizes 796 to 806 miss the goal because of an almost empty clump. The size 807 reaches the goal.
         for near in [None, Some(700), Some(807), Some(900)] {
             let hints = Hints { near, ..Hints::default() };
             let found = with(CEILING, &hints, |size| size <= 795 || size == 807);
@@ -269,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_far_below_is_found_where_another_model_doubts_it() {
+    fn a_single_missed_size_is_found_if_a_hint_names_it_as_doubtful() {
         let reached = |size: u32| size <= 800 && size != 421;
         assert_eq!(of(CEILING, reached).triangles, 800);
         let hints = Hints { near: Some(800), doubtful: vec![421] };
@@ -288,7 +282,7 @@ mod tests {
         /// Tests that a search with any hints finds the limit, if all sizes up to the limit reach the goal and no
         /// larger size does.
         #[test]
-        fn hints_change_the_number_of_trials_alone(
+        fn hints_change_only_the_number_of_trials(
             limit in 0u32..5_000,
             near in 1u32..6_000,
             doubtful in proptest::collection::vec(1u32..6_000, 0..5),

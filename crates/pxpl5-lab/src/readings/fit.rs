@@ -1,4 +1,4 @@
-//! The fit of one interpretation of the papers: its agreement with the published figures.
+//! The fit of one interpretation of the papers to the published figures.
 
 use super::FIGURES;
 use crate::figures::{Bench, Figure, Reading};
@@ -18,18 +18,18 @@ pub struct FigureFit {
     pub unit: &'static str,
     /// Relative error in percent: (simulated - published) / published. The error is 0 within a printed range.
     pub error_percent: f64,
-    /// Printed standard deviation of the samples. `None` for figures without a printed deviation.
+    /// Printed standard deviation of the samples, if the paper prints one.
     pub published_sd: Option<f64>,
-    /// Standard deviation of the simulated samples. `None` for figures without a printed deviation.
+    /// Standard deviation of the simulated samples, if the paper prints a standard deviation.
     pub simulated_sd: Option<f64>,
 }
 
 /// Agreement of all published figures with the model under one interpretation of the papers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
-    /// The interpretation of the papers: the answers to the papers' open questions.
+    /// The interpretation: one answer to each open question of the papers.
     pub reading: Reading,
-    /// The interpretation of the papers in words.
+    /// The interpretation in words.
     pub words: String,
     /// Fit of each figure, in the order of [`FIGURES`].
     pub figures: Vec<FigureFit>,
@@ -37,26 +37,25 @@ pub struct Fit {
     pub mean_error_percent: f64,
     /// Largest absolute error of a figure in percent.
     pub greatest_error_percent: f64,
-    /// Logarithm of the likelihood of the printed means and standard deviations, up to a constant. See
-    /// [`FigureFit::log_likelihood`].
+    /// Logarithm of the likelihood of the printed means and standard deviations, up to a constant
+    /// ([`FigureFit::log_likelihood`]).
     pub log_likelihood: f64,
-    /// Numbers of the figures that the interpretation does not explain. The error of such a figure exceeds 8 %, or its
-    /// standard deviation differs by more than a quarter.
+    /// Numbers of the figures that the interpretation does not explain. Their errors exceed 8 %, or their standard
+    /// deviations differ by more than a quarter.
     pub unexplained: Vec<&'static str>,
 }
 
-/// Largest error of a mean, in percent, that still counts as explained. This project chose the limit.
+/// Largest error in percent at which an interpretation still explains a mean. This project chose the limit.
 const EXPLAINED_PERCENT: f64 = 8.0;
 
-/// Largest relative error of a standard deviation that still counts as explained.
+/// Largest relative error at which an interpretation still explains a standard deviation.
 const EXPLAINED_SD: f64 = 0.25;
 
-/// Relative uncertainty of the model itself. The model is uncertain because some of its clocks and costs are not in any
-/// paper.
+/// Relative uncertainty of the model itself, because some of its clocks and costs are not in any paper.
 const DISCREPANCY: f64 = 0.02;
 
-/// Number of samples from which the papers' printed means were computed. The printed mean of 4.47 with a standard
-/// deviation of 0.502 follows from samples of 4 or 5 fields only if there are 67 to 119 samples.
+/// Number of samples behind the papers' printed means. The printed mean is 4.47 fields with a standard deviation of
+/// 0.502. Samples of 4 or 5 fields have these values only if there are 67 to 119 samples.
 const SAMPLES: f64 = 87.0;
 
 /// Returns the standard deviation that the paper prints for an application scene. `None` for other figures.
@@ -86,9 +85,9 @@ impl FigureFit {
 
     /// Returns the logarithm of the likelihood of the figure's printed values.
     ///
-    /// The error of the mean has a normal distribution. The variance has three parts: the printed digits, the error of
-    /// a mean of 87 samples, and 2 % for the model. The logarithm of the ratio of both deviations has a normal
-    /// distribution with a standard deviation of 0.25.
+    /// The error of the mean has a normal distribution. Its variance has three parts: the printed digits, the error of
+    /// a mean of 87 samples, and 2 % for the model. The logarithm of the ratio of the simulated to the published
+    /// standard deviation has a normal distribution. The standard deviation of this distribution is 0.25.
     #[must_use]
     pub fn log_likelihood(&self) -> f64 {
         let of_samples = self.published_sd.map_or(0.0, |sd| sd / SAMPLES.sqrt());
@@ -128,14 +127,14 @@ impl Fit {
         })
     }
 
-    /// Returns the mean of the absolute errors in percent over all figures except the figure `id`.
+    /// Returns the mean of the absolute errors in percent over all figures except `id`.
     #[must_use]
     pub fn mean_error_without(&self, id: &str) -> f64 {
         mean_without(&self.figures, Some(id))
     }
 }
 
-/// Returns half of the last printed digit of a value that is printed with three digits.
+/// Returns half of the last digit of a value with three printed digits.
 pub(super) fn half_a_digit(value: f64) -> f64 {
     0.5 * 10f64.powf(value.log10().floor() - 2.0)
 }
@@ -161,10 +160,10 @@ mod tests {
     };
 
     #[test]
-    fn what_is_printed_is_the_likeliest_and_a_deviation_of_nothing_is_no_explanation() {
+    fn the_likelihood_of_a_figure_follows_from_its_error_and_three_deviations() {
         assert_eq!(EXACT.log_likelihood(), 0.0);
         let off = FigureFit { simulated: 4.2, error_percent: 5.0, ..EXACT };
-        // 0.2 in units of the three parts: 0.5 / sqrt(87), a fiftieth of 4, and half of a hundredth.
+        // The error of 0.2 is divided by three deviations: 0.5 / sqrt(87), a fiftieth of 4, and half of a hundredth.
         let expected = -0.5 * (0.2f64.powi(2) / (0.25 / 87.0 + 0.0064 + 0.000_025));
         assert!((off.log_likelihood() - expected).abs() < 1e-12);
         assert!(off.is_explained() && !FigureFit { simulated_sd: Some(0.0), ..EXACT }.is_explained());
@@ -172,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_left_out_does_not_count() {
+    fn an_omitted_figure_does_not_change_the_mean_error() {
         let figures = [EXACT, FigureFit { id: "3", error_percent: -20.0, ..EXACT }];
         assert_eq!((mean_without(&figures, None), mean_without(&figures, Some("3"))), (10.0, 0.0));
     }

@@ -9,16 +9,19 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Cross-validation of a figure: its prediction by the interpretation that fits all other figures best.
+/// Test of the interpretations on one published figure (leave-one-out cross-validation).
+///
+/// An interpretation is a set of answers to the questions that the papers leave open. The interpretation that fits all
+/// other published figures best predicts the value of this figure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeaveOneOut {
     /// Number of the figure in ACCURACY.md.
     pub id: &'static str,
-    /// Interpretation with the smallest mean error over the other figures.
+    /// Interpretation with the smallest mean error over all other figures.
     pub chosen: Reading,
-    /// The chosen interpretation in words.
+    /// The interpretation `chosen` in words.
     pub words: String,
-    /// Relative error, in percent, of the figure's value under the chosen interpretation.
+    /// Relative error in percent of the figure under the interpretation `chosen`.
     pub error_percent: f64,
 }
 
@@ -27,22 +30,21 @@ pub struct LeaveOneOut {
 pub struct Readings {
     /// Name and version of the JSON layout.
     pub schema: &'static str,
-    /// Fit of every interpretation at the analytic level, by ascending mean error.
+    /// Fits of all interpretations at the analytic level, by ascending mean error.
     pub analytic: Vec<Fit>,
-    /// Fit of the best interpretations at the transaction level, by ascending mean error.
+    /// Fits of the best interpretations at the transaction level, by ascending mean error.
     pub transaction: Vec<Fit>,
     /// Prediction of each figure by the interpretation that fits all other figures best, at the analytic level.
     pub left_out: Vec<LeaveOneOut>,
-    /// Number of interpretations whose mean error equals the error of the best interpretation, within the printed
-    /// digits.
+    /// Number of interpretations with the same mean error as the best interpretation, within the printed digits.
     pub as_good: usize,
     /// Part of a mean error, in percent, that the rounding of printed digits can explain.
     pub rounding_percent: f64,
 }
 
 /// Ranks all interpretations at the analytic level, with the numbers of seeds and frames in `bench`. The first `best`
-/// interpretations are then simulated at the transaction level. `finished` is called with the number of finished runs
-/// and the number of all runs.
+/// interpretations are then simulated at the transaction level. Calls `finished` with the number of finished runs and
+/// the number of all runs.
 ///
 /// # Errors
 ///
@@ -68,7 +70,7 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
         fits.into_iter().collect::<Result<Vec<_>, _>>().map(|fits| ranked(fits.concat()))
     };
     let analytic = fits(Level::Analytic, &readings)?;
-    // Only the best interpretations are worth simulating with events.
+    // Only the best interpretations are simulated with all events, which takes long.
     let chosen: Vec<Reading> = analytic.iter().take(best).map(|fit| fit.reading).collect();
     let transaction = fits(Level::Transaction, &chosen)?;
     let rounding_percent = rounding_percent(&analytic);
@@ -79,9 +81,9 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
     Ok(Readings { schema: "pxpl5-readings/1", analytic, transaction, left_out, as_good, rounding_percent })
 }
 
-/// Groups the interpretations whose runs differ at most in the number of regions that a renderer keeps. Within a group,
-/// the interpretation with the smallest number comes first. If no backing store is full in its run, the run also serves
-/// the larger numbers.
+/// Groups the interpretations that differ at most in the number of regions in a backing store. Each group begins with
+/// the interpretation with the fewest regions. If no backing store is ever full in the run of this interpretation, the
+/// result also holds for the rest of the group.
 fn groups(readings: &[Reading]) -> Vec<Vec<Reading>> {
     let mut groups: BTreeMap<Reading, Vec<Reading>> = BTreeMap::new();
     for reading in readings {
@@ -104,8 +106,8 @@ fn left_out(fits: &[Fit], id: &'static str) -> Option<LeaveOneOut> {
     Some(LeaveOneOut { id, chosen: chosen.reading, words: chosen.words.clone(), error_percent: figure.error_percent })
 }
 
-/// Returns the mean rounding error of the figures in percent: half of the last printed digit. Papers print three
-/// digits.
+/// Returns the mean rounding error of the figures in percent. The rounding error of a figure is half of its last digit,
+/// with three printed digits.
 fn rounding_percent(fits: &[Fit]) -> f64 {
     let published = fits.first().into_iter().flat_map(|fit| &fit.figures).map(|figure| figure.published);
     let halves: Vec<f64> = published.map(|value| 100.0 * half_a_digit(value) / value).collect();
@@ -118,7 +120,7 @@ mod tests {
 
     /// Tests that the fit of an interpretation is the same with a shared cache of runs and with an empty cache.
     #[test]
-    fn runs_that_readings_share_change_no_fit() {
+    fn sharing_runs_among_interpretations_changes_no_fit() {
         let shared = Bench::new(Level::Analytic).with_mig(1, 12);
         for reading in Reading::all().into_iter().step_by(67) {
             let alone = Bench::new(Level::Analytic).with_mig(1, 12);

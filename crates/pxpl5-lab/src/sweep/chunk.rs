@@ -1,5 +1,4 @@
-//! Simulates some points of a sweep within a time limit. Programs that distribute the points of a sweep over computers
-//! call this module.
+//! Simulates some points of a sweep within a time limit, for programs that distribute the points over computers.
 
 use super::point::row;
 use super::{Status, Sweep, SweepRow};
@@ -8,7 +7,7 @@ use std::time::{Duration, Instant};
 
 impl Sweep {
     /// Simulates `points` one after the other on the calling thread, until the time `at_most` has passed. Returns each
-    /// row with the seconds that its simulation took.
+    /// row with the seconds of its simulation.
     ///
     /// The first point is always simulated, and no point is interrupted. Repeated calls with the remaining points
     /// therefore reach the end. A row depends only on the file and the point. An error of a point, even a panic, is
@@ -51,7 +50,7 @@ mod tests {
         "pipeline = \"slats\"\nscene = \"typical:60\"\nfields = 20\n[sweep.grid]\ntriangles = [20, 40, 0]\n";
 
     #[test]
-    fn rows_of_some_points_are_those_of_the_whole_sweep() {
+    fn rows_of_selected_points_equal_the_rows_of_the_whole_sweep() {
         let sweep = sweep(SPACE);
         let folder = std::env::temp_dir().join(format!("pxpl5-chunk-{}", std::process::id()));
         let mut store = Store::open(&folder, sweep.header().expect("a header"), true).expect("a folder");
@@ -65,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn without_time_one_point_is_simulated_and_the_rest_can_be_asked_for() {
+    fn with_no_time_left_one_point_is_simulated_and_the_others_remain() {
         let sweep = sweep(SPACE);
         let mut left: &[u64] = &[1, 0, 2];
         let mut found = Vec::new();

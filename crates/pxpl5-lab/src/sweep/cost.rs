@@ -1,5 +1,5 @@
-//! Estimates the cost of points before they run. The formulas are in [`crate::estimate`]. The analytic level (closed
-//! form) gives the number of pictures.
+//! Estimates of the cost of points before their simulation. The formulas are in [`crate::estimate`]. The closed form of
+//! the pipeline gives the number of pictures.
 //!
 //! Programs that distribute points over computers correct the estimates by the durations of finished points.
 
@@ -9,23 +9,23 @@ use crate::estimate::{Estimate, RunWork};
 use pxpl5_run::{Experiment, Level};
 use std::collections::BTreeMap;
 
-/// Seconds to check the settings of a point (experiment) of a sweep, to build the scene, and to write the row.
+/// Seconds to check the settings of a point, to build its scene, and to write its row.
 const POINT: f64 = 3e-3;
 
-/// Memory in bytes for a point without a simulation: an invalid point, or a point at the analytic level.
+/// Bytes for a point without a simulation: an invalid point, or a point at the analytic level.
 const NO_RUN_BYTES: f64 = 15e6;
 
 impl Sweep {
-    /// Estimates the time in seconds that each point (experiment) takes on one core. If the pipeline has a closed form,
-    /// the closed form gives the number of pictures. An invalid point costs almost nothing. Points that differ only in
-    /// their seed get the same estimate.
+    /// Estimates the seconds for each point on one core. If the pipeline has a closed form, the closed form gives the
+    /// number of pictures. An invalid point costs almost nothing. Points that differ only in their seed get the same
+    /// estimate.
     #[must_use]
     pub fn costs(&self, points: &[u64]) -> Vec<f64> {
         self.estimates(points).into_iter().map(|estimate| estimate.seconds).collect()
     }
 
-    /// Estimates the time in seconds and the memory of each point. The memory includes all observations of a point,
-    /// which are kept until the results of the point are measured.
+    /// Estimates the time in seconds and the memory of each point. The memory includes all observations, which are kept
+    /// until the results of the point are measured.
     #[must_use]
     pub fn estimates(&self, points: &[u64]) -> Vec<Estimate> {
         let mut known: BTreeMap<String, Estimate> = BTreeMap::new();
@@ -54,8 +54,7 @@ impl Sweep {
     }
 }
 
-/// Returns the number of pictures shown per field according to the pipeline's closed form. Returns `None` if the
-/// pipeline has no closed form.
+/// Returns the number of pictures per field from the pipeline's closed form, if it has one.
 fn pictures_from_closed_form(plan: &Plan, experiment: Experiment) -> Option<f64> {
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
     let form = entry.closed_form.filter(|_| plan.head.is_none())?;

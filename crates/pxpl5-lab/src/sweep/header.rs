@@ -1,4 +1,4 @@
-//! The header of a sweep's file of rows, which holds all data needed to repeat the sweep.
+//! The header of a sweep's file of rows, with all data that are necessary to repeat the sweep.
 
 use super::{Axis, AxisValues, Sweep, SweepSpace, measures};
 use pxpl5_measure::Measure;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Header of a sweep: the data shared by all of its rows.
+/// Data that all rows of a sweep share.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Name and version of the JSON layout of header and rows.
@@ -19,13 +19,13 @@ pub struct Header {
     pub machine: String,
     /// Hash of the settings, the parameter space and the measured quantities.
     pub config_hash: String,
-    /// Level of modelling at the first valid point.
+    /// Level of detail at the first valid point.
     pub level: String,
     /// Seed at the first valid point.
     pub seed: u64,
-    /// Title of the sweep in one line, for the user.
+    /// Title of the sweep in one line.
     pub title: Option<String>,
-    /// Number of points (experiments) of the whole sweep, over all shards.
+    /// Number of points of the whole sweep, over all shards.
     pub points: u64,
     /// Names of the measured quantities with their definitions.
     pub measure: BTreeMap<String, String>,
@@ -40,7 +40,7 @@ pub struct Header {
 pub struct AxisRecord {
     /// Keys of the experiment file that change together.
     pub paths: Vec<String>,
-    /// Values of the keys at each step of the axis.
+    /// Values of the keys at all steps of the axis.
     #[serde(flatten)]
     pub steps: Steps,
 }
@@ -49,13 +49,12 @@ pub struct AxisRecord {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Steps {
-    /// Lists of values. Each step has one list, with one value for each path.
+    /// Lists of values: one list for each step, with one value for each path.
     Steps(Vec<Vec<Value>>),
-    /// Ranges of a long axis, one range for each path: first value, step, and number of values.
+    /// Ranges of a long axis, one for each path: first value, step, and number of values.
     Ranges(Vec<[i64; 3]>),
 }
 
-/// Maximum number of steps of an axis that are written as lists of values.
 const LISTED_STEPS: u64 = 1_000;
 
 impl Header {
@@ -93,7 +92,7 @@ impl Header {
     }
 }
 
-/// Maximum number of points that are searched for the first valid point. Assumed: some seconds of work.
+/// Maximum number of points in the search for the first valid point. Assumed: some seconds of work.
 const MAX_POINTS_SEARCHED: u64 = 100_000;
 
 impl Sweep {
@@ -101,7 +100,7 @@ impl Sweep {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] of the first point if no point is valid.
+    /// Returns the [`SettingError`] of the first point if no point is valid.
     pub fn header(&self) -> Result<Header, SettingError> {
         // The header describes the first valid point.
         let looked_at = self.space.points().min(MAX_POINTS_SEARCHED);

@@ -1,4 +1,4 @@
-//! The input files that points of a sweep read, such as models and recordings, with hashes of their contents.
+//! The input files of a sweep's points, such as models and recordings, with hashes of their contents.
 
 use super::Sweep;
 use crate::experiment_file::{ExperimentFile, beside, is_file};
@@ -24,7 +24,7 @@ const KEYS: [FileKey; 2] = [
 
 impl Sweep {
     /// Returns the hash of each file that a point may read, by the file's name in the settings. A file that cannot be
-    /// read counts as empty. Points that need this file fail with the reason.
+    /// read counts as empty, and all points that need it fail.
     pub(super) fn inputs(&self) -> BTreeMap<String, Fingerprint> {
         let mut inputs = inputs_of(&self.base);
         let folder = self.folder();
@@ -35,7 +35,7 @@ impl Sweep {
     }
 }
 
-/// Returns the hash of each file that an experiment file names, by the file's name in the experiment file.
+/// Returns the hash of each file that an experiment file names, by the name of the file.
 pub(crate) fn inputs_of(experiment: &ExperimentFile) -> BTreeMap<String, Fingerprint> {
     let mut inputs = BTreeMap::new();
     for file in &KEYS {

@@ -1,4 +1,4 @@
-//! Access to the rows of many files as if the rows were in one file, through an index of points.
+//! Reader of the rows in many files through one index of points.
 //!
 //! The index takes 12 bytes for each point and [`BLOCK`] bytes for each file. Only one file is open at a time. A
 //! thousand shards of a million points take 28 MB. A separate table for each file would take 8 GB and exceed the number
@@ -13,33 +13,25 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::PathBuf;
 
-/// Number of bytes that are read from a file of rows at a time: some tens of rows.
+/// Number of bytes of a file of rows that are read at a time: some tens of rows.
 const BLOCK: usize = 16 << 10;
 
-/// Error text for a file that was already read and now cannot be read again.
 const AGAIN: &str = "cannot be read again";
 
 #[derive(Debug)]
 pub(super) struct Joined {
     header: Header,
     files: Vec<RowBlocks>,
-    /// Number of the file that holds the row of each point. Files are counted from 1, and 0 means that the point has no
-    /// row.
+    /// Number of the file with the row of each point, counted from 1. 0 means that the point has no row.
     holders: Vec<u32>,
-    /// Byte position at which the row of each point begins in its file.
     places: Vec<u64>,
     failed: Points,
-    /// Points (experiments of the sweep) that have several equal rows.
     duplicates: Vec<u64>,
 }
 
 impl Joined {
-    /// Builds the index of the rows in all folders. A folder without a complete header is ignored.
-    ///
-    /// # Errors
-    ///
-    /// Returns a [`FileError`] if no folder holds a row, if a folder belongs to another sweep, or if a point has
-    /// different rows.
+    /// Builds the index of the rows in all folders. A folder without a complete header is ignored. Fails if no folder
+    /// holds a row, if a folder belongs to another sweep, or if a point has different rows.
     pub(super) fn of(folders: &[PathBuf]) -> Result<Self, FileError> {
         let mut joined: Option<Self> = None;
         for folder in folders {
@@ -66,7 +58,7 @@ impl Joined {
         Self { holders: vec![0; points], places: vec![0; points], header, files, failed, duplicates }
     }
 
-    /// Adds a row of the most recently added file to the index. `byte` is the byte position of the row in the file.
+    /// Adds a row of the last added file to the index. `byte` is the byte position of the row in the file.
     fn add(&mut self, row: &SweepRow, byte: u64) -> Result<(), FileError> {
         let point = row.point as usize;
         // A second row of a point must equal the first.
@@ -91,23 +83,19 @@ impl Joined {
         &self.header
     }
 
-    /// Returns the points without a row, in ascending order.
     pub(super) fn missing(&self) -> Vec<u64> {
         (0..).zip(&self.holders).filter(|(_, holder)| **holder == 0).map(|(point, _)| point).collect()
     }
 
-    /// Returns the number of points that could not be simulated.
     pub(super) fn failed(&self) -> u64 {
         (0..self.header.points).filter(|point| self.failed.holds(*point)).count() as u64
     }
 
-    /// Returns the points that have several equal rows, in ascending order.
     pub(super) fn duplicates(&self) -> &[u64] {
         &self.duplicates
     }
 
-    /// Returns the row of a point, or `None` if the point has no row. `point` must be less than the number of points of
-    /// the sweep.
+    /// Returns the row of a point, if it has one. `point` must be less than the number of points of the sweep.
     pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, FileError> {
         let Some(file) = (self.holders[point as usize] as usize).checked_sub(1) else { return Ok(None) };
         self.files[file].row_at(self.places[point as usize]).map(Some)
@@ -118,7 +106,6 @@ impl Joined {
 #[derive(Debug)]
 struct RowBlocks {
     path: PathBuf,
-    /// Byte position in the file at which the last piece begins.
     begin: u64,
     block: Vec<u8>,
 }
@@ -128,8 +115,8 @@ impl RowBlocks {
         Self { path, begin: 0, block: Vec::new() }
     }
 
-    /// Returns the row that begins at a byte position. Reading is fastest in the order of the file, because a piece
-    /// holds many rows.
+    /// Returns the row at a byte position. Reading is fastest in the order of the file, because a piece holds many
+    /// rows.
     fn row_at(&mut self, byte: u64) -> Result<SweepRow, FileError> {
         if self.line_at(byte).is_none() {
             self.read(byte).map_err(FileError::io(&self.path, AGAIN))?;
@@ -146,8 +133,7 @@ impl RowBlocks {
         Some(&rest[..end])
     }
 
-    /// Reads the piece that begins at a byte position. The piece is extended until it contains a complete line or the
-    /// file ends.
+    /// Reads the piece at a byte position. The piece is extended until it contains a complete line or the file ends.
     fn read(&mut self, byte: u64) -> io::Result<()> {
         let mut file = File::open(&self.path)?;
         file.seek(SeekFrom::Start(byte))?;
@@ -163,7 +149,7 @@ impl RowBlocks {
     }
 }
 
-/// Creates the error of points that are in none of the folders. `which` are their numbers as ranges.
+/// Creates the error of points without a row in any folder. `which` contains the indices of these points as ranges.
 pub(super) fn missing_points(missing: u64, points: u64, which: &str) -> FileError {
     FileError::because(
         FileErrorKind::Truncated,

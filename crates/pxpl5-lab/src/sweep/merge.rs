@@ -1,4 +1,4 @@
-//! Merges the shards of a sweep (parts computed by separate processes) into one folder.
+//! Merges the shards of a sweep into one folder. A shard is a part that a separate process computes.
 
 use super::TIMES_FILE;
 use super::joined::{Joined, missing_points};
@@ -12,13 +12,13 @@ use std::path::{Path, PathBuf};
 /// Result of merging the shards of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Merged {
-    /// Number of points (experiments) of the sweep.
+    /// Number of points of the sweep.
     pub points: u64,
     /// Number of points that could not be simulated.
     pub failed: u64,
     /// Points with more than one row. All rows of such a point were equal.
     pub duplicates: Vec<u64>,
-    /// Points (experiments) without a row. Empty unless missing points were allowed.
+    /// Points without a row. Empty unless missing points were allowed.
     pub missing: Vec<u64>,
 }
 
@@ -27,8 +27,8 @@ pub struct Merged {
 ///
 /// # Errors
 ///
-/// Returns a [`FileError`] if a folder belongs to another sweep, if a point has different rows, or if points are
-/// missing and `allow_missing` is false.
+/// Returns a [`FileError`] if a folder belongs to another sweep, or if a point has different rows. Also fails if points
+/// are missing and `allow_missing` is false.
 pub fn merge(folders: &[PathBuf], out: &Path, allow_missing: bool) -> Result<Merged, FileError> {
     let mut joined = Joined::of(folders)?;
     let points = joined.header().points;
@@ -54,7 +54,6 @@ fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), Fil
     renew_manifest(out)
 }
 
-/// Copies the lines of a folder's file of durations. The first line, which is the header, is left out.
 fn put_times(times: &mut Replacement, path: &Path) -> Result<(), FileError> {
     let Ok(file) = File::open(path) else { return Ok(()) };
     let lines = BufReader::new(file).lines().map_while(Result::ok);

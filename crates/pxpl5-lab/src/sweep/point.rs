@@ -1,4 +1,4 @@
-//! Simulates one point (experiment) of a sweep.
+//! Simulates one point of a sweep. Each point of a sweep is one experiment.
 
 use super::header::json;
 use super::{Sweep, SweepSpace, measures};
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-/// Result status of a point (experiment) of a sweep.
+/// Status of a point of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
@@ -22,7 +22,7 @@ pub enum Status {
     Failed,
 }
 
-/// Results of a point (experiment) of a sweep. The results are identical on every computer.
+/// Results of a point of a sweep. The results are identical on every computer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SweepRow {
     /// Index of the point in the parameter space, counted from 0.
@@ -31,11 +31,11 @@ pub struct SweepRow {
     pub status: Status,
     /// Settings that vary in the sweep, with their values at this point, by key.
     pub parameters: BTreeMap<String, Value>,
-    /// Measured quantities by name. The value is null if the run does not define the quantity.
+    /// Measured quantities by name. Null if the run does not define the quantity.
     pub measured: BTreeMap<String, Option<f64>>,
-    /// Hash of all settings on which the simulated events depend. Null if the experiment is invalid.
+    /// Hash of all settings that the simulated events depend on. Null if the experiment is invalid.
     pub config_hash: Option<String>,
-    /// Hash over the trace of all events. Null for a level of modelling without events.
+    /// Hash over the trace of all events. Null at the analytic level, which has no events.
     pub trace_hash: Option<String>,
     /// Reason why the point could not be simulated.
     pub error: Option<String>,
@@ -55,7 +55,7 @@ impl Sweep {
         file.resolve()
     }
 
-    /// Returns the scene of a point's experiment. Each scene is loaded once for all points that share it.
+    /// Returns the scene of a point's experiment. Each scene is loaded once for all its points.
     ///
     /// # Errors
     ///
@@ -65,20 +65,20 @@ impl Sweep {
     }
 }
 
-/// Results of a point that was simulated.
+/// Results of a simulated point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointResults {
     /// Measured quantities by name, as in [`SweepRow::measured`].
     pub measured: BTreeMap<String, Option<f64>>,
-    /// Hash of all settings on which the results depend.
+    /// Hash of all settings that the results depend on.
     pub config_hash: String,
     /// Hash of the simulated events or of the drawn volume, if there is one.
     pub trace_hash: Option<String>,
 }
 
-/// An experiment that depends on settings, some of which vary in a parameter space.
+/// An experiment with settings that vary in a parameter space.
 pub trait Swept: Sync {
-    /// Returns the parameter space, whose points are the experiments.
+    /// Returns the parameter space. Each of its points is an experiment.
     fn space(&self) -> &SweepSpace;
 
     /// Simulates a point. The simulation may end early when another thread sets `stop`.

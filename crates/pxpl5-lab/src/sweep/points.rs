@@ -1,6 +1,4 @@
-//! A set of points of a sweep, stored as bits.
-
-/// A set of points (experiments) of a sweep, with one bit for each point. Ten million points take 1.25 MB.
+/// A set of points of a sweep, with one bit for each point. Ten million points take 1.25 MB.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Points(Vec<u64>);
 

@@ -25,7 +25,6 @@ impl Replacement {
         self.writer.write_all(bytes).map_err(FileError::io(&self.path, "cannot be written"))
     }
 
-    /// Renames the new version to the name of the file. The file changes completely or not at all.
     pub(super) fn finish(mut self) -> Result<(), FileError> {
         self.take_place().map_err(FileError::io(&self.path, "cannot be written"))
     }

@@ -1,5 +1,4 @@
-//! Access to a file of result rows through an index of byte positions. A row is read from the file only when the row is
-//! needed.
+//! Reader of a file of result rows through an index of byte positions. A row is read only when it is needed.
 
 use super::points::Points;
 use super::{Header, MAX_POINTS, Status, SweepRow};
@@ -18,7 +17,7 @@ pub(super) struct RowFile {
     places: Vec<u64>,
     finished: u64,
     failed: Points,
-    /// Length of the file in bytes, up to the end of the last complete line.
+    /// Length in bytes up to the end of the last complete line.
     whole_bytes: u64,
 }
 
@@ -52,7 +51,6 @@ impl RowFile {
         Ok(())
     }
 
-    /// Adds the byte position of a point's row to the index.
     pub(super) fn add(&mut self, row: &SweepRow, byte: u64) {
         let point = row.point as usize;
         if self.places.len() <= point {
@@ -73,7 +71,6 @@ impl RowFile {
         self.whole_bytes
     }
 
-    /// Returns the number of points (experiments) with a row.
     pub(super) const fn finished(&self) -> u64 {
         self.finished
     }
@@ -82,7 +79,6 @@ impl RowFile {
         self.place(point).is_some()
     }
 
-    /// Returns true if a point has a row that states that the point could not be simulated.
     pub(super) fn is_failed(&self, point: u64) -> bool {
         self.failed.holds(point)
     }
@@ -96,7 +92,6 @@ impl RowFile {
         place.copied().filter(|place| *place > 0)
     }
 
-    /// Opens the file again to read rows at the positions in the index.
     pub(super) fn reader(&self) -> Result<RowReader<'_>, FileError> {
         let file = File::open(&self.path).map_err(FileError::io(&self.path, "cannot be read"))?;
         Ok(RowReader { rows: self, file: BufReader::new(file), at: 0 })
@@ -109,17 +104,15 @@ pub(super) struct Scan {
     path: PathBuf,
     file: BufReader<File>,
     text: Vec<u8>,
-    /// Number of the last line that was read from the file, counted from 1.
+    /// Number of the last read line, counted from 1.
     line: usize,
     points: u64,
-    /// Header of the file. `None` if the file does not contain a complete header.
+    /// Header of the file. `None` if the header is incomplete.
     pub(super) header: Option<Header>,
-    /// Length in bytes up to the end of the last complete line that was read.
     pub(super) whole_bytes: u64,
 }
 
 impl Scan {
-    /// Opens a file and reads its header.
     pub(super) fn open(path: &Path) -> Result<Self, FileError> {
         let file = File::open(path).map_err(FileError::io(path, "cannot be read"))?;
         let (file, text) = (BufReader::new(file), Vec::new());
@@ -135,7 +128,6 @@ impl Scan {
         Ok(scan)
     }
 
-    /// Returns the next row and its byte position.
     pub(super) fn next(&mut self) -> Result<Option<(SweepRow, u64)>, FileError> {
         let begin = self.whole_bytes;
         if !self.read_line()? {
@@ -160,7 +152,6 @@ impl Scan {
         Ok(is_whole)
     }
 
-    /// Parses the current line as JSON.
     fn parsed<T: DeserializeOwned>(&self) -> Result<T, FileError> {
         serde_json::from_slice(&self.text).map_err(|error| self.damaged(format!("{} ({error})", excerpt(&self.text))))
     }
@@ -183,12 +174,10 @@ pub(super) fn contradiction(point: u64, first: &str, second: &str) -> FileError 
 pub(super) struct RowReader<'a> {
     rows: &'a RowFile,
     file: BufReader<File>,
-    /// Byte position in the file at which the next read begins.
     at: u64,
 }
 
 impl RowReader<'_> {
-    /// Returns the row of a point, or `None` if the file has no row for the point.
     pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, FileError> {
         let Some(place) = self.rows.place(point) else { return Ok(None) };
         let row = self.row_at(place).map_err(FileError::io(&self.rows.path, "cannot be read again"))?;

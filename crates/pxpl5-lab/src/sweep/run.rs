@@ -16,15 +16,15 @@ use std::time::Instant;
 pub struct RunOptions {
     /// Shard (part) of the sweep to run.
     pub shard: Shard,
-    /// Number of points (experiments) that are simulated in parallel.
+    /// Number of points that are simulated in parallel.
     pub threads: usize,
 }
 
 /// Maximum number of finished rows that wait to be written. A crash loses the waiting rows.
 const WAITING_ROWS: usize = 64;
 
-/// Simulates the points of a shard for which `store`, the folder of the sweep, has no row yet. `finished` is called
-/// with every row after the row is stored.
+/// Simulates the points of a shard that have no row in `store`, the folder of the sweep. Calls `finished` with each
+/// stored row.
 ///
 /// # Errors
 ///
@@ -38,8 +38,8 @@ pub fn run(
     run_stoppable(sweep, store, options, &StopFlag::default(), finished)
 }
 
-/// Simulates the points of a shard as [`run`] does, until another thread sets `stop`. The simulations in
-/// progress then end within a few display periods, and their points get no row.
+/// Simulates the points of a shard as [`run`] does, until another thread sets `stop`. The simulations in progress then
+/// end within a few display periods, and their points get no row.
 ///
 /// # Errors
 ///
@@ -80,17 +80,15 @@ pub fn run_stoppable(
     })
 }
 
-/// Work of all threads of a sweep. Each thread takes one unfinished point at a time.
+/// Work that all threads of a sweep share. Each thread takes one unfinished point at a time.
 struct Work<'a, S> {
     sweep: &'a S,
     shard: Shard,
-    /// Points (experiments) that were finished before this run of the sweep.
+    /// Points that were finished before this run of the sweep.
     finished: Points,
-    /// Index of the next point that a thread takes.
     next: AtomicU64,
     /// True after a row could not be written, so that no further row can be written.
     ended: AtomicBool,
-    /// Set when another thread has asked the sweep to stop.
     stop: &'a StopFlag,
 }
 
@@ -109,8 +107,8 @@ impl<S: Swept> Work<'_, S> {
         }
     }
 
-    /// Takes the next point of the shard that has no row and that no thread has taken. Returns `None` if no point is
-    /// left.
+    /// Takes the next point of the shard that has no row and was not taken by another thread. Returns `None` if no
+    /// point is left.
     fn take(&self) -> Option<u64> {
         let all = self.sweep.space().points();
         let mut taken =

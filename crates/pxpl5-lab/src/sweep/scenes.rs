@@ -10,11 +10,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[derive(Debug, Default)]
 pub struct SceneCache(Mutex<BTreeMap<SceneKey, Arc<Scene>>>);
 
-/// Cache key of a scene: its name, true if a model file keeps its own coordinates, and true if back faces are removed.
+/// Name of a scene, true if a model file keeps its own coordinates, and true if back faces are removed.
 type SceneKey = (String, bool, bool);
 
 impl SceneCache {
-    /// Returns the chosen scene. Each scene is loaded once for all points that share it.
+    /// Returns the scene of these settings. Each scene is loaded once for all points that share it.
     ///
     /// # Errors
     ///

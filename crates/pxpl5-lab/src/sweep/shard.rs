@@ -1,6 +1,6 @@
-//! Divides a sweep into disjoint shards, which separate processes can compute.
+//! Division of a sweep into disjoint shards, which separate processes can compute.
 
-/// A shard (part) of a sweep: the points whose index has the remainder `index` after division by `of`.
+/// A part of a sweep: the points whose index has the remainder `index` after division by `of`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     index: u64,

@@ -4,7 +4,7 @@ use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
-/// Maximum number of points of a sweep. Assumed, because the rows of this number of points fill some gigabytes.
+/// Maximum number of points of a sweep. Assumed: the rows of so many points fill some gigabytes.
 pub const MAX_POINTS: u64 = 10_000_000;
 
 /// An axis of a parameter space: settings that change together, with their values in order.
@@ -43,7 +43,7 @@ impl Axis {
 /// Values of one setting along an axis, in order. A range stores only three numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AxisValues {
-    /// Values as listed in the sweep's file.
+    /// A list of values, as written in the sweep's file.
     Listed(Vec<Value>),
     /// A range of whole numbers.
     Range {
@@ -93,9 +93,8 @@ pub struct SweepSpace {
 const KEYS: [&str; 3] = ["grid", "together", "seeds"];
 
 impl SweepSpace {
-    /// Reads the table `sweep` of a file. For error messages, `place` states the file and line of the table, and
-    /// `places` the file and line of each of its keys, if known. `key_of` returns the full name of a key that an axis
-    /// varies. The arguments of `key_of` are the key in the file and its file and line.
+    /// Reads the table `sweep` of a file. `place` is the file and line of the table for error messages. `places` has
+    /// the file and line of its keys, if known. `key_of` gets a key with its file and line, and returns the full key.
     ///
     /// # Errors
     ///
@@ -123,7 +122,7 @@ impl SweepSpace {
         axes.extend(fault.together(fault.table(table, "together")?)?);
         axes.extend(fault.seeds(table.get("seeds"))?);
         fault.check(&axes, key_of)?;
-        // Multiply with care: the product of long axes can overflow.
+        // The multiplication checks for overflow, because the product of long axes can be too large.
         let points = axes.iter().try_fold(1u64, |all, axis| all.checked_mul(axis.len()));
         let points = points.filter(|points| *points <= MAX_POINTS);
         let points = points.ok_or_else(|| fault.text("sweep", &format!("at most {MAX_POINTS} points"), "more"))?;
@@ -146,13 +145,13 @@ impl SweepSpace {
         &self.axes
     }
 
-    /// Returns the number of points: the product of the axes' numbers of steps.
+    /// Returns the number of points: the product of the numbers of steps of all axes.
     #[must_use]
     pub const fn points(&self) -> u64 {
         self.points
     }
 
-    /// Returns the settings that vary in the sweep, with their values at a point.
+    /// Returns the varied settings with their values at a point.
     #[must_use]
     pub fn settings(&self, point: u64) -> BTreeMap<String, Value> {
         let mut rest = point;
@@ -167,15 +166,13 @@ impl SweepSpace {
     }
 }
 
-/// Builder of error messages that name the file and line of a key in the sweep's file.
 struct Fault<'a> {
     sweep: &'a str,
     places: &'a BTreeMap<String, String>,
 }
 
 impl Fault<'_> {
-    /// Returns the file and line of a key for an error message. If the place of the key is unknown, returns the place
-    /// of the table `sweep`.
+    /// Returns the file and line of a key, or of the table `sweep` if the line of the key is unknown.
     fn place(&self, key: &str) -> String {
         let paths = [key.to_owned(), format!("sweep.grid.{key}"), format!("sweep.together.{key}")];
         paths.iter().find_map(|path| self.places.get(path)).map_or(self.sweep, String::as_str).to_owned()
@@ -243,8 +240,7 @@ impl Fault<'_> {
         Ok(Some(Axis::of_one("seed".to_owned(), AxisValues::Range { from: 1, step: 1, count: count as u64 })))
     }
 
-    /// Checks the settings that the axes vary. Each setting must be a valid key of an experiment file, and no key may
-    /// occur twice.
+    /// Checks the settings that the axes vary. Each setting must be a valid key, and no key may occur twice.
     fn check(
         &self,
         axes: &[Axis],

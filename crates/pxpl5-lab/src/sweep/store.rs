@@ -19,28 +19,27 @@ use std::path::{Path, PathBuf};
 pub const ROWS_FILE: &str = "rows.jsonl";
 /// Name of the file of durations: the header line, then one line for each point with its computing time.
 pub const TIMES_FILE: &str = "times.jsonl";
-/// Name of the file that holds the rows as a table of comma-separated values.
+/// Name of the file with the rows as comma-separated values.
 pub const RESULTS_FILE: &str = "results.csv";
 const LOCK_FILE: &str = ".lock";
 
-/// The rows of results of a sweep, stored in one folder.
+/// The result rows of a sweep, stored in one folder.
 #[derive(Debug)]
 pub struct Store {
     folder: PathBuf,
     header: Header,
     rows: RowFile,
-    /// Byte position in the file of rows at which the next row is written.
+    /// Byte position at which the next row is written.
     end: u64,
     rows_file: File,
     times_file: File,
     /// True after this process has appended a row, and has removed the plots and pages that were made from fewer rows.
     is_renewed: bool,
-    /// Lock of the folder, which no other process can open while this object exists. The operating system releases the
-    /// lock after a crash.
+    /// Lock of the folder. No other process can open the folder while this object exists. The operating system releases
+    /// the lock after a crash.
     _lock: File,
 }
 
-/// Computing time of a point, as written to the file of durations.
 #[derive(Serialize)]
 struct PointTime {
     point: u64,
@@ -48,8 +47,8 @@ struct PointTime {
 }
 
 impl Store {
-    /// Opens or creates the folder of a sweep. An incomplete last line is removed. Finished points are kept if `resume`
-    /// is true.
+    /// Opens or creates the folder of a sweep. An incomplete last line is removed. If `resume` is true, finished points
+    /// are kept.
     ///
     /// # Errors
     ///
@@ -62,7 +61,7 @@ impl Store {
     pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, FileError> {
         check_command(folder)?;
         fs::create_dir_all(folder).map_err(FileError::io(folder, "cannot be made"))?;
-        // The lock comes before any change to the folder.
+        // The folder is locked before any change.
         let lock = lock(folder)?;
         remove_leftover_files(folder);
         let path = folder.join(ROWS_FILE);
@@ -99,18 +98,17 @@ impl Store {
         Ok(store)
     }
 
-    /// Returns true if the folder has a row for the point (experiment) with the index `point`.
+    /// Returns true if the folder has a row for this point.
     #[must_use]
     pub fn holds(&self, point: u64) -> bool {
         self.rows.holds(point)
     }
 
-    /// Returns the set of points that have a row.
     pub(super) fn held(&self) -> Points {
         self.rows.points().collect()
     }
 
-    /// Returns the number of finished points in one shard (part of the sweep for one process).
+    /// Returns the number of finished points in one shard (part of the sweep).
     #[must_use]
     pub fn finished(&self, shard: Shard) -> u64 {
         self.rows.points().filter(|point| shard.holds(*point)).count() as u64
@@ -130,7 +128,7 @@ impl Store {
         self.rows.reader()?.row(point)
     }
 
-    /// Appends the row of a finished point, and the time in seconds that the point took on this computer.
+    /// Appends the row of a finished point, and the computing time of the point in seconds.
     ///
     /// # Errors
     ///
@@ -174,7 +172,6 @@ impl Store {
     }
 }
 
-/// Returns an error if the folder holds files of another command.
 pub(super) fn check_command(folder: &Path) -> Result<(), FileError> {
     match Manifest::read(folder)? {
         Some(manifest) if manifest.command() != Manifest::SWEEP => {
@@ -185,7 +182,8 @@ pub(super) fn check_command(folder: &Path) -> Result<(), FileError> {
     }
 }
 
-/// Rewrites the folder's manifest with only the files of the sweep. Plots and pages made from fewer rows are removed.
+/// Rewrites the folder's manifest with only the files of the sweep. Plots and pages that were made from fewer rows are
+/// removed.
 pub(super) fn renew_manifest(folder: &Path) -> Result<(), FileError> {
     let mut manifest = Manifest::new(Manifest::SWEEP);
     [ROWS_FILE, TIMES_FILE, RESULTS_FILE].into_iter().for_each(|name| manifest.add_growing(name));
@@ -218,7 +216,7 @@ pub(super) fn write_all(
     results.finish()
 }
 
-/// Removes temporary files of processes that were killed. The folder is locked, so no other process uses these files.
+/// Removes temporary files of processes that have ended. The folder is locked, so no other process uses these files.
 fn remove_leftover_files(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
@@ -249,7 +247,7 @@ pub(crate) fn lock(folder: &Path) -> Result<File, FileError> {
             let reason = "another process is writing here; wait for it, or choose another folder";
             Err(FileError::because(FileErrorKind::Locked, reason).in_file(folder.display()))
         }
-        // On a file system without locks, a sweep without protection is better than no sweep.
+        // If the file system has no locks, the sweep continues without protection.
         _ => Ok(file),
     }
 }
@@ -277,7 +275,8 @@ fn whole_lines(path: &Path) -> u64 {
     whole
 }
 
-/// Returns an error that names the first difference between the header of a file and the header of this sweep.
+/// Returns an error if the header of a file differs from the header of this sweep. The error names the first
+/// difference.
 pub(super) fn check_header(path: &Path, expected: &Header, found: Option<&Header>) -> Result<(), FileError> {
     let Some(found) = found.filter(|found| *found != expected) else { return Ok(()) };
     let pairs = [

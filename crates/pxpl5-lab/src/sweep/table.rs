@@ -1,8 +1,7 @@
-//! Converts rows of a sweep to comma-separated values.
-
 use super::{Header, Status, SweepRow};
 
-/// Table of a sweep. Its columns are the settings that differ between points, and the measured quantities.
+/// Table of comma-separated values. Its columns are the settings that differ between points, and the measured
+/// quantities.
 #[derive(Debug)]
 pub(super) struct Table<'a> {
     parameters: Vec<&'a str>,
@@ -17,8 +16,8 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Returns the line of column names. The settings from which the rows can be reproduced are not columns, because
-    /// the header of `rows.jsonl` holds these settings.
+    /// Returns the line of column names. Settings that all points share are not columns, because the header of
+    /// `rows.jsonl` holds them.
     pub(super) fn head(&self) -> Vec<u8> {
         let settings = self.parameters.iter().chain(&self.measured).copied();
         let columns = ["point", "status"].into_iter().chain(settings).chain(["trace_hash", "error"]);

@@ -48,7 +48,7 @@ fn the_points_are_all_combinations_each_once_and_the_last_axis_changes_fastest()
 }
 
 #[test]
-fn settings_taken_together_are_one_axis() {
+fn settings_in_the_table_together_form_one_axis_of_a_sweep() {
     let sweep = sweep("[sweep.together]\nmachine.n_gps = [1, 2]\nmachine.n_renderers = [5, 10]\n");
     let plans: Vec<_> = (0..2).map(|point| sweep.plan(point).expect("valid").machine).collect();
     assert_eq!((plans[0].n_gps, plans[0].n_renderers, plans[1].n_gps, plans[1].n_renderers), (1, 5, 2, 10));
@@ -56,7 +56,7 @@ fn settings_taken_together_are_one_axis() {
 }
 
 #[test]
-fn a_sweep_is_named_by_its_version_settings_quantities_and_axes_a_line_each() {
+fn a_header_lists_version_settings_quantities_and_axes_one_per_line() {
     let sweep = sweep("[sweep.grid]\nseed = [1, 2]\n");
     let header = sweep.header().expect("valid");
     let first = sweep.plan(0).expect("valid").fingerprint();
@@ -71,7 +71,7 @@ fn a_sweep_is_named_by_its_version_settings_quantities_and_axes_a_line_each() {
 }
 
 #[test]
-fn a_space_that_makes_no_sense_is_refused() {
+fn an_invalid_space_is_refused() {
     for (space, says) in [
         ("", "sweep is missing"),
         ("[sweep]", "at least one setting"),
@@ -108,7 +108,7 @@ fn an_error_of_a_sweep_names_the_line_of_its_key() {
 }
 
 #[test]
-fn shards_are_disjoint_and_hold_everything() {
+fn shards_are_disjoint_and_cover_all_points() {
     let shards: Vec<Shard> = (1..=7).map(|i| Shard::new(i, 7).expect("one of seven")).collect();
     assert!((0..1_000).all(|point| shards.iter().filter(|shard| shard.holds(point)).count() == 1));
     for points in [0, 1, 6, 7, 1_000] {
@@ -120,7 +120,7 @@ fn shards_are_disjoint_and_hold_everything() {
 }
 
 #[test]
-fn a_point_that_fails_is_recorded_and_the_rest_go_on() {
+fn a_failed_point_is_recorded_and_the_others_continue() {
     // Slats binds 20 regions, four to a renderer. Fewer than five renderers cannot hold them.
     let sweep = sweep("[sweep.grid]\nmachine.n_renderers = [0, 4, 5]\n");
     let path = folder("fails");
@@ -131,14 +131,14 @@ fn a_point_that_fails_is_recorded_and_the_rest_go_on() {
     assert_eq!(statuses, [Status::Failed, Status::Failed, Status::Done]);
     assert!(rows[0].error.as_deref().is_some_and(|e| e.contains("n_renderers must be 1 to 1000, found 0")));
     assert!(rows[1].error.as_deref().is_some_and(|e| e.contains("expected at least 5 renderers")));
-    // I3D95: half of the regions takes 3.9 ms.
+    // I3D95: COPY of half of the regions takes 3.9 ms.
     let half = rows[2].measured["last_copy_ms"].expect("it is copied");
     assert!((half / 3.9 - 1.0).abs() < 0.02, "{half} ms");
     let _ = std::fs::remove_dir_all(path);
 }
 
 #[test]
-fn rows_survive_reading_and_writing_bit_by_bit() {
+fn rows_are_read_and_written_bit_for_bit() {
     let sweep = sweep("[sweep]\nseeds = 3\n");
     let path = folder("bits");
     let mut store = Store::open(&path, sweep.header().expect("valid"), false).expect("writable");
@@ -188,7 +188,7 @@ fn only_one_process_may_write_into_a_folder() {
 }
 
 #[test]
-fn files_named_by_a_sweep_are_beside_it_in_axes_too() {
+fn files_named_in_a_sweep_file_or_in_its_axes_are_found_beside_the_sweep_file() {
     let place = folder("relative");
     std::fs::create_dir_all(&place).expect("a folder");
     let poses = "time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n9,0,0,0,1,0,0,0\n";
@@ -211,7 +211,7 @@ fn files_named_by_a_sweep_are_beside_it_in_axes_too() {
 /// Tests that a sweep stores ranges and not their values. An earlier version stored the values, and needed 9 GB for 13
 /// axes of ten million values.
 #[test]
-fn a_space_of_any_size_takes_no_memory_for_its_values() {
+fn a_sweep_stores_ranges_without_memory_for_each_value() {
     let keys = [
         "gp.triangle_ns",
         "gp.message_ns",
@@ -235,14 +235,14 @@ fn a_space_of_any_size_takes_no_memory_for_its_values() {
 }
 
 #[test]
-fn ranges_may_go_together_with_lists() {
+fn a_range_and_a_list_can_form_one_axis() {
     let sweep = sweep("[sweep.together]\nseed = { from = 3, to = 7, step = 2 }\ntriangles = [4, 2, 1]\n");
     let seeds: Vec<_> = (0..3).map(|point| sweep.space().settings(point)["seed"].as_integer()).collect();
     assert_eq!(seeds, [Some(3), Some(5), Some(7)]);
 }
 
 #[test]
-fn a_row_of_no_point_is_refused() {
+fn a_row_that_belongs_to_no_point_is_refused() {
     let sweep = sweep("[sweep]\nseeds = 2\n");
     let path = folder("no-point");
     let header = sweep.header().expect("valid");
@@ -258,7 +258,7 @@ fn a_row_of_no_point_is_refused() {
 }
 
 #[test]
-fn what_a_kill_left_under_temporary_names_is_removed_and_nothing_else() {
+fn only_temporary_files_of_a_killed_process_are_removed() {
     let sweep = sweep("[sweep]\nseeds = 1\n");
     let path = folder("left-over");
     std::fs::create_dir_all(&path).expect("writable");
@@ -274,7 +274,7 @@ fn what_a_kill_left_under_temporary_names_is_removed_and_nothing_else() {
 }
 
 #[test]
-fn a_sweep_whose_model_was_edited_is_another_one() {
+fn editing_the_model_file_changes_the_hash_of_a_sweep() {
     let place = folder("edited");
     std::fs::create_dir_all(&place).expect("a folder");
     let model = |x: i32| {
@@ -300,7 +300,7 @@ fn a_sweep_whose_model_was_edited_is_another_one() {
 /// Tests that a change of a glTF scene's binary file changes the hash of a sweep, although the glTF file stays the
 /// same. A build without the glTF reader cannot read the scene and keeps the hash.
 #[test]
-fn a_sweep_whose_models_buffer_was_edited_is_another_one() {
+fn editing_the_buffer_file_of_a_model_changes_the_hash_of_a_sweep() {
     let place = folder("buffer");
     std::fs::create_dir_all(&place).expect("a folder");
     let triangle = r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"m.bin"}],

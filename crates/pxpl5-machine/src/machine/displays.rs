@@ -1,5 +1,3 @@
-//! Events between the machine and its displays.
-
 use super::{Contexts, Machine};
 use crate::agenda::schedule_own;
 use crate::event::Event;

@@ -30,7 +30,7 @@ fn changed(path: &str, value: impl Into<Value>) -> MachineConfig {
 }
 
 #[test]
-fn parameters_are_those_of_all_boards_in_their_order() {
+fn parameters_of_all_boards_are_listed_in_order() {
     let mut config = usual();
     config.add_firmware_table("slats", Box::new(Numbers::PAPERS));
     let paths: Vec<String> = config.parameters().into_iter().map(|parameter| parameter.path).collect();
@@ -48,7 +48,7 @@ fn parameters_are_those_of_all_boards_in_their_order() {
 }
 
 #[test]
-fn what_was_set_is_what_is_found_whatever_tables_have_the_same_name() {
+fn a_parameter_is_found_by_its_path_even_if_tables_share_a_name() {
     let config = changed("host.message_ns", 30_000);
     assert_eq!((config.host.message_ns, config.gp.message_ns), (30_000, usual().gp.message_ns));
     let expected = [("host.message_ns".to_owned(), 30_000.into())];
@@ -58,7 +58,7 @@ fn what_was_set_is_what_is_found_whatever_tables_have_the_same_name() {
 }
 
 #[test]
-fn every_number_that_is_listed_can_be_set_or_says_why_not() {
+fn every_listed_parameter_can_be_set_or_is_refused_with_the_reason() {
     let mut config = usual();
     config.add_firmware_table("slats", Box::new(Numbers::PAPERS));
     for Parameter { path, value, read_only, .. } in config.parameters() {
@@ -74,7 +74,7 @@ fn every_number_that_is_listed_can_be_set_or_says_why_not() {
 }
 
 #[test]
-fn unknown_paths_name_the_nearest_and_numbers_that_are_none_are_refused() {
+fn unknown_paths_name_the_nearest_path_and_invalid_numbers_are_refused() {
     let mut config = usual();
     for (wrong, nearest) in [
         ("ring.word_nss", "ring.word_ns"),
@@ -94,7 +94,7 @@ fn unknown_paths_name_the_nearest_and_numbers_that_are_none_are_refused() {
 }
 
 #[test]
-fn numbers_of_firmware_are_kept_once_and_found_by_their_type() {
+fn parameters_of_firmware_are_stored_once_and_found_by_type() {
     let mut config = usual();
     assert!(config.firmware_table::<Numbers>().is_none());
     config.add_firmware_table("first", Box::new(Numbers::PAPERS));
@@ -109,10 +109,10 @@ fn numbers_of_firmware_are_kept_once_and_found_by_their_type() {
     assert_eq!(config.firmware_table::<Others>().map(|table| table.share), Some(0.5));
 }
 
-/// Names of experiments depend on these parameters. Parameters of firmware and of the i860 were added later. They
-/// appear in a name only if they were changed.
+/// Names of experiments depend on the parameters of the machine. Parameters of firmware and of the i860 were added
+/// later. They appear in a name only if they were changed.
 #[test]
-fn parameters_tell_a_machine_apart_but_those_that_all_have() {
+fn the_identity_of_a_machine_includes_later_parameters_only_if_they_were_changed() {
     let telling = |config: &MachineConfig| -> Vec<String> {
         config.identifying_parameters().into_iter().map(|parameter| parameter.path).collect()
     };
@@ -135,7 +135,7 @@ fn parameters_tell_a_machine_apart_but_those_that_all_have() {
 }
 
 #[test]
-fn machines_are_the_same_where_nothing_differs() {
+fn two_machines_are_equal_only_if_no_board_parameter_or_display_differs() {
     let screen = |name| ScreenConfig { name, ..ScreenConfig::new(1) };
     let base = config(vec![Box::new(screen("one"))]);
     assert_eq!(base, base.clone());
@@ -157,7 +157,7 @@ fn machines_are_the_same_where_nothing_differs() {
 }
 
 #[test]
-fn overrides_are_what_differs_from_the_preset() {
+fn overrides_list_the_differences_from_the_preset() {
     assert!(usual().overrides().is_empty());
     let mut config = changed("n_gps", 24);
     assert_eq!(config.overrides(), [("n_gps".to_owned(), 24.into())].into());
@@ -172,7 +172,7 @@ fn overrides_are_what_differs_from_the_preset() {
 /// A value outside its range causes no warning if the preset has the same value. A value within its range never causes
 /// a warning.
 #[test]
-fn warnings_are_of_changed_values_outside_their_range() {
+fn changed_values_outside_their_range_cause_warnings() {
     let slats = MachineConfig::slats();
     let outside: Vec<Parameter> = slats.parameters().into_iter().filter(|parameter| !parameter.is_in_range()).collect();
     assert!(outside.iter().any(|parameter| parameter.path == "gp.bin_entry_ns"), "Slats has no bins");
@@ -196,7 +196,7 @@ fn tables_are_listed_with_their_prefix() {
 
 /// NTSC has 525 lines of 63.5556 us in two fields, which gives 59.94 fields per second.
 #[test]
-fn the_period_is_that_of_the_first_display() {
+fn the_period_of_a_machine_is_the_period_of_its_first_display() {
     let field = usual().period().expect("it can be built");
     assert!((field.as_ms() - 1001.0 / 60.0).abs() < 1e-3, "{field:?}");
     let mut other = ScreenConfig::new(1);
@@ -208,7 +208,7 @@ fn the_period_is_that_of_the_first_display() {
 }
 
 #[test]
-fn a_machine_that_cannot_be_is_refused_with_the_number_and_its_limits() {
+fn an_impossible_machine_is_refused_with_the_parameter_and_its_limits() {
     let refusal = |config: MachineConfig| config.check().expect_err("refused").to_string();
     for (path, limits) in [("n_gps", "1 to 1000"), ("n_renderers", "1 to 1000"), ("ring.channels", "1 to 64")] {
         for found in [0, 1_001] {

@@ -43,7 +43,7 @@ fn a_message_goes_from_a_processor_over_the_ring_to_another() {
 }
 
 #[test]
-fn the_sender_is_told_at_the_instant_of_arrival() {
+fn the_sender_is_notified_at_the_instant_of_arrival() {
     let mut machine = machine();
     load_sender(&mut machine, SECOND_GP, vec![(NodeId(0), 1, words(&[7]))]);
     machine.switch_on();
@@ -57,7 +57,7 @@ fn the_sender_is_told_at_the_instant_of_arrival() {
 
 /// A chain sends to several receivers at the same time.
 #[test]
-fn each_message_of_a_chain_asks_for_a_channel_of_its_own() {
+fn each_message_of_a_chain_requests_its_own_channel() {
     let mut machine = machine();
     load(&mut machine, FIRST_GP, |gp| async move {
         gp.send_batch(vec![(SECOND_GP, 1, words(&[1])), (NodeId(0), 1, words(&[2]))]).await;
@@ -72,7 +72,7 @@ fn each_message_of_a_chain_asks_for_a_channel_of_its_own() {
 
 /// Two messages of one board leave its port one after the other.
 #[test]
-fn a_message_that_leaves_later_is_asked_for_later() {
+fn the_second_message_of_a_board_requests_a_channel_after_the_first_message_is_accepted() {
     let mut machine = machine();
     load_sender(&mut machine, FIRST_GP, vec![(SECOND_GP, 1, words(&[1])), (SECOND_GP, 1, words(&[2]))]);
     machine.switch_on();
@@ -90,7 +90,7 @@ fn whats(machine: &mut Machine, of: Board) -> Vec<&'static str> {
 
 /// A region takes sixteen messages of 1,024 words. The last one is acknowledged.
 #[test]
-fn a_renderer_copies_the_region_that_it_is_told_to() {
+fn a_renderer_copies_the_requested_region() {
     for (way, stored) in [(CopyPath::FromPixelMemory, false), (CopyPath::ThroughBacking, true)] {
         let mut machine = machine();
         let (length, list) = copy_command(way, target(SCREEN, 0));
@@ -137,7 +137,7 @@ fn a_sender_continues_when_the_fifo_of_the_renderer_has_the_message() {
 }
 
 #[test]
-fn a_message_for_a_display_past_the_first_reaches_the_port_that_it_names() {
+fn a_message_for_a_later_display_reaches_its_port() {
     let displays: Vec<Box<dyn pxpl5_wire::display::DisplayConfig>> =
         vec![Box::new(ScreenConfig::new(2)), Box::new(ScreenConfig::new(1))];
     let mut machine = build(&config(displays));
@@ -151,7 +151,7 @@ fn a_message_for_a_display_past_the_first_reaches_the_port_that_it_names() {
 }
 
 #[test]
-fn a_line_of_the_host_goes_past_the_ring_and_says_all_that_it_has_to() {
+fn a_host_line_bypasses_the_ring_and_delivers_all_its_words() {
     let mut machine = machine();
     let said = |picture| Say::Arrived { surface: 0, port: 0, picture, first_us_ago: 0 };
     say(&mut machine, &[(10, said(1)), (20, said(2)), (20, said(3)), (30, Say::Later { us: 5, picture: 4 })]);
@@ -167,7 +167,7 @@ fn a_line_of_the_host_goes_past_the_ring_and_says_all_that_it_has_to() {
 }
 
 #[test]
-fn what_a_line_says_enters_the_trace() {
+fn messages_of_a_host_line_enter_the_trace() {
     let hash = |body: Body| {
         let mut machine = machine();
         machine.plug_host_line(Box::new(crate::rig::Script(vec![(us(10), body)])));

@@ -24,7 +24,7 @@ fn an_optimization_is_parsed_from_the_name_that_it_prints() {
 
 /// The boards' clock of 40 MHz has forty edges per microsecond.
 #[test]
-fn without_sleep_every_board_is_asked_at_every_edge() {
+fn with_idle_boards_polled_the_ring_is_polled_at_every_clock_edge() {
     let mut machine = machine();
     machine.disable(Optimization::IdleBoards);
     machine.switch_on();
@@ -34,7 +34,7 @@ fn without_sleep_every_board_is_asked_at_every_edge() {
 }
 
 #[test]
-fn without_the_computed_end_every_word_is_an_event() {
+fn without_transfers_in_closed_form_every_word_is_an_event() {
     let mut machine = machine();
     machine.disable(Optimization::Transfers);
     load_sender(&mut machine, FIRST_GP, vec![(SECOND_GP, 4, words(&[0; 4]))]);

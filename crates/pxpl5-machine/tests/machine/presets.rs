@@ -38,7 +38,7 @@ fn an_unknown_preset_names_the_nearest() {
 
 /// The version `Compiled` is the code that did not fit the cache.
 #[test]
-fn times_of_code_are_those_of_the_version_in_its_use() {
+fn the_times_of_i860_code_depend_on_the_chosen_version_of_the_code() {
     let compiled = MachineConfig::slats();
     let scheduled = MachineConfig::preset("slats-optimised").expect("it is listed");
     let expected = [
@@ -58,7 +58,7 @@ fn times_of_code_are_those_of_the_version_in_its_use() {
 }
 
 #[test]
-fn code_is_named() {
+fn a_machine_states_the_name_of_its_code_version() {
     let named = |code| MachineConfig { code, ..MachineConfig::slats() }.code_name();
     let versions = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
     assert_eq!(versions.map(|version| named(Some(version))), ["unoptimised", "compiled", "scheduled"]);

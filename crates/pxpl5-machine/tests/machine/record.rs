@@ -62,7 +62,7 @@ fn swapped(at: u64, surface: u32, tick: u32) -> (u64, Say) {
 }
 
 #[test]
-fn what_a_port_shows_is_the_newest_picture_before_each_swap() {
+fn a_port_shows_the_newest_picture_before_each_swap() {
     let (machine, [left, right]) = told(&[
         arrived(10, 0, 1),
         arrived(20, 0, 1),
@@ -112,7 +112,7 @@ fn copying_is_a_stage_from_the_first_message_on() {
     assert_eq!(machine.record().observation().marks.iter().filter(|mark| mark.edge == StageEdge::Begin).count(), 0);
 }
 
-/// The instant before which records are discarded is a number of periods of the first display.
+/// Records are discarded before an instant, which is given as a number of periods of the first display.
 #[test]
 fn records_before_an_instant_can_be_discarded() {
     let (mut machine, [left, right]) = told(&[
@@ -147,7 +147,7 @@ fn with_traffic() -> Record {
 /// The first word of a message arrives 16 words and its hops after the grant. The last word arrives `words` word times
 /// later.
 #[test]
-fn traffic_tells_when_each_message_was_taken_and_how_many_channels_were_busy() {
+fn traffic_has_the_time_of_each_message_and_the_number_of_busy_channels() {
     let record = with_traffic();
     let traffic = record.observation().traffic.as_deref().expect("it was asked for");
     let word = Span::from_ns(50);
@@ -161,7 +161,7 @@ fn traffic_tells_when_each_message_was_taken_and_how_many_channels_were_busy() {
     let end = begin + word * 9;
     let second = Transfer { source: FIRST_GP, destination: RENDERERS[1], words: 9, begin, end };
     assert_eq!(traffic.transfers[1], second);
-    // The rest is a region of 128 x 128 pixels in messages of 1,024 words.
+    // All later transfers belong to a region of 128 x 128 pixels in messages of 1,024 words.
     assert_eq!(traffic.transfers.len(), 2 + 16);
     let to_screen = |transfer: &Transfer| (transfer.source, transfer.destination) == (RENDERERS[1], SCREEN);
     assert!(traffic.transfers[2..].iter().all(to_screen));

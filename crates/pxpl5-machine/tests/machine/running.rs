@@ -63,7 +63,7 @@ fn boards_that_run_programs_are_found_by_name() {
 }
 
 #[test]
-fn a_run_ends_before_its_end_and_goes_on_from_there() {
+fn a_run_can_be_paused_and_continued() {
     let mut machine = machine();
     say(&mut machine, &[(10, Say::Later { us: 5, picture: 1 })]);
     machine.switch_on();
@@ -107,9 +107,9 @@ fn the_first_display_is_the_sync_generator_of_the_first_processor() {
     assert_eq!(machine.processors()[2].look(us(301)).period, PeriodNumber(0));
 }
 
-/// A status line counts the swaps behind a port.
+/// A status line counts the swaps of the part of a surface at one port.
 #[test]
-fn the_master_is_told_of_each_swap_and_how_many_there_were() {
+fn the_master_is_notified_of_each_swap_with_its_number() {
     let mut machine =
         Machine::new(&config(vec![Box::new(ScreenConfig::new(2))]), 2, pxpl5_renderer::Layout::slats()).expect("valid");
     let [left, right] = machine.ports().display().try_into().expect("two ports");
@@ -135,7 +135,7 @@ fn the_master_is_told_of_each_swap_and_how_many_there_were() {
 }
 
 #[test]
-fn surfaces_of_all_displays_are_numbered_one_after_the_other() {
+fn surfaces_of_all_displays_are_numbered_consecutively() {
     let mut machine = build(&config(vec![Box::new(ScreenConfig::new(3)), Box::new(ScreenConfig::new(2))]));
     let second = machine.ports().displays[1][0];
     let told = [
@@ -154,7 +154,7 @@ fn surfaces_of_all_displays_are_numbered_one_after_the_other() {
 }
 
 #[test]
-fn it_is_at_rest_where_only_displays_go_on() {
+fn a_machine_is_at_rest_if_only_displays_have_events() {
     let mut machine = machine();
     load_sender(&mut machine, FIRST_GP, vec![(SECOND_GP, 1, words(&[1]))]);
     machine.switch_on();
@@ -166,7 +166,7 @@ fn it_is_at_rest_where_only_displays_go_on() {
 }
 
 #[test]
-fn a_machine_of_which_every_edge_is_an_event_rests_too() {
+fn a_machine_with_an_event_at_every_edge_also_comes_to_rest() {
     let mut machine = machine();
     machine.disable(Optimization::IdleBoards);
     say(&mut machine, &[(60, Say::Later { us: 30, picture: 1 })]);
@@ -197,7 +197,7 @@ fn shuffled(seed: Option<u64>) -> (TraceHash, Vec<Board>) {
 }
 
 #[test]
-fn ties_are_taken_in_another_order_and_nothing_else_changes() {
+fn the_order_of_simultaneous_events_does_not_change_the_trace() {
     let (hash, first) = shuffled(None);
     // The first processor is polled twice, because it received the retrace.
     assert_eq!(first[..3], [Board::Host, Board::Gp(0), Board::Gp(1)], "in the order of their ports");
@@ -208,7 +208,7 @@ fn ties_are_taken_in_another_order_and_nothing_else_changes() {
 }
 
 #[test]
-fn traces_tell_machines_apart_by_what_is_sent_when_and_to_whom() {
+fn traces_differ_if_a_message_differs_in_content_time_or_receiver() {
     let trace = |node: NodeId, receiver: NodeId, length: usize, wait: u64| {
         let mut machine = machine();
         load(&mut machine, node, |gp| async move {
@@ -233,7 +233,7 @@ fn traces_tell_machines_apart_by_what_is_sent_when_and_to_whom() {
 
 /// The pixels of a region are computed once, although sixteen messages carry them.
 #[test]
-fn a_worker_computes_every_region_that_is_copied_once() {
+fn a_worker_computes_the_pixels_of_a_copied_region_only_once() {
     for computes in [false, true] {
         let mut machine = machine();
         if computes {
@@ -258,7 +258,7 @@ fn a_worker_computes_every_region_that_is_copied_once() {
 }
 
 #[test]
-fn what_programs_tell_the_observer_is_observed_and_traced() {
+fn marks_of_programs_are_observed_and_traced() {
     let run = |picture| {
         let mut machine = machine();
         load(&mut machine, SECOND_GP, move |gp| async move {
@@ -278,7 +278,7 @@ fn what_programs_tell_the_observer_is_observed_and_traced() {
 
 /// Only graphics processors take their times from i860 code. No code exists for the host.
 #[test]
-fn code_tells_the_time_of_messages_where_it_runs() {
+fn code_determines_the_time_of_messages_on_its_board() {
     let busy = |code: Option<CodeVersion>, runs: bool| {
         let mut config = config(vec![Box::new(ScreenConfig::new(1))]);
         config.code = code;
@@ -300,7 +300,7 @@ fn code_tells_the_time_of_messages_where_it_runs() {
 }
 
 #[test]
-fn breakpoints_are_met_by_the_boards_that_run_the_code() {
+fn breakpoints_stop_the_boards_that_run_the_code() {
     let mut machine = machine();
     machine.run_code();
     machine.break_at(&RING_MEMORY.step_by(4).collect());

@@ -18,7 +18,7 @@ fn load_waiting(machine: &mut Machine, node: NodeId) {
 
 /// Period 0 contains the polls at the start, so the second tick is the first idle tick.
 #[test]
-fn programs_that_wait_for_ever_are_a_deadlock_after_so_many_ticks() {
+fn programs_that_wait_for_ever_are_a_deadlock_after_the_stated_periods() {
     let mut machine = machine();
     load_waiting(&mut machine, FIRST_GP);
     machine.switch_on();
@@ -36,7 +36,7 @@ fn programs_that_wait_for_ever_are_a_deadlock_after_so_many_ticks() {
 }
 
 #[test]
-fn waiting_for_retraces_is_no_deadlock_nor_is_a_machine_without_programs() {
+fn a_program_that_waits_for_retraces_and_a_machine_without_programs_are_no_deadlock() {
     for waits in [false, true] {
         let mut machine = machine();
         if waits {
@@ -55,7 +55,7 @@ fn waiting_for_retraces_is_no_deadlock_nor_is_a_machine_without_programs() {
 
 /// A message in every hundredth period prevents a deadlock. A message on a host line does not.
 #[test]
-fn who_is_sent_something_now_and_then_is_not_deadlocked() {
+fn a_board_that_receives_messages_is_not_deadlocked() {
     let run = |works: bool| {
         let mut machine = machine();
         load_waiting(&mut machine, FIRST_GP);
@@ -81,7 +81,7 @@ fn who_is_sent_something_now_and_then_is_not_deadlocked() {
 /// The machine must not report a deadlock before the work ends. After the work, the program still waits, and the
 /// machine is deadlocked.
 #[test]
-fn work_that_takes_long_is_no_deadlock_until_it_is_over() {
+fn long_work_is_no_deadlock() {
     let ticks = 3 * DEADLOCK_TICKS;
     let run = |until: u64| {
         let mut machine = machine();
@@ -117,8 +117,8 @@ fn each_waiting_board_is_listed_with_the_cause_of_its_wait() {
     assert_eq!(programs, ["host waits for Godot", "GP 1 waits for nothing"]);
     assert_eq!(blocked[2].waits_for, "frame buffer at node 5 to take region 0");
     assert_eq!(blocked[2].waits_on, Some(Board::Display(0)));
-    // Two messages carry pixels to one port. One message holds the port, and the other message waits for the renderer
-    // of the first.
+    // Two messages carry pixels to one port. One message occupies the port. The other message waits for the renderer
+    // that sends the first message.
     let messages = &blocked[4..];
     assert_eq!(messages.len(), machine.record().ring().waiting().len(), "and the ring's messages");
     let pairs: Vec<_> = messages.iter().map(|wait| (wait.board, wait.waits_on)).collect();
@@ -146,7 +146,7 @@ fn a_fault_of_a_program_stops_the_machine_with_its_board_and_time() {
 
 /// Messages have at most 1,024 words (TR94), and the test machine has six ports.
 #[test]
-fn a_message_that_no_ring_carries_stops_the_machine() {
+fn a_message_too_long_for_the_ring_stops_the_machine() {
     for (receiver, length, reason) in
         [(SECOND_GP, 1_025, "expected 1 to 1024 words, found 1025"), (NodeId(6), 1, "there is no ring port 6")]
     {
@@ -164,7 +164,7 @@ fn a_message_that_no_ring_carries_stops_the_machine() {
 }
 
 #[test]
-fn a_machine_that_cannot_be_is_not_built() {
+fn an_impossible_machine_is_not_built() {
     let mut wrong = config(vec![Box::new(ScreenConfig::new(1))]);
     wrong.n_gps = 0;
     let error = Machine::new(&wrong, 1, pxpl5_renderer::Layout::slats()).expect_err("no processor");

@@ -6,10 +6,10 @@ use crate::array::FaultKind;
 use crate::controller::{Controller, FieldBits};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Test};
 
-/// An operand whose bits are read from the least significant bit upwards. After its last bit, an unsigned operand
-/// continues with zeros, and a signed operand continues with copies of its sign.
+/// An operand whose bits are read in sequence from bit 0 (the least significant bit). Beyond its last bit, an unsigned
+/// operand continues with zeros, and a signed operand continues with copies of its sign bit.
 ///
-/// The sign is saved at the start, because the result can overwrite the operand.
+/// The sign bit is saved at the start, because the result can overwrite the operand.
 pub(super) struct SerialOperand {
     bits: FieldBits,
     extension: TilePlane,
@@ -87,13 +87,12 @@ impl Tile {
         SerialOperand { bits, extension }
     }
 
-    /// Overwrites bit plane `bit` of pixel memory in the enabled pixels of the tile.
     fn store(&mut self, bit: usize, new: &TilePlane) {
         planes::store(&mut self.memory[bit], new, &self.enable);
     }
 
-    /// Computes a bit field bit by bit, the least significant bit first. The function `f` returns the value of each bit
-    /// in all pixels of a tile. Each bit takes one clock.
+    /// Computes a bit field from bit 0 upwards. The function `f` returns the value of each bit in all pixels of a tile.
+    /// Each bit takes one clock.
     fn each_bit(&mut self, field: FieldBits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
         for i in 0..field.width {
             let new = f(&self.memory, i);
@@ -123,7 +122,7 @@ impl Tile {
         let wa = source.width;
         let source = self.source(source);
         let mut over = EMPTY;
-        // A set sign bit also sets `over`. The second step below then replaces negative values by 0.
+        // If the sign bit is set, set `over` too. The second step below then replaces negative values by 0.
         for i in w..wa {
             planes::or(&mut over, &source.bit(&self.memory, i));
         }
@@ -165,7 +164,6 @@ impl Tile {
         }
     }
 
-    /// Computes `field := f(a, b)`, one bit at a time.
     fn combine_bits(&mut self, field: FieldBits, a: &SerialOperand, b: &SerialOperand, f: fn(u64, u64) -> u64) {
         self.each_bit(field, |memory, i| planes::combine(&a.bit(memory, i), &b.bit(memory, i), f));
     }
@@ -190,7 +188,7 @@ impl Tile {
     }
 
     fn compare(&mut self, test: Test, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
-        // Find the pixels where a < b, or the pixels where a and b differ.
+        // Find the pixels where a < b, or the pixels where a and b differ. The test decides which of the two.
         let holds = match test {
             Test::Less | Test::NotLess => self.less(a, clocks, b),
             Test::Equal | Test::NotEqual => {
@@ -211,11 +209,10 @@ impl Tile {
         }
     }
 
-    /// Computes `destination := a * b`. For each set bit of `b`, the function adds `a`, shifted by the position of this
-    /// bit.
+    /// Computes `destination := a * b`. For each bit `j` of `b` that is set, the function adds `a << j`.
     ///
     /// Each addition takes one more clock for the carry. For the sign bit of a signed `b`, `a` is subtracted instead.
-    /// The destination's bits above the product are copies of the product's sign.
+    /// The bits of the destination above the product become copies of the product's sign bit.
     fn multiply(&mut self, destination: FieldBits, a: FieldBits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
         let x = self.source(a);
         // Add one shifted copy of `a` for each bit of `b`.
@@ -237,8 +234,8 @@ impl Tile {
         }
     }
 
-    /// Adds `x << j` to `destination` in the pixels where `gate` is set. If `negative` is true, the function subtracts
-    /// `x << j` instead.
+    /// Adds `x << j` to `destination` in the pixels where `gate` is set. Subtracts `x << j` instead if `negative` is
+    /// true.
     fn add_product(&mut self, destination: FieldBits, x: &SerialOperand, j: usize, gate: &TilePlane, negative: bool) {
         let top = j + x.bits.width;
         // The partial product is sign-extended if the destination has a bit at position `top`.
@@ -300,8 +297,6 @@ impl Tile {
     }
 }
 
-/// Returns bit `k` of the trial value of a square root. The trial value consists of the digits of the root so far,
-/// followed by the bits 01.
 fn trial_bit(root: FieldBits, memory: &[TilePlane], k: usize) -> TilePlane {
     match k {
         0 => FULL,

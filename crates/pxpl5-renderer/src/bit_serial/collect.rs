@@ -1,5 +1,5 @@
-//! Collection of consecutive instructions into a sequence, called a run. Each tile of 32 x 16 pixels executes the whole
-//! run before the next tile begins.
+//! Collection of consecutive instructions into a run (a sequence of instructions). Each tile of 32 x 16 pixels executes
+//! the whole run before the next tile begins.
 
 use super::BitSerial;
 use super::delivery::{Delivery, ExpressionEffect};

@@ -1,4 +1,4 @@
-//! The use of an expression's bits by the pixels of a tile (32 x 16 pixels). One bit arrives in each clock and takes
+//! Use of the bits of an expression by the pixels of a tile (32 x 16 pixels). One bit arrives in each clock and takes
 //! effect immediately.
 
 use super::arithmetic::SerialOperand;
@@ -8,15 +8,14 @@ use crate::controller::FieldBits;
 use crate::simd::SimdVector;
 use std::ops::Range;
 
-/// A consumer of the bits of an expression, which arrive one bit per clock.
 trait BitSink {
-    /// Uses bit `t` of an expression in one vector of pixels. `at` is the index of the vector's first word in a bit
-    /// plane of the tile.
+    /// Uses bit `t` of an expression in one vector of pixels. In a bit plane of the tile, word `at` is the first word
+    /// of the vector.
     ///
-    /// `carry` passes the carries of the pixels from bit to bit. It must be zero for the first bit.
+    /// `carry` holds the carry of each pixel, which bit `t + 1` uses. It must be zero for bit 0.
     fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
 
-    /// Receives the carry that remains after the last bit of the expression.
+    /// Uses the carry of the last bit of the expression.
     fn end<V: SimdVector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
 }
 
@@ -27,8 +26,8 @@ pub(super) struct Delivery {
     pub(super) effect: ExpressionEffect,
 }
 
-/// An operation that each pixel performs with every arriving bit of an expression. A destination bit field is given by
-/// its first bit in pixel memory.
+/// An operation that each pixel performs with every arriving bit of an expression. `first` is the address of a bit
+/// field's first bit in pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ExpressionEffect {
     DisableNegative,
@@ -39,7 +38,7 @@ pub(super) enum ExpressionEffect {
 }
 
 impl Delivery {
-    /// Evaluates an expression bit by bit for one vector of pixels, and uses each bit as the bit field `effect` states.
+    /// Evaluates an expression bit by bit in one vector of pixels, and uses each bit as the field `effect` states.
     #[inline(always)]
     pub(super) fn run_pixels<V: SimdVector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: VectorPlace) {
         let shift = self.taken.start;
@@ -70,7 +69,7 @@ impl Delivery {
         let at = place.at;
         let mut carries = E::start::<V>();
         let mut carry = V::splat(0);
-        // The pixels do not use the first bits, but the carries of these bits matter.
+        // The pixels do not use the first bits, but the carries of these bits influence the later bits.
         for t in 0..self.taken.start {
             evaluator.bit(t, place, &mut carries);
         }
@@ -82,7 +81,6 @@ impl Delivery {
     }
 }
 
-/// Stores the bits `new` of a vector's pixels in a bit plane. Disabled pixels keep their old bits.
 #[inline(always)]
 fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TilePlane) {
     let old = V::load_words(&plane[at..]);
@@ -90,7 +88,6 @@ fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TileP
     old.xor(changed).store_words(&mut plane[at..]);
 }
 
-/// A bit consumer that clears the Enable bit of the pixels in which the arriving bit is set.
 struct ClearEnable;
 
 impl BitSink for ClearEnable {
@@ -101,7 +98,7 @@ impl BitSink for ClearEnable {
     }
 }
 
-/// A bit consumer that stores an expression, without its lowest `shift` bits, in a bit field of pixel memory.
+/// Stores an expression, without its lowest `shift` bits, in a bit field of pixel memory.
 struct StoreBits {
     first: usize,
     shift: usize,
@@ -114,7 +111,7 @@ impl BitSink for StoreBits {
     }
 }
 
-/// A bit consumer that adds an expression, without its lowest `shift` bits, to a bit field of pixel memory.
+/// Adds an expression, without its lowest `shift` bits, to a bit field of pixel memory.
 struct AddBits {
     first: usize,
     shift: usize,
@@ -129,8 +126,8 @@ impl BitSink for AddBits {
     }
 }
 
-/// A bit consumer that compares an expression, without its lowest `shift` bits, with a bit field. Pixels in which the
-/// expression is not less than the bit field become disabled.
+/// Compares an expression, without its lowest `shift` bits, with a bit field. Pixels in which the expression is not
+/// less than the bit field become disabled.
 struct CompareBits {
     first: usize,
     shift: usize,
@@ -149,8 +146,8 @@ impl BitSink for CompareBits {
     }
 }
 
-/// A bit consumer that subtracts the bit field `source`, shifted left, from an expression. The lowest `shift` bits of
-/// the difference are not stored.
+/// Subtracts the bit field `source`, shifted left, from an expression. The lowest `shift` bits of the difference are
+/// not stored.
 struct StoreDifference {
     first: usize,
     shift: usize,
@@ -172,8 +169,7 @@ impl BitSink for StoreDifference {
     }
 }
 
-/// Simulates one clock of a serial subtracter in each pixel of a vector. The function uses the equation a - b = not
-/// (not a + b).
+/// Simulates one clock of a serial subtracter in each pixel of a vector, by the equation a - b = not (not a + b).
 #[inline(always)]
 fn subtract<V: SimdVector>(a: V, b: V, borrow: &mut V) -> V {
     let ones = V::splat(-1);

@@ -11,7 +11,6 @@ use crate::isa::{Expression, ExpressionUse, Operand};
 use crate::simd::{SimdVector, VectorKernel};
 use std::ops::Range;
 
-/// A vectorized loop that delivers the bits of an expression to all tiles of the array.
 struct DeliverToTiles<'a, E: WholeTrees> {
     coefficients: &'a E::Coefficients,
     delivery: &'a Delivery,
@@ -38,7 +37,7 @@ impl<E: WholeTrees> VectorKernel for DeliverToTiles<'_, E> {
 }
 
 impl BitSerial {
-    /// Evaluates an expression in all pixels.
+    /// Executes an instruction that evaluates an expression in all pixels.
     ///
     /// For a linear expression, the instruction ends after the last bit that the pixels use. For a quadratic
     /// expression, the instruction ends after all bits of the expression.
@@ -62,8 +61,8 @@ impl BitSerial {
         Ok(())
     }
 
-    /// Returns the used bits of an expression of `bits` bits, and the operation on these bits. Addresses of bit fields
-    /// are relative to the selected context, the part of pixel memory that holds one region.
+    /// Returns the bits of an expression that an instruction uses, and the operation on these bits. `bits` is the
+    /// length of the expression.
     pub(super) fn delivery(&self, usage: &ExpressionUse, bits: u32) -> Result<Delivery, FaultKind> {
         // A test of the sign uses only the last bit. A difference uses all bits, because it needs their borrow.
         let (taken, effect) = match *usage {
@@ -90,8 +89,8 @@ impl BitSerial {
         Ok(Delivery { taken, effect })
     }
 
-    /// Returns the range of the expression's bits that enter the bit field `field`, and the bit field's first bit in
-    /// pixel memory. The lowest `shift` bits of the expression do not enter the bit field.
+    /// Returns the range of the expression's bits that an instruction writes to `field`, and the address of the field's
+    /// first bit. The lowest `shift` bits of the expression are not written.
     fn taken_by(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
         let field = self.controller.bits(field)?;
         let shift = usize::from(shift);

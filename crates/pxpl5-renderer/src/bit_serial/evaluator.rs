@@ -1,9 +1,9 @@
 //! Expression evaluator: trees of serial adders. In each clock, the trees deliver one bit of an expression's value to
 //! every pixel.
 //!
-//! A tree multiplies a coefficient by the index of each column (or row), which is a leaf of the tree. Level `l` of the
-//! tree delays the coefficient by `l` clocks. This level adds the delayed coefficient to the leaves whose index has bit
-//! `l` set. Coefficients enter with the least significant bit first.
+//! A tree multiplies a coefficient by the index of each column (or row). Each column (or row) is a leaf of the tree.
+//! Level `l` of the tree delays the coefficient by `l` clocks. This level adds the delayed coefficient to the leaves
+//! whose index has bit `l` set. Coefficients enter with the least significant bit first.
 //!
 //! For a linear expression, every pixel adds the bit stream of its column to the bit stream of its row. For a quadratic
 //! expression, wider trees multiply by the squares of the indices. Each row also has its own coefficient of x, and each
@@ -18,17 +18,16 @@ use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};
 use crate::simd::SimdVector;
 use pxpl5_wire::{Linear, Quadratic};
 
-/// Number of bits of the index (0 to 127) of a pixel column.
 const NUMBER_BITS: usize = 7;
-/// Number of bits of the square of a pixel column's index (0 to 127).
 const SQUARE_BITS: usize = 14;
 
-/// A set of leaves of an adder tree, with one bit for each of 128 columns or rows.
+/// Set of columns or rows of the array, with one bit for each of the 128. The columns or rows are the leaves of an
+/// adder tree.
 type Leaves = [u64; 2];
 
-/// Columns (or rows) of pixels whose index has bit `l` set, for each `l`.
+/// For each `l`, the columns (or rows) whose index has bit `l` set.
 const NUMBERS: [Leaves; NUMBER_BITS] = leaves(1);
-/// Columns (or rows) of pixels whose squared index has bit `l` set, for each `l`.
+/// For each `l`, the columns (or rows) whose squared index has bit `l` set.
 const SQUARES: [Leaves; SQUARE_BITS] = leaves(2);
 
 const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
@@ -47,17 +46,18 @@ const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
     out
 }
 
-/// Output of the adder trees in one clock, with one bit for each column or row of pixels. Each 64-bit word holds two
-/// lanes of a vector.
+/// Output bits of the adder trees in one clock, with one bit for each column or row of pixels. Each 64-bit word holds
+/// two lanes of a vector.
 type Streams = [u64; 8];
 
-/// Trees of serial adders, side by side in one vector. Each bit of the vector belongs to one leaf of a tree, which is a
-/// column or a row of pixels. A tree multiplies a coefficient by the index of each leaf, and adds a bit stream of the
-/// leaf.
+/// Trees of serial adders, side by side in one vector. Each bit of the vector belongs to one leaf of a tree. A leaf is
+/// a column or a row of pixels. In each leaf, the tree computes a coefficient times the leaf's index, plus an input bit
+/// stream.
 pub(super) struct Trees<V, const LEVELS: usize> {
     coefficients: [V; 2],
     leaves: [V; LEVELS],
-    /// Delayed bits of the coefficients. Level `l` of a tree uses the bit that entered `l` clocks ago.
+    /// Delayed bits of the coefficients. Entry `l` holds the bits that entered `l` clocks ago, for level `l` of the
+    /// trees.
     late: [V; LEVELS],
     carries: [V; LEVELS],
 }
@@ -69,8 +69,8 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self { coefficients, leaves, late: zeros, carries: zeros }
     }
 
-    /// Creates two trees, one for 128 columns and one for 128 rows. The trees take the first eight lanes of a vector,
-    /// and the other lanes are unused.
+    /// Creates two trees, one for 128 columns and one for 128 rows. The two trees use the first eight lanes of a
+    /// vector, and the other lanes are unused.
     #[inline(always)]
     fn of_pair(coefficients: [i64; 2], leaves: &[Leaves; LEVELS]) -> Self {
         let mut vectors = [V::splat(0); LEVELS];
@@ -80,8 +80,9 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self::new(in_lanes(coefficients), vectors)
     }
 
-    /// Multiplies the coefficient by the index of each leaf (or by the square of the index), adds `stream`, and returns
-    /// bit `t` of the sums. The trees keep their carries between calls, so the calls must have `t` = 0, 1, 2 and so on.
+    /// Multiplies the coefficient of each tree by the index of each column or row (or by the square of the index). Adds
+    /// `stream`, and returns bit `t` of the sums. The trees keep carries between calls, so callers must pass `t` = 0,
+    /// 1, 2 and so on.
     #[inline(always)]
     pub(super) fn add(&mut self, mut stream: V, t: usize) -> V {
         for l in (1..LEVELS).rev() {
@@ -106,7 +107,7 @@ fn low_halves_in_lanes<V: SimdVector>(numbers: [i64; 2]) -> V {
     V::load_words(&[first, first, second, second, 0, 0, 0, 0])
 }
 
-/// Returns, for each lane, bit `t` of a 64-bit number. `low` and `high` hold the halves of the numbers.
+/// Returns, for each lane, bit `t` of a 64-bit number. `low` and `high` hold the lower and upper halves of the numbers.
 #[inline(always)]
 fn bit_of<V: SimdVector>([low, high]: [V; 2], t: usize) -> V {
     if t < 32 { low.bit(t as u32) } else { high.bit(t as u32 - 32) }
@@ -120,8 +121,7 @@ fn streams<V: SimdVector>(stream: V) -> Streams {
     words
 }
 
-/// The location of a vector of pixels in a tile, and the locations of its column bits and row bits in the tree outputs
-/// ([`Streams`]).
+/// Location of a vector of pixels in a tile, and the locations of the vector's column bits and row bits in [`Streams`].
 #[derive(Clone, Copy)]
 pub(super) struct VectorPlace {
     pub(super) at: usize,
@@ -129,8 +129,8 @@ pub(super) struct VectorPlace {
     rows: StreamStart,
 }
 
-/// Location of a bit in the tree outputs ([`Streams`]): a 64-bit word, and a bit of this word. The bit belongs to the
-/// first column or row of a vector of pixels.
+/// Location of a bit in [`Streams`]: a 64-bit word, and a bit of this word. The bit belongs to the first column or row
+/// of a vector of pixels.
 #[derive(Clone, Copy)]
 struct StreamStart {
     word: usize,
@@ -146,8 +146,8 @@ impl VectorPlace {
         Self { at: row / 2, columns, rows: StreamStart { word: 2 + y / 64, bit: y % 64 } }
     }
 
-    /// Returns the location of the vector that begins at row `row` of a tile, for trees that span this tile only. The
-    /// column bits are in the low half of word `word` of the tree outputs, and the row bits are in the high half.
+    /// Returns the location of the vector that begins at row `row` of a tile, for trees that span only this tile. In
+    /// word `word` of the trees' outputs, the low half holds the column bits and the high half holds the row bits.
     #[inline(always)]
     pub(super) const fn in_tile(word: usize, row: usize) -> Self {
         Self { at: row / 2, columns: StreamStart { word, bit: 0 }, rows: StreamStart { word, bit: WIDTH + row } }
@@ -171,9 +171,8 @@ impl StreamStart {
     }
 }
 
-/// Serial adders in the pixels. The adders combine the bit streams of the trees into the bits of an expression.
+/// Serial adders in the pixels, which combine the output bits of the trees into the bits of an expression.
 pub(super) trait Evaluator {
-    /// Carries of the serial adders of a vector of pixels between two clocks.
     type Carries<V: SimdVector>;
 
     fn start<V: SimdVector>() -> Self::Carries<V>;
@@ -184,31 +183,28 @@ pub(super) trait Evaluator {
 
 /// An evaluator whose adder trees span the whole array.
 pub(super) trait WholeTrees: Evaluator {
-    /// Coefficients of a linear or quadratic expression. The adder trees multiply the coefficients by the indices of
-    /// columns and rows.
     type Coefficients;
 
-    /// Simulates the adder trees for the first `bits` bits of the expression.
     fn run_trees<V: SimdVector>(coefficients: &Self::Coefficients, bits: usize) -> Self;
 }
 
-/// Output bits of the column tree and the row tree for a linear expression, one entry for each clock.
+/// Output bits of the column tree and the row tree for a linear expression. Entry `t` holds the bits of clock `t`.
 pub(super) struct LinearStreams(pub(super) [Streams; LINEAR_BITS as usize]);
 
-/// Outputs of the adder trees for a quadratic expression, one entry for each clock.
+/// Output bits of the trees for a quadratic expression. Entry `t` holds the bits of clock `t`.
 pub(super) struct QuadraticStreams([QuadraticBits; QUADRATIC_BITS as usize]);
 
 #[derive(Clone, Copy, Default)]
 struct QuadraticBits {
-    /// Bits of two sums: `xx x^2` for each column x, and `one + y y + yy y^2` for each row y.
+    /// One bit of two sums: `xx x^2` for each column x, and `one + y y + yy y^2` for each row y.
     sums: Streams,
-    /// The coefficient of x in each row: `x + xy y`. The coefficient is in the same lanes as the row's bits in `sums`.
+    /// One bit of the coefficient of x in each row: `x + xy y`. The bit is in the same lane as the row's bit in `sums`.
     coefficients: Streams,
 }
 
 pub(super) struct QuadraticCarries<V> {
-    /// Bit of the coefficient of x that is multiplied in this clock, for each bit of the column's index. Entry n holds
-    /// the bit that arrived n clocks ago.
+    /// Bits of the coefficient of x. Entry n holds the bit that arrived n clocks ago. The tree multiplies this bit by
+    /// bit n of the column's index.
     late: [V; NUMBER_BITS],
     product: [V; NUMBER_BITS],
     rows_and_columns: V,
@@ -252,8 +248,8 @@ impl WholeTrees for QuadraticStreams {
         let mut squares = Trees::<V, _>::of_pair([q.xx, q.yy], &SQUARES);
         let mut numbers = Trees::<V, _>::of_pair([q.xy, q.y], &NUMBERS);
         let constants = in_lanes([q.x, q.one]);
-        // The second trees belong to the rows, and their outputs are added. The first tree of the indices gives the
-        // coefficients of x.
+        // The second half of the trees belongs to the rows, and its outputs are added. The first tree of the indices
+        // gives the coefficients of x.
         let second = V::spread(0xf0);
         let mut out = [QuadraticBits::default(); QUADRATIC_BITS as usize];
         for (t, out) in out[..bits].iter_mut().enumerate() {
@@ -291,7 +287,6 @@ impl Evaluator for QuadraticStreams {
     }
 }
 
-/// Simulates one clock of a serial adder in each pixel of a vector.
 #[inline(always)]
 pub(super) fn full_add<V: SimdVector>(a: V, b: V, carry: &mut V) -> V {
     let half = a.xor(b);
@@ -323,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn the_trees_deliver_a_linear_expression_bit_by_bit() {
+    fn the_expression_trees_deliver_the_bits_of_a_linear_expression() {
         let e = Linear { a: -123_456, b: 987_654, c: i32::MAX };
         for (x, y) in [(0, 0), (127, 0), (0, 127), (127, 127), (64, 63), (93, 42)] {
             let expected = i64::from(e.at(x, y));
@@ -333,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn the_trees_deliver_a_quadratic_expression_bit_by_bit() {
+    fn the_expression_trees_deliver_the_bits_of_a_quadratic_expression() {
         let q =
             Quadratic { xx: -70_001, xy: 1 << 33, yy: -65_537, x: 123_456_789, y: -987_654_321, one: -(1 << 40) + 17 };
         for (x, y) in [(0, 0), (127, 0), (0, 127), (127, 127), (64, 63), (93, 42)] {

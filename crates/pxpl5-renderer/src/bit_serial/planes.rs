@@ -2,7 +2,6 @@
 
 use super::tile::{EMPTY, TilePlane};
 
-/// Computes `a := not a` in all pixels of the tile.
 #[inline(always)]
 pub(super) fn invert(a: &mut TilePlane) {
     for a in a {
@@ -10,7 +9,6 @@ pub(super) fn invert(a: &mut TilePlane) {
     }
 }
 
-/// Computes `a := a and b` in all pixels of the tile.
 #[inline(always)]
 pub(super) fn and(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {
@@ -18,7 +16,6 @@ pub(super) fn and(a: &mut TilePlane, b: &TilePlane) {
     }
 }
 
-/// Computes `a := a and not b` in all pixels of the tile.
 #[inline(always)]
 pub(super) fn and_not(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {
@@ -26,7 +23,6 @@ pub(super) fn and_not(a: &mut TilePlane, b: &TilePlane) {
     }
 }
 
-/// Computes `a := a or b` in all pixels of the tile.
 #[inline(always)]
 pub(super) fn or(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {
@@ -34,7 +30,6 @@ pub(super) fn or(a: &mut TilePlane, b: &TilePlane) {
     }
 }
 
-/// Computes `old := new` in the pixels where `enable` is set.
 #[inline(always)]
 pub(super) fn store(old: &mut TilePlane, new: &TilePlane, enable: &TilePlane) {
     for ((old, new), enable) in old.iter_mut().zip(new).zip(enable) {
@@ -64,8 +59,7 @@ pub(super) fn subtract(a: &mut TilePlane, b: &TilePlane, borrow: &mut TilePlane)
     }
 }
 
-/// Simulates one clock of a serial adder in all pixels of a tile. If `subtracts` is true, simulates a serial
-/// subtracter.
+/// Simulates one clock of a serial subtracter if `subtracts` is true, or of a serial adder otherwise.
 #[inline(always)]
 pub(super) fn step(subtracts: bool, a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     if subtracts { subtract(a, b, carry) } else { add(a, b, carry) }

@@ -1,16 +1,17 @@
-//! Skipping mode for runs, which are consecutive instructions with linear expressions or constants. The mode leaves out
-//! work that changes no bit.
+//! Skipping mode for runs. A run is a sequence of instructions with linear expressions or constants. The mode leaves
+//! out work that changes no bit.
 //!
 //! No data flows from pixel to pixel. A tile can therefore execute all instructions of a run before the next tile
 //! begins:
 //!
-//! - If all pixels of a tile are disabled, the tile does nothing, because an expression never enables pixels.
-//! - An expression that is negative at all corners of a tile disables the tile without adders. An expression that is
-//!   negative at no corner disables no pixel. Both rules require that the expression does not overflow 32 bits in the
-//!   array.
-//! - A tile is like a smaller array. The origin of the tile is added to the constant coefficient, like the origin of a
-//!   region. For a tile, the trees have only five levels, so a vector can hold the trees of several expressions side by
-//!   side.
+//! - If all pixels of a tile are disabled, the tile does nothing, because instructions with expressions never enable
+//!   pixels.
+//! - If an edge expression is negative at all corners of a tile, the tile is disabled without simulation of adders. If
+//!   it is negative at no corner, it disables no pixel. Both rules hold only if the expression does not overflow 32
+//!   bits anywhere in the array.
+//! - The adder trees of a tile have only five levels instead of seven. A vector can therefore hold the trees of several
+//!   expressions side by side. The value of the expression at the upper left pixel of the tile replaces the constant
+//!   coefficient.
 //!
 //! The remaining work is done bit by bit, as in the reference mode.
 
@@ -22,25 +23,22 @@ use crate::isa::LINEAR_BITS;
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::Linear;
 
-/// Largest number of expressions in a run (a sequence of instructions that a tile executes together). The widest vector
-/// can hold the adder trees of eight expressions.
+/// Largest number of expressions in an `InstructionRun`. The widest vector can hold the adder trees of eight.
 pub(super) const EXPRESSIONS: usize = 8;
 
-/// Number of bits of a pixel column's index within a tile. The index is 0 to 31.
 const LEVELS: usize = 5;
-/// Pixel columns (and rows) of a tile whose index has bit `l` set, for each `l`.
+/// For each `l`, the columns (and rows) of a tile whose index has bit `l` set.
 const NUMBERS: [u32; LEVELS] = [0xaaaa_aaaa, 0xcccc_cccc, 0xf0f0_f0f0, 0xff00_ff00, 0xffff_0000];
 
-/// A run: consecutive instructions that one tile executes completely before another tile begins.
+/// A sequence of instructions that one tile executes completely before another tile begins.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InstructionRun {
     pub(super) steps: Vec<RunStep>,
-    /// Linear expressions of the instruction run, with the array's upper left pixel as origin.
+    /// Linear expressions that the instructions use, with the upper left pixel of the array as origin of coordinates.
     pub(super) expressions: Vec<Linear>,
     pub(super) words: usize,
 }
 
-/// One instruction of a run. All instructions of a run are executed in one tile before the next tile begins.
 #[derive(Clone, Debug)]
 pub(super) struct RunStep {
     pub(super) input: BitOrigin,
@@ -49,7 +47,7 @@ pub(super) struct RunStep {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BitOrigin {
-    /// An expression, given by its index among the expressions of the instruction run.
+    /// Index of an expression in `InstructionRun::expressions`.
     Expression(usize),
     Constant(ConstantBits),
 }
@@ -66,7 +64,6 @@ impl RunStep {
     }
 }
 
-/// A vectorized loop that executes a sequence of instructions in all tiles.
 pub(super) struct RunTiles<'a> {
     pub(super) run: &'a InstructionRun,
     pub(super) tiles: &'a mut [Tile],
@@ -98,8 +95,8 @@ impl InstructionRun {
         self.words = 0;
     }
 
-    /// Returns, for each expression of the instruction run, the tiles in which all pixels have the same sign of the
-    /// expression. The sets are empty for an expression whose sign disables no pixels.
+    /// Returns, for each expression, the tiles in which all pixels have the same sign of the expression. There are no
+    /// tiles for an expression whose sign disables no pixels.
     #[inline(always)]
     fn signs<V: SimdVector>(&self) -> [Signs; EXPRESSIONS] {
         let mut signs = [Signs::default(); EXPRESSIONS];
@@ -111,8 +108,8 @@ impl InstructionRun {
         signs
     }
 
-    /// Returns the tiles in which the instructions at the start of the run disable all pixels, as one bit for each
-    /// tile.
+    /// Returns the tiles in which the first instructions of this sequence disable all pixels. Bit n of the result
+    /// stands for tile n.
     #[inline(always)]
     fn disabled_at_once(&self, signs: &[Signs; EXPRESSIONS]) -> u32 {
         let mut disabled = 0;
@@ -135,7 +132,7 @@ impl InstructionRun {
             match step.input {
                 BitOrigin::Constant(constant) => step.delivery.in_tile::<V, _>(&constant, 0, tile),
                 BitOrigin::Expression(i) => {
-                    // If the sign is known, the whole tile needs no adders.
+                    // If the expression has the same sign in the whole tile, no adders are necessary.
                     if matches!(step.delivery.effect, ExpressionEffect::DisableNegative) {
                         if signs[i].negative >> number & 1 == 1 {
                             tile.enable = EMPTY;
@@ -170,13 +167,12 @@ impl Delivery {
     }
 }
 
-/// Sets of tiles in which all pixels have the same sign of an expression. No serial arithmetic is needed to find these
-/// tiles.
+/// Tiles in which all pixels have the same sign of an expression, so no serial arithmetic is necessary. Bit n stands
+/// for tile n.
 #[derive(Clone, Copy, Debug, Default)]
 struct Signs {
-    /// Tiles in which the expression is negative at every pixel, as one bit for each tile.
     negative: u32,
-    /// Tiles in which the expression is at least 0 at every pixel, as one bit for each tile.
+    /// Tiles in which the expression is at least 0 at every pixel.
     positive: u32,
 }
 
@@ -224,17 +220,14 @@ fn wraps(e: &Linear) -> bool {
     corners.iter().any(|corner| i32::try_from(*corner).is_err())
 }
 
-/// Outputs of the adder trees for one tile. For each clock, there is one word for each expression of the instruction
-/// run.
+/// Output bits of the adder trees of one tile. For each clock, there is one word for each expression.
 struct TileStreams {
     streams: LinearStreams,
-    /// Number of expressions whose adder trees were simulated so far.
     ready: usize,
 }
 
 impl TileStreams {
-    /// Simulates the adder trees for the next expressions of the instruction run. One call simulates as many trees as
-    /// fit in a vector.
+    /// Simulates the adder trees for the next expressions of the sequence, as many as fit in a vector.
     #[inline(always)]
     fn run_trees<V: SimdVector>(&mut self, run: &InstructionRun, number: usize) {
         let [left, top] = tile::origin(number);
@@ -254,7 +247,6 @@ impl TileStreams {
     }
 }
 
-/// A constant whose bits are delivered one by one, like the bits of an expression.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ConstantBits {
     pub(super) value: u32,

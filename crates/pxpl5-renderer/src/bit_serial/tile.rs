@@ -9,9 +9,8 @@ use pxpl5_wire::REGION_SIZE;
 
 pub(super) const WIDTH: usize = 32;
 pub(super) const HEIGHT: usize = 16;
-/// Number of tiles side by side in the array.
+/// Number of tiles in one row of tiles.
 pub(super) const ACROSS: usize = REGION_SIZE as usize / WIDTH;
-/// Number of tiles into which the array is divided.
 pub(super) const TILES: usize = PIXELS / (WIDTH * HEIGHT);
 
 /// One bit of every pixel of a tile. The bit of pixel (x, y) is bit `x + 32 (y % 2)` of word `y / 2`.
@@ -20,14 +19,12 @@ pub(super) type TilePlane = [u64; HEIGHT / 2];
 pub(super) const EMPTY: TilePlane = [0; HEIGHT / 2];
 pub(super) const FULL: TilePlane = [u64::MAX; HEIGHT / 2];
 
-/// Pixel memory and Enable of one tile. Tiles are independent of each other.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // No vector of pixels crosses a border between lines of the host's cache.
 pub(super) struct Tile {
     pub(super) memory: [TilePlane; MEMORY_BITS as usize],
     pub(super) enable: TilePlane,
-    /// Number of clocks in which this tile has processed bits of the current instruction. Clocks for the set-up of the
-    /// instruction do not count.
+    /// Number of clocks in which this tile has processed bits, without the clocks for the set-up of instructions.
     pub(super) clock: u64,
 }
 
@@ -41,7 +38,7 @@ impl Tile {
 
     /// Returns true if this tile must execute an instruction that changes only enabled pixels.
     ///
-    /// In the reference mode, every tile executes such an instruction. In the skipping mode, only tiles with an enabled
+    /// In the reference mode, every tile executes the instruction. In the skipping mode, only tiles with an enabled
     /// pixel execute the instruction.
     #[inline(always)]
     pub(super) fn has_work(&self, skipping: bool) -> bool {
@@ -54,13 +51,13 @@ pub(super) fn any(words: &[u64]) -> bool {
     words.iter().fold(0, |any, word| any | word) != 0
 }
 
-/// Returns the column and the row, in the array, of the upper left pixel of a tile.
+/// Returns the column and the row of the tile's upper left pixel in the array.
 #[inline(always)]
 pub(super) const fn origin(tile: usize) -> [usize; 2] {
     [tile % ACROSS * WIDTH, tile / ACROSS * HEIGHT]
 }
 
-/// Joins the bit planes of all tiles, in the order of the tile indices, into a bit plane of the array.
+/// Joins one bit plane of each tile, in the order of the tile indices, into a bit plane of the whole array.
 pub(super) fn join<'a>(tiles: impl IntoIterator<Item = &'a TilePlane>) -> Plane {
     let mut plane = EMPTY_PLANE;
     for (number, tile) in tiles.into_iter().enumerate() {
@@ -81,8 +78,8 @@ pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     tile
 }
 
-/// Returns the position at which row `y` of tile `number` begins in a bit plane of the array: the index of a word, and
-/// a bit of this word.
+/// Returns the place of the first pixel of row `y` of tile `number` in a bit plane of the array. The place is the index
+/// of a word, and the index of a bit in this word.
 const fn place(number: usize, y: usize) -> (usize, usize) {
     let [left, top] = origin(number);
     (2 * (top + y) + left / 64, left % 64)

@@ -5,16 +5,16 @@ use crate::isa::{ArrayInstruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId};
 
-/// Selects the region of all following commands: its screen position, and the context (part of pixel memory) that holds
-/// it.
+/// Selects the region of all following commands: its position on the screen, and the context (part of pixel memory)
+/// that holds it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelectRegion {
     /// Index of the context (part of pixel memory for one region), less than the layout's number of contexts.
     pub context: u8,
-    /// Screen x of the region's left column, in pixels.
+    /// x coordinate of the region's left column on the screen, in pixels.
     pub left: u16,
-    /// Screen y of the region's top row, counted in drawn lines. If a picture is one field of an interlaced display,
-    /// only every second line of the screen is drawn and counted.
+    /// y coordinate of the region's top row on the screen, counted in drawn lines. If a picture is one field of an
+    /// interlaced display, only every second line of the screen is drawn and counted.
     pub top: u16,
 }
 
@@ -58,8 +58,8 @@ impl Clear {
 /// Copies the colours of a region to a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CopyRegion {
-    /// Destination of the pixels: frame buffer, number of its pixel buffer (0 or 1), grid of regions, region, lines,
-    /// and number of the picture.
+    /// Destination of the pixels: frame buffer, pixel buffer (0 or 1), grid of regions, region, lines, and picture
+    /// number.
     pub target: CopyTarget,
 }
 
@@ -93,7 +93,7 @@ impl CopyRegion {
 pub struct StoreBacking {
     /// Block of the backing store, 0 to 127.
     pub block: u8,
-    /// First bit of the bit field in pixel memory, an absolute address from 0 to 176.
+    /// Address of the first bit of the 32 bits in pixel memory: an absolute address from 0 to 176.
     pub address: u8,
 }
 
@@ -115,7 +115,7 @@ impl StoreBacking {
 pub struct LoadBacking {
     /// Block of the backing store, 0 to 127.
     pub block: u8,
-    /// First bit of the bit field in pixel memory, an absolute address from 0 to 176.
+    /// Address of the first bit of the 32 bits in pixel memory: an absolute address from 0 to 176.
     pub address: u8,
 }
 

@@ -6,7 +6,6 @@ use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
 use pxpl5_wire::{Linear, Word};
 
-/// A triangle with interpolated colour (Gouraud).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TriangleCommand {
     /// Edge expressions. A pixel is inside if all three values are `>= 0`.
@@ -77,8 +76,8 @@ pub(super) const fn evaluate(expression: Expression, usage: ExpressionUse) -> Ar
     ArrayInstruction::Evaluate { expression, usage }
 }
 
-/// Appends the instructions for three edges and Z. The instructions disable the pixels outside the triangle and the
-/// pixels at which the triangle is not nearer than the stored Z. Then the instructions store the new Z.
+/// Appends the instructions for three edges and Z. These instructions disable the pixels outside the triangle, and the
+/// pixels where the triangle is not nearer than the stored Z. Then they store the new Z.
 fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<ArrayInstruction>) {
     out.extend(edges.map(|edge| evaluate(Expression::Linear(edge), ExpressionUse::DisableNegative)));
     let field = layout.plan().z;
@@ -90,16 +89,14 @@ fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<A
 pub(crate) const TRIANGLE_WORDS: usize = CommandKind::Triangle.words() as usize;
 pub(crate) const PHONG_WORDS: usize = CommandKind::PhongTriangle.words() as usize;
 
-/// Positions of the coefficients of the three edges in an encoded triangle command, in words from the start of the
-/// command.
+/// Index of each edge's first coefficient word in an encoded triangle command.
 pub(crate) const EDGES_AT: [usize; 3] = [2, 6, 10];
 pub(crate) const DEPTH_AT: usize = 14;
 pub(crate) const COMPONENTS_AT: [usize; 3] = [19, 23, 27];
-/// Index of the word with the colour in an encoded Phong triangle command.
 pub(crate) const COLOUR_AT: usize = PHONG_WORDS - 1;
 
-/// A fast encoder of triangle commands. The encoder does not build the program of each command, because a scene can
-/// have 100,000 triangles per frame.
+/// A fast encoder of triangle commands. It does not build the program of each command, because a scene can have 100,000
+/// triangles per frame.
 ///
 /// In one layout, the words of all triangle commands differ only in their operands. The encoder copies the words of a
 /// blank triangle, then overwrites the operands.
@@ -111,13 +108,12 @@ pub struct TriangleEncoder([Word; TRIANGLE_WORDS]);
 pub struct PhongTriangleEncoder([Word; PHONG_WORDS]);
 
 impl TriangleEncoder {
-    /// Creates an encoder for the commands of a layout.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self(blank(&TriangleCommand::default().program(layout)))
     }
 
-    /// Appends the words of a triangle's command. The words are the same as after the slower encoding of the command's
+    /// Appends the words of a triangle command to `out`. The words equal the words of the command's
     /// [program](super::Command::program).
     #[inline(always)]
     pub fn encode(&self, triangle: &TriangleCommand, out: &mut Vec<Word>) {
@@ -126,7 +122,7 @@ impl TriangleEncoder {
 }
 
 impl PhongTriangleEncoder {
-    /// Creates an encoder for the commands of a layout.
+    /// Creates an encoder for the commands of `layout`.
     ///
     /// # Errors
     /// Returns [`Unsupported`] if the layout has no normals.
@@ -138,7 +134,7 @@ impl PhongTriangleEncoder {
         Ok(Self(blank(&program)))
     }
 
-    /// Appends the words of a triangle's command. The words are the same as after the slower encoding of the command's
+    /// Appends the words of a triangle command to `out`. The words equal the words of the command's
     /// [program](super::Command::program).
     #[inline(always)]
     pub fn encode(&self, triangle: &PhongTriangleCommand, out: &mut Vec<Word>) {
@@ -152,7 +148,7 @@ fn blank<const N: usize>(program: &[ArrayInstruction]) -> [Word; N] {
     words.try_into().expect("every program of the kind has the kind's words")
 }
 
-/// Appends a copy of the triangle command `blank`, writes the operands into the copy, and returns the appended words.
+/// Appends a copy of the triangle command `blank` to `out`, overwrites its operands, and returns the new words.
 #[inline(always)]
 fn operands<'a, const N: usize>(
     blank: &[Word; N],

@@ -4,11 +4,11 @@ use super::{CommandKind, MissingField, enable, normal};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Operand, Test};
 use crate::layout::Layout;
 
-/// Number of times that the cosine of the highlight is squared: 5, for a power of 2^5 = 32 (assumed).
+/// Number of times that the cosine of the highlight's angle is squared: 5, for a power of 2^5 = 32 (assumed).
 pub const SPECULAR_SQUARINGS: u32 = 5;
 
-/// Shades every pixel whose Z is nearer than the far plane. These are the pixels that a command has covered. Other
-/// pixels keep the background.
+/// Shades every pixel whose Z is nearer than the far plane, because a primitive covers such a pixel. All other pixels
+/// keep the background colour.
 ///
 /// Inputs are the normal N, the object's colour C, and the directions to a light and an eye at infinity:
 ///
@@ -20,12 +20,12 @@ pub const SPECULAR_SQUARINGS: u32 = 5;
 /// ```
 ///
 /// The length |N| is a bit-serial square root of 12 bits. The quotients are bit-serial divisions. The power is computed
-/// by five squarings, each with a result of 10 bits. The function `limit` limits a value to the range from 0 to all
-/// ones. A zero normal is shaded like a normal that faces the light.
+/// by five squarings, each with a result of 10 bits. The function `limit` limits a value to the range of its
+/// destination: 0 to 2^w - 1 for w bits. A zero normal is shaded like a normal that faces the light.
 ///
 /// The command takes 3,790 clocks (95 us): the root takes 206 clocks, each quotient 374 clocks and the power 570
 /// clocks. For the real machine, a time of 100 to 200 us is assumed. A second light (938 clocks for each cosine) and a
-/// material for each pixel are not modelled. A second light and a material would also fit in this time.
+/// material for each pixel would also fit in this time, but are not modelled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shade {
     /// Unit vector towards the light. The number 1024 stands for 1.0. Each component has 12 bits, two's complement.
@@ -33,21 +33,19 @@ pub struct Shade {
     pub light: [i16; 3],
     /// Unit vector half way between the directions to the light and to the eye, in the same format as `light`.
     pub half: [i16; 3],
-    /// Fraction of the object's colour that is visible without light. The number 256 stands for 1.0.
+    /// Fraction of the object's colour that is visible without light, in units of 1/256.
     pub ambient: u8,
-    /// Fraction of the object's colour that full light adds. The number 256 stands for 1.0.
+    /// Fraction of the object's colour that full light adds, in units of 1/256.
     pub diffuse: u8,
     /// Intensity of the white highlight, 0 to 255.
     pub specular: u8,
 }
 
-/// Number of bits of each component of the vectors `light` and `half`.
 const VECTOR_BITS: u8 = 12;
 const COSINE_BITS: u8 = 10;
 
-/// Number of bits of scratch memory that the shading program needs.
 pub(super) const SHADE_BITS: u8 = 104;
-/// First bit of the bit field for the square root, relative to the start of the scratch memory.
+/// Address of the square root's bit field, counted from the start of the scratch memory.
 pub(super) const SHADE_ROOT: u8 = 72;
 
 pub(crate) struct ShadeFields {
@@ -100,8 +98,8 @@ impl Shade {
         Ok(out)
     }
 
-    /// Computes the brightness of the object's colour in the low 8 bits of `f.diffuse`, and the highlight in bits 10 to
-    /// 18 of `f.c`.
+    /// Computes the brightness factor of the object's colour in the low 8 bits of `f.diffuse`, and the highlight in
+    /// bits 10 to 18 of `f.c`.
     fn intensities(&self, f: &ShadeFields, highlight: Operand, out: &mut Vec<ArrayInstruction>) {
         let sum = f.b.part(0, 19);
         let ambient = u32::from(self.ambient) << COSINE_BITS;
@@ -163,8 +161,8 @@ fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Arra
     out.push(arithmetic(ArithmeticOp::Divide, cosine, positive, f.root));
 }
 
-/// Raises the cosine of the highlight to the power 32, and returns the bit field with the result. Each step squares the
-/// value and stores the square in `f.a` or `f.b` alternately.
+/// Computes the cosine of the highlight's angle to the power 32, and returns the bit field of the result. Each step
+/// squares the value, and alternately writes to `f.a` and `f.b`.
 fn power(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) -> Operand {
     let mut base = f.specular;
     for i in 0..SPECULAR_SQUARINGS {
@@ -194,7 +192,7 @@ fn read_factor(program: &[ArrayInstruction], index: usize) -> Option<i32> {
 }
 
 fn read_vector(program: &[ArrayInstruction], first: usize) -> Option<[i16; 3]> {
-    // The addition of x and y comes between the products for y and z.
+    // The program adds x and y between the products for y and z.
     let indices = [first, first + 1, first + 3];
     let [x, y, z] = indices.map(|index| read_factor(program, index).and_then(|factor| i16::try_from(factor).ok()));
     Some([x?, y?, z?])

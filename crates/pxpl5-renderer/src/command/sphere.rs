@@ -1,4 +1,4 @@
-//! Sphere commands. Silhouettes are exact, and the depth comes from a square root.
+//! Sphere commands. Silhouettes are exact, and a square root gives the depth.
 
 use super::draw::{evaluate, load, read_linear};
 use super::shade::{SHADE_BITS, SHADE_ROOT};
@@ -8,31 +8,32 @@ use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
 use pxpl5_wire::{Linear, Quadratic};
 
-/// Silhouette and depth of a sphere, for both kinds of sphere commands.
+/// Silhouette and depth of a sphere, which both kinds of sphere commands contain.
 ///
-/// With perspective, the inverse depth along a pixel's ray is `linear + k sqrt(Q)`. Q is a quadratic expression that is
-/// zero on the silhouette. The sender scales Q so that the root needs no factor:
+/// With perspective, the inverse depth at a pixel is `linear + k sqrt(Q)`. Q is a quadratic expression in the pixel's
+/// coordinates. Q is zero on the silhouette. The sender scales Q so that the root needs no factor:
 ///
 /// ```text
 /// root  = floor(sqrt((silhouette >> root_shift) & (2^24 - 1)))        12 bits
 /// depth = (depth - (root << depth_shift)) >> Z_FRACTION_BITS          24 bits, as for a triangle
 /// ```
 ///
-/// The *bulge* is the distance of the sphere's middle in front of the plane `depth`, in units of the depth expression.
-/// The sender must choose `depth_shift` so that `bulge >> depth_shift` is in 2048 .. 4096. The root then has at least
-/// 11 significant bits. At the sphere's middle, `silhouette = 2^root_shift (bulge / 2^depth_shift)^2`. The silhouette
-/// must stay within 48 bits on the whole region.
+/// The *bulge* is the distance between the plane `depth` and the sphere's surface, at the middle of the sphere, in
+/// units of the depth expression. The sender must choose `depth_shift` so that `bulge >> depth_shift` is in 2048 ..
+/// 4096. The root then has at least 11 significant bits. At the sphere's middle, `silhouette = 2^root_shift (bulge /
+/// 2^depth_shift)^2`. The silhouette must stay within 48 bits on the whole region.
 ///
 /// A layout with roots of 10 bits uses the upper bits of the same operands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereBody {
-    /// Silhouette expression of 48 bits. A pixel is inside the sphere if the expression is `>= 0` at this pixel.
+    /// Silhouette expression of 48 bits. A pixel is inside the sphere if its value is `>= 0`.
     pub silhouette: Quadratic,
     /// Number of low bits of the silhouette expression that the square root ignores, 0 to 24.
     pub root_shift: u8,
-    /// Depth of the plane through the silhouette, with [`pxpl5_wire::format::Z_FRACTION_BITS`] fraction bits.
+    /// Depth expression of the plane through the silhouette, with [`pxpl5_wire::format::Z_FRACTION_BITS`] fraction
+    /// bits.
     pub depth: Linear,
-    /// Left shift of the square root, in bits, before the subtraction of the root from the depth: 0 to 20.
+    /// Number of bits by which the square root is shifted left before its subtraction from the depth, 0 to 20.
     pub depth_shift: u8,
 }
 
@@ -43,18 +44,18 @@ pub struct SphereBody {
 /// depth needs three passes instead of two, because it depends on the stored root. Interpolated colour also takes a
 /// product and a limit for each component (134 clocks each).
 ///
-/// The assumed cost "a little dearer than a triangle" would fit a paraboloid, whose depth is the quadratic expression
-/// itself. A paraboloid takes 318 clocks with a quadratic expression for each colour, or 268 clocks with normals. The
-/// depth of a paraboloid is exact only at the silhouette and at the middle, so intersecting spheres would meet in wrong
-/// places. The model therefore computes the root.
+/// The assumed cost, "a little dearer than a triangle", would fit a paraboloid. The depth of a paraboloid is the
+/// quadratic expression itself. A paraboloid takes 318 clocks with a quadratic expression for each colour, or 268
+/// clocks with normals. The depth of a paraboloid is exact only at the silhouette and at the middle, so intersecting
+/// spheres would meet in wrong places. The model therefore computes the root.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereCommand {
-    /// Silhouette and depth of the sphere.
     pub body: SphereBody,
-    /// Linear expressions for red, green and blue, with [`COLOUR_FRACTION_BITS`] fraction bits. A multiple of the
-    /// square root is added to each expression.
+    /// Linear expressions for red, green and blue, with [`COLOUR_FRACTION_BITS`] fraction bits. The command adds a
+    /// multiple of the square root to each expression.
     pub colour: [Linear; 3],
-    /// Factor of the root for each component, -512 to 511: component = limit(linear + ((root >> 4) * factor >> 8)).
+    /// Factor of the square root for each colour component, -512 to 511: component = limit(linear + ((root >> 4) *
+    /// factor >> 8)).
     ///
     /// The sum must be in the range from -512 to 511, because a larger sum would wrap around. The function `limit`
     /// limits the sum to the range from 0 to 255.
@@ -68,7 +69,6 @@ pub struct SphereCommand {
 /// shading normalizes the normal. With perspective, x and y of the normal are approximated by linear expressions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongSphereCommand {
-    /// Silhouette and depth of the sphere.
     pub body: SphereBody,
     /// Expressions for x and y of the normal, with [`NORMAL_FRACTION_BITS`] fraction bits.
     pub normal: [Linear; 2],
@@ -76,10 +76,10 @@ pub struct PhongSphereCommand {
     pub colour: u32,
 }
 
-/// Number of bits of a square root for which the operands of [`SphereBody`] are defined. Layouts with narrower roots
-/// use the upper bits of these operands.
+/// Number of bits of the square root in the definition of [`SphereBody`]. Layouts with narrower roots use the upper
+/// bits of the operands.
 const ROOT_BITS: u8 = 12;
-/// Number of upper bits of the square root that are multiplied by the factor of a colour component.
+/// Number of upper bits of the square root that the command multiplies by a colour factor.
 const COLOUR_ROOT_BITS: u8 = 8;
 const FACTOR_BITS: u8 = 10;
 
@@ -87,10 +87,9 @@ const FACTOR_BITS: u8 = 10;
 pub(crate) struct SphereScratch {
     radicand: Operand,
     pub(crate) root: Operand,
-    /// New depth. The depth occupies the bits of the radicand, because the radicand is no longer needed after the
-    /// square root.
+    /// New depth. It occupies the bits of the radicand, which is not needed after the square root.
     pub(crate) z: Operand,
-    /// Product of the root and a colour's factor, 8 + 10 bits. The product also occupies the bits of the radicand.
+    /// Product of the root and a colour factor, with 8 + 10 bits. It also occupies the bits of the radicand.
     product: Operand,
 }
 
@@ -115,7 +114,7 @@ impl SphereScratch {
         })
     }
 
-    /// Returns the number of bits by which a square root in this layout is shorter than 12 bits: 0 or 2.
+    /// Returns the number of bits by which the square root in this layout is shorter than 12 bits: 0 or 2.
     pub(crate) const fn short(&self) -> u8 {
         ROOT_BITS - self.root.width
     }
@@ -125,8 +124,8 @@ impl SphereScratch {
     }
 }
 
-/// Appends the instructions for silhouette, square root and depth. The instructions disable the pixels outside the
-/// sphere and the pixels at which the sphere is not nearer than the stored Z. Then the instructions store the new Z.
+/// Appends the instructions for silhouette, square root and depth. These instructions disable the pixels outside the
+/// sphere, and the pixels where the sphere is not nearer than the stored Z. Then they store the new Z.
 fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<ArrayInstruction>) {
     let z = layout.plan().z;
     // Test the sign of the silhouette, then evaluate the same expression again as radicand.
@@ -168,7 +167,7 @@ fn read_coverage(program: &[ArrayInstruction], layout: &Layout) -> Option<Sphere
     else {
         return None;
     };
-    // In a layout with a short scratch, the root has `short` bits less, and the radicand has twice as many bits less.
+    // In a layout with a short scratch, the root is `short` bits shorter, and the radicand is 2 * `short` bits shorter.
     let root_shift = shift.checked_sub(2 * short)?;
     let depth_shift = left_shift.checked_sub(short)?;
     Some(SphereBody { silhouette, root_shift, depth, depth_shift })
@@ -201,7 +200,7 @@ impl SphereCommand {
 
 /// Returns the instructions for `component := limit(linear + (upper root * factor >> 8))`.
 ///
-/// The upper 10 bits of the product bit field hold the sum.
+/// The upper 10 bits of `scratch.product` hold the sum.
 fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &SphereScratch) -> [ArrayInstruction; 3] {
     let sum = scratch.product.part(8, 10).signed();
     [

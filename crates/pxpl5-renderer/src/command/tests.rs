@@ -99,7 +99,7 @@ fn phong() -> Layout {
 
 proptest! {
     #[test]
-    fn every_command_comes_back_from_its_words(
+    fn every_command_is_decoded_from_its_words(
         command in any_command().prop_filter("one context", |c| !matches!(c, Command::SelectRegion(s) if s.context > 0)),
     ) {
         let mut words = vec![0xdead_beef; 3];
@@ -110,7 +110,7 @@ proptest! {
     }
 
     #[test]
-    fn the_words_of_a_command_are_those_of_its_program(command in any_command(), before in any::<[u32; 2]>()) {
+    fn the_words_of_a_command_equal_the_words_of_its_program(command in any_command(), before in any::<[u32; 2]>()) {
         for layout in [phong(), Layout::slats(), Layout::slats_quarters()] {
             let mut words = before.to_vec();
             let mut expected = before.to_vec();
@@ -125,7 +125,7 @@ proptest! {
     }
 
     #[test]
-    fn triangles_made_of_blank_ones_have_the_words_of_their_programs(
+    fn triangles_made_from_templates_have_the_words_of_their_programs(
         plain in triangle(),
         with_normals in phong_triangle(),
         before in any::<[u32; 2]>(),
@@ -144,7 +144,7 @@ proptest! {
     }
 
     #[test]
-    fn slats_commands_come_back_with_a_narrow_z(
+    fn commands_of_slats_are_decoded_with_a_narrow_depth(
         command in prop_oneof![triangle(), sphere(), control(), copy()],
     ) {
         let mut words = Vec::new();
@@ -162,7 +162,7 @@ proptest! {
     }
 
     #[test]
-    fn a_legal_instruction_encodes_to_the_words_it_came_from(
+    fn a_decoded_instruction_encodes_to_its_words(
         opcode in 1..0x71_u32,
         rest in any::<[u32; 12]>(),
     ) {
@@ -202,7 +202,7 @@ fn the_timing_table_holds_the_clocks_of_the_programs() {
 }
 
 #[test]
-fn the_clocks_of_a_triangle_are_those_of_its_formats() {
+fn the_clocks_of_a_triangle_are_the_sum_over_its_instructions() {
     let program = Command::Triangle(TriangleCommand::default()).program(&phong()).unwrap();
     let bits: Vec<_> = program.iter().map(ArrayInstruction::bit_clocks).collect();
     assert_eq!(bits, [2, 32, 32, 32, 32, 32, 20, 20, 20]);
@@ -210,7 +210,7 @@ fn the_clocks_of_a_triangle_are_those_of_its_formats() {
 }
 
 #[test]
-fn every_kind_has_the_words_and_opcode_that_it_says() {
+fn every_kind_of_command_has_its_stated_words_and_opcode() {
     for kind in CommandKind::ALL {
         let mut words = Vec::new();
         Command::blank(kind).encode(&phong(), &mut words).unwrap();
@@ -226,7 +226,7 @@ fn clocks(kind: CommandKind) -> u32 {
 }
 
 #[test]
-fn a_phong_triangle_pays_for_its_normals_and_the_objects_colour() {
+fn a_phong_triangle_needs_clocks_for_normals_and_object_colour() {
     // Three normals of 10 + 12 bits and a constant of 24 bits replace three colours of 12 + 8 bits.
     let expected = clocks(CommandKind::Triangle) - 3 * 20 + 3 * 22 + SET_UP_CLOCKS + 24;
     assert_eq!(clocks(CommandKind::PhongTriangle), expected);
@@ -240,7 +240,7 @@ const fn sphere_coverage_clocks(root: u32, z: u32) -> u32 {
 }
 
 #[test]
-fn a_sphere_pays_for_two_quadratics_a_root_and_three_products() {
+fn a_sphere_needs_clocks_for_two_quadratics_a_root_and_three_products() {
     // The terms are the product of 8 by 10 bits, the 12 + 10 bits of the linear part, and the limit.
     let component = 10 * 9 + 22 + 10 + 3 * SET_UP_CLOCKS;
     assert_eq!(clocks(CommandKind::Sphere), sphere_coverage_clocks(202, 24) + 3 * component);
@@ -258,7 +258,7 @@ fn quadratic_clocks(usage: ExpressionUse) -> u32 {
 }
 
 #[test]
-fn a_paraboloid_is_a_little_dearer_than_a_triangle() {
+fn a_paraboloid_takes_slightly_more_clocks_than_a_triangle() {
     // These are the steps in the documentation of `SphereCommand`: sign, comparison and store of a quadratic
     // expression, then three colours, or normals and a colour.
     let field = phong().plan().z;
@@ -286,12 +286,12 @@ fn shading_takes_95_microseconds() {
 }
 
 #[test]
-fn clearing_takes_two_constants() {
+fn the_clear_command_takes_the_time_of_two_constants() {
     assert_eq!(clocks(CommandKind::Clear), 2 + 24 + 24 + 3 * SET_UP_CLOCKS);
 }
 
 #[test]
-fn a_command_that_the_layout_cannot_hold_is_an_error_that_says_what_is_missing() {
+fn a_command_that_does_not_fit_the_layout_is_refused_with_the_missing_field() {
     let error = CommandKind::Shade.clocks(&Layout::slats()).unwrap_err();
     assert_eq!(error.to_string(), "Shade needs a normal, which layout Slats lacks");
     let error = CommandKind::Sphere.clocks(&Layout::slats_quarters()).unwrap_err();
@@ -299,7 +299,7 @@ fn a_command_that_the_layout_cannot_hold_is_an_error_that_says_what_is_missing()
 }
 
 #[test]
-fn a_label_on_another_program_is_no_command() {
+fn a_command_label_on_the_words_of_another_program_is_refused() {
     let mut words = Vec::new();
     Command::Triangle(TriangleCommand::default()).encode(&phong(), &mut words).unwrap();
     words[13] ^= 1;
@@ -308,7 +308,7 @@ fn a_label_on_another_program_is_no_command() {
 }
 
 #[test]
-fn a_label_of_no_command_is_named() {
+fn an_unknown_label_is_named() {
     let mut words = Vec::new();
     ArrayInstruction::EnableAll { label: 0xEE }.encode(&mut words);
     let error = Command::decode(&words, 0, &phong()).unwrap_err();
@@ -318,7 +318,7 @@ fn a_label_of_no_command_is_named() {
 /// Tests the scratch memory that a sphere needs: for the root, and for the wider of the depth and the root's square.
 /// The root has 12 bits, or 10 bits if the scratch memory has fewer than 36 bits.
 #[test]
-fn spheres_need_room_for_a_root_and_the_wider_of_depth_and_square() {
+fn a_sphere_needs_scratch_memory_for_its_root_and_the_wider_of_depth_and_squared_root() {
     for z in 8..=24 {
         for scratch in 20..=40 {
             let z_field = Operand::context(24, z);
@@ -335,7 +335,7 @@ fn spheres_need_room_for_a_root_and_the_wider_of_depth_and_square() {
 /// Tests the shifts of operands for a root of 10 bits instead of 12 bits. Operands are made for 12 bits. The square of
 /// a 10-bit root is a sixteenth (a shift by 4), and the root is a quarter (a shift by 2).
 #[test]
-fn shifts_of_a_sphere_make_up_for_a_shorter_root() {
+fn shifts_of_a_sphere_compensate_for_a_shorter_root() {
     let body = SphereBody { root_shift: 3, depth_shift: 5, ..SphereBody::default() };
     let sphere = Command::Sphere(SphereCommand { body, ..SphereCommand::default() });
     for (layout, root, depth) in [(phong(), 3, 5), (Layout::slats(), 3 + 4, 5 + 2)] {
@@ -360,7 +360,7 @@ fn shifts_of_a_sphere_make_up_for_a_shorter_root() {
 /// Tests the time to move the 16,384 pixels of a region, with 32 bits each, to the backing store. Each of 64 chips
 /// moves 4 bits per clock, so the region takes about 2,048 clocks.
 #[test]
-fn the_time_of_a_backing_block_is_that_of_four_bits_a_clock_and_chip() {
+fn storing_a_region_moves_four_bits_per_clock_and_chip() {
     let clocks = crate::RendererTiming::PAPERS.backing_block_clocks;
     assert!(clocks.abs_diff(16_384 * 32 / (64 * 4)) <= 20, "{clocks}");
 }

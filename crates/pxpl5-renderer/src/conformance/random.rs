@@ -9,24 +9,20 @@ use crate::layout::Layout;
 use pxpl5_sim::SplitMix64;
 use pxpl5_wire::{Linear, Quadratic, Word};
 
-/// A generator of random numbers and of random lists of words.
 #[derive(Clone, Copy, Debug)]
 pub struct Random(SplitMix64);
 
 impl Random {
-    /// Creates a generator. Each seed gives a different sequence of numbers.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self(SplitMix64::new(seed.wrapping_mul(0xd129_0d3b_3f4b_7ec5)))
     }
 
-    /// Returns the next 64 bits of the generator.
     #[allow(clippy::should_implement_trait)] // The iterator would never end, and every caller would have to unwrap.
     pub const fn next(&mut self) -> u64 {
         self.0.bits()
     }
 
-    /// Returns a number from 0 to `n` - 1.
     pub const fn below(&mut self, n: u64) -> u64 {
         self.0.below(n)
     }
@@ -36,13 +32,12 @@ impl Random {
         (self.next() as i32) >> (32 - bits)
     }
 
-    /// Returns a number from `low` to `high` - 1.
     pub(crate) const fn between(&mut self, low: i64, high: i64) -> i64 {
         low + self.below((high - low) as u64) as i64
     }
 
-    /// Returns a random list of words. The list mostly consists of commands of the layout, with some single
-    /// instructions and, rarely, invalid words.
+    /// Returns a random list of words: mostly commands of the layout, some single instructions and, rarely, invalid
+    /// words.
     pub fn list(&mut self, layout: &Layout) -> Vec<Word> {
         let mut words = Vec::new();
         let mut last = self.command(layout);
@@ -62,7 +57,6 @@ impl Random {
         words
     }
 
-    /// Appends one to six legal instructions with random operands.
     fn instructions(&mut self, words: &mut Vec<Word>) {
         let mut wanted = 1 + self.below(6);
         while wanted > 0 {
@@ -150,8 +144,8 @@ impl Random {
         std::array::from_fn(|_| self.between(-1500, 1500) as i16)
     }
 
-    /// Returns the edges of a triangle of random size around a random pixel. With a probability of 1/10, returns three
-    /// arbitrary expressions.
+    /// Returns the edge expressions of a triangle of random size around a random pixel. Returns three arbitrary
+    /// expressions with a probability of 1/10.
     fn edges(&mut self) -> [Linear; 3] {
         if self.below(10) == 0 {
             return std::array::from_fn(|_| self.wild());
@@ -174,14 +168,13 @@ impl Random {
         }
     }
 
-    /// Returns a random linear expression. The values of the expression at the pixels of a screen have about `bits`
-    /// bits.
+    /// Returns a random linear expression, whose values at the pixels of a screen have about `bits` bits.
     fn plane(&mut self, bits: u32) -> Linear {
         Linear { a: self.signed(bits - 9), b: self.signed(bits - 9), c: self.signed(bits) }
     }
 
-    /// Returns the silhouette expression of an ellipse around a random pixel. With a probability of 1/8, returns an
-    /// arbitrary quadratic expression.
+    /// Returns the silhouette expression of an ellipse around a random pixel. Returns an arbitrary quadratic expression
+    /// with a probability of 1/8.
     fn silhouette(&mut self) -> Quadratic {
         if self.below(8) == 0 {
             let [xx, xy, yy, x, y, one] = std::array::from_fn(|_| (self.next() as i64) >> 20);
@@ -205,8 +198,8 @@ impl Random {
     }
 }
 
-/// Returns a command that draws the same shape with other colours. The depths are the depths of `command`, so the depth
-/// test fails at every pixel that `command` has drawn.
+/// Returns a command that draws the same shape in other colours and with the same depths. The depth test then fails at
+/// every pixel that `command` has drawn.
 fn repainted(command: Command) -> Command {
     match command {
         Command::Triangle(mut t) => {
@@ -223,8 +216,8 @@ fn repainted(command: Command) -> Command {
     }
 }
 
-/// Returns the edge expression of the line from `p` to `q`. The coordinates of the two points are in sixteenths of a
-/// pixel. The inside is on the left of the edge. Coefficients are truncated to 32 bits.
+/// Returns the edge expression of the line from `p` to `q`, with the inside on the left. Points are in sixteenths of a
+/// pixel. Coefficients are truncated to 32 bits.
 fn edge(p: [i64; 2], q: [i64; 2]) -> Linear {
     let dx = q[0] - p[0];
     let dy = q[1] - p[1];
@@ -239,7 +232,7 @@ mod tests {
 
     /// Tests the frequencies of the commands in random lists.
     #[test]
-    fn commands_come_in_the_shares_that_are_meant() {
+    fn random_commands_occur_in_the_intended_shares() {
         let layout = Layout::rendering_control_phong();
         let mut random = Random::new(1);
         let mut counts = BTreeMap::new();
@@ -265,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_have_commands_that_come_again_instructions_and_now_and_then_a_wrong_word() {
+    fn random_lists_have_repeated_commands_instructions_and_wrong_words() {
         let layout = Layout::slats();
         let mut random = Random::new(2);
         let mut wrong = 0;
@@ -275,8 +268,8 @@ mod tests {
             wrong += u32::from(ArrayInstruction::decode_all(&words).is_err());
             commands += words.iter().filter(|word| **word >> 24 == 1).count();
         }
-        // At most one list in 16 is invalid, and a flipped bit often hits a number. A list has one to four commands.
-        // The layout of Slats lacks a third of the kinds of commands.
+        // At most one list in 16 is invalid, and a flipped bit often changes only a number. A list has one to four
+        // commands. The layout of Slats lacks a third of the kinds of commands.
         assert!((5..63).contains(&wrong), "{wrong}");
         assert!((1000..3000).contains(&commands), "{commands}");
         let lengths: BTreeSet<usize> = (0..300)
@@ -290,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_repainted_is_the_same_shape_in_another_colour() {
+    fn repainting_keeps_the_shape_and_changes_the_colour() {
         let layout = Layout::rendering_control_phong();
         let mut random = Random::new(3);
         for _ in 0..200 {
@@ -328,7 +321,7 @@ mod tests {
     /// Tests the share of random edges that form a triangle. The sum of a triangle's three edge expressions has no
     /// slope.
     #[test]
-    fn most_edges_are_those_of_a_triangle_of_any_size() {
+    fn most_random_edges_belong_to_triangles_of_any_size() {
         let mut random = Random::new(5);
         let mut sizes = BTreeMap::new();
         for _ in 0..4000 {
@@ -378,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_from_all_over_their_ranges() {
+    fn random_numbers_cover_their_ranges() {
         let layout = Layout::slats();
         let mut random = Random::new(7);
         let mut places = BTreeSet::new();

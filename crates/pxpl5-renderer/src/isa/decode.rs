@@ -6,32 +6,27 @@ use pxpl5_wire::{
     CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, Quadratic, RegionGrid, RegionId, Word,
 };
 
-/// An error for words that do not encode an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position} ({word:#010x}): {kind}")]
 pub struct DecodeError {
-    /// Index, in the list of words, of the first word of the instruction that cannot be decoded.
+    /// Index of the illegal instruction's first word in the list of words.
     pub position: usize,
-    /// The first word of the instruction that cannot be decoded.
+    /// First word of the illegal instruction.
     pub word: Word,
     pub kind: DecodeErrorKind,
 }
 
-/// The reason why words do not encode an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeErrorKind {
-    /// The opcode is not defined.
     #[error("no instruction has this opcode")]
     UnknownOpcode,
-    /// The list ends inside the instruction.
     #[error("the instruction needs {expected} words, the list has {found} left")]
     Truncated {
         expected: usize,
-        /// Number of words from the instruction's first word to the end of the list.
+        /// Number of words from the start of the instruction to the end of the list.
         found: usize,
     },
-    /// Bits that must be zero are set.
     #[error("bits are set that must be zero")]
     ReservedBits,
     /// A bit field of pixel memory extends beyond the end of pixel memory.
@@ -40,24 +35,22 @@ pub enum DecodeErrorKind {
     /// A bit field of pixel memory has a width that this instruction does not allow.
     #[error("the field at address {} has {} bits, expected {expected}", .field.address, .field.width)]
     Width {
-        /// The bit field as encoded in the instruction.
         field: Operand,
-        /// Required width of the bit field in bits. For expressions and quotients, this number is the largest allowed
-        /// width.
+        /// Required width of the bit field in bits. For expressions and quotients, this number is the largest width.
         expected: u32,
     },
-    /// The signedness of an operand is not allowed. Some instructions need unsigned operands. Comparisons, minima and
-    /// maxima need two operands of the same signedness.
+    /// An operand has the wrong signedness. Some instructions need unsigned operands. Comparisons, minima and maxima
+    /// need two operands of the same signedness.
     #[error("signedness of the operands does not fit")]
     Signedness,
     /// The number of a block of the backing store is 128 or more.
     #[error("backing store block {0}, expected less than {max}", max = BACKING_BLOCKS)]
     UnknownBlock(u8),
-    /// The lines, the region grid or the region in an output instruction are invalid.
+    /// The lines, the region or the grid of regions of an output instruction are invalid.
     #[error("the copy's target is no region of a frame")]
     BadTarget,
-    /// The words are valid instructions and begin with the label of a kind of command, but differ from the program of
-    /// this command.
+    /// The first instruction has the label of a command, but the instructions differ from this command's program in the
+    /// layout.
     #[error("labelled as command {0}, but not its program in this layout")]
     NotTheCommand(u8),
 }
@@ -66,7 +59,7 @@ impl ArrayInstruction {
     /// Decodes the instruction at word `position`. Returns the instruction and its length in words.
     ///
     /// # Errors
-    /// Returns a [`DecodeError`] with the position and the reason. The function never panics.
+    /// Returns a [`DecodeError`] if the words are not an instruction. The function never panics.
     pub fn decode(words: &[Word], position: usize) -> Result<(Self, usize), DecodeError> {
         let rest = words.get(position..).unwrap_or(&[]);
         let word = rest.first().copied().unwrap_or(0);
@@ -89,7 +82,7 @@ impl ArrayInstruction {
     }
 }
 
-/// The parts of an instruction's first word, and the words that follow the first word.
+/// First word of an instruction, split into its bit fields, and the words after the first word.
 struct EncodedInstruction<'a> {
     opcode: u8,
     modifier: u8,
@@ -109,12 +102,12 @@ impl EncodedInstruction<'_> {
         checked_field(self.operand)
     }
 
-    /// Returns the operand that the low 16 bits of the first word encode. This operand must be one bit wide.
+    /// Returns the operand in the low 16 bits of the first word, which must be one bit wide.
     fn bit(&self) -> Result<Operand, DecodeErrorKind> {
         width(self.field()?, 1)
     }
 
-    /// Returns the operand that the upper half of the second word encodes. The lower half must be zero.
+    /// Returns the operand in the upper half of the second word. The lower half must be zero.
     fn source(&self) -> Result<Operand, DecodeErrorKind> {
         let [word] = self.tail()?;
         must_be_zero(word & 0xffff)?;
@@ -178,7 +171,7 @@ fn decode(words: &[Word]) -> Result<(ArrayInstruction, usize), DecodeErrorKind> 
 }
 
 fn control(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
-    // Only labels and context bases use the modifier, and only fields use the operand.
+    // Only EnableAll and Select use the modifier. Only EnableLoad, EnableStore and EnableAnd use the operand.
     if matches!(encoded.opcode, opcode::ENABLE_ALL | opcode::SELECT) {
         must_be_zero(encoded.operand)?;
     } else {
@@ -274,7 +267,7 @@ fn quadratic_of(words: [Word; 12]) -> Quadratic {
     }
 }
 
-/// Returns coefficient `i`, which has 64 bits in two words. The low word comes first.
+/// Returns coefficient `i` of 64 bits, from two words. The low word comes first.
 fn long_coefficient(words: &[Word; 12], i: usize) -> i64 {
     (u64::from(words[2 * i + 1]) << 32 | u64::from(words[2 * i])) as i64
 }

@@ -28,8 +28,7 @@ pub(crate) mod opcode {
     pub(crate) const OUTPUT: u8 = 0x70;
 }
 
-/// Bit 7 of the modifier. If this bit is set, the evaluator reuses the coefficients of the last expression of the same
-/// kind.
+/// Bit 7 of the modifier. If it is set, the evaluator reuses the coefficients of the last expression of the same kind.
 pub(super) const AGAIN: u8 = 0x80;
 
 pub(crate) const fn head(opcode: u8, modifier: u8, operand: u32) -> Word {
@@ -41,7 +40,6 @@ const fn pair(a: Operand, b: Operand) -> Word {
 }
 
 impl ArrayInstruction {
-    /// Appends the instruction's words to `out`.
     pub fn encode(&self, out: &mut Vec<Word>) {
         // Operations and tests have consecutive opcodes, in the order of their enums.
         match *self {

@@ -3,15 +3,15 @@
 /// A bit field of pixel memory, as encoded in an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Operand {
-    /// Address of the bit field's least significant bit. The address is absolute, or relative to the first bit of the
-    /// selected context (the part of pixel memory that holds one region).
+    /// Address of the least significant bit. It is an absolute address, or counts from the first bit of the selected
+    /// context (the part of pixel memory that holds one region).
     pub address: u8,
     /// Width in bits, 1 to 64.
     pub width: u8,
-    /// True if the address is relative to the first bit of the selected context (the part of pixel memory that holds
-    /// one region).
+    /// True if the address counts from the first bit of the selected context (the part of pixel memory that holds one
+    /// region).
     pub relative: bool,
-    /// True if the bit field holds a two's complement number. Such a bit field is sign-extended.
+    /// True if the bit field holds a two's complement number, which is then sign-extended.
     pub signed: bool,
 }
 
@@ -19,8 +19,8 @@ const SIGNED: u32 = 1 << 15;
 const RELATIVE: u32 = 1 << 14;
 
 impl Operand {
-    /// Returns an unsigned bit field whose address is relative to the selected context (the part of pixel memory that
-    /// holds one region).
+    /// Returns an unsigned bit field whose address counts from the first bit of the selected context (the part of pixel
+    /// memory that holds one region).
     #[must_use]
     pub const fn context(address: u8, width: u8) -> Self {
         Self { address, width, relative: true, signed: false }
@@ -38,21 +38,19 @@ impl Operand {
         Self { signed: true, ..self }
     }
 
-    /// Returns the part of this bit field that begins at bit `low` of the bit field and has `width` bits. The part is
-    /// signed if this bit field is signed.
+    /// Returns the `width` bits of this bit field from its bit `low` on. The result is signed if this bit field is
+    /// signed.
     #[must_use]
     pub const fn part(self, low: u8, width: u8) -> Self {
         Self { address: self.address + low, width, ..self }
     }
 
-    /// Returns the 16-bit encoding of the operand in an instruction word.
     #[must_use]
     pub const fn to_bits(self) -> u32 {
         let flags = (self.signed as u32) << 15 | (self.relative as u32) << 14;
         flags | ((self.width as u32 - 1) & 63) << 8 | self.address as u32
     }
 
-    /// Decodes an operand from the low 16 bits of an instruction word.
     #[must_use]
     pub const fn from_bits(bits: u32) -> Self {
         Self {

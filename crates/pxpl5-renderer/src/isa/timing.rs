@@ -1,4 +1,4 @@
-//! Clocks of instructions. The array is SIMD, so no time depends on data.
+//! Execution times of instructions, in clocks. The array is SIMD, so no time depends on data.
 //!
 //! | quantity | unit | value | provenance |
 //! |---|---|---|---|
@@ -6,12 +6,12 @@
 //! | [`SET_UP_CLOCKS`] | clocks an instruction | 4 | derived, see the constant |
 //! | [`CONTROL_CLOCKS`] | clocks | 2 | assumed (1 to 4) |
 //!
-//! The backing store works in parallel with the array. `RendererTiming::backing_block_clocks` is the time
-//! of a transfer.
+//! The backing store works in parallel with the array. `RendererTiming::backing_block_clocks` is the time of a
+//! transfer.
 //!
-//! One bit of one bit field takes one clock. Assumed: each pixel has one full adder, whose operands and result move in
-//! the same clock. An expression arrives with its least significant bit first. A bit field of `w` bits therefore takes
-//! `s + w` clocks if the lowest `s` bits of the expression are left out.
+//! Each bit of a bit field takes one clock. Assumed: each pixel has one full adder, which reads its operands and writes
+//! its result in the same clock. An expression arrives with its least significant bit first. A bit field of `w` bits
+//! therefore takes `s + w` clocks if the lowest `s` bits of the expression are left out.
 
 use super::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, LINEAR_BITS, QUADRATIC_BITS};
 
@@ -20,26 +20,26 @@ pub const CLOCK_HZ: u64 = 40_000_000;
 
 /// Number of clocks to fetch an instruction and to fill the pipeline of the expression evaluator.
 ///
-/// Derived: 4 is the only whole number for which both kinds of triangle take the times that the published steps allow.
-/// These times are 256 to 267 clocks (Gouraud) and 262 to 292 clocks (Phong).
+/// Derived: 4 is the only whole number for which both kinds of triangle take times in the ranges of the published
+/// steps. These ranges are 256 to 267 clocks (Gouraud) and 262 to 292 clocks (Phong).
 ///
-/// The formats on the wire need 222 clocks in 9 instructions: 2 (enable), 3 x 32 (edges), 32 (compare Z), 32 (store Z)
-/// and 3 x 20 (colour). With normals, the formats need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) = 252 clocks
-/// in 10 instructions. For n clocks of set-up, this gives 222 + 9 n >= 256 and 252 + 10 n <= 292.
+/// The bits of the number formats need 222 clocks in 9 instructions: 2 (enable), 3 x 32 (edges), 32 (compare Z), 32
+/// (store Z) and 3 x 20 (colour). With normals, the formats need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) =
+/// 252 clocks in 10 instructions. For n clocks of set-up, this gives 222 + 9 n >= 256 and 252 + 10 n <= 292.
 ///
 /// The published rate of 150,000 triangles per second means 267 clocks for each triangle (TR94, which does not state
-/// the kind of shading). This number lies between the results 258 (Gouraud) and 292 (Phong). The range is 2 (Phong
-/// takes 272 clocks) to 5 (Gouraud takes 267 clocks).
+/// the kind of shading). This number lies between 258 (Gouraud) and 292 (Phong). Plausible values of this constant are
+/// 2 (Phong takes 272 clocks) to 5 (Gouraud takes 267 clocks).
 pub const SET_UP_CLOCKS: u32 = 4;
 
-/// Number of clocks of an instruction that moves no bit field. Assumed: 2, like "enable all" in the published steps.
-/// The range is 1 to 4.
+/// Number of clocks of an instruction that moves no bit field. The value 2 is assumed, with a range of 1 to 4. It
+/// equals the time of the instruction "enable all" in the published steps of a triangle.
 pub const CONTROL_CLOCKS: u32 = 2;
 
 /// Returns the number of clocks of a square root with a result of `n` bits.
 ///
-/// Each digit takes a trial comparison and a subtraction over the bits that the remainder can occupy. The remainder has
-/// 2 bits for the first digit and `j + 3` for digit `j`.
+/// Each binary digit takes a trial comparison and a subtraction over the bits that the remainder can occupy. The
+/// remainder has 2 bits for the first digit and `j + 3` for digit `j`.
 #[must_use]
 pub const fn square_root_clocks(n: u32) -> u32 {
     // The sum over all digits is 2 (2 + sum of j + 3 for j = 1 .. n - 1).
@@ -61,20 +61,20 @@ pub fn multiply_clocks(w: u32, a: u32, b: u32) -> u32 {
 
 /// Returns the number of clocks of a division with a quotient of `w` bits.
 ///
-/// Each digit takes a comparison over the bits of the divisor and a subtraction over the bits of the remainder.
+/// Each binary digit takes a comparison over the bits of the divisor and a subtraction over the bits of the remainder.
 #[must_use]
 pub fn divide_clocks(w: u32, a: u32, b: u32) -> u32 {
     (0..w).map(|j| (a - j).max(b) + (a - j)).sum()
 }
 
 impl ArrayInstruction {
-    /// Returns the number of clocks during which the array and its controller are busy.
+    /// Returns the number of clocks for which the instruction occupies the array and its controller.
     #[must_use]
     pub fn clocks(&self) -> u32 {
         SET_UP_CLOCKS + self.bit_clocks()
     }
 
-    /// Returns the number of clocks in which bits move: all clocks except [`SET_UP_CLOCKS`].
+    /// Returns the number of clocks for which bits move: all clocks except [`SET_UP_CLOCKS`].
     #[must_use]
     pub fn bit_clocks(&self) -> u32 {
         match *self {
@@ -126,14 +126,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_twelve_bit_root_takes_the_sum_of_its_digits() {
+    fn a_root_of_twelve_bits_takes_the_sum_of_the_clocks_of_its_digits() {
         let digits: u32 = (0..12).map(|j| if j == 0 { 2 } else { j + 3 }).sum();
         assert_eq!(square_root_clocks(12), 2 * digits);
         assert_eq!(square_root_clocks(1), 4);
     }
 
     #[test]
-    fn a_full_product_takes_one_addition_a_bit() {
+    fn a_full_product_takes_one_addition_per_bit() {
         assert_eq!(multiply_clocks(24, 12, 12), 12 * 13);
         assert_eq!(multiply_clocks(8, 12, 3), 8 + 7 + 6);
         assert_eq!(multiply_clocks(18, 8, 9), 9 * 9 + 1);

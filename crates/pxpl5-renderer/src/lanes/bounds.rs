@@ -1,16 +1,15 @@
-//! Bounds of the pixels that a triangle can touch: a bounding box, and the first and last column of each row if the box
-//! is wide.
+//! Bounds of the pixels that a triangle can touch: a bounding box and, for wide boxes, the first and last column of
+//! each row.
 //!
 //! Floating-point numbers only select the pixels to test, with a margin for rounding. Integer arithmetic on the edges
 //! decides whether a pixel is inside.
 
 use pxpl5_wire::{LANES, Linear, LinearLanes};
 
-/// Number of columns of the array. The array has the same number of rows.
 const WIDTH: i32 = 128;
 const LAST: i64 = 127;
-/// Margin in pixels around the computed bounds. The margin is greater than the rounding error of the bounds, but adds
-/// few pixels.
+/// Number of pixels by which the computed bounds are widened. It is greater than the rounding error, but adds few
+/// pixels.
 const MARGIN: f64 = 1e-3;
 
 /// A rectangle of pixels: columns `left .. right` of rows `top .. bottom`.
@@ -28,13 +27,13 @@ const WHOLE: Area = Area { left: 0, right: 128, top: 0, bottom: 128 };
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     pub(super) area: Area,
-    /// Limits on the columns of each row, one for each edge. `None` if the triangle is narrow, because the bounding box
-    /// is then sufficient.
+    /// Limits of the columns in each row, one for each edge. `None` for a narrow triangle, for which the bounding box
+    /// suffices.
     limits: Option<[RowLimit; 3]>,
 }
 
-/// Limit that one edge sets on the columns x of row y. The limit is `x >= (b y + c) * scale` if `from_left` is true,
-/// otherwise `x <= (b y + c) * scale`. All numbers except `scale` are exact.
+/// A limit of the columns x in row y, set by one edge. It is `x >= (b y + c) * scale` if `from_left` is true, otherwise
+/// `x <= (b y + c) * scale`. All numbers except `scale` are exact.
 #[derive(Clone, Copy, Debug)]
 struct RowLimit {
     b: f64,
@@ -51,7 +50,7 @@ pub(super) struct Spans {
 }
 
 impl Bounds {
-    /// Returns the columns that the triangle can cover in each of [`LANES`] consecutive rows, from row `top` on.
+    /// Returns the columns that the triangle can cover in each of [`LANES`] consecutive rows, beginning with row `top`.
     #[inline(always)]
     pub(super) fn spans(&self, top: usize) -> Spans {
         let mut spans = Spans { left: [self.area.left as i32; LANES], right: [self.area.right as i32; LANES] };
@@ -74,7 +73,7 @@ impl Bounds {
                 }
             }
         }
-        // Round to whole pixels inside the limits. The margin is already included in the limits.
+        // Round to whole pixels inside the limits, which already include the margin.
         for i in 0..LANES {
             spans.left[i] = small(first[i].ceil().min(f64::from(WIDTH)));
             spans.right[i] = small((last[i] + 1.0).floor().max(0.0));
@@ -87,7 +86,7 @@ impl RowLimit {
     #[inline(always)]
     fn from_edge(e: &Linear) -> Self {
         let a = f64::from(e.a);
-        // A horizontal edge limits no row, because the bounding box already has this limit.
+        // A horizontal edge limits no columns, and the bounding box already limits the rows.
         let scale = if e.a == 0 { 0.0 } else { -1.0 / a };
         Self { b: f64::from(e.b), c: f64::from(e.c), scale, from_left: e.a >= 0 }
     }
@@ -95,7 +94,6 @@ impl RowLimit {
 
 pub(super) type PerTriangle<T> = [T; LANES];
 
-/// The edges of all triangles of a batch, relative to the array's upper left pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Edges(pub(super) [LinearLanes; 3]);
 
@@ -109,8 +107,8 @@ impl Edges {
         }
     }
 
-    /// Moves the origin of all edge expressions from the picture's upper left pixel to the array's upper left pixel.
-    /// `left` and `top` are the picture coordinates of the array's upper left pixel.
+    /// Converts all edge expressions from coordinates of the picture to coordinates of the array. The origin of each is
+    /// its upper left pixel. `left` and `top` are the place of the array in the picture.
     #[inline(always)]
     pub(super) fn localise(&mut self, [left, top]: [i32; 2]) {
         for e in &mut self.0 {
@@ -127,23 +125,21 @@ impl Edges {
     }
 }
 
-/// Bounding boxes of the triangles of a batch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boxes {
-    /// First column (0 to 128) and last column (-1 to 127) of each triangle, limited to the array. The first column can
-    /// be greater than the last column if the triangle covers no pixel.
+    /// First column (0 to 128) and last column (-1 to 127) of each triangle in the array. The first column is greater
+    /// than the last column if the triangle covers no column.
     pub(super) x: [PerTriangle<i32>; 2],
     pub(super) y: [PerTriangle<i32>; 2],
-    /// True if the edges enclose a finite triangle, which means that the normals of the edges turn in the same
-    /// direction at all corners.
+    /// True if the edges enclose a finite triangle. The determinants of all pairs of edges then have the same sign.
     pub(super) closed: PerTriangle<bool>,
-    /// True if the values of all edge expressions in the array fit in 32 bits. In this case, no value wraps around, and
-    /// every edge is a straight line.
+    /// True if the values of all edge expressions in the array fit in 32 bits. No value then wraps around, and every
+    /// edge is a straight line.
     straight: PerTriangle<bool>,
 }
 
-/// A distance from the array's upper left pixel, in pixels. The fast computation of bounds requires that edge values
-/// within this distance fit in 32 bits.
+/// Distance from the array's upper left pixel, in pixels. The fast computation of bounds requires that the values of
+/// edge expressions within this distance fit in 32 bits.
 ///
 /// Each coefficient then has at most 22 bits, and the constant has 31 bits. The products of these numbers are therefore
 /// exact in the 53 bits of an `f64`.
@@ -156,7 +152,7 @@ impl Boxes {
         let a = [doubles(&p.a), doubles(&q.a), doubles(&r.a)];
         let b = [doubles(&p.b), doubles(&q.b), doubles(&r.b)];
         let c = [doubles(&p.c), doubles(&q.c), doubles(&r.c)];
-        // Truth values are numbers until the end, because vectors of numbers are fastest.
+        // Use numbers for truth values until the end, because vectors of numbers are fastest.
         let mut reach = [0.0_f64; LANES];
         let mut least = [f64::INFINITY; LANES];
         let mut greatest = [f64::NEG_INFINITY; LANES];
@@ -166,8 +162,8 @@ impl Boxes {
             let f = (e + 1) % 3;
             for i in 0..LANES {
                 reach[i] = reach[i].max(REACH * (a[e][i].abs() + b[e][i].abs()) + c[e][i].abs());
-                // The corner is the point where edges e and f are zero. The coordinates of the corner are the products
-                // below, divided by the determinant.
+                // A corner is the point where edges e and f are zero. Its coordinates are the products below, divided
+                // by the determinant.
                 let determinant = a[e][i] * b[f][i] - a[f][i] * b[e][i];
                 least[i] = least[i].min(determinant);
                 greatest[i] = greatest[i].max(determinant);
@@ -193,8 +189,8 @@ impl Boxes {
         Self { x: pixels(&low[0], &high[0]), y: pixels(&low[1], &high[1]), closed, straight }
     }
 
-    /// Returns the bounds of triangle `i`, or `None` if the triangle can cover no pixel of the array. `edges` must be
-    /// the edges of this triangle.
+    /// Returns the bounds of triangle `i`, whose edge expressions are `edges`. Returns `None` if the triangle can cover
+    /// no pixel of the array.
     #[inline(always)]
     pub(super) fn bounds(&self, i: usize, edges: &[Linear; 3]) -> Option<Bounds> {
         let area = if self.closed[i] {
@@ -229,8 +225,8 @@ fn doubles(v: &PerTriangle<i32>) -> PerTriangle<f64> {
     out
 }
 
-/// Returns the first and the last pixel in the interval from `low` to `high`, for each triangle. The interval is first
-/// widened by [`MARGIN`] at both ends.
+/// Returns, for each triangle, the first and the last pixel in the interval from `low` to `high`, widened by [`MARGIN`]
+/// at both ends.
 #[inline(always)]
 fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>; 2] {
     const BEYOND: f64 = (LAST + 1) as f64;
@@ -242,18 +238,17 @@ fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>;
     out
 }
 
-/// Converts a number of small magnitude (below 2^31) to an integer. NaN gives an arbitrary result.
+/// Converts a number between -2^31 and 2^31 to an integer. The result for NaN is arbitrary.
 ///
 /// A cast with `as` would not compile to a single vector instruction.
 #[inline(always)]
 fn small(value: f64) -> i32 {
-    /// The number 1.5 * 2^52. After the addition of this number to a small number, the low bits of the sum hold the
-    /// small number as an integer.
+    /// The number 1.5 * 2^52. The sum of this number and a small number has the small number, as an integer, in its low
+    /// bits.
     const UNIT: f64 = 6_755_399_441_055_744.0;
     (value + UNIT).to_bits() as i32
 }
 
-/// Returns the largest value of an expression over the pixels of the array.
 #[inline(always)]
 fn largest(e: &Linear) -> i64 {
     let [a, b, c] = [e.a, e.b, e.c].map(i64::from);
@@ -317,13 +312,13 @@ mod tests {
     }
 
     #[test]
-    fn no_pixel_inside_all_edges_is_outside_of_the_bounds() {
+    fn every_pixel_inside_all_edges_is_within_the_bounds() {
         let inside = pixels_lie_within(2000, random_edge);
         assert!(inside > 100_000, "{inside}");
     }
 
     #[test]
-    fn edges_that_wrap_leave_no_pixel_out() {
+    fn edges_that_overflow_exclude_no_pixel() {
         let inside = pixels_lie_within(2000, any_edge);
         assert!(inside > 100_000, "{inside}");
     }
@@ -348,7 +343,7 @@ mod tests {
     /// Tests that the bounds of a triangle contain no pixel outside the triangle. The bounds normally include a small
     /// margin. The corners are integers, so the margin contains no pixel.
     #[test]
-    fn bounds_end_where_the_triangle_does() {
+    fn the_bounds_of_a_triangle_contain_no_pixel_outside_the_triangle() {
         let mut random = Random::new(6);
         let mut rows_of_their_own = 0;
         for (corners, edges) in (0..3000).filter_map(|_| triangle(&mut random)) {
@@ -381,7 +376,7 @@ mod tests {
 
     #[test]
     fn a_small_triangle_has_the_box_of_its_corners() {
-        // (10, 20), (14, 20), (10, 26).
+        // The corners of the triangle are (10, 20), (14, 20) and (10, 26).
         let edges =
             [Linear { a: 1, b: 0, c: -10 }, Linear { a: 0, b: 1, c: -20 }, Linear { a: -6, b: -4, c: 6 * 14 + 4 * 20 }];
         let area = bounds(&edges).unwrap().area;

@@ -12,8 +12,8 @@ use crate::layout::Layout;
 #[repr(align(64))]
 pub(super) struct Values(pub(super) [u32; PIXELS]);
 
-/// A column: an array with one word for each pixel. The word of a pixel holds the bits `first .. first + width` of the
-/// pixel's memory.
+/// A column: an array with one word for each pixel. The word holds the bits `first .. first + width` of the pixel's
+/// memory.
 #[derive(Clone, Debug)]
 struct FieldColumn {
     first: usize,
@@ -30,8 +30,8 @@ pub(super) struct PixelColumns {
     column_of: [u8; MEMORY_BITS as usize],
 }
 
-/// The part of a bit field that lies in one column (array of words). The part begins at bit `low` of the column and at
-/// bit `at` of the bit field, and has `width` bits.
+/// The part of a bit field that one column (array of words) holds. The part has `width` bits. It begins at bit `low` of
+/// the column and at bit `at` of the bit field.
 #[derive(Clone, Copy, Debug)]
 struct FieldPiece {
     column: usize,
@@ -93,8 +93,8 @@ impl PixelColumns {
         }
     }
 
-    /// Reads a bit field of all pixels into `out`. Signed values are sign-extended to 64 bits, and unsigned values are
-    /// zero-extended.
+    /// Reads a bit field of all pixels into `out`. Values are sign-extended or zero-extended to 64 bits, as the bit
+    /// field requires.
     pub(super) fn gather(&self, field: FieldBits, out: &mut [u64]) {
         out.fill(0);
         for piece in self.pieces(field) {
@@ -110,7 +110,7 @@ impl PixelColumns {
         }
     }
 
-    /// Stores the low bits of `values` in the pixels whose `mask` is 255. For the other pixels, the mask must be 0.
+    /// Stores the low bits of `values` in the pixels whose `mask` is 255. In all other pixels, the mask must be 0.
     pub(super) fn scatter(&mut self, field: FieldBits, values: &[u64], mask: &[u8]) {
         for piece in self.pieces(field) {
             let bits = (ones(piece.width) << piece.low) as u32;
@@ -138,7 +138,7 @@ impl PixelColumns {
     }
 }
 
-/// Returns bit `low` of 64 pixels as one word. The bit of the first pixel is the lowest bit of the result.
+/// Returns bit `low` of 64 pixels as one word. The bit of the first pixel is the lowest bit of the word.
 fn plane_word(pixels: &[u32], low: usize) -> u64 {
     pixels.iter().enumerate().fold(0, |word, (x, value)| word | u64::from(value >> low & 1) << x)
 }
@@ -152,7 +152,7 @@ fn column(first: usize, end: usize) -> FieldColumn {
 }
 
 /// Returns the first bit of each column (array of words). A column begins at every bit at which a bit field of the
-/// layout begins or ends. Longer columns are cut into columns of at most 32 bits.
+/// layout begins or ends. Columns of more than 32 bits are cut.
 fn cuts(layout: &Layout) -> Vec<usize> {
     let mut cuts = vec![0, MEMORY_BITS as usize];
     // First and last bits of the layout's fields.
@@ -176,7 +176,7 @@ fn cuts(layout: &Layout) -> Vec<usize> {
     split_wide(&cuts)
 }
 
-/// Returns the absolute addresses of the temporary bit fields that the programs of commands use.
+/// Returns the temporary bit fields that the programs of commands use, with absolute addresses.
 fn temporaries(layout: &Layout) -> Vec<Operand> {
     let sphere = SphereScratch::in_layout(layout).map(|s| vec![s.z, s.root]);
     let shade = ShadeFields::in_layout(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);
@@ -192,7 +192,8 @@ fn split_wide(cuts: &[usize]) -> Vec<usize> {
     out
 }
 
-/// Indices of the columns (arrays of words) that hold the bit fields of one context, which is a region in pixel memory.
+/// Indices of the columns (arrays of words) that hold the bit fields of one context, the part of pixel memory for one
+/// region.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContextColumns {
     pub(super) base: u8,
@@ -206,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_cover_every_bit_once_in_every_layout() {
+    fn the_columns_of_pixel_memory_cover_every_bit_once_in_every_layout() {
         let layouts = [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()];
         for layout in layouts {
             let columns = PixelColumns::new(&layout).columns;
@@ -221,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_across_columns_comes_back() {
+    fn a_bit_field_across_columns_is_read_back() {
         let mut columns = PixelColumns::new(&Layout::slats());
         let field = FieldBits { first: 20, width: 30, signed: true };
         let values: Vec<u64> = (0..PIXELS as u64).map(|i| i.wrapping_mul(0x9e37_79b9_7f4a_7c15)).collect();

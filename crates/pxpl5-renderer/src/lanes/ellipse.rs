@@ -11,11 +11,12 @@ const MARGIN: f64 = 1e-3;
 /// Upper limit of the rounding error of a discriminant `b^2 - 4 a c`, as a fraction of its two terms.
 const ROUNDING: f64 = 1e-9;
 
-/// The pixels at which a quadratic expression can be positive. The origin of the expression is the array's upper left
-/// pixel.
+/// The pixels at which a quadratic expression can be positive. The expression has the upper left pixel of the array as
+/// origin of coordinates.
 pub(super) struct Ellipse {
     rows: Range<usize>,
-    /// The quadratic expression that limits the columns of each row. `None` if all columns of every row must be tested.
+    /// The quadratic expression, which limits the columns of each row. `None` if all columns of all rows must be
+    /// tested.
     quadratic: Option<Quadratic>,
 }
 
@@ -25,8 +26,8 @@ impl Ellipse {
             return Self { rows: 0..SIZE, quadratic: None };
         }
         let [xx, xy, yy, x, y, one] = [q.xx, q.xy, q.yy, q.x, q.y, q.one].map(|c| c as f64);
-        // A row has pixels inside if the discriminant of the quadratic expression in x is positive. The discriminant is
-        // a quadratic function of y.
+        // A row contains pixels inside if the discriminant of the expression, as a polynomial in x, is positive. The
+        // discriminant is a quadratic function of y.
         let rows = positive(xy * xy - 4.0 * xx * yy, 2.0 * xy * x - 4.0 * xx * y, x * x - 4.0 * xx * one);
         Self { rows, quadratic: Some(*q) }
     }
@@ -35,7 +36,6 @@ impl Ellipse {
         self.rows.clone()
     }
 
-    /// Returns the columns of a row at which the quadratic expression can be positive.
     #[inline(always)]
     pub(super) fn columns(&self, row: usize) -> Range<usize> {
         let Some(q) = &self.quadratic else { return 0..SIZE };
@@ -44,8 +44,8 @@ impl Ellipse {
     }
 }
 
-/// Reduces the expression `q` to a polynomial in x for row `row`. Returns the coefficient of x and the constant. The
-/// coefficient of x squared is the same in all rows.
+/// Returns the coefficient of x and the constant of `q` as a polynomial in x along row `row`. The coefficient of x
+/// squared is the same in all rows.
 #[inline(always)]
 pub(super) const fn along_row(q: &Quadratic, row: usize) -> (i64, i64) {
     let y = row as i64;
@@ -60,8 +60,8 @@ fn stays_in_48_bits(q: &Quadratic) -> bool {
     (xx + xy + yy) * last * last + (x + y) * last + one < (1_u64 << 46) as f64
 }
 
-/// Returns the indices t of the array's columns at which `a t^2 + b t + c` can be positive. These are the integers
-/// between the zeros, with a margin. Unless `a < 0`, the function returns all columns of the array.
+/// Returns the columns t of the array at which `a t^2 + b t + c` can be positive. If `a < 0`, these are the columns
+/// between the zeros, with a margin. Otherwise, these are all columns.
 #[inline(always)]
 fn positive(a: f64, b: f64, c: f64) -> Range<usize> {
     if a >= 0.0 {
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn no_pixel_inside_is_outside_of_the_bounds() {
+    fn every_pixel_inside_an_ellipse_is_within_the_bounds() {
         let mut random = Random::new(9);
         let mut inside = 0;
         for _ in 0..1000 {
@@ -121,7 +121,7 @@ mod tests {
 
     /// Tests ellipses with such large coefficients that values exceed the 48 bits of the array and wrap around.
     #[test]
-    fn quadratics_that_wrap_leave_no_pixel_out() {
+    fn quadratics_that_overflow_exclude_no_pixel() {
         let mut random = Random::new(12);
         let mut inside = 0;
         for _ in 0..2000 {
@@ -146,7 +146,7 @@ mod tests {
     /// Tests circles with radii of 0 to 4 pixels and coefficients so large that their squares are rounded. At the first
     /// and last row, the test subtracts nearly equal squares, where rounding has the greatest effect.
     #[test]
-    fn small_circles_reach_their_last_row_however_numbers_round() {
+    fn small_circles_reach_their_last_row_despite_rounding() {
         let mut random = Random::new(13);
         for _ in 0..1000 {
             let [x, y] = [(); 2].map(|()| random.between(10, 118));
@@ -165,7 +165,7 @@ mod tests {
     /// Tests that the columns of an ellipse contain no pixel outside the ellipse. The coefficients are small integers,
     /// so the margin around the ellipse contains no pixel.
     #[test]
-    fn columns_end_where_the_ellipse_does() {
+    fn the_columns_of_an_ellipse_contain_no_pixel_outside_the_ellipse() {
         let mut random = Random::new(10);
         for _ in 0..1000 {
             let [x, y] = [(); 2].map(|()| random.between(-40, 170));
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_end_where_the_circle_does() {
+    fn the_bounds_of_rows_end_at_the_circle() {
         let mut random = Random::new(11);
         for _ in 0..1000 {
             let [x, y] = [(); 2].map(|()| random.between(-40, 170));

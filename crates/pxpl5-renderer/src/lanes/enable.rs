@@ -5,14 +5,13 @@ use std::ops::Range;
 
 const WIDTH: usize = 128;
 
-/// One byte for each pixel: 255 if the pixel is enabled, else 0.
+/// One byte for each pixel: 255 if the pixel is enabled, otherwise 0.
 ///
-/// The register also records the rows that can contain enabled pixels. Clearing the register after a small primitive is
-/// therefore fast.
+/// The register also records the rows that can contain enabled pixels, because then only these rows must be cleared
+/// after a small primitive.
 #[derive(Clone, Debug)]
 pub(super) struct Enable {
     pixels: Box<[u8; PIXELS]>,
-    /// Rows that can contain enabled pixels.
     used: Range<usize>,
 }
 
@@ -25,22 +24,21 @@ impl Enable {
         &self.pixels
     }
 
-    /// Returns the Enable values of all pixels for modification.
     pub(super) fn pixels_mut(&mut self) -> &mut [u8; PIXELS] {
         self.used = 0..WIDTH;
         &mut self.pixels
     }
 
-    /// Disables all pixels, and returns the Enable values of all pixels for modification. The caller may change only
-    /// the rows `rows`.
+    /// Disables all pixels, and returns the Enable bytes of all pixels for modification. The caller may change only the
+    /// rows `rows`.
     pub(super) fn emptied(&mut self, rows: Range<usize>) -> &mut [u8; PIXELS] {
         self.pixels[WIDTH * self.used.start..WIDTH * self.used.end].fill(0);
         self.used = rows;
         &mut self.pixels
     }
 
-    /// Returns the Enable values of all pixels for modification. The caller may change only pixels in the rows that
-    /// were passed to the last call of [`Self::emptied`].
+    /// Returns the Enable bytes of all pixels for modification. The caller may change only the rows that it passed to
+    /// the last call of [`Self::emptied`].
     #[inline(always)]
     pub(super) fn rows_in_use(&mut self) -> &mut [u8; PIXELS] {
         &mut self.pixels

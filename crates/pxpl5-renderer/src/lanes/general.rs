@@ -1,4 +1,4 @@
-//! General path of the fast array, which executes any instruction on all pixels, one bit field after the other.
+//! General path of the fast array: it executes any instruction on all pixels, one bit field after the other.
 
 use super::{Lanes, values};
 use crate::array::{Executed, FaultKind, OutputRegion, PIXELS};
@@ -13,8 +13,8 @@ impl Lanes {
         instruction: &ArrayInstruction,
         executed: &mut Executed,
     ) -> Result<(), FaultKind> {
-        // Instructions that change no field are executed here. The functions for Enable and for fields execute the
-        // others.
+        // Execute the instructions that change no bit field here. The functions for Enable and for bit fields execute
+        // the others.
         match *instruction {
             ArrayInstruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);
@@ -99,8 +99,8 @@ impl Lanes {
         Ok(())
     }
 
-    /// Stores the first operand buffer, which has a 64-bit number for each pixel, in the bit field `destination` of all
-    /// enabled pixels.
+    /// Stores the numbers of the first buffer in the bit field `destination` of all enabled pixels. The two buffers of
+    /// the array hold one 64-bit number for each pixel.
     fn store(&mut self, destination: Operand) -> Result<(), FaultKind> {
         let field = self.controller.bits(destination)?;
         self.columns.scatter(field, &self.operands[0], self.enable.pixels());
@@ -123,9 +123,9 @@ impl Lanes {
         self.store(destination)
     }
 
-    /// Computes two results, such as a quotient and a remainder, in each pixel. The first operand is the bit field
-    /// `source`, and the second operand buffer has the other operands. The first result goes to `destination`, and the
-    /// second to `source`.
+    /// Computes two results of `f` in each pixel, such as a quotient and a remainder. The inputs are the bit field
+    /// `source` and the numbers in the second buffer. The first result goes to `destination`, and the second result
+    /// goes to `source`.
     fn two_results(
         &mut self,
         destination: Operand,
@@ -198,8 +198,8 @@ impl Lanes {
         }
     }
 
-    /// Computes `f` in each pixel, and stores the result in the first operand buffer. The arguments of `f` are the
-    /// expression's value at the pixel, `shift`, and the pixel's number in the second operand buffer.
+    /// Computes `f` in each pixel, and stores the results in the first buffer. The arguments of `f` are the value of
+    /// the expression at the pixel, `shift`, and the pixel's number in the second buffer.
     fn expression(&mut self, local: &LocalExpression, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
         let [first, second] = &mut self.operands;
         for (pixel, (out, old)) in first.iter_mut().zip(second.iter()).enumerate() {

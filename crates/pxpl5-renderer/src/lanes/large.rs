@@ -1,5 +1,5 @@
-//! Fast execution of spheres and shading. Each of these commands draws many pixels, so the decoding of all its words
-//! takes only a small part of the time.
+//! Fast execution of sphere and shading commands. Each of these commands draws many pixels, so the time to decode its
+//! words is short in comparison.
 
 use super::Lanes;
 use super::columns::ContextColumns;
@@ -12,8 +12,7 @@ use crate::command::{
 };
 use pxpl5_wire::Word;
 
-/// Columns (arrays with one word for each pixel) and bit shifts with which a sphere is drawn in the layout of the
-/// array.
+/// Columns (arrays with one word for each pixel) and bit shifts that a sphere needs in the layout of the array.
 struct SpherePlace {
     root: usize,
     temporary: usize,
@@ -46,8 +45,8 @@ impl Lanes {
         Some(used)
     }
 
-    /// Returns the columns (arrays of words) for a sphere. Returns `None` if the bit fields of depth and radicand have
-    /// different widths.
+    /// Returns the columns (arrays of words) that a sphere needs. Returns `None` if the bit fields of depth and
+    /// radicand have different widths.
     ///
     /// With different widths, the command's program would leave a mixture of depth and radicand in the scratch memory.
     fn sphere_place(&self) -> Option<SpherePlace> {
@@ -111,9 +110,9 @@ impl Lanes {
         Some(())
     }
 
-    /// Stores the coefficients of a sphere, so that a later instruction can reuse them. Returns the sphere with the
-    /// array's upper left pixel as origin. If square roots in this layout are shorter than 12 bits, the returned shifts
-    /// of radicand and depth are larger.
+    /// Stores the coefficients of a sphere for reuse by a later instruction. Returns the sphere with the upper left
+    /// pixel of the array as origin of coordinates. If square roots in this layout have less than 12 bits, the returned
+    /// shifts of radicand and depth are larger.
     fn sphere_body(&mut self, body: SphereBody, place: &SpherePlace) -> SphereBody {
         self.controller.hold_quadratic(body.silhouette);
         SphereBody {

@@ -6,8 +6,8 @@ use super::shape::Shape;
 use crate::simd::SimdVector;
 use pxpl5_wire::{Linear, Word};
 
-/// The values of a linear expression at a vector of adjacent pixels, and the increase from this vector to the vector on
-/// its right.
+/// Values of a linear expression at a vector of adjacent pixels. `step` is the increase of each value from this vector
+/// to the next vector on the right.
 #[derive(Clone, Copy)]
 pub(super) struct Walk<V> {
     pub(super) value: V,
@@ -20,17 +20,16 @@ impl<V: SimdVector> Walk<V> {
         Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
     }
 
-    /// Returns the values for a vector of several rows with [four](crate::simd::FOUR) adjacent pixels each. The first
-    /// pixel has the value `first`. The values grow by `a` for each column and by `b` for each row.
+    /// Returns the values for a vector that covers [four](crate::simd::FOUR) adjacent pixels in each of several rows.
+    /// The value is `first` at the first pixel, and grows by `a` for each column and by `b` for each row.
     ///
-    /// The increase to the next vector is 0, because such a vector is at least as wide as the triangle.
+    /// `step` is 0, because such a vector is at least as wide as the triangle.
     #[inline(always)]
     pub(super) fn fours(first: i32, a: i32, b: i32) -> Self {
         Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
     }
 
-    /// Returns the values for a vector that begins some rows below this vector. `b` is the increase of the expression
-    /// over these rows.
+    /// Returns the values at the same columns some rows below. `b` is the increase of the expression over these rows.
     #[inline(always)]
     pub(super) fn below(&self, b: i32) -> Self {
         Self { value: self.value.add(V::splat(b)), step: self.step }
@@ -44,15 +43,15 @@ impl<V: SimdVector> Walk<V> {
 
 /// A way to store surface values (colour or normal) in the pixels that pass the depth test.
 pub(super) trait PaintTriangle {
-    /// Sets the colour of the triangle that is drawn next. The colour has no effect if colours are interpolated.
+    /// Sets the colour of the next triangle. Has no effect if colours are interpolated.
     fn begin(&mut self, colour: Word);
-    /// Stores the values of `walks` in those pixels of a vector for which `mask` is true. `at` is the index of the
+    /// Stores the values of `walks` in the pixels of a vector for which `mask` is true. `at` is the index of the
     /// vector's first pixel.
     fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
 pub(super) struct TrianglePainter<'a, P> {
-    /// Picture coordinates (column and row) of the array's upper left pixel.
+    /// Column and row of the array's upper left pixel in the picture.
     pub(super) origin: [i32; 2],
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
@@ -67,8 +66,8 @@ pub(super) struct DepthTest<V: SimdVector> {
 }
 
 impl<P: PaintTriangle> TrianglePainter<'_, P> {
-    /// Tests the pixels of a vector. A pixel passes if no edge expression is negative and the triangle's depth is
-    /// nearer than the stored depth.
+    /// Tests the pixels of a vector. A pixel passes if no edge expression is negative, and the triangle is nearer than
+    /// the stored depth.
     #[inline(always)]
     pub(super) fn test<V: SimdVector, S: Shape>(
         &self,

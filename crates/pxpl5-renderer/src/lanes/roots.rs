@@ -1,9 +1,9 @@
 //! Integer square roots and quotients. The results are computed in floating point, then corrected to the exact integer.
 //!
 //! IEEE 754 requires correctly rounded square roots and quotients, so the results are the same on every computer. All
-//! operands fit the 24 bits of a single-precision number, so all operands are exact.
+//! operands fit in the 24-bit mantissa of a single-precision number, so they are exact.
 
-/// Returns the integer nearest to a number from 0 to 2^22. A cast with `as` takes longer, because the cast checks each
+/// Returns the integer nearest to a number from 0 to 2^22. A cast with `as` would take longer, because it checks each
 /// lane for overflow.
 #[inline(always)]
 fn nearest(v: f32) -> u32 {
@@ -18,9 +18,9 @@ pub(super) fn square_root_24(v: u32) -> u32 {
     root - u32::from(root * root > v)
 }
 
-/// Divides `a` (23 bits) by `b` (12 bits). Returns the quotient, limited to 10 bits, and the remainder.
+/// Returns the quotient of `a` (23 bits) and `b` (12 bits), limited to 1023, and the remainder.
 ///
-/// The quotient is at most 1023. A division by 0 gives 1023.
+/// The quotient of a division by 0 is 1023.
 #[inline(always)]
 pub(super) fn divide_10(a: u32, b: u32) -> (u32, u32) {
     let ratio = a as i32 as f32 / b.max(1) as i32 as f32;

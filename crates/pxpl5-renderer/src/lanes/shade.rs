@@ -1,4 +1,4 @@
-//! Fast shading, row by row.
+//! Fast execution of the shading command, row by row.
 //!
 //! The code follows the program of [`crate::Shade`] instruction by instruction. The scratch bit fields therefore have
 //! the same values at the end as after the program.
@@ -11,19 +11,18 @@ use crate::simd::{SimdVector, VectorKernel};
 
 const WIDTH: usize = 128;
 
-/// Number of bit fields that shading writes: the colour and the six scratch bit fields a, b, c, root, diffuse and
+/// Number of bit fields that shading changes: the colour, and the scratch bit fields a, b, c, root, diffuse and
 /// specular.
 const RESULTS: usize = 7;
 
-/// A vectorized loop that shades all pixels whose depth differs from the depth of the far plane.
+/// Shades all pixels whose depth differs from the depth of the far plane.
 pub(super) struct ShadeAll<'a> {
     pub(super) shade: Shade,
     pub(super) far: u32,
     pub(super) z: &'a Values,
     pub(super) normal: [&'a Values; 3],
     pub(super) results: [&'a mut Values; RESULTS],
-    /// Enable register, in which the function sets the pixels that a primitive has covered. `None` if no later
-    /// instruction reads Enable.
+    /// Enable register, which receives the pixels that a primitive covers. `None` if no later instruction reads Enable.
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 
@@ -76,7 +75,7 @@ impl ShadeAll<'_> {
         }
     }
 
-    /// Returns component `component` (x, y or z) of the normals of one row, whose first pixel has the index `at`.
+    /// Returns x, y or z (`component` 0, 1 or 2) of the normals of one row, whose first pixel has the index `at`.
     #[inline(always)]
     fn row_of(&self, component: usize, at: usize) -> [i32; WIDTH] {
         let mut out = [0; WIDTH];
@@ -92,7 +91,6 @@ const fn twelve(v: i16) -> i32 {
     (v as i32) << 20 >> 20
 }
 
-/// Returns `old` with its low `width` bits replaced by the low bits of `low`.
 #[inline(always)]
 const fn insert(old: u32, low: u32, width: u32) -> u32 {
     let mask = (1 << width) - 1;
@@ -109,7 +107,7 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
     let mut a = square - root * root;
     let mut b = (n[2] * twelve(shade.half[2])) as u32 & 0xff_ffff;
     let mut highlight = specular;
-    // The squares go alternately to `a` and `b`. They replace only the low bits of these fields.
+    // The squares go alternately to `a` and `b`, and replace only their low bits.
     for i in 0..SPECULAR_SQUARINGS {
         let square = highlight * highlight;
         highlight = square >> 10;
@@ -140,8 +138,8 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
     [rgb, a, b, c, root, insert(diffuse, light, 8), specular]
 }
 
-/// Returns the cosine and the final content of the bit field `c`. The cosine is 0 for surfaces that face away. The bit
-/// field holds the remainder of the division, and the sign of the product in bit 23.
+/// Returns the cosine and the final content of the bit field `c`. The cosine is 0 for surfaces that face away from
+/// `vector`. The bit field holds the remainder of the division, and the sign of the product in bit 23.
 #[inline(always)]
 fn cosine(vector: [i16; 3], n: [i32; 3], root: u32) -> (u32, u32) {
     let dot = n[0] * twelve(vector[0]) + n[1] * twelve(vector[1]) + n[2] * twelve(vector[2]);

@@ -3,15 +3,14 @@
 use super::columns::Values;
 use crate::simd::SimdVector;
 
-/// An arrangement of a vector's pixels in the array, relative to the first pixel.
 pub(super) trait Shape {
     fn load<V: SimdVector>(column: &Values, at: usize) -> V;
-    /// Stores the values `new` in the pixels for which `mask` is true. `old` must hold the values of the pixels before
-    /// the call.
+    /// Stores the values `new` in the pixels for which `mask` is true. `old` must hold the current values of the
+    /// pixels.
     fn store<V: SimdVector>(new: V, mask: V::Mask, old: V, column: &mut Values, at: usize);
 }
 
-/// Arrangement of a vector's pixels side by side in one row.
+/// Arrangement of the pixels side by side in one row.
 pub(super) struct SingleRow;
 
 impl Shape for SingleRow {
@@ -26,8 +25,7 @@ impl Shape for SingleRow {
     }
 }
 
-/// Arrangement of a vector's pixels in groups of four adjacent pixels. Each group lies one row below the previous
-/// group.
+/// Arrangement of the pixels in groups of four adjacent pixels, one group below the other.
 pub(super) struct QuadRows;
 
 impl Shape for QuadRows {

@@ -1,7 +1,7 @@
 //! Fast drawing of triangles of at most four columns. In a dense scene, most triangles have at most four columns.
 //!
-//! A vector covers four columns of several rows, so one vector is sufficient for nearly every slim triangle. The values
-//! of the edges at each triangle's first pixel are computed for all triangles of a batch together.
+//! A vector covers four columns of several rows, so one vector is sufficient for nearly every slim triangle. For all
+//! triangles of a batch together, the code computes the values of the edge expressions at each triangle's first pixel.
 
 use super::bounds::{Boxes, Edges, PerTriangle};
 use super::painter::{PaintTriangle, TrianglePainter, Walk};
@@ -12,25 +12,24 @@ use pxpl5_wire::{LANES, LinearLanes, TriangleBatch};
 
 const WIDTH: i32 = 128;
 
-/// The triangles of a batch that are at most four columns wide (slim triangles).
 pub(super) struct SlimTriangles {
-    /// First column of each triangle's vectors. If needed, the column is moved left so that the vectors lie inside the
-    /// array.
+    /// First column of each triangle's vectors. It is left of the triangle if the vectors would otherwise end outside
+    /// the array.
     x: PerTriangle<i32>,
     y: PerTriangle<i32>,
-    /// Number of vectors, one below the other, that cover each triangle. Zero for a triangle without pixels, and -1 for
-    /// a triangle of more than four columns.
+    /// Number of vectors, one below the other, that cover each triangle. It is 0 for a triangle without pixels, and -1
+    /// for a triangle of more than four columns.
     vectors: PerTriangle<i32>,
-    /// Values of each triangle's edges at the first pixel of its first vector.
+    /// Values of each triangle's edge expressions at the first pixel of its first vector.
     edges: [PerTriangle<i32>; 3],
     planes: [PerTriangle<i32>; 4],
 }
 
 impl SlimTriangles {
-    /// Finds the slim triangles of a batch.
+    /// Finds the triangles of a batch that are at most four columns wide.
     ///
-    /// The edges have the array's upper left pixel as origin. The planes have the picture's upper left pixel as origin.
-    /// `left` and `top` are the picture coordinates of the array's upper left pixel.
+    /// The origin of the edge expressions is the upper left pixel of the array. The origin of the planes is the upper
+    /// left pixel of the picture. `left` and `top` are the coordinates of the array's upper left pixel in the picture.
     #[inline(always)]
     pub(super) fn among<V: SimdVector>(
         boxes: &Boxes,
@@ -59,26 +58,24 @@ impl SlimTriangles {
             let columns = boxes.x[1][i] - boxes.x[0][i] + 1;
             let rows = (boxes.y[1][i] - boxes.y[0][i] + 1).max(0);
             let vectors = (rows + tall - 1) / tall;
-            // If a vector would end outside the array, move it left or up.
+            // If a vector would end outside the array, begin it further left or further up.
             all.x[i] = boxes.x[0][i].min(WIDTH - FOUR as i32);
             all.y[i] = boxes.y[0][i].min(WIDTH - tall * vectors);
             let held = if columns > 0 { vectors } else { 0 };
             all.vectors[i] = if columns <= FOUR as i32 { held } else { -1 };
         }
-        // This loop is separate, so that compilers can vectorize both this loop and the loop above.
+        // Compilers can vectorize two separate loops, but not one loop with both steps.
         for i in 0..LANES {
             all.vectors[i] = if boxes.closed[i] { all.vectors[i] } else { -1 };
         }
         all
     }
 
-    /// Returns true if triangle `i` of the batch is at most four columns wide.
     #[inline(always)]
     pub(super) const fn has(&self, i: usize) -> bool {
         self.vectors[i] >= 0
     }
 
-    /// Draws triangle `i` of the batch, which must be at most four columns wide.
     #[inline(always)]
     pub(super) fn draw<V: SimdVector, P: PaintTriangle>(
         &self,
@@ -116,8 +113,8 @@ impl SlimTriangles {
     }
 }
 
-/// Evaluates an expression of each triangle of a batch, at a pixel (x, y) of this triangle. The loop writes only into a
-/// new array, so the compiler can assume that the inputs do not change.
+/// Evaluates an expression of each triangle of a batch at a pixel (x, y) of this triangle. The result is a new array,
+/// so that the compiler can assume that the inputs do not change.
 #[inline(always)]
 fn values(e: &LinearLanes, [x, y]: [&PerTriangle<i32>; 2]) -> PerTriangle<i32> {
     let mut all = [0; LANES];
@@ -136,8 +133,8 @@ fn moved(places: &PerTriangle<i32>, by: i32) -> PerTriangle<i32> {
     all
 }
 
-/// Returns the values of triangle `i`'s expression for a vector. The first pixel of the vector is `down` rows below the
-/// pixel at which the value is `first`.
+/// Returns the values of triangle `i`'s expression for a vector that begins `down` rows below a pixel. `first` is the
+/// value at this pixel.
 #[inline(always)]
 fn walk<V: SimdVector>(e: &LinearLanes, first: i32, i: usize, down: usize) -> Walk<V> {
     Walk::fours(first.wrapping_add(e.b[i].wrapping_mul(down as i32)), e.a[i], e.b[i])

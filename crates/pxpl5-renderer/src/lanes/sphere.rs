@@ -12,20 +12,20 @@ use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS
 
 const WIDTH: usize = 128;
 
-/// A sphere to draw. The sphere's expressions have the array's upper left pixel as origin.
+/// A sphere to draw. Its expressions have the upper left pixel of the array as origin of coordinates.
 pub(super) struct DrawSphere<'a, P> {
-    /// Silhouette and depth of the sphere. The two shifts are adjusted to the number of bits of a square root in the
+    /// Silhouette and depth of the sphere. The two shifts are adapted to the number of bits of square roots in the
     /// layout.
     pub(super) body: SphereBody,
     pub(super) root_bits: u8,
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
-    /// Bit field of the scratch memory for the square roots of all pixels. Its final content must equal the content
-    /// after the command's program.
+    /// Scratch bit field for the square root, in all pixels. Its final content must equal its content after the
+    /// command's program.
     pub(super) root: &'a mut Values,
     pub(super) temporary: &'a mut Values,
     pub(super) paint: P,
-    /// Enable register, with all pixels disabled at the start. `None` if no later instruction reads Enable.
+    /// Enable register, in which all pixels are disabled at the start. `None` if no later instruction reads Enable.
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 
@@ -33,8 +33,8 @@ pub(super) struct DrawSphere<'a, P> {
 pub(super) trait PaintSphere {
     /// Stores colours or normals in the pixels of row `y`, from column `left` on, for which `pass` is all ones.
     ///
-    /// At the start, `temporary` holds the new depths. At the end, `temporary` must hold the same content as after the
-    /// command's program.
+    /// At the start, `temporary` holds the new depths. At the end, it must hold the same content as after the command's
+    /// program.
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]);
 }
 
@@ -81,8 +81,8 @@ impl<P: PaintSphere> DrawSphere<'_, P> {
         }
     }
 
-    /// Computes a mask of the pixels inside the silhouette, and the square root at each pixel. The radicand of the root
-    /// is the silhouette expression without its lowest `root_shift` bits.
+    /// Computes a mask of the pixels inside the silhouette, and the square root at each pixel. The radicand is the
+    /// silhouette expression without its lowest `root_shift` bits.
     #[inline(always)]
     fn roots(&self, y: usize, left: usize, inside: &mut [u32], roots: &mut [u32]) {
         let (x, one) = along_row(&self.body.silhouette, y);
@@ -108,7 +108,7 @@ fn blend(old: &mut [u32], new: &[u32], mask: &[u32]) {
     }
 }
 
-/// Painter of interpolated colours. The colour is the sum of a plane and a multiple of the square root.
+/// A painter of interpolated colours. The colour is the sum of a linear expression and a multiple of the square root.
 pub(super) struct PaintGouraudSphere<'a> {
     pub(super) components: [Linear; 3],
     pub(super) factors: [i16; 3],
@@ -125,8 +125,8 @@ impl PaintSphere for PaintGouraudSphere<'_> {
         for (linear, factor) in self.components.iter().zip(self.factors) {
             let first = linear.at(left as i32, y as i32);
             for i in 0..n {
-                // The product of the root's upper bits and the factor, with the same bits as after the program's
-                // multiplication.
+                // Multiply the root's upper bits by the factor, and keep the same bits as the multiplication of the
+                // program.
                 let upper = (roots[i] >> (self.root_bits - 8)) as i32;
                 let low = upper * i32::from(factor);
                 let plane = first.wrapping_add(linear.a.wrapping_mul(i as i32)) >> COLOUR_FRACTION_BITS;
@@ -136,7 +136,8 @@ impl PaintSphere for PaintGouraudSphere<'_> {
             }
         }
         let at = y * WIDTH + left;
-        // Store the colours. Then store the product, which replaces the low bits of the new depth in the scratch.
+        // Store the colours. Then store the product, which replaces the low bits of the new depth in the scratch
+        // memory.
         blend(&mut self.colour.0[at..at + n], &rgb[..n], pass);
         for i in 0..n {
             let after = temporary[i] & !0x3_ffff | product[i];
@@ -145,8 +146,8 @@ impl PaintSphere for PaintGouraudSphere<'_> {
     }
 }
 
-/// Painter of the object's colour and interpolated normals. Two planes give x and y of the normal, and the square root
-/// gives z.
+/// A painter of the object's colour and of interpolated normals. Two linear expressions give x and y of the normal, and
+/// the square root gives z.
 pub(super) struct PaintPhongSphere<'a> {
     pub(super) components: [Linear; 2],
     pub(super) root_bits: u8,
@@ -172,7 +173,7 @@ impl PaintSphere for PaintPhongSphere<'_> {
         }
         let z = &mut self.normal[2].0[at..at + n];
         let colour = &mut self.colour.0[at..at + n];
-        // z is the upper part of the root.
+        // z consists of the upper bits of the root.
         for i in 0..n {
             z[i] = select(pass[i], roots[i] >> (self.root_bits - 10), z[i]);
         }

@@ -1,12 +1,12 @@
-//! Templates with which the fast array recognizes commands in the stream of words.
+//! Templates with which the fast array recognizes commands in a list of words.
 
 use crate::command::{Command, CommandKind, PHONG_WORDS, TRIANGLE_WORDS};
 use crate::isa::{head, opcode};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// A template that recognizes a kind of command with `N` words. Each operand occupies a whole word. The template
-/// compares all words except the operands.
+/// A template that recognizes a kind of command with `N` words. Each operand occupies a whole word, which the template
+/// ignores.
 #[derive(Clone, Debug)]
 pub(super) struct Template<const N: usize> {
     words: [Word; N],
@@ -16,7 +16,7 @@ pub(super) struct Template<const N: usize> {
 }
 
 impl<const N: usize> Template<N> {
-    /// Creates the template of a command, or returns `None` if the layout does not support the command.
+    /// Creates the template of a command. Returns `None` if the layout does not support the command.
     fn for_command(kind: CommandKind, layout: &Layout) -> Option<Self> {
         let program = Command::blank(kind).program(layout).ok()?;
         let mut words = Vec::new();
@@ -28,14 +28,13 @@ impl<const N: usize> Template<N> {
         Some(Self { words: words.try_into().ok()?, fixed, cost: CommandCost::for_command(kind, layout)? })
     }
 
-    /// Splits `words` into the command at the start and the words after the command. Returns `None` if the first words
-    /// do not match the template.
+    /// Splits `words` into the command at the start and the rest. Returns `None` if the first words do not match the
+    /// template.
     #[inline(always)]
     pub(super) fn split<'a>(&self, words: &'a [Word]) -> Option<(&'a [Word; N], &'a [Word])> {
         words.split_first_chunk::<N>().filter(|(command, _)| self.fits(command))
     }
 
-    /// Returns true if `command` equals the template in all words except the operands.
     #[inline(always)]
     pub(super) fn fits(&self, command: &[Word; N]) -> bool {
         let mut different = 0;
@@ -46,7 +45,6 @@ impl<const N: usize> Template<N> {
     }
 }
 
-/// Templates and clocks of all commands that the array executes as a whole instead of instruction by instruction.
 #[derive(Clone, Debug)]
 pub(super) struct Templates {
     pub(super) clear: Option<Template<CLEAR_WORDS>>,
@@ -57,7 +55,7 @@ pub(super) struct Templates {
 
 const CLEAR_WORDS: usize = CommandKind::Clear.words() as usize;
 
-/// The numbers of instructions and clocks of one command, which the array adds to [`crate::Executed`].
+/// Numbers of instructions and clocks of one command, which the array adds to [`crate::Executed`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandCost {
     pub(super) instructions: u32,
@@ -90,8 +88,8 @@ impl Templates {
     }
 }
 
-/// Returns true if the next instruction is *enable all*, with any label. If the result is true, no instruction reads
-/// the current values of the Enable register.
+/// Returns true if the next instruction is *enable all*. In this case, no instruction reads the current Enable
+/// register.
 pub(super) fn next_enables_all(next: Option<&Word>) -> bool {
     const LABEL: Word = 0xff << 16;
     next.is_some_and(|word| word & !LABEL == head(opcode::ENABLE_ALL, 0, 0))

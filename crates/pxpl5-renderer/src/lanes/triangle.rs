@@ -1,4 +1,4 @@
-//! Fast drawing of triangles. The code handles a vector of pixels at a time, with masks instead of branches.
+//! Fast drawing of triangles. Each step computes a vector of pixels, with masks instead of branches.
 
 use super::bounds::{Area, Boxes, Edges, Spans};
 use super::columns::Values;
@@ -14,10 +14,10 @@ use std::ops::Range;
 
 const WIDTH: usize = 128;
 
-/// A linear expression in a form that can be evaluated fast for a vector that begins at any pixel of the array.
+/// A linear expression in a form that is fast to evaluate for a vector of pixels anywhere in the array.
 #[derive(Clone, Copy)]
 struct Slope<V> {
-    /// Values of the expression at the first pixels of the array's top row, one for each lane.
+    /// Values of the expression at the first pixels of the array's top row, one for each lane of the vector.
     begin: V,
     step: V,
     a: i32,
@@ -25,8 +25,8 @@ struct Slope<V> {
 }
 
 impl<V: SimdVector> Slope<V> {
-    /// Prepares an expression for fast evaluation at any pixel of the array. `left` and `top` are the picture
-    /// coordinates of the array's upper left pixel.
+    /// Prepares an expression for fast evaluation. `left` and `top` are the coordinates of the array's upper left pixel
+    /// in the picture.
     #[inline(always)]
     fn over(e: &Linear, [left, top]: [i32; 2]) -> Self {
         let Walk { value: begin, step } = Walk::start(e, left, top);
@@ -40,7 +40,8 @@ impl<V: SimdVector> Slope<V> {
     }
 }
 
-/// The expressions of a triangle that is wider than one vector. In each row, drawing can begin at another column.
+/// The expressions of a triangle that is wider than one vector. The first vector can begin at a different column in
+/// each row.
 struct WideTriangle<V> {
     edges: [Slope<V>; 3],
     depth: Slope<V>,
@@ -53,19 +54,19 @@ pub(super) struct DrawTriangles<'a, const N: usize, P> {
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// A vectorized loop that draws a batch of triangles without command words. The loop leaves Enable unchanged, because
-/// the next command overwrites Enable before any command reads Enable.
+/// Draws a batch of triangles without command words. Enable stays unchanged, because the next command overwrites Enable
+/// before an instruction reads it.
 pub(super) struct DrawBatch<'a, P> {
     pub(super) batch: &'a TriangleBatch<'a>,
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// Access to the depth expression, the expressions of colour or normal, and the colour of a triangle. The data are read
-/// only for triangles that cover pixels. The origin of the expressions is the picture's upper left pixel.
+/// Access to the depth, the colour or normal, and the object's colour of a triangle. The data are read only for
+/// triangles that cover pixels. Expressions have the upper left pixel of the picture as origin of coordinates.
 trait Surface {
     fn depth(&self) -> Linear;
     fn components(&self) -> [Linear; 3];
-    /// Returns the colour of the triangle's object. The result has no meaning for a triangle with interpolated colour.
+    /// Returns the colour of the triangle's object. The value is meaningless for a triangle with interpolated colour.
     fn colour(&self) -> Word;
 }
 
@@ -81,14 +82,13 @@ impl<const N: usize> Surface for &[Word; N] {
         [coefficients(self, p), coefficients(self, q), coefficients(self, r)]
     }
 
-    /// Returns the last word of the command, which is the colour in commands for Phong triangles.
+    /// Returns the last word of the command, which is the colour in Phong triangle commands.
     #[inline(always)]
     fn colour(&self) -> Word {
         self[N - 1]
     }
 }
 
-/// The depth expression, the expressions of colour or normal, and the colour of triangle `i` of a batch.
 struct BatchSurface<'a> {
     batch: &'a TriangleBatch<'a>,
     i: usize,
@@ -115,7 +115,7 @@ impl Surface for BatchSurface<'_> {
 struct CurrentTriangle<S> {
     edges: [Linear; 3],
     surface: S,
-    /// True if a later command reads the Enable bits that this triangle leaves.
+    /// True if a later instruction can read the Enable bits of this triangle.
     keep: bool,
 }
 
@@ -126,7 +126,7 @@ impl<const N: usize, P: PaintTriangle> VectorKernel for DrawTriangles<'_, N, P> 
     fn run<V: SimdVector>(mut self) -> usize {
         let (commands, _) = self.words.as_chunks::<N>();
         let drawn = commands.iter().take_while(|command| self.template.fits(command)).count();
-        // Each triangle overwrites Enable, so only the Enable of the last triangle can be read later.
+        // Each triangle overwrites Enable, so a later instruction can read only the Enable bits of the last triangle.
         let read_later = !next_enables_all(self.words.get(drawn * N));
         let mut left = drawn;
         for some in commands[..drawn].chunks(LANES) {
@@ -153,7 +153,7 @@ impl<P: PaintTriangle> VectorKernel for DrawBatch<'_, P> {
         let mut edges = Edges(*self.batch.edges);
         edges.localise(self.painter.origin);
         let boxes = Boxes::enclosing(&edges);
-        // Slim triangles have their own code, with the whole triangle in one or a few vectors.
+        // Slim triangles have their own code, which draws the whole triangle with one or a few vectors.
         let slim = SlimTriangles::among::<V>(&boxes, &edges, self.batch.planes, self.painter.origin);
         for i in 0..self.batch.len.min(LANES) {
             if slim.has(i) {
@@ -168,7 +168,6 @@ impl<P: PaintTriangle> VectorKernel for DrawBatch<'_, P> {
 }
 
 impl<P: PaintTriangle> TrianglePainter<'_, P> {
-    /// Draws triangle `i` of a batch. `boxes` are the bounding boxes of the batch.
     #[inline(always)]
     fn triangle<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, boxes: &Boxes, i: usize) {
         let bounds = boxes.bounds(i, &triangle.edges);
@@ -209,8 +208,8 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         }
     }
 
-    /// Returns the values of an expression for a vector that begins at pixel (x, y) of the array. The origin of the
-    /// expression is the picture's upper left pixel.
+    /// Returns the values of an expression for a vector that begins at pixel (x, y) of the array. The expression has
+    /// the upper left pixel of the picture as origin of coordinates.
     #[inline(always)]
     fn walk<V: SimdVector>(&self, e: &Linear, x: usize, y: usize) -> Walk<V> {
         let [left, top] = self.origin;
@@ -223,10 +222,10 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         [self.walk(&p, x, y), self.walk(&q, x, y), self.walk(&r, x, y)]
     }
 
-    /// Draws a triangle whose rows each fit in one vector. The vectors begin at column `x`.
+    /// Draws a triangle each of whose rows fits in one vector. The vectors begin at column `x`.
     ///
-    /// The function draws two rows at a time, even if one row lies outside the triangle. A branch to skip this row
-    /// would often be mispredicted, and would then take more time than the row.
+    /// The function always draws two rows at a time, even if one of them lies outside the triangle. A branch to skip
+    /// this row would often be mispredicted, and would then take longer than the row.
     #[inline(always)]
     fn narrow<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, x: usize, rows: Range<usize>) {
         let pairs = rows.len().div_ceil(2);
@@ -265,7 +264,7 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         let mut depth = triangle.depth.walk(left, y);
         let [p, q, r] = &triangle.components;
         let mut walks = [p.walk(left, y), q.walk(left, y), r.walk(left, y)];
-        // Colours are stored only if some pixel of the vector passes.
+        // Store colours only if some pixel of the vector passes.
         for x in (left..right).step_by(V::LANES) {
             let at = y * WIDTH + x;
             let tested = self.test::<V, SingleRow>(at, [first, second, third], depth);
@@ -298,8 +297,8 @@ fn components_below<V: SimdVector>(surface: &impl Surface, [p, q, r]: &[Walk<V>;
     [p.below(i.b), q.below(j.b), r.below(k.b)]
 }
 
-/// Reads the edges of several commands. The function must not be inlined, because the compiler would then build each
-/// vector from single numbers, which takes more time.
+/// Reads the edge expressions of several commands. The function must not be inlined. Otherwise, the compiler builds
+/// each vector from single numbers, which takes longer.
 #[inline(never)]
 fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     for (i, words) in commands.iter().enumerate().take(LANES) {
@@ -308,12 +307,12 @@ fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     }
 }
 
-/// Returns the first column of a vector that covers the columns `left` to `right`. If possible, the first column is a
-/// multiple of `lanes`, the number of pixels of a vector. Returns `None` if one vector is too short.
+/// Returns the first column of a vector that covers the columns `left` to `right`, or `None` if one vector is too
+/// short. If possible, the column is a multiple of `lanes`, the number of pixels of a vector.
 #[inline(always)]
 fn one_vector(left: usize, right: usize, lanes: usize) -> Option<usize> {
     let aligned = left / lanes * lanes;
-    // If the aligned vector is too short, the vector from `left` on still ends inside the array.
+    // If the aligned vector is too short, a vector that begins at `left` still ends inside the array.
     let begin = if right <= aligned + lanes { aligned } else { left };
     (right <= begin + lanes).then_some(begin)
 }
@@ -323,8 +322,8 @@ fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> Linear {
     Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 }
 }
 
-/// Returns the values of three expressions for a vector that begins at pixel (x, y) of the array. The code has three
-/// separate calls, because the compiler would not use vector instructions in a closure.
+/// Returns the values of three expressions for a vector that begins at pixel (x, y) of the array. The three calls are
+/// separate, because the compiler would not use vector instructions in a closure.
 #[inline(always)]
 fn three<V: SimdVector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
     let x = x as i32;
@@ -338,7 +337,7 @@ fn blend<V: SimdVector, S: Shape>(column: &mut Values, at: usize, mask: V::Mask,
     S::store(new, mask, old, column, at);
 }
 
-/// Painter that stores interpolated colours as 0x00RRGGBB.
+/// A painter that stores interpolated colours as 0x00RRGGBB.
 pub(super) struct PaintGouraud<'a> {
     pub(super) colour: &'a mut Values,
 }
@@ -357,7 +356,6 @@ impl PaintTriangle for PaintGouraud<'_> {
     }
 }
 
-/// Painter that stores interpolated normals and the object's colour.
 pub(super) struct PaintPhong<'a> {
     pub(super) normal: [&'a mut Values; 3],
     pub(super) constant: u32,

@@ -1,5 +1,5 @@
-//! Operations on the content of a bit field in one pixel. The content is extended to 64 bits: sign-extended if the bit
-//! field is signed, otherwise zero-extended.
+//! Operations on the content of a bit field in one pixel, extended to 64 bits. Signed bit fields are sign-extended, and
+//! unsigned bit fields are zero-extended.
 
 use crate::isa::{ArithmeticOp, Test};
 
@@ -7,8 +7,8 @@ pub(super) const fn low(value: u64, width: usize) -> u64 {
     value & (u64::MAX >> (64 - width))
 }
 
-/// Computes `a op b` in 64 bits. The caller cuts the result to the destination's width. The function [`divide`]
-/// computes divisions.
+/// Computes `a op b` in 64 bits, except divisions (see [`divide`]). The caller cuts the result to the destination's
+/// width.
 pub(super) fn arithmetic(op: ArithmeticOp, a: u64, b: u64, signed: bool) -> u64 {
     match op {
         ArithmeticOp::Add => a.wrapping_add(b),
@@ -25,13 +25,11 @@ pub(super) fn arithmetic(op: ArithmeticOp, a: u64, b: u64, signed: bool) -> u64 
     }
 }
 
-/// Returns true if a < b. Both numbers are compared as two's complement numbers if `signed` is true, otherwise as
-/// unsigned numbers.
+/// Returns true if a < b, as two's complement numbers if `signed` is true, otherwise as unsigned numbers.
 pub(super) const fn less(a: u64, b: u64, signed: bool) -> bool {
     if signed { (a as i64) < b as i64 } else { a < b }
 }
 
-/// Returns the result of the comparison `test` of a with b.
 pub(super) const fn holds(test: Test, a: u64, b: u64, signed: bool) -> bool {
     match test {
         Test::Less => less(a, b, signed),
@@ -42,7 +40,7 @@ pub(super) const fn holds(test: Test, a: u64, b: u64, signed: bool) -> bool {
 }
 
 /// Returns the quotient, limited to `width` bits, and the remainder a - quotient * b. For b = 0, all bits of the
-/// quotient are ones.
+/// quotient are 1.
 pub(super) fn divide(a: u64, b: u64, width: usize) -> (u64, u64) {
     let largest = u64::MAX >> (64 - width);
     let quotient = a.checked_div(b).unwrap_or(largest).min(largest);
@@ -53,12 +51,12 @@ pub(super) fn saturate(value: u64, signed: bool, width: usize) -> u64 {
     if signed && (value as i64) < 0 { 0 } else { value.min(u64::MAX >> (64 - width)) }
 }
 
-/// Shifts a value right. A signed value is filled with copies of its sign, an unsigned value with zeros.
+/// Shifts a value right. The upper bits become copies of the sign if `signed` is true, otherwise zeros.
 pub(super) const fn shift_right(value: u64, by: u8, signed: bool) -> u64 {
     if signed { (value as i64 >> by) as u64 } else { value >> by }
 }
 
-/// Sign-extends the low `width` bits of `value` to 64 bits if `signed` is true. Otherwise zero-extends these bits.
+/// Sign-extends the low `width` bits of `value` to 64 bits if `signed` is true, otherwise zero-extends them.
 pub(super) const fn extend(value: u64, width: u32, signed: bool) -> u64 {
     let unused = 64 - width;
     if signed { ((value << unused) as i64 >> unused) as u64 } else { value << unused >> unused }

@@ -1,4 +1,4 @@
-//! Fast execution of whole commands that are recognized in the stream of words.
+//! Fast execution of whole commands that the array recognizes in a list of words.
 
 use super::Lanes;
 use super::columns::{ContextColumns, Values};
@@ -16,8 +16,8 @@ impl Lanes {
     /// Executes the command at the start of `words`, and returns its length in words. Returns `None` if the words are
     /// not a command of this layout.
     ///
-    /// If the command is a triangle, the function also executes the triangles of the same kind that directly follow.
-    /// The length includes these triangles.
+    /// After a triangle, the function also executes all directly following triangles of the same kind. The length then
+    /// includes these triangles.
     #[inline]
     pub(super) fn whole_command(&mut self, words: &[Word], executed: &mut Executed) -> Option<usize> {
         let kind = CommandKind::from_opcode((words[0] >> 16) as u8)?;
@@ -33,8 +33,8 @@ impl Lanes {
         Some(commands * kind.words() as usize)
     }
 
-    /// Returns the columns (arrays of words) that hold the bit fields of the selected context, which is a region in
-    /// pixel memory. The result is cached until another context is selected.
+    /// Returns the columns (arrays of words) for the bit fields of the selected context, the part of pixel memory that
+    /// holds one region. The result is cached until another context is selected.
     #[inline]
     fn context_columns(&mut self) -> Option<ContextColumns> {
         if self.selected.is_none_or(|known| known.base != self.controller.base) {
@@ -53,8 +53,8 @@ impl Lanes {
         })
     }
 
-    /// Returns the columns (arrays of words) that hold x, y and z of the normals in the selected context (region in
-    /// pixel memory). Returns `None` if the layout has no normals.
+    /// Returns the columns (arrays of words) for x, y and z of the normals in the selected context. Returns `None` if
+    /// the layout has no normals.
     fn normal_columns(&self) -> Option<[usize; 3]> {
         let x = self.column(self.layout.normal(0)?)?;
         let y = self.column(self.layout.normal(1)?)?;
@@ -62,15 +62,15 @@ impl Lanes {
         Some([x, y, z])
     }
 
-    /// Returns the index of the column (array of words) that holds exactly this bit field, or `None` if no column holds
-    /// exactly this bit field.
+    /// Returns the index of the column (array of words) that holds exactly the bit field `operand`, or `None` if there
+    /// is no such column.
     pub(super) fn column(&self, operand: Operand) -> Option<usize> {
         let FieldBits { first, width, .. } = self.controller.bits(operand).ok()?;
         self.columns.find(first, width)
     }
 
-    /// Executes a clear command. The function reads the depth from the words of the command, because a sender can
-    /// choose a depth that [`crate::Clear`] does not use.
+    /// Executes a clear command. The depth comes from the words of the command, because it can differ from the depth of
+    /// [`crate::Clear`].
     fn clear(&mut self, words: &[Word], columns: ContextColumns) -> Option<(CommandCost, usize)> {
         let template = self.templates.clear.as_ref()?;
         let (&[_, _, colour, _, depth], behind) = template.split(words)?;
@@ -122,9 +122,8 @@ impl Lanes {
         Some((template.cost, drawn))
     }
 
-    /// Draws a batch of triangles with the same pixels as the triangles' commands would draw. Enable and the stored
-    /// coefficients can differ from the result of these commands. Returns `None` if the layout does not support the
-    /// command.
+    /// Draws a batch of triangles in the same pixels as the triangles' commands. Enable and the stored coefficients can
+    /// differ from the result of these commands. Returns `None` if the layout does not support the command.
     pub(super) fn batch(&mut self, batch: &TriangleBatch<'_>) -> Option<()> {
         let columns = self.context_columns()?;
         let origin = self.controller.origin();
@@ -148,13 +147,12 @@ impl Lanes {
     }
 }
 
-/// Returns the index of the word at which the coefficients of the last command's last expression begin. The sequence
-/// has `commands` commands of `words` words each. Returns `None` if there are no commands.
+/// Returns the index of the first coefficient word of the last expression of the last command. The list has `commands`
+/// commands of `words` words each. Returns `None` if there are no commands.
 fn last(commands: usize, words: usize) -> Option<usize> {
     Some(commands.checked_sub(1)? * words + COMPONENTS_AT[2])
 }
 
-/// A vectorized loop that stores the same value in all pixels.
 struct Fill<'a> {
     column: &'a mut Values,
     value: u32,

@@ -1,4 +1,4 @@
-//! Vectors of WebAssembly. Two vectors of 128 bits together have eight lanes, as many as an AVX2 vector.
+//! Vectors of WebAssembly. A pair of 128-bit vectors has eight lanes, like an AVX2 vector.
 //!
 //! SAFETY of every `unsafe` block in this file: loads and stores go through slices whose length is checked. WebAssembly
 //! allows any alignment.
@@ -6,7 +6,7 @@
 use super::{FOUR, ROW, SimdVector};
 use std::arch::wasm32::*;
 
-/// Eight lanes of 32 bits. The first of the two vectors holds the first four lanes.
+/// Eight lanes of 32 bits. The first vector holds the first four lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Simd128([v128; 2]);
 

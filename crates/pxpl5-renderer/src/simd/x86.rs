@@ -7,7 +7,6 @@
 use super::{FOUR, ROW, SimdVector};
 use std::arch::x86_64::*;
 
-/// The eight lanes of an AVX2 vector.
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(__m256i);
 
@@ -164,7 +163,6 @@ impl SimdVector for Avx2 {
     }
 }
 
-/// The sixteen lanes of an AVX-512 vector.
 #[derive(Clone, Copy)]
 pub(super) struct Avx512(__m512i);
 

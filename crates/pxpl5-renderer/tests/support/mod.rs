@@ -29,7 +29,6 @@ pub(crate) struct Bench {
     pub(crate) bench: TestBench<RendererEvent, RendererOutput>,
 }
 
-/// A message that the board has sent.
 #[derive(Clone, Debug)]
 pub(crate) struct Sent {
     pub(crate) at: Time,
@@ -93,7 +92,6 @@ impl Bench {
     }
 }
 
-/// Returns a run of `count` commands of a kind.
 pub(crate) const fn run(kind: CommandKind, count: u32) -> CommandRun {
     CommandRun { opcode: kind.opcode(), words_each: kind.words(), count }
 }

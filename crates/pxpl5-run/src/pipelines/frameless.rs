@@ -1,5 +1,3 @@
-//! Frameless rendering on the emulated machine.
-
 use super::jitp::{TABLES, config, load, whole_pass};
 use super::{ntsc, samples};
 use crate::keys::PipelineSettings;
@@ -43,8 +41,8 @@ impl Frameless {
         Self { block: 16, batch: 0, seed: 1 }
     }
 
-    /// Returns the number of blocks that are drawn with one view. By default, the ring sends the blocks of all slaves
-    /// while one slave transforms.
+    /// Returns the number of blocks that are drawn with one view. With the default number, the ring sends the blocks of
+    /// all slaves in the same time as one slave transforms the scene.
     fn batch(&self, record: &Record, pass: TransformCost, runs_code: bool) -> u32 {
         if self.batch > 0 {
             return self.batch;
@@ -94,7 +92,6 @@ const MOST_BATCH: u64 = 64;
 /// is fixed, because the time of the code is unknown in advance.
 const BATCH_OF_CODE: u32 = 16;
 
-/// Returns the first time at or after `after` at which the display scans the region `target`.
 fn next_light(video: &Video, target: &CopyTarget, after: Time) -> Time {
     let now = video.field_at(after);
     let reached = now.until(now.after(3)).filter_map(|field| video.reaches(target, field)).find(|at| *at >= after);
@@ -193,7 +190,6 @@ impl PictureRules for Frameless {
         "no picture is ever due: each block is shown when it arrives, and there are no frames"
     }
 
-    /// Returns the number of batches that redraw the whole picture.
     fn updates_per_picture(&self, record: &Record) -> f64 {
         f64::from(self.blocks()) / f64::from(record.observation().most_regions_of_a_picture().max(1))
     }
@@ -267,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn what_arrives_at_one_instant_counts_in_any_order() {
+    fn the_order_of_simultaneous_arrivals_does_not_change_the_last_block_of_a_pass() {
         let [a, b, c] = [block(20, 7, 90), block(20, 9, 100), block(21, 4, 100)];
         for order in [[a, b, c], [a, c, b], [b, a, c], [b, c, a], [c, a, b], [c, b, a]] {
             let last = last_blocks(&order);

@@ -1,5 +1,3 @@
-//! Just-in-time pixels on the emulated machine.
-
 use super::{late_regions, ntsc, samples};
 use crate::keys::PipelineSettings;
 use crate::picture_ends::PictureResult;
@@ -20,8 +18,10 @@ use std::sync::Arc;
 
 pub use jitp::{Interpolation, Viewpoint};
 
-/// The pipeline of just-in-time pixels (JITP). The pipeline divides a picture into strips of lines and draws each strip
-/// for the instant at which the strip is displayed.
+/// The pipeline of just-in-time pixels (JITP).
+///
+/// The pipeline divides a picture into strips of lines and draws each strip for the instant at which the strip is
+/// displayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Jitp {
     /// Choice of the instants for which the lines of a picture are drawn.
@@ -34,7 +34,7 @@ pub struct Jitp {
 
 impl Jitp {
     /// Creates a pipeline with strips of one line. If a whole field shows one instant ([`Viewpoint::Field`]), strips
-    /// have eight lines, because smaller strips gain nothing.
+    /// have eight lines, because strips of fewer lines would not reduce the error.
     #[must_use]
     pub const fn new(viewpoint: Viewpoint, racing: bool) -> Self {
         let strip_rows = if matches!(viewpoint, Viewpoint::Field) { 8 } else { 1 };
@@ -101,7 +101,6 @@ fn beam(video: Video) -> Beam {
     Beam::new(at, move |field| video.retrace(field))
 }
 
-/// Returns the cost of TRANSFORM, in which each slave transforms the whole display list.
 pub(super) fn whole_pass(setup: &Setup) -> TransformCost {
     TransformCost::pass_over(&setup.list, Share::new(Arc::clone(&setup.list), 0, 1).counts())
 }
@@ -115,7 +114,7 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let gp = machine.processor(config.master, Priority::Foreground);
     let views = Arc::clone(&setup.wanted);
     let pass = whole_pass(setup);
-    // The master requests views for the instants that its strips are seen.
+    // The master requests views for the instants at which its strips are visible.
     let view_of = move |wanted: Wanted| views(wanted.number, wanted.known, wanted.shown_at);
     for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);
@@ -130,14 +129,13 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     }
 }
 
-/// Returns the deadline of a region: the time at which the display scans the region's first pixel.
 fn due(video: &Video, target: &CopyTarget) -> Time {
     let field = target.picture.period_drawn_for();
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// Arrivals of a field's regions: number before the end of the field, number before the beam, and arrival time of the
-/// middle strip.
+/// Counts of a field's regions that arrived before the end of the field and before the beam, and the arrival time of
+/// the middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,
@@ -235,7 +233,6 @@ impl PictureRules for Jitp {
         late_regions(display, record, end, |video, arrival| due(video, &arrival.target))
     }
 
-    /// Returns 1, because a picture is due in every field.
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
     }

@@ -61,7 +61,7 @@ pub type RegionAssignment = (RegionId, usize);
 /// }
 /// ```
 pub trait RegionPolicy: Debug + Send + Sync {
-    /// Returns the name of the policy. The hash of an experiment's settings covers the name.
+    /// Returns the name of the policy. The hash of an experiment's settings includes the name.
     fn name(&self) -> &str;
 
     /// Returns every region once with its renderer, in the order in which the regions are sent. Returns `None` to end
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_has_every_region_once_on_a_renderer_that_exists() {
+    fn a_policy_must_assign_every_region_once_to_an_existing_renderer() {
         let answer = |pairs: &[(u16, usize)]| -> Vec<RegionAssignment> {
             pairs.iter().map(|(region, renderer)| (RegionId(*region), *renderer)).collect()
         };

@@ -1,5 +1,3 @@
-//! Rendering Control on the emulated machine.
-
 use super::{SHADING, region_has_room, shading_or, shading_value, swapped_in, whole_picture};
 use crate::keys::PipelineSettings;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
@@ -23,11 +21,11 @@ pub struct RenderingControl {
     pub mono: bool,
     /// Method of shading.
     pub shading: Shading,
-    /// The choice of a renderer's action with a finished region while the frame buffer is not available.
+    /// Action of a renderer that has finished a region while the frame buffer is not available.
     pub finished: FinishedRegions,
 }
 
-/// The choice of a renderer's action with a finished region while the frame buffer is not available.
+/// Action of a renderer that has finished a region while the frame buffer is not available.
 ///
 /// TR94 says that the last slave returns the token, and that the master then gives the renderer its next region. TR94
 /// does not say if this also happens before the finished region is copied.
@@ -177,8 +175,8 @@ impl PictureRules for RenderingControl {
         true
     }
 
-    /// Returns the time of COPY for all eyes, one after the other, in whole display periods. A stereo pair takes 31.2
-    /// ms, which is two fields (TR94).
+    /// Returns the time of COPY for all eyes, one after the other, in whole display periods. For a stereo pair, COPY
+    /// takes 31.2 ms, so the result is two fields (TR94).
     fn periods_a_picture(&self, record: &Record) -> Option<u64> {
         let surfaces = record.display().surfaces();
         let ports = (record.ports().display().len() / surfaces.len().max(1)).max(1);
@@ -194,7 +192,6 @@ impl PictureRules for RenderingControl {
         "the time of COPY determines how often a frame is due: once in the number of periods that the pixels of all eyes need at a frame buffer's port, one eye at a time (two NTSC fields for a stereo pair); a frame is shown when it is swapped in"
     }
 
-    /// Returns the index of the eye. The copy of each eye is timed separately.
     fn copy_part(&self, arrival: &Arrival) -> u8 {
         arrival.surface.0 as u8
     }
@@ -205,13 +202,12 @@ impl PictureRules for RenderingControl {
     }
 }
 
-/// Returns the time to transfer all pixels of a surface. The busiest port decides, because the regions are assigned to
-/// the ports in turn.
+/// Returns the time to transfer all pixels of a surface. The regions are assigned to the ports in turn, so the port
+/// with the most pixels determines the time.
 fn copy_span(record: &Record, surface: &Surface, ports: u16) -> Span {
     (0..ports).map(|port| port_span(record, surface, port, ports)).max().unwrap_or(Span::ZERO)
 }
 
-/// Returns the time to transfer every `ports`-th region of a surface, beginning with the region `first`.
 fn port_span(record: &Record, surface: &Surface, first: u16, ports: u16) -> Span {
     let timing = record.ring().timing();
     let grid = surface.grid();

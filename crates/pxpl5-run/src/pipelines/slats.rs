@@ -1,5 +1,3 @@
-//! Slats on the emulated machine.
-
 use super::{late_regions, ntsc, samples};
 use crate::keys::PipelineSettings;
 use crate::picture_ends::PictureResult;
@@ -18,7 +16,9 @@ use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Version of the graphics processor's program. Versions differ only in simulated time.
+/// Version of the graphics processor's program.
+///
+/// Versions differ only in simulated time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
     /// Code of the 1994 prototype (TR94).
@@ -88,8 +88,8 @@ pub struct Slats {
 }
 
 impl Slats {
-    /// Creates the prototype with the papers' optimization of COPY (TR94). The lower half of a picture is copied while
-    /// the display already scans the upper half.
+    /// Creates the prototype with the split copy of TR94. The lower half of a picture is copied while the display
+    /// already scans the upper half.
     #[must_use]
     pub const fn split() -> Self {
         Self {
@@ -100,8 +100,7 @@ impl Slats {
         }
     }
 
-    /// Creates the prototype without the papers' optimization of COPY: both halves are copied before the retrace
-    /// (TR94).
+    /// Creates the prototype without the split copy: both halves are copied before the retrace (TR94).
     #[must_use]
     pub const fn whole() -> Self {
         Self { copy: CopySchedule::Whole, ..Self::split() }
@@ -169,7 +168,6 @@ impl Pipeline for Slats {
         }
     }
 
-    /// Sets the times per primitive of the selected code version.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let Some(code) = self.code else { return config };
         let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
@@ -215,7 +213,7 @@ impl PictureRules for Slats {
             arrivals.entry(arrival.target.picture).or_default().note(arrival);
         }
         let backup = (self.copy == CopySchedule::Backup).then(|| Backup::new(record));
-        // The first GP samples a pose at the begin of each picture.
+        // The first GP samples a pose at the start of each picture.
         let leader = record.ports().gps[0];
         let begun = samples(record).filter(|mark| mark.node == leader);
         let times = begun.map(|mark| {
@@ -264,13 +262,12 @@ impl PictureRules for Slats {
         late_regions(display, record, end, due)
     }
 
-    /// Returns 1, because a picture is due in every field.
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
     }
 
-    /// Returns the time from the first to the last light of a field. The display scans these lines once, because the
-    /// next field has the lines between them.
+    /// Returns the time from the first to the last light of a field. The display scans the lines of the field only
+    /// once, because the next field has the lines between them.
     fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightTimes {
         light_span(record, record.display().period_at(times.shown_at), 1)
     }
@@ -313,7 +310,6 @@ impl Copied {
     }
 }
 
-/// The buffers that each eye's frame buffer has shown, for runs of [`Slats::backup`].
 struct Backup {
     /// First period and buffer of each swap, in order, for each eye.
     swaps: [Vec<(PeriodNumber, u8)>; 2],
@@ -341,7 +337,6 @@ impl Backup {
     }
 }
 
-/// Returns the deadline of a region: the retrace, or the time at which the beam reaches the region.
 fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
     let field = target.picture.period_drawn_for();
     let retrace = video.retrace(field);

@@ -49,7 +49,7 @@ fn area(scene: &Scene) -> f64 {
 }
 
 #[test]
-fn pieces_are_all_of_the_scene_lie_in_their_cells_and_meet_bit_for_bit() {
+fn segments_cover_the_scene_stay_in_their_cells_and_meet_bit_for_bit() {
     for name in ["gallery", "mig", "molecules"] {
         let scene = builtin(name).expect("built in");
         let cut = SegmentedScene::segmented(&scene, 5.0).expect("it can be cut");
@@ -91,7 +91,7 @@ fn joined(record: &Record, size: u32) -> FaceSet {
 
 /// Experiment E2: memories that are drawn from one position look like a single memory when the display combines them.
 #[test]
-fn cells_drawn_from_one_place_are_the_uncut_drawing() {
+fn cells_drawn_from_one_position_equal_the_uncut_drawing() {
     for pipeline in [CELLS, WARPED] {
         let texels_of_face = [("arp.face_texels", 128)];
         let run = |pipeline: FacePipeline, scene: Scene| {
@@ -114,7 +114,7 @@ fn cells_drawn_from_one_place_are_the_uncut_drawing() {
 }
 
 #[test]
-fn with_cells_too_slow_memories_miss_first_and_turning_does_not_suffer() {
+fn with_cells_and_slow_renderers_slow_memories_miss_first_and_rotation_keeps_its_latency() {
     let outcomes = [40_000_000, 1_000_000].map(|clock_hz| walk(CELLS, clock_hz));
     outcomes.iter().for_each(|outcome| assert_no_faults(outcome.record()));
     assert_eq!(outcomes[0].rotation_latencies(), outcomes[1].rotation_latencies());
@@ -147,11 +147,11 @@ fn torn(outcome: &Outcome) -> usize {
     [CubeFace::NegX, CubeFace::NegZ, CubeFace::PosX].into_iter().filter_map(of_face).sum()
 }
 
-/// E7 on the machine: pieces that were drawn from different positions leave gaps, and warped pieces do not. A memory
-/// that begins 6 m away may be wrong by 3 degrees, which is 8.5 texels. The papers' angle, half a texel, would be
-/// visible in few fields.
+/// Experiment E7 on the machine: pieces that were drawn from different positions leave gaps, and warped pieces do not.
+/// A memory that begins 6 m away may be wrong by 3 degrees, which is 8.5 texels. The papers' angle, half a texel, would
+/// be visible in few fields.
 #[test]
-fn pieces_tear_and_warped_ones_meet() {
+fn segments_have_gaps_without_warping_and_no_gaps_with_warping() {
     let plain = along_the_wall(CELLS, 3.0);
     let warped = along_the_wall(WARPED, 3.0);
     [&plain, &warped].into_iter().for_each(|outcome| assert_no_faults(outcome.record()));
@@ -187,7 +187,8 @@ fn far_cells_are_drawn_less_often_than_near_ones() {
     let updates = |outcome: &Outcome| (0..4).map(|k| memory(outcome.record(), k).stats().swaps).collect::<Vec<_>>();
     let [plain, warped] = [&plain, &warped].map(updates);
     println!("updates {plain:?} {warped:?}");
-    // With warping, the memories of a cycle are shown together, so the fastest memory waits for the others.
+    // With warping, memories that are drawn in one cycle are shown together, so the fastest memory waits for the slower
+    // memories.
     assert!(warped[0] <= plain[0]);
     let ideal = updates_by_the_rule(200);
     println!("by the rule {ideal:?}");
@@ -223,7 +224,7 @@ fn a_flat_wall_has_one_colour_on_all_faces() {
 
 /// The default length of the falloff is the side of a cell, so the side can be changed alone.
 #[test]
-fn the_falloff_follows_the_side_of_a_cell() {
+fn the_default_length_of_the_falloff_is_the_side_of_a_cell() {
     for cell_m in [1.0, 2.0, 9.0] {
         let mut config = machine("small-hmd", WARPED, &[("arp.face_texels", 128)]);
         config.set("priority.cell_m", cell_m).expect("a number of the policy");
@@ -234,7 +235,7 @@ fn the_falloff_follows_the_side_of_a_cell() {
 
 /// A lens changes the picture that the eye sees. A lens that folds the image is refused by name.
 #[test]
-fn faces_are_seen_through_a_lens_that_is_given() {
+fn faces_are_displayed_through_the_given_lens() {
     let built = |text: &str| {
         let mut settings = PipelineSettings::default();
         settings.set("lens", KeyValue::Text(text.into()));
@@ -260,7 +261,7 @@ fn faces_are_seen_through_a_lens_that_is_given() {
 }
 
 #[test]
-fn what_is_not_cut_goes_to_the_fastest_memory_that_it_reaches() {
+fn an_uncut_object_belongs_to_the_fastest_memory_that_it_reaches() {
     let whole = FacePipeline { segmented: false, ..CELLS };
     let run = |pipeline: FacePipeline| {
         let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
@@ -273,7 +274,7 @@ fn what_is_not_cut_goes_to_the_fastest_memory_that_it_reaches() {
 }
 
 #[test]
-fn balls_that_lie_in_far_cells_are_drawn_once_before_a_head_that_stays() {
+fn spheres_in_far_cells_are_drawn_once_for_a_head_that_stays() {
     let config = machine("small-hmd", CELLS, &[("arp.face_texels", 128)]);
     let outcome = Experiment::new(config, CELLS, balls()).fields(40).pixels(Pixels::Off);
     let outcome = outcome.head(head(tracking::motion::Pan::at(200.0))).run().expect("it runs");

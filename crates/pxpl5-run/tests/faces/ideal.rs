@@ -40,7 +40,7 @@ fn the_machine_and_the_ideal_renderer_fill_memories_with_the_same_bits() {
     }
 }
 
-/// Every retrace shows the updates of one instant before, in the memories that the policy found due.
+/// Every retrace shows the updates that were drawn an instant before, in the memories that the policy found due.
 #[test]
 fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
     for policy in [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells, FacePolicy::CellsWarped] {
@@ -70,9 +70,8 @@ fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
     }
 }
 
-/// The renderer of the faces does not affect rotation.
 #[test]
-fn the_latency_of_a_turn_is_that_of_faces_drawn_by_the_machine() {
+fn the_rotation_latency_is_the_same_with_ideal_faces_and_with_faces_drawn_by_the_machine() {
     for latch in [Latch::Field, Latch::Line, Latch::Pixel] {
         let turns = [FULL, IDEAL].map(|pipeline| {
             let pipeline = FacePipeline { latch, ..pipeline };
@@ -91,7 +90,7 @@ fn texels_of(config: &MachineConfig) -> String {
 }
 
 #[test]
-fn it_takes_faces_of_512_texels_unless_said_and_a_machine_of_any_size() {
+fn faces_have_512_texels_by_default_on_a_machine_of_any_size() {
     let config = IDEAL.adapt(MachineConfig::preset("small-hmd").expect("listed"));
     assert_eq!(texels_of(&config), "512");
     assert_eq!(texels_of(&machine("small-hmd", IDEAL, &[("arp.face_texels", 256)])), "256");

@@ -62,7 +62,7 @@ fn assert_no_faults(record: &Record) {
 
 /// Experiment E1: the latency of rotation does not depend on the number of triangles in a ball.
 #[test]
-fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
+fn the_rotation_latency_does_not_depend_on_the_number_of_triangles() {
     let run = |pipeline: FacePipeline, n: usize| {
         let scene = builtin(&format!("sphere:{n}")).expect("even");
         let config = machine("small-hmd", pipeline, &[]);
@@ -71,7 +71,8 @@ fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
         experiment.head(head(Pan::at(200.0))).run().expect("it runs")
     };
     let outcomes = [10, 100, 1_000, 100_000].map(|n| run(FULL, n));
-    // Four memories have a comparator of two stages. Cells do not affect rotation otherwise.
+    // Four memories need a comparator of two more stages than one memory. The policy `cells` does not affect rotation
+    // otherwise.
     let of_cells = [10, 100_000].map(|n| run(cells::CELLS, n));
     for (latency, of_cells) in outcomes[0].rotation_latencies()[..55].iter().zip(of_cells[0].rotation_latencies()) {
         assert_eq!(of_cells.pipeline, latency.pipeline + Span(50_000));
@@ -81,8 +82,8 @@ fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
     let turns = outcomes.each_ref().map(|outcome| outcome.rotation_latencies()[..55].to_vec());
     assert!(turns[1..].iter().all(|other| *other == turns[0]));
     for latency in &turns[0] {
-        // Nine words at 5 MB/s; 8 + 16 stages of 25 ns where one memory needs no comparator; 132 whole lines of 780
-        // pixels of 11/135 us from the field's first pixel to its middle.
+        // The host sends nine words at 5 MB/s. The display has 8 + 16 stages of 25 ns, because one memory needs no
+        // comparator. From the field's first pixel to its middle there are 132 whole lines of 780 pixels of 11/135 us.
         assert_eq!((latency.host, latency.pipeline), (Span(7_200_000), Span(600_000)));
         let parts: u64 = latency.parts().iter().map(|(_, span)| span.0).sum();
         assert_eq!(latency.total(), Span(parts));
@@ -97,7 +98,7 @@ fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
 
 /// Second half of experiment E1: under Rendering Control, the latency of rotation grows with the drawing time.
 #[test]
-fn under_rendering_control_the_latency_of_a_turn_grows_with_what_is_drawn() {
+fn under_rendering_control_the_rotation_latency_grows_with_the_number_of_triangles() {
     let latency = |n: usize| {
         let scene = builtin(&format!("sphere:{n}")).expect("even");
         let fields = if n > 10_000 { 240 } else { 60 };
@@ -122,9 +123,9 @@ fn copies(texels: u64, packed: bool) -> (Vec<Span>, u64) {
     (spans.collect(), regions / stages.iter().filter(|span| span.stage == Stage::Copy).count() as u64)
 }
 
-/// Section 5's table: 32 messages of 1,024 words, 50 ns a word and 0.8 us a message.
+/// The expected time of the ports: 32 messages of 1,024 words, 50 ns a word and 0.8 us a message.
 #[test]
-fn all_regions_take_the_ports_time_and_no_more() {
+fn copying_all_regions_takes_only_the_time_of_the_ports() {
     let message_ns = 1_024 * 50 + 800;
     for (texels, packed, messages, published_ms) in
         [(128, false, 32, 9.98), (256, false, 32, 39.94), (512, false, 32, 159.7), (256, true, 16, 39.94 / 2.0)]
@@ -135,7 +136,8 @@ fn all_regions_take_the_ports_time_and_no_more() {
         let (copies, of_each) = copies(texels, packed);
         assert!(of_each.abs_diff(regions) <= 1, "{of_each} regions of {regions}");
         let fastest = copies.iter().map(|span| span.as_ms()).fold(f64::INFINITY, f64::min);
-        // The port is busy from the first to the last region of an update, except before the last region.
+        // From the first to the last region of an update, the port is always busy, except for a wait before the last
+        // region.
         assert!(copies.iter().skip(1).all(|span| span.as_ms() >= 0.999 * port_ms || texels == 512), "{copies:?}");
         assert!(fastest >= 0.5 * port_ms && fastest <= 1.05 * port_ms, "{texels}: {fastest} {port_ms}");
     }
@@ -184,10 +186,10 @@ fn missed(outcome: &Outcome) -> [f64; 4] {
     })
 }
 
-/// Experiment E8: with slow renderers, the memories that are drawn rarely miss their retraces first. Rotation keeps its
-/// latency.
+/// Experiment E8: if renderers are too slow, the memories that are drawn least often are the first to miss their
+/// retraces. Rotation keeps its latency.
 #[test]
-fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suffer() {
+fn with_slow_renderers_slow_memories_miss_first_and_rotation_keeps_its_latency() {
     let outcomes = [40_000_000, 2_000_000, 1_000_000, 500_000].map(|clock_hz| walk(OBJECTS, clock_hz));
     let misses = outcomes.each_ref().map(missed);
     for outcome in &outcomes {
@@ -195,15 +197,15 @@ fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suf
         assert_eq!(outcome.rotation_latencies(), outcomes[0].rotation_latencies());
     }
     assert_eq!(misses[0], [0.0; 4], "a machine that is fast enough misses nothing");
-    // While the slowest memories miss up to half of their retraces, the order is strict. Beyond that, memory 0 is still
-    // the least late.
+    // While the slowest memories miss up to half of their retraces, a slower memory always misses more retraces. With
+    // even slower renderers, memory 0 still misses the fewest.
     assert!(misses[..3].iter().all(|missed| missed.is_sorted()) && misses[2][2] > 5.0 * misses[2][1], "{misses:?}");
     assert!(misses[3][1..].iter().all(|missed| *missed > 2.0 * misses[3][0]), "{misses:?}");
     assert!(misses.iter().any(|missed| missed[3] > 0.2 && missed[0] < missed[3] / 2.0), "{misses:?}");
 }
 
 #[test]
-fn objects_go_into_the_slowest_memory_that_keeps_them_right() {
+fn objects_belong_to_the_slowest_memory_that_keeps_them_correct() {
     let outcome = walk(OBJECTS, 40_000_000);
     let notes = outcome.requested_updates();
     let held = |k: usize| notes.iter().rfind(|note| note.memory == k).map(|note| note.structures.to_vec());
@@ -274,7 +276,7 @@ fn compare_face(scene: &Scene, eye: DVec3, time: Time, faces: &FaceSet, face: Cu
     let viewport = Viewport::new(grid, Lines::Frame).expect("a face");
     let layout = Layout::rendering_control_phong();
     let picture = Picture { viewport, shading: Shading::Phong, binning: RegionBinning::Touched, layout, pixels: true };
-    // One guard texel on each side; near and far plane of the head-mounted display.
+    // The faces have one guard texel on each side, and the near and far plane of the head-mounted display.
     let half_angle = (f64::from(size) / f64::from(size - 2)).atan();
     let projection = glam::DMat4::perspective_rh(2.0 * half_angle, 1.0, 0.05, 50.0).as_mat4();
     let place = Mat4::from_translation(-eye.as_vec3());
@@ -306,7 +308,7 @@ fn compare_face(scene: &Scene, eye: DVec3, time: Time, faces: &FaceSet, face: Cu
 
 /// Every displayed face must equal a redraw from the position for which the face was drawn.
 #[test]
-fn the_machines_faces_are_those_of_an_ideal_renderer() {
+fn the_faces_drawn_by_the_machine_equal_the_faces_of_an_ideal_renderer() {
     for (name, faces_with_something) in [("mig", 1), ("room", 6)] {
         let scene = builtin(name).expect("built in");
         let config = machine("small-hmd", FULL, &[]);

@@ -8,7 +8,7 @@ use tracking::motion::{Pan, Still};
 
 /// With the eye at rest, a ball that is far enough away is drawn once, into the slowest memory. Memory 0 stays empty.
 #[test]
-fn an_empty_memory_0_is_content_and_every_retrace_a_picture() {
+fn with_an_empty_memory_0_every_retrace_counts_as_a_new_picture_of_a_rotating_head() {
     let scene = builtin("sphere:1000").expect("even");
     let experiment = Experiment::new(machine("small-hmd", OBJECTS, &[]), OBJECTS, scene).fields(60);
     let outcome = experiment.pixels(Pixels::Off).head(head(Pan::at(200.0))).run().expect("it has shown something");
@@ -23,14 +23,14 @@ fn an_empty_memory_0_is_content_and_every_retrace_a_picture() {
 
 /// The scene has a rectangle that is attached to the head.
 #[test]
-fn what_is_fixed_to_the_head_is_drawn_where_it_looks() {
+fn objects_fixed_to_the_head_are_drawn_in_its_direction() {
     for policy in [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells] {
         let pipeline = FacePipeline::new(policy);
         let run = |deg_per_s: f64| {
             let scene = builtin("full-screen:2").expect("built in");
             let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
             let head = if deg_per_s == 0.0 { head(Still(tracking::Pose::IDENTITY)) } else { head(Pan::at(deg_per_s)) };
-            // Half a second at 180 deg/s.
+            // The head turns for half a second at 180 deg/s.
             after(&Experiment::new(config, pipeline, scene).head(head), 30).into_record()
         };
         let drawn_on = |deg_per_s: f64| {
@@ -48,7 +48,7 @@ fn what_is_fixed_to_the_head_is_drawn_where_it_looks() {
 /// A display that latches by line or by pixel gets an orientation for each line, or as many as the host's connection
 /// can carry per line. The tracker reports once per field.
 #[test]
-fn a_host_predicts_for_every_line_and_for_as_many_pixels_as_its_line_carries() {
+fn a_host_predicts_an_orientation_for_every_line_or_as_many_orientations_as_its_link_can_carry() {
     use address_recalculation::Latch;
     for (latch, expected) in [(Latch::Field, 1.0), (Latch::Line, 240.0), (Latch::Pixel, 8.0 * 240.0)] {
         let pipeline = FacePipeline { latch, ..FULL };
@@ -66,7 +66,8 @@ fn a_host_predicts_for_every_line_and_for_as_many_pixels_as_its_line_carries() {
         let tuned = outcome.head().expect("tracked").head();
         let ahead_ms =
             |training: Option<&tracking::predict::Training>| training.expect("tuned").interval_ps / 1_000_000_000;
-        // 33 ms of the tracker and up to one field, compared with TRANSFORM, RENDER, COPY and retraces in addition.
+        // For turns, pictures are predicted by the 33 ms of the tracker and up to one field. For positions, TRANSFORM,
+        // RENDER, COPY and the waits for retraces are additional.
         assert!((33..=60).contains(&ahead_ms(tuned.training_of_turns())), "{:?}", tuned.training_of_turns());
         assert!(ahead_ms(tuned.training()) > ahead_ms(tuned.training_of_turns()));
     }

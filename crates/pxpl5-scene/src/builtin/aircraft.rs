@@ -18,13 +18,13 @@ const RED: Colour = [224, 36, 30];
 const GLASS: Colour = [90, 170, 226];
 
 pub(super) fn scene() -> Scene {
-    let mut mesh = fuselage(); // 48
+    let mut mesh = fuselage(); // 48 triangles
     for side in [1.0, -1.0] {
-        add_flat(&mut mesh, wing(side), SILVER); // 12
-        add_flat(&mut mesh, tailplane(side), RED); // 6
+        add_flat(&mut mesh, wing(side), SILVER); // 12 triangles
+        add_flat(&mut mesh, tailplane(side), RED); // 6 triangles
     }
-    add_flat(&mut mesh, fin(), RED); // 8
-    add_flat(&mut mesh, canopy(), GLASS); // 8
+    add_flat(&mut mesh, fin(), RED); // 8 triangles
+    add_flat(&mut mesh, canopy(), GLASS); // 8 triangles
     // Scale the aircraft to the radius of `mig` about the origin.
     let (centre, radius) = bounding_sphere(mesh.positions.iter().map(|&place| (place, 0.0)));
     for place in &mut mesh.positions {
@@ -45,7 +45,6 @@ pub(super) fn scene() -> Scene {
 
 const SIDES: u32 = 6;
 
-/// Returns the mesh of the fuselage: four rings between a tail point and a nose point, with smooth normals.
 fn fuselage() -> Mesh {
     // (z, y, half width, half height) of each ring, from the tail to the nose.
     let stations = [(-4.6, 0.12, 0.45, 0.5), (-1.6, 0.05, 0.8, 0.88), (2.2, 0.0, 0.8, 0.86), (4.6, -0.05, 0.5, 0.52)];
@@ -91,7 +90,6 @@ fn tailplane(side: f64) -> Vec<Vec<DVec3>> {
     pyramid(&root, DVec3::new(side * 2.2, 0.5, -5.6))
 }
 
-/// Returns a cross-section of a fin: the leading edge and the two corners of the trailing edge.
 fn wedge(leading: DVec3, chord: f64, half_thickness: f64) -> [DVec3; 3] {
     let trailing = [half_thickness, -half_thickness].map(|x| leading + DVec3::new(x, 0.0, -chord));
     [leading, trailing[0], trailing[1]]
@@ -103,7 +101,6 @@ fn fin() -> Vec<Vec<DVec3>> {
     prism(&root, &tip)
 }
 
-/// Returns the faces of the canopy: two pyramids on one base, which lies inside the fuselage.
 fn canopy() -> Vec<Vec<DVec3>> {
     let base = [(0.0, 3.6), (0.4, 1.9), (0.0, -0.4), (-0.4, 1.9)].map(|(x, z)| DVec3::new(x, 0.62, z));
     let [above, below] = [1.35, 0.4].map(|y| DVec3::new(0.0, y, 1.9));
@@ -112,7 +109,6 @@ fn canopy() -> Vec<Vec<DVec3>> {
     sides(above).chain(lower).collect()
 }
 
-/// Returns the faces of a solid between two cross-sections with the same number of points.
 fn prism(root: &[DVec3], tip: &[DVec3]) -> Vec<Vec<DVec3>> {
     let count = root.len();
     let side = |side: usize| vec![root[side], root[(side + 1) % count], tip[(side + 1) % count], tip[side]];
@@ -120,7 +116,6 @@ fn prism(root: &[DVec3], tip: &[DVec3]) -> Vec<Vec<DVec3>> {
     (0..count).map(side).chain(ends).collect()
 }
 
-/// Returns the faces of a pyramid with base `root` and top `tip`.
 fn pyramid(root: &[DVec3], tip: DVec3) -> Vec<Vec<DVec3>> {
     let count = root.len();
     let side = |side: usize| vec![root[side], root[(side + 1) % count], tip];

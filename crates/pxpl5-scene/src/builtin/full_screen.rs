@@ -18,8 +18,8 @@ const COVERED: f64 = 1.0;
 /// Distance of each eye from the centre of the head, metres: half of the greatest distance between two eyes, 74 mm.
 const EYES_M: f64 = 0.037;
 
-/// Greatest distance, along x or y, from the centre of a square to a corner of the triangle that [`push`] draws around
-/// the square. The unit is half the side of the square. The value is 1 + sqrt(2).
+/// Side of the bounding box of the triangle that [`push`] draws around a square, divided by the square's side: 1 +
+/// sqrt(2).
 const REACH: f64 = 1.0 + std::f64::consts::SQRT_2;
 
 pub(super) fn scene(count: u32) -> Scene {
@@ -51,7 +51,6 @@ fn push(mesh: &mut Mesh, depth: f64, colour: [u8; 3]) {
     mesh.fan(&corners);
 }
 
-/// Returns the colour of a triangle: one of six hues in turn, a shade darker after every six triangles.
 fn colour(index: u32) -> [u8; 3] {
     let hues = [[1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 1, 1], [0, 0, 1], [1, 0, 1]];
     let bright = 255 - (index / 6 % 8) as u8 * 24;

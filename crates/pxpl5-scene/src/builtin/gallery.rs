@@ -16,19 +16,16 @@ use crate::sway::Sway;
 /// Half the length and half the width of the hall, metres.
 const HALF_M: f64 = 20.0;
 
-/// Height of the hall, metres.
 const HEIGHT_M: f64 = 4.0;
-/// Height of the partitions, metres.
 const PARTITION_M: f64 = 3.0;
 /// Height of the viewer's eyes, metres.
 const EYE_M: f64 = 1.7;
 
 /// Distance of the path from the near side of a partition, metres.
 const BESIDE_M: f64 = 1.0;
-/// Thickness of a partition, metres.
 const THICKNESS_M: f64 = 0.1;
 
-/// Beginning and end of a partition, as fractions of the length of the straight part of the path beside the partition.
+/// Ends of each partition, as fractions of the straight part of the path beside the partition.
 const BESIDE_LEG: [f64; 2] = [0.2, 0.8];
 
 /// Corners of the path, x and z in metres. The straight parts are slanted, so the head's distances to the borders of
@@ -46,13 +43,11 @@ const CORNERS: [[f64; 2]; 10] = [
     [-17.0, 2.0],
 ];
 
-/// Colour of the floor.
 const FLOOR: [u8; 3] = [120, 100, 80];
 const CEILING: [u8; 3] = [225, 225, 215];
 /// Colours of the walls at +x, -x, +z and -z.
 const WALLS: [[u8; 3]; 4] = [[170, 140, 120], [120, 150, 170], [165, 165, 120], [130, 160, 130]];
 
-/// Colours of the partitions, used in turn.
 const PARTITIONS: [[u8; 3]; 5] = [[200, 90, 80], [90, 130, 200], [210, 180, 90], [110, 180, 110], [170, 110, 180]];
 
 /// Generates the hall with its partitions. If `is_full` is true, the hall also has picture frames and benches.
@@ -86,7 +81,7 @@ pub(super) fn scene(is_full: bool) -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// Adds a quadrangle. Its corners run anticlockwise, seen from the visible side.
+/// Adds a quadrangle. The corners run anticlockwise, seen from the visible side.
 fn quadrangle(solid: &mut Solid, corners: [DVec3; 4], colour: [u8; 3]) {
     let normal = (corners[1] - corners[0]).cross(corners[3] - corners[0]).normalize();
     let mut part = Mesh::default();
@@ -136,7 +131,6 @@ fn hall(solid: &mut Solid) {
     }
 }
 
-/// A straight part of the path, on the floor between two corners.
 struct Leg {
     from: DVec3,
     along: DVec3,
@@ -154,7 +148,7 @@ fn leg(number: usize) -> Leg {
     Leg { from, along, length, left: DVec3::Y.cross(along) }
 }
 
-/// Adds an upright box without its lower side. A box above the floor gets the lower side too.
+/// Adds an upright box. A box that stands on the floor gets no lower side, because the lower side is invisible.
 fn upright(solid: &mut Solid, middle: DVec3, along: DVec3, half: DVec3, colour: [u8; 3]) {
     let across = DVec3::Y.cross(along);
     let corner =
@@ -170,7 +164,6 @@ fn upright(solid: &mut Solid, middle: DVec3, along: DVec3, half: DVec3, colour: 
     }
 }
 
-/// Returns the middle, at floor level, of the partition beside a straight part of the path.
 fn partition_middle(leg: &Leg) -> DVec3 {
     leg.from + leg.along * (leg.length / 2.0) + leg.left * (BESIDE_M + THICKNESS_M / 2.0)
 }
@@ -184,7 +177,6 @@ fn partition(solid: &mut Solid, number: usize) {
     solid.end_structure(&format!("partition {number}"), None);
 }
 
-/// Number of picture frames on the near side of each partition.
 const FRAMES: usize = 3;
 
 fn frame(solid: &mut Solid, number: usize, place: usize) {
@@ -217,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn the_path_is_one_metre_from_every_partition_and_never_nearer_to_anything_upright() {
+    fn the_path_keeps_one_metre_from_every_upright_surface() {
         let legs: Vec<Leg> = (0..CORNERS.len()).map(leg).collect();
         for wall in 0..CORNERS.len() {
             let beside = &legs[wall];
@@ -237,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_lies_in_the_hall_and_its_six_sides_face_inwards() {
+    fn all_objects_are_inside_the_hall_whose_six_sides_face_inwards() {
         let gallery = scene(true);
         for vertex in gallery.vertices() {
             let place = vertex.position.as_dvec3();
@@ -251,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_face_outwards() {
+    fn the_sides_of_all_boxes_face_outwards() {
         let gallery = scene(true);
         for structure in &gallery.structures()[6..] {
             let places = structure.vertices.clone().map(|i| gallery.vertices()[i].position.as_dvec3());

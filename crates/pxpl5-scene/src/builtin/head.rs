@@ -10,9 +10,9 @@ use crate::motion::HeadMotion;
 use crate::scene::{Lighting, Scene, SceneParts, bounding_sphere};
 use crate::trig;
 
-/// Number of vertices around the head. The head has 2 x 156 x 191 = 59,592 triangles, including 156 at each pole.
+/// Number of vertices on each parallel. The head has 2 x 156 x 191 = 59,592 triangles, including 156 at each pole.
 const MERIDIANS: usize = 156;
-/// Number of rings of vertices between the two poles.
+/// Number of rings of vertices (parallels) between crown and neck.
 const PARALLELS: usize = 191;
 
 const SKIN: Colour = [226, 178, 150];
@@ -42,7 +42,6 @@ pub(super) fn scene() -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// Samples the surface of the head: the pole at the crown, the parallels from crown to neck, and the lower pole.
 fn grid() -> Mesh {
     let mut mesh = Mesh::default();
     let crown = push_hit(&mut mesh, Ray::new(0.0, 0.0));
@@ -66,7 +65,7 @@ fn grid_index(parallel: usize, meridian: usize) -> u32 {
     (1 + parallel * MERIDIANS + meridian % MERIDIANS) as u32
 }
 
-/// Adds the vertices of one parallel: first the half from the back of the head to the face, then its mirror image.
+/// Adds the vertices of one parallel: first from the back of the head to the face, then the mirror images.
 fn push_parallel(mesh: &mut Mesh, down: f64) {
     const HALF: usize = MERIDIANS / 2;
     let first = mesh.positions.len();
@@ -82,22 +81,21 @@ fn push_parallel(mesh: &mut Mesh, down: f64) {
     }
 }
 
-/// Adds a vertex where a ray from inside the head meets the surface. Returns the index of the vertex.
 fn push_hit(mesh: &mut Mesh, ray: Ray) -> u32 {
     let point = ray.hit();
     mesh.push(point, normal(point), colour(point))
 }
 
-/// A ray from a point on the spine (a curve inside head and neck, see [`SPINE`]) outwards. The ray meets the surface of
-/// the head at one vertex.
+/// A ray outwards from the spine, a curve inside head and neck ([`SPINE`]). The ray meets the surface of the head at
+/// one vertex.
 struct Ray {
     origin: DVec3,
     direction: DVec3,
 }
 
-/// Origins and inclinations of rays from crown to base. Each row has three numbers. The first number is the position
-/// from crown (0) to base (1). The second number is the height of the origin in centimetres, and the third number is
-/// the downward angle of the ray in degrees.
+/// Origins and inclinations of rays from the crown to the lower end of the neck, one ray in each row. The first number
+/// is the position from crown (0) to lower end (1). The second number is the height of the origin in centimetres, and
+/// the third number is the downward angle in degrees.
 const SPINE: [(f64, f64, f64); 8] = [
     (0.0, 2.5, -90.0),
     (0.24, 2.5, -24.0),
@@ -110,8 +108,9 @@ const SPINE: [(f64, f64, f64); 8] = [
 ];
 
 impl Ray {
-    /// Creates a ray. `down` runs from 0 at the crown to 1 at the base. `round` is the angle around the vertical axis,
-    /// as a fraction of a turn from the back of the head. Rays are denser at the face.
+    /// Creates a ray. `down` runs from 0 at the crown to 1 at the lower end of the neck. `round` is the angle around
+    /// the vertical axis, as a fraction of a turn from the back of the head. Equal steps of `round` give denser rays at
+    /// the face.
     fn new(down: f64, round: f64) -> Self {
         // Interpolate origin and inclination between two rows of the spine.
         let above = SPINE.windows(2).find(|pair| down <= pair[1].0);
@@ -158,7 +157,6 @@ impl Ray {
     }
 }
 
-/// Returns `a` for `t` = 0, `b` for `t` = 1, and interpolates linearly in between.
 fn between(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }

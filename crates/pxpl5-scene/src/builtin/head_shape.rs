@@ -13,7 +13,6 @@ const fn xyz(x: f64, y: f64, z: f64) -> DVec3 {
 
 /// Centre of the left eyeball, centimetres.
 pub(super) const EYE: DVec3 = xyz(3.15, 0.75, 6.6);
-/// Radius of both eyeballs, centimetres.
 pub(super) const EYE_RADIUS: f64 = 1.3;
 
 /// Returns the signed distance of a point from the surface of the head, centimetres. The head is symmetric in x. Near
@@ -54,8 +53,7 @@ fn nose(p: DVec3) -> f64 {
     join(join(bridge, tip, 0.5), wing, 0.9)
 }
 
-/// Returns the distance from the face. `d` is the distance from skull, neck and nose. The function adds brows, eye
-/// sockets, eyes, cheekbones and mouth.
+/// Adds brows, eye sockets, eyes, cheekbones and mouth to `d`, the distance from skull, neck and nose.
 fn face(d: f64, p: DVec3) -> f64 {
     let brow = capsule(p, xyz(1.3, 2.2, 7.7), xyz(5.0, 2.3, 5.9), 0.75, 0.5);
     let cheekbone = ellipsoid(p, xyz(4.0, -2.4, 4.9), xyz(1.9, 1.4, 1.9));
@@ -67,7 +65,6 @@ fn face(d: f64, p: DVec3) -> f64 {
     mouth(d, p)
 }
 
-/// Returns the distance of a point from the eyelids, a shell around the eyeball with a slit.
 fn eyelids(p: DVec3) -> f64 {
     let shell = (p - EYE).length() - (EYE_RADIUS + 0.2);
     let slit = ellipsoid(p, xyz(3.2, 0.65, 8.4), xyz(1.5, 0.5, 1.9));
@@ -86,8 +83,8 @@ fn mouth(d: f64, p: DVec3) -> f64 {
     carve(d, parting, 0.25)
 }
 
-/// Returns the distance from the head with ears. `d` is the distance from the head without ears. Each ear is a bowl
-/// whose front edge lies on the skull and whose rear edge stands away from the skull.
+/// Adds the ears to `d`, the distance from the head without ears. Each ear is a bowl whose front edge lies on the skull
+/// and whose rear edge stands away from the skull.
 fn ears(d: f64, p: DVec3) -> f64 {
     let q = p - xyz(7.35, -0.2, -1.3);
     // The ear leans back, so its top is further behind than its lobe. Its rear edge is turned outwards.
@@ -112,8 +109,8 @@ fn meet(a: f64, b: f64, k: f64) -> f64 {
     -join(-a, -b, k)
 }
 
-/// Returns the distance from the first solid without the second solid. `a` and `b` are the distances from the two
-/// solids. The edge between the solids is rounded over a width `k`.
+/// Returns the distance from the solid of distance `a` after the solid of distance `b` is cut out. The edge of the cut
+/// is rounded over a width `k`.
 fn carve(a: f64, b: f64, k: f64) -> f64 {
     meet(a, -b, k)
 }

@@ -1,7 +1,7 @@
 //! A swept-wing jet fighter similar to the MiG-17, with 417 triangles.
 //!
-//! The length is along z with the nose at +z. +y is up, and +x is the left of the aircraft. Lengths are roughly the
-//! metres of the real aircraft, which is 11 m long. The finished aircraft is scaled to a radius of 2 m.
+//! The length is along z with the nose at +z. +y is up, and +x is the left of the aircraft. Lengths are first in metres
+//! and roughly as in the real aircraft, which is 11 m long. The finished model is scaled to a radius of 2 m.
 
 use glam::DVec3;
 
@@ -29,26 +29,25 @@ const SIDES: usize = 14;
 
 pub(super) fn scene() -> Scene {
     let mut solid = Solid::default();
-    fuselage(&mut solid); // 280
-    wing(&mut solid, 1.0); // 23
-    wing(&mut solid, -1.0); // 23
-    fin(&mut solid); // 10
-    ventral_fin(&mut solid); // 10
-    canopy(&mut solid); // 24
-    boom(&mut solid); // 3
+    fuselage(&mut solid); // 280 triangles
+    wing(&mut solid, 1.0); // 23 triangles
+    wing(&mut solid, -1.0); // 23 triangles
+    fin(&mut solid); // 10 triangles
+    ventral_fin(&mut solid); // 10 triangles
+    canopy(&mut solid); // 24 triangles
+    boom(&mut solid); // 3 triangles
     // Moving control surfaces are structures of their own.
     solid.end_structure("airframe", None);
     for (name, side) in [("left aileron", 1.0), ("right aileron", -1.0)] {
-        aileron(&mut solid, name, side); // 8
+        aileron(&mut solid, name, side); // 8 triangles
     }
     for (name, side) in [("left tailplane", 1.0), ("right tailplane", -1.0)] {
-        tailplane(&mut solid, name, side); // 10
+        tailplane(&mut solid, name, side); // 10 triangles
     }
-    rudder(&mut solid); // 8
+    rudder(&mut solid); // 8 triangles
     finish(solid)
 }
 
-/// Moves the aircraft and its hinges to the origin, scales them to [`RADIUS_M`], and makes a scene.
 fn finish(mut solid: Solid) -> Scene {
     // Hinges move and scale together with the vertices.
     let balls = solid.mesh.positions.iter().map(|&p| (p, 0.0));
@@ -126,13 +125,11 @@ fn fuselage(solid: &mut Solid) {
     solid.cone(&deep_intake, DVec3::new(0.0, -0.07, 5.35), DARK);
 }
 
-/// Returns `section` with its points in reverse order, as seen from the other side of the cross-section.
 fn reversed(mut section: Vec<DVec3>) -> Vec<DVec3> {
     section.reverse();
     section
 }
 
-/// A cross-section of a wing or fin: leading edge, trailing edge, and half the thickness.
 struct Cut {
     leading: DVec3,
     trailing: DVec3,
@@ -155,14 +152,12 @@ impl Cut {
         vec![self.leading, middle + self.thickness, self.trailing, middle - self.thickness]
     }
 
-    /// Returns the corners of a cross-section that ends in a flat (blunt) trailing edge.
     fn blunt(&self) -> Vec<DVec3> {
         let middle = self.thickest();
         let edge = self.thickness * 0.3;
         vec![self.leading, middle + self.thickness, self.trailing + edge, self.trailing - edge, middle - self.thickness]
     }
 
-    /// Returns a wedge of length `chord` that begins at the blunt trailing edge and continues the cross-section.
     fn wedge_behind(&self, chord: f64) -> Vec<DVec3> {
         let edge = self.thickness * 0.3;
         vec![self.trailing + edge, self.trailing - DVec3::Z * chord, self.trailing - edge]
@@ -203,8 +198,8 @@ fn wing(solid: &mut Solid, side: f64) {
 }
 
 /// Adds a control surface: a wedge behind the blunt trailing edge of a wing or fin. `cuts` are the cross-sections at
-/// both ends of the wedge, and `chords` the wedge's lengths there. Returns a point and the direction of the hinge,
-/// which is the blunt edge.
+/// the two ends of the wedge, and `chords` the lengths of the wedge at these ends. The blunt edge is the hinge. Returns
+/// a point on the hinge and its direction.
 fn flap(solid: &mut Solid, cuts: [&Cut; 2], chords: [f64; 2], turned: bool) -> (DVec3, DVec3) {
     let mut sections = [cuts[0].wedge_behind(chords[0]), cuts[1].wedge_behind(chords[1])];
     if turned {
@@ -259,7 +254,6 @@ fn arch(z: f64, base: f64, width: f64, height: f64) -> [DVec3; 5] {
     })
 }
 
-/// Adds a canopy of three arches between a front point and a back point: 4 + 8 + 8 + 4 triangles.
 fn canopy(solid: &mut Solid) {
     let arches = [arch(1.0, 0.62, 0.42, 0.62), arch(2.1, 0.58, 0.48, 0.74), arch(3.0, 0.56, 0.44, 0.62)];
     let back = DVec3::new(0.0, 0.88, -0.6);

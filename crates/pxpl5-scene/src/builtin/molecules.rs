@@ -52,7 +52,7 @@ fn water() -> [Sphere; 3] {
     [sphere(oxygen, 1.52, [240, 24, 24]), sphere(right, 1.20, [255, 255, 255]), sphere(left, 1.20, [255, 255, 255])]
 }
 
-/// A residue (amino acid) of the protein's chain, with the position and shape of the ribbon there.
+/// A residue (amino acid) of the protein's chain, with the position and shape of the ribbon at this residue.
 struct Residue {
     alpha: DVec3,
     /// Direction across the ribbon, from the carbonyl carbon to its oxygen. In a helix this direction is parallel to
@@ -81,7 +81,8 @@ fn backbone(atoms: &[Atom], shift: DVec3) -> Vec<Residue> {
     residues
 }
 
-/// Returns the positions of all atoms with this name, one for each residue, moved by `shift`. Lengths are in Ångström.
+/// Returns the positions of all atoms named `name`, moved by `shift`, in Ångström. Each residue (amino acid) has one
+/// such atom.
 fn positions(atoms: &[Atom], name: &str, shift: DVec3) -> Vec<DVec3> {
     let named = atoms.iter().filter(|a| a.name == name);
     named.map(|a| a.position + shift).collect()
@@ -110,7 +111,6 @@ fn ribbon(solid: &mut Solid, chain: &[Residue]) {
     solid.face(&sections[SECTIONS - 1], rainbow(1.0));
 }
 
-/// Returns the position of a cross-section along the chain, as a fraction from 0 at the beginning to 1 at the end.
 fn part_of_chain(section: usize) -> f64 {
     section as f64 / (SECTIONS - 1) as f64
 }

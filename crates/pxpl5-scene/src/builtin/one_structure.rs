@@ -1,4 +1,4 @@
-//! Scenes with a single structure that does not move. The head stands still unless the settings choose another motion.
+//! Scenes with a single structure that does not move. The head stands still unless the settings choose a motion.
 
 use glam::Vec3;
 

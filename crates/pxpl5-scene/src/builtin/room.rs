@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_wall_is_as_far_and_faces_the_viewer() {
+    fn every_wall_has_the_same_distance_and_faces_the_viewer() {
         let room = scene();
         assert_eq!(room.triangles().len(), 4);
         for triangle in room.triangles() {

@@ -32,8 +32,8 @@ impl Solid {
         });
     }
 
-    /// Adds a surface between successive closed cross-sections with equal numbers of points. Its normals are smooth in
-    /// both directions.
+    /// Adds a surface between successive closed cross-sections with equal numbers of points. The normals of the surface
+    /// are smooth along the cross-sections and from one cross-section to the next.
     ///
     /// The points run anticlockwise as seen from the last cross-section. For n points and m cross-sections the surface
     /// has 2 n (m - 1) triangles.
@@ -81,8 +81,7 @@ impl Solid {
         self.append(part);
     }
 
-    /// Adds a flat polygon, anticlockwise seen from outside, as a number of triangles that is the number of points
-    /// minus 2.
+    /// Adds a flat polygon of n points as n - 2 triangles. The points run anticlockwise seen from outside.
     pub(super) fn face(&mut self, points: &[DVec3], colour: Colour) {
         let mut part = Mesh::default();
         let corners: Vec<u32> = points.iter().map(|&p| part.push(p, DVec3::ZERO, colour)).collect();

@@ -26,7 +26,6 @@ pub(super) fn scene(count: u32) -> Scene {
     fitted_scene(&format!("sphere:{count}"), mesh, Vec::new())
 }
 
-/// The vertices on one parallel of the sphere.
 struct Ring {
     first: u32,
     points: u32,
@@ -72,14 +71,14 @@ fn push_ring(mesh: &mut Mesh, down: f64, points: u32) {
     }
 }
 
-/// Adds the triangles between a parallel and the next lower parallel. A pole counts as a parallel of one point.
+/// Adds the triangles between a parallel and the parallel below it. A pole counts as a parallel of one point.
 fn join(mesh: &mut Mesh, above: &Ring, below: &Ring) {
     let steps = |ring: &Ring| if ring.points == 1 { 0 } else { ring.points };
     let [upper, lower] = [above, below].map(steps);
     let [mut a, mut b] = [0, 0];
     while a < upper || b < lower {
         let corner = |ring: &Ring, index: u32| ring.first + index % ring.points;
-        // Advance on the parallel whose next point comes first on the way round.
+        // Advance on the parallel whose next point comes first around the axis.
         let is_upper =
             b == lower || (a < upper && u64::from(a + 1) * u64::from(lower) <= u64::from(b + 1) * u64::from(upper));
         if is_upper {

@@ -10,7 +10,6 @@ use tracking::view::Hmd;
 /// Distance of all triangles from the head, metres. Assumed: any value between the display's near and far planes.
 const DEPTH_M: f32 = 1.0;
 
-/// Generates a scene of right-angled triangles that are spread evenly over the view.
 pub(super) fn scene(count: u32) -> Scene {
     let pixel = DEPTH_M / Hmd::unc().focal_px() as f32;
     let vertex = |position: Vec3| Vertex { position, normal: Vec3::Z, colour: DEFAULT_COLOUR };

@@ -10,17 +10,15 @@ use super::surface::{Surface, is_degenerate};
 /// Assumed, 45 to 90 degrees.
 const LEAST_COSINE: f64 = 0.2;
 
-/// The rules for the collapses of edges in one pass over a surface.
 #[derive(Clone, Copy)]
 pub(super) struct Rules {
-    /// True if a collapse may turn triangles over.
+    /// True if a collapse may reverse the orientation of triangles.
     pub(super) may_flip_triangles: bool,
     /// True if a collapse may leave fewer triangles than wanted. A collapse inside a surface removes two triangles at
     /// once.
     pub(super) may_overshoot: bool,
 }
 
-/// A possible collapse of an edge, with its cost. One end of the edge moves onto the other end.
 #[derive(Clone)]
 struct Candidate {
     cost: f64,
@@ -61,16 +59,16 @@ pub(super) struct Decimator {
     pub(super) surface: Surface,
     quadrics: Vec<Quadric>,
     changes: Vec<u32>,
-    /// Least number of triangles that any collapse tried so far would have left. A decimation to at most this number of
-    /// triangles would have made the same decisions so far.
+    /// Smallest number of triangles that would have remained after any collapse tried so far. A decimation to at most
+    /// this number of triangles would have made the same decisions so far.
     least_left: usize,
 }
 
-/// Rules of the first pass. No collapse may turn a triangle over or leave fewer triangles than wanted.
+/// Rules of the first pass. No collapse may reverse a triangle or leave fewer triangles than wanted.
 const FIRST: Rules = Rules { may_flip_triangles: false, may_overshoot: false };
 
-/// Rules of the last two passes. Both passes may leave fewer triangles than wanted. The last pass may also turn
-/// triangles over.
+/// Rules of the last two passes. Both passes may leave fewer triangles than wanted. Only the last pass may reverse
+/// triangles.
 const LATER: [Rules; 2] =
     [Rules { may_flip_triangles: false, may_overshoot: true }, Rules { may_flip_triangles: true, may_overshoot: true }];
 
@@ -88,8 +86,8 @@ impl FirstPass {
         Self { decimator, queue }
     }
 
-    /// Returns true if a decimation to `wanted` triangles also passes through the present surface, so that it can
-    /// continue from this surface.
+    /// Returns true if a decimation to `wanted` triangles also passes through the present surface. The decimation can
+    /// then continue from this surface.
     pub(super) const fn serves(&self, wanted: usize) -> bool {
         wanted <= self.decimator.least_left
     }
@@ -104,7 +102,6 @@ impl FirstPass {
         self.decimator.pass(&mut self.queue, pause, wanted, FIRST);
     }
 
-    /// Executes all passes until at most `wanted` triangles remain or no edge can be collapsed. Returns the surface.
     pub(super) fn end(mut self, wanted: usize) -> Surface {
         let whole = self.decimator.surface.triangles.len();
         if self.left() > wanted {
@@ -146,7 +143,6 @@ impl Decimator {
         Self { surface, quadrics, changes: vec![0; points], least_left: usize::MAX }
     }
 
-    /// Collapses edges, the cheapest first, until at most `wanted` triangles remain or no edge can be collapsed.
     pub(super) fn until(&mut self, wanted: usize, rules: Rules) {
         while self.surface.left > wanted {
             let before = self.surface.left;
@@ -158,7 +154,6 @@ impl Decimator {
         }
     }
 
-    /// Returns the possible collapses of all edges, the cheapest first.
     fn queue(&self) -> BinaryHeap<Candidate> {
         let mut queue = BinaryHeap::new();
         for point in 0..self.surface.places.len() as u32 {
@@ -167,7 +162,6 @@ impl Decimator {
         queue
     }
 
-    /// Collapses edges from the queue until at most `pause` triangles remain.
     fn pass(&mut self, queue: &mut BinaryHeap<Candidate>, pause: usize, wanted: usize, rules: Rules) {
         while self.surface.left > pause {
             let Some(candidate) = queue.pop() else { return };
@@ -190,7 +184,6 @@ impl Decimator {
         }
     }
 
-    /// Adds to the queue the collapses of all edges at a point.
     fn enter(&self, point: u32, queue: &mut BinaryHeap<Candidate>) {
         queue.extend(self.surface.neighbours(point).into_iter().map(|onto| self.candidate(point, onto)));
     }

@@ -1,4 +1,5 @@
-//! A surface whose edges can be collapsed. Its triangles connect points. All vertices at one position share one point.
+//! A surface whose edges can be collapsed. Its triangles connect points. A point stands for all vertices at one
+//! position.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -7,20 +8,16 @@ use glam::DVec3;
 
 use crate::scene::{Scene, Vertex};
 
-/// The triangles of a scene during decimation. Each distinct position of a structure's vertices is one point.
 #[derive(Clone)]
 pub(super) struct Surface {
     vertices: Arc<[Vertex]>,
     pub(super) places: Vec<DVec3>,
     /// Index of the point at which each vertex lies.
     point_of: Vec<u32>,
-    /// Indices of the vertices at each point.
     vertices_on: Vec<Vec<u32>>,
     /// Indices of the three vertices of each triangle, or `None` for a removed triangle.
     pub(super) triangles: Vec<Option<[u32; 3]>>,
-    /// Indices of the remaining triangles around each point.
     around: Vec<Vec<u32>>,
-    /// Number of triangles that have not been removed.
     pub(super) left: usize,
 }
 
@@ -76,7 +73,6 @@ impl Surface {
         points.iter().for_each(|point| self.around[*point as usize].push(triangle));
     }
 
-    /// Returns the three points of a triangle, or `None` if the triangle was removed.
     pub(super) fn points(&self, triangle: u32) -> Option<[u32; 3]> {
         let corners = self.triangles[triangle as usize]?;
         Some(corners.map(|vertex| self.point_of[vertex as usize]))
@@ -86,7 +82,6 @@ impl Surface {
         (0..self.triangles.len() as u32).filter_map(|triangle| Some((triangle, self.points(triangle)?)))
     }
 
-    /// Returns the remaining triangles around a point, each with its points.
     pub(super) fn round(&self, point: u32) -> impl Iterator<Item = (u32, [u32; 3])> {
         let triangles = self.around[point as usize].iter();
         triangles.filter_map(|triangle| Some((*triangle, self.points(*triangle)?)))
@@ -172,12 +167,10 @@ impl Surface {
     }
 }
 
-/// Returns true if two corners of a triangle are the same point.
 pub(super) fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// Returns the similarity of two vertices in normal and colour. Larger values are more similar.
 fn likeness(one: &Vertex, other: &Vertex) -> f64 {
     let shades = one.colour.iter().zip(other.colour).map(|(a, b)| f64::from(a.abs_diff(b)));
     f64::from(one.normal.dot(other.normal)) - shades.sum::<f64>() / (3.0 * 255.0)

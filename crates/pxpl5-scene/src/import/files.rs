@@ -42,8 +42,8 @@ pub fn load_placed(path: impl AsRef<Path>, placement: Placement) -> Result<Scene
     read_placed(opened, metadata.len(), format, (&file, path.parent()), placement)
 }
 
-/// Returns an error for a path without the extension of a supported format. The error states if the path is a
-/// directory, cannot be read, or has another extension.
+/// Returns an error for a path without the extension of a supported format. The error states whether the path is a
+/// directory, cannot be read, or has an unsupported extension.
 fn error_of_path(path: &Path, file: String) -> FileError {
     match fs::metadata(path) {
         Ok(data) if data.is_dir() => not_a_file(&file, "a directory"),

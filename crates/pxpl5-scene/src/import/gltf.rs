@@ -87,10 +87,10 @@ const OF_INDICES: [ComponentType; 3] = [ComponentType::U8, ComponentType::U16, C
 
 struct Reader<'a> {
     document: &'a Document<'a>,
-    /// Number of bytes of memory that the parsed JSON and the decoded buffers take.
+    /// Number of bytes that the parsed JSON and the decoded buffers take in memory.
     held: usize,
     model: Model,
-    /// Number of glTF primitives that consist of points or lines, which are not read.
+    /// Number of glTF primitives that were not read, because they consist of points or lines.
     skipped: usize,
     /// Number of nodes whose meshes are deformed by a skin.
     skinned: usize,
@@ -151,7 +151,8 @@ impl<'a> Reader<'a> {
             let found = format!("{} meshes", root.meshes.len());
             return Err(source.part(format!("meshes[{number}]"), "a mesh with this index", found));
         };
-        // The joints of a skin place a mesh, and its node does not. Without joints the mesh stays as it is.
+        // The joints of a skin determine the place of a mesh, and the node of the mesh does not. Without joints the
+        // mesh stays as it is.
         let to_world = if node.skin.is_some() { DMat4::IDENTITY } else { to_world };
         self.skinned += usize::from(node.skin.is_some());
         for (of_mesh, primitive) in mesh.primitives.iter().enumerate() {
@@ -161,7 +162,6 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Adds the triangles of a glTF primitive, which is a part of a mesh with one material.
     fn primitive(&mut self, part: &str, primitive: &Primitive, to_world: DMat4) -> Result<(), FileError> {
         let document = self.document;
         let mode = match primitive.mode {
@@ -211,7 +211,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     ///
-    /// Fails if the accessor does not exist, has no bytes, or has another type.
+    /// Fails if the accessor does not exist, has no bytes, or does not have one of the allowed types.
     fn numbers(
         &self,
         accessor: usize,
@@ -241,8 +241,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Adds each triangle of a glTF primitive without normals with three vertices of its own. The format demands that
-    /// such triangles are flat.
+    /// Adds the triangles of a glTF primitive without normals, each with three new vertices. The format demands that
+    /// these triangles are flat.
     fn push_flat(
         &mut self,
         vertices: &PrimitiveVertices<'_>,
@@ -325,7 +325,6 @@ impl<'a> Reader<'a> {
 /// Number of bytes of a point with its normal and its colour.
 const BYTES_OF_POINT: usize = 2 * size_of::<glam::Vec3>() + 3;
 
-/// Returns the indices of all nodes without a parent.
 fn roots_of(nodes: &[Node]) -> Vec<usize> {
     let mut is_child = vec![false; nodes.len()];
     for child in nodes.iter().flat_map(|node| node.children.iter().flatten()) {
@@ -395,7 +394,7 @@ impl PrimitiveVertices<'_> {
         DMat3::from_mat4(self.to_world).determinant() < 0.0
     }
 
-    /// Returns the corners of a triangle in anticlockwise order. A transform that mirrors reverses the order.
+    /// Returns the corners of a triangle in anticlockwise order. The corners are reversed if the transform mirrors.
     fn oriented(&self, [a, b, c]: [u32; 3]) -> [u32; 3] {
         if self.is_mirrored() { [a, c, b] } else { [a, b, c] }
     }
@@ -445,11 +444,6 @@ impl Corners<'_> {
         }
     }
 
-    /// Returns the vertices of a triangle.
-    ///
-    /// # Errors
-    ///
-    /// Fails if a vertex does not exist.
     fn triangle(&self, source: &Source<'_>, part: &str, n: usize) -> Result<[u32; 3], FileError> {
         // The corners have the order that section 3.7.2.1 of the specification defines.
         let corners = match self.mode {

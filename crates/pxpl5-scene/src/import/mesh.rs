@@ -32,7 +32,6 @@ impl Mesh {
         index
     }
 
-    /// Adds a polygon as triangles that all share its first corner.
     pub(crate) fn fan(&mut self, corners: &[u32]) {
         if let [first, rest @ ..] = corners {
             let fan = rest.windows(2).map(|pair| [*first, pair[0], pair[1]]);
@@ -61,7 +60,6 @@ impl Mesh {
         sums
     }
 
-    /// Returns the vertices of the mesh for a scene, rounded to single precision.
     pub(crate) fn vertices(&self) -> Vec<Vertex> {
         let positions = self.positions.iter().zip(&self.normals).zip(&self.colours);
         positions
@@ -88,13 +86,10 @@ pub(super) fn area([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Makes a scene of a model that was already moved and scaled to fit into the default view.
 pub(crate) fn fitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
     seen_by(motion_for_fitted(), name, mesh.vertices(), mesh.triangles, spheres)
 }
 
-/// Returns a head motion for a model that was already moved and scaled to fit into the default view. The head looks at
-/// this model.
 pub(super) fn motion_for_fitted() -> HeadMotion {
     HeadMotion::always_visible(Vec3::ZERO, IMPORT_RADIUS_M)
 }
@@ -105,7 +100,7 @@ pub(super) fn still_at_origin() -> HeadMotion {
     HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range")
 }
 
-/// Makes a scene from the vertices, triangles and spheres of a model and a head motion. The scene has one structure.
+/// Makes a scene of one structure from the vertices, triangles and spheres of a model. `motion` is the head's motion.
 pub(super) fn seen_by(
     motion: HeadMotion,
     name: &str,
@@ -143,7 +138,6 @@ impl Fit {
         Self { centre, scale }
     }
 
-    /// Returns a transformation that leaves the model unchanged.
     pub(crate) const fn none() -> Self {
         Self { centre: DVec3::ZERO, scale: 1.0 }
     }

@@ -73,11 +73,11 @@ impl Places {
     }
 }
 
-/// Index of a point, and a number that distinguishes the vertices at this point ([`Detail`]). The type has only 8
+/// Index of a point, and a number ([`Detail`]) that distinguishes the vertices at this point. The type has only 8
 /// bytes, because a file can have many times more corners than points.
 pub(super) type Corner = (u32, u32);
 
-/// The meaning of the second number of a [`Corner`]: a normal or a colour.
+/// The two meanings that the second number of a [`Corner`] can have.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
     /// The index of a normal, counted from 1: a normal of the file, or the computed normal of a flat face. A corner
@@ -97,7 +97,6 @@ pub(super) struct Vertices {
 }
 
 impl Vertices {
-    /// Returns the index of the vertex for a corner, and adds a vertex if the corner is new.
     pub(super) fn of(&mut self, corners: &mut Vec<Corner>, corner: Corner) -> u32 {
         let hash = self.hasher.hash_one(corner);
         if let Some(&known) = self.table.find(hash, |&vertex| corners[vertex as usize] == corner) {
@@ -120,7 +119,6 @@ pub(super) fn push_with_slow_growth<T>(list: &mut Vec<T>, item: T) {
     list.push(item);
 }
 
-/// A mesh with the coordinates of its file, before the mesh is scaled.
 pub(super) struct Model {
     pub(super) places: Places,
     /// Unit normals from the file. A zero vector stands for a missing normal. The list is empty until the first
@@ -137,7 +135,7 @@ pub(super) struct Model {
     /// Number of bytes of other files that belong to the model, for example glTF buffers beside the model's file. These
     /// bytes count as part of the model's file.
     pub(super) more_file_bytes: usize,
-    /// Number of concave polygons that have too many corners to be cut into triangles correctly.
+    /// Number of concave polygons with too many corners for correct triangles.
     too_long: usize,
 }
 
@@ -206,7 +204,6 @@ impl Model {
         triangle.map(|vertex| self.places.at(self.point(vertex as usize)))
     }
 
-    /// Returns an error if no triangle has a visible area.
     fn check_areas(&self, name: &str) -> Result<(), FileError> {
         let least = self.places.least_height();
         if self.triangles.iter().any(|&t| has_area(self.corner_places(t), least)) {
@@ -248,7 +245,6 @@ impl Model {
         if self.corners.is_empty() { self.places.len() } else { self.corners.len() }
     }
 
-    /// Returns the index of the point at which a vertex lies.
     fn point(&self, vertex: usize) -> usize {
         self.corners.get(vertex).map_or(vertex, |corner| corner.0 as usize)
     }
@@ -270,7 +266,7 @@ impl Model {
     }
 
     /// Returns the vertices of the scene, rounded to single precision. A missing normal becomes the mean of the normals
-    /// of the triangles at this vertex, weighted by area. If these triangles have no area, the normal is +z.
+    /// of the vertex's triangles, weighted by area. If these triangles have no area, the normal is +z.
     fn fitted_vertices(&self, fit: &Fit) -> Vec<Vertex> {
         let mut vertices = Vec::with_capacity(self.vertices());
         vertices.extend((0..self.vertices()).map(|vertex| Vertex {
@@ -295,13 +291,12 @@ impl Model {
         if self.detail == Detail::Colour { self.point(vertex) } else { vertex }
     }
 
-    /// Returns the number of groups of vertices that share a mean normal.
     fn shaded(&self) -> usize {
         if self.detail == Detail::Colour { self.places.len() } else { self.vertices() }
     }
 
-    /// Returns the number of groups of vertices whose mean normals are computed in one pass. The sums of all groups at
-    /// once would need as much memory as the positions, because sums are in double precision.
+    /// Returns the number of groups of vertices whose mean normals are computed in one pass. If one pass computed all
+    /// groups, its sums in double precision would need as much memory as the positions.
     fn shadings_per_pass(&self) -> usize {
         (self.shaded() / 8).max(1 << 16)
     }
@@ -363,13 +358,12 @@ impl Model {
     }
 }
 
-/// Returns red, green and blue from the second number of a [`Corner`] of [`Detail::Colour`].
 fn packed_colour(packed: u32) -> [u8; 3] {
     let [red, green, blue, _] = packed.to_le_bytes();
     [red, green, blue]
 }
 
-/// Returns a text with a number and its noun, in singular or plural.
+/// Returns a number with its noun in singular or plural, for example "3 normals".
 pub(super) fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
@@ -386,7 +380,7 @@ fn check_memory(name: &str, found: usize, file_bytes: usize) -> Result<(), FileE
 }
 
 /// Greatest number of bytes per vertex in the hash table. A slot has five bytes, and between 7/16 and 7/8 of the slots
-/// are used. While the table grows, it needs half as much memory again.
+/// are used. A growing table takes 1.5 times its memory.
 const TABLE_BYTES: usize = 17;
 
 /// Keeps the items whose element in `keep` is true, and frees the unused memory. An empty list stays empty.

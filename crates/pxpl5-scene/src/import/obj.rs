@@ -32,8 +32,8 @@ struct Reader<'a> {
     normals: usize,
     /// Number of normals in the file that are NaN, and the position of the first such normal.
     not_numbers: Option<(usize, FilePlace)>,
-    /// Smoothing group that the last `s` statement has set, as the second number of a [`Corner`](super::model::Corner).
-    /// `None` for flat faces.
+    /// Smoothing group that the last `s` statement has set, with the number that corners store for the group. `None`
+    /// for flat faces.
     smoothing: Option<u32>,
     vertices: Vertices,
     model: Model,
@@ -104,7 +104,6 @@ fn code(line: &[u8]) -> &[u8] {
     &line[..(0..line.len()).find(is_comment).unwrap_or(line.len())]
 }
 
-/// Returns the words of a statement, without its comment and without the `\` between its lines.
 fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     code(line)
         .split(u8::is_ascii_whitespace)
@@ -145,7 +144,6 @@ impl<'a> Reader<'a> {
         model
     }
 
-    /// Reads a statement that defines a point (`v`) or a normal (`vn`).
     fn point(&mut self, at: FilePlace, line: &[u8]) -> Result<(), FileError> {
         let mut words = words(line);
         match words.next() {
@@ -177,7 +175,6 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Reads a face with any number of corners and cuts it into triangles.
     fn face<'w>(&mut self, at: FilePlace, line: &[u8], words: impl Iterator<Item = &'w [u8]>) -> Result<(), FileError> {
         let first = self.model.triangles.len();
         // The normal of a flat face is computed after its corners are read. The normal will then get this index.

@@ -20,13 +20,12 @@ pub(crate) struct Atom {
     pub(crate) element: Element,
 }
 
-/// Radius and colour with which the atoms of a chemical element are drawn.
 #[derive(Clone, Copy)]
 pub(crate) struct Element {
     symbol: &'static str,
     /// Van der Waals radius of the element, Ångström.
     pub(crate) radius: f64,
-    /// Colour of the element by the custom of the models of Corey, Pauling and Koltun.
+    /// Colour of the element, as in the plastic models of Corey, Pauling and Koltun.
     pub(crate) colour: [u8; 3],
 }
 
@@ -73,7 +72,6 @@ pub(super) fn read(source: &Source<'_>, placement: Placement) -> Result<Scene, F
 }
 
 impl Atom {
-    /// Returns the atom as a sphere with its centre at `position` (Ångström), transformed by `fit`.
     pub(crate) fn sphere(&self, position: DVec3, fit: &Fit) -> Sphere {
         Sphere {
             centre: fit.place(position).as_vec3(),

@@ -55,7 +55,6 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, FileError> {
     Ok(mesh)
 }
 
-/// A reader of the rows of a PLY file, element after element.
 struct Rows<'a> {
     source: &'a Source<'a>,
     header: Header,
@@ -72,7 +71,6 @@ struct Rows<'a> {
     not_numbers: Option<(usize, FilePlace)>,
     /// True if the file has colours of vertices and of faces. The colours of faces are then ignored.
     has_both_colours: bool,
-    /// Vertices that were created because faces with different colours share a point.
     coloured: Vertices,
 }
 
@@ -83,7 +81,7 @@ const LIST: usize = 1 << 16;
 const LIST_PER_VERTEX: usize = 8;
 
 /// If no line `end_header` ends the header, the reader parses only this number of bytes, to find the error. The number
-/// is assumed. It only needs to cover a few lines.
+/// is assumed, and only needs to cover a few lines.
 const HEADER: usize = 1 << 16;
 
 /// Returns the header with LF at its line ends, the position after the header, and the byte that ends its lines. Bytes
@@ -182,7 +180,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Parses the numbers of one line. The library's own parser accepts neither `.5` nor `nan`.
+    /// Parses the numbers of one line. The parser of the PLY library is not used, because it accepts neither `.5` nor
+    /// `nan`.
     fn ascii_row<E: PropertyAccess>(&self, at: FilePlace, element: &ElementDef) -> Result<E, FileError> {
         let wrong = || self.source.syntax(at, row_of(element), excerpt(self.text));
         let mut words = self.text.split_ascii_whitespace();
@@ -209,7 +208,6 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Finds the next line that is not blank.
     fn next_line(&mut self, element: &ElementDef) -> Result<(), FileError> {
         loop {
             // The line extends to the next line end, or to the end of the file.
@@ -277,7 +275,6 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Reads the faces of an element and cuts them into triangles.
     fn faces(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), FileError> {
         let has_colours = has_colours(element);
         self.has_both_colours |= has_colours && !mesh.colours.is_empty();
@@ -365,7 +362,6 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Returns an error if the file has anything except white space after the last row.
     fn check_end(&self) -> Result<(), FileError> {
         let rest = &self.source.bytes[self.cursor.position() as usize..];
         if rest.iter().all(u8::is_ascii_whitespace) {
@@ -442,7 +438,6 @@ fn check_header(source: &Source<'_>, header: &str) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Parses a word as a number of a scalar type.
 fn scalar(kind: &ScalarType, word: &str) -> Option<Property> {
     Some(match kind {
         ScalarType::Char => Property::Char(word.parse().ok()?),
@@ -458,7 +453,6 @@ fn scalar(kind: &ScalarType, word: &str) -> Option<Property> {
     })
 }
 
-/// Parses `length` words as a list of numbers of a scalar type.
 fn list<'w>(kind: &ScalarType, words: &mut impl Iterator<Item = &'w str>, length: usize) -> Option<Property> {
     Some(match kind {
         ScalarType::Char => Property::ListChar(numbers(words, length)?),
@@ -490,7 +484,7 @@ fn header_fault(source: &Source<'_>, text: &str, line: u64, error: &ParseError) 
     }
 }
 
-/// Returns the library's message on one line, cut to 200 characters.
+/// Returns the PLY library's error message on one line, cut to 200 characters.
 fn message(error: &ParseError) -> String {
     let words: Vec<String> = error.to_string().split_whitespace().map(str::to_owned).collect();
     words.join(" ").chars().take(200).collect()
@@ -559,8 +553,8 @@ fn number(property: &Property) -> Option<f64> {
     })
 }
 
-/// The corners of a face in the integer type of the file. A conversion of one-byte corners to a wider type would
-/// multiply the memory.
+/// The corners of a face in the integer type of the file. A conversion of one-byte indices to a type with more bytes
+/// would multiply the memory.
 struct FaceRow {
     corners: Property,
     colour: [u8; 3],

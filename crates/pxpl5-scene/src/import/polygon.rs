@@ -8,11 +8,10 @@ use glam::{DVec2, DVec3};
 /// per corner, so the memory stays near [`crate::config::MEMORY_FLOOR_BYTES`].
 pub(super) const MOST_CORNERS: usize = 1 << 15;
 
-/// Largest sine of the angle between successive edges at which both edges count as lying on one line. Assumed, 1e-7 to
-/// 1e-4. In single precision, points of a straight line deviate by up to 6e-8.
+/// Two successive edges count as one line if the sine of the angle between them is at most this number. Assumed, 1e-7
+/// to 1e-4. In single precision, points of a straight line deviate by up to 6e-8.
 const STRAIGHT: f64 = 1e-6;
 
-/// The result of cutting a polygon into triangles.
 pub(super) enum Cut {
     /// The polygon is convex. The triangles that all share its first corner cover exactly the polygon.
     Fan,
@@ -101,7 +100,6 @@ struct Projection {
 }
 
 impl Projection {
-    /// Creates the projection of a polygon, or returns `None` for a polygon without area.
     fn of(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Option<Self> {
         let (origin, scale) = near_one(fan, &place)?;
         let area = area(fan, |corner| (place(corner) - origin) * scale);
@@ -127,8 +125,8 @@ fn scale_to_one(length: f64) -> Option<f64> {
     (length > 0.0).then(|| libm::ldexp(1.0, -exponent.max(-1022)))
 }
 
-/// Returns the polygon's first corner and a scale factor, or `None` if all corners coincide. Multiplied by the factor,
-/// the largest coordinate difference between the first corner and any other corner is near 1.
+/// Returns the polygon's first corner and a scale factor, or `None` if all corners coincide. After multiplication by
+/// the factor, the largest coordinate difference from the first corner is near 1.
 fn near_one(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Option<(DVec3, f64)> {
     let origin = place(fan.first()?[0]);
     let farthest = corners(fan).map(|corner| (place(corner) - origin).abs().max_element()).fold(0.0, f64::max);

@@ -48,7 +48,7 @@ impl<'a> Source<'a> {
         FileError::new(kind, expected, found).at(at).in_file(self.name)
     }
 
-    /// Returns an error for a part of a glTF file, given by its path in the JSON of the file.
+    /// Returns an error for a part of a glTF file. `part` is the path of this part in the file's JSON.
     #[cfg(feature = "gltf")]
     pub(crate) fn part(&self, part: impl Display, expected: impl Display, found: impl Display) -> FileError {
         self.error(FileErrorKind::Syntax, part, expected, found)
@@ -100,7 +100,6 @@ pub(crate) fn is_not_a_number(word: &str) -> bool {
     word.get(..3).is_some_and(|begin| begin.eq_ignore_ascii_case(b"nan")) || word.contains(&b'#')
 }
 
-/// Returns the beginning of a text in quotation marks, short enough for a message.
 pub(crate) fn excerpt(text: &str) -> String {
     let short: String = text.trim_end().chars().take(40).collect();
     format!("{short:?}")

@@ -50,8 +50,7 @@ fn begins_as_text(bytes: &[u8]) -> bool {
     bytes.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
 }
 
-/// Adds a triangle with three new vertices, which no other triangle shares. The normal of each of these vertices is
-/// then the normal of the triangle.
+/// Adds a triangle with three new vertices. Each of these vertices later gets the normal of the triangle.
 fn push_flat(model: &mut Model, corners: [[f64; 3]; 3]) {
     let first = model.places.len() as u32;
     corners.into_iter().for_each(|corner| model.places.push(DVec3::from_array(corner)));
@@ -86,7 +85,6 @@ fn read_binary(source: &Source<'_>) -> Result<Model, FileError> {
     Ok(model)
 }
 
-/// The statement that may come next in an ASCII file.
 #[derive(Clone, Copy, PartialEq)]
 enum Expects {
     Solid,

@@ -34,10 +34,8 @@ pub const PROVENANCE: TableColumn<FigureRow> = ("provenance", |row| match row.ba
     _ => row.basis.name().to_owned(),
 });
 
-/// Description of the simulated experiment.
 pub const EXPERIMENT: TableColumn<FigureRow> = ("experiment", |row| row.experiment.to_owned());
 
-/// Additional results of the simulated experiment.
 pub const DETAILS: TableColumn<FigureRow> = ("other results", |row| {
     let details = row.details.iter().map(|detail| format!("{} {} {}", detail.name, four(detail.value), detail.unit));
     details.collect::<Vec<_>>().join(", ")
@@ -49,13 +47,11 @@ pub fn error(row: &FigureRow) -> String {
     row.error_percent.map_or_else(|| "-".to_owned(), |error| format!("{error:+.1} %"))
 }
 
-/// Formats a number with four significant digits.
 #[must_use]
 pub fn four(value: f64) -> String {
     significant(value, 4)
 }
 
-/// Formats the ends of a range with four significant digits.
 #[must_use]
 pub fn range([low, high]: [f64; 2]) -> String {
     format!("{} to {}", four(low), four(high))

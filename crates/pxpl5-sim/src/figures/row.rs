@@ -24,7 +24,6 @@ pub enum Basis {
 }
 
 impl Basis {
-    /// Returns the name of this provenance in documents, without the parameter or rule.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -53,7 +52,6 @@ pub struct Detail {
 pub struct FigureRow {
     /// Number under which the documents of the project list the figure, such as `7` or `E1`.
     pub id: &'static str,
-    /// Statement of the paper in a few words.
     pub statement: Cow<'static, str>,
     /// Paper that prints the figure, with the section or page.
     pub source: Cow<'static, str>,
@@ -79,9 +77,7 @@ pub struct FigureRow {
     pub unprinted: Option<[f64; 2]>,
     /// Relative error in percent: (simulated - published) / published. `None` if the published number is 0 or missing.
     pub error_percent: Option<f64>,
-    /// True if the model agrees with the figure.
     pub is_met: bool,
-    /// Provenance of the row, and the parameter or rule that was chosen for the figure.
     #[serde(flatten)]
     pub basis: Basis,
     /// Value of the figure at the analytic level, with the parameters of the presets. The difference from `simulated`
@@ -92,11 +88,10 @@ pub struct FigureRow {
     pub interval: Option<[f64; 2]>,
     /// Known cause of a difference between the values of model and paper. Empty if no cause is known.
     pub cause: &'static str,
-    /// Additional numbers of the same experiment.
     pub details: Vec<Detail>,
 }
 
-/// Returns the range of the values that differ from `middle` by at most `half`, as its lowest and highest value.
+/// Returns the lowest and the highest value that differ from `middle` by at most `half`.
 #[must_use]
 pub const fn around(middle: f64, half: f64) -> [f64; 2] {
     [middle - half, middle + half]
@@ -106,7 +101,8 @@ pub const fn around(middle: f64, half: f64) -> [f64; 2] {
 const ROUNDING: f64 = 0.01;
 
 impl FigureRow {
-    /// Returns the known cause of a difference between model and paper, or a sentence that the cause is not known.
+    /// Returns the known cause of a difference between model and paper, or a sentence that states that no cause is
+    /// known.
     #[must_use]
     pub const fn cause_or_unknown(&self) -> &'static str {
         if self.cause.is_empty() { "The cause is not known." } else { self.cause }
@@ -163,14 +159,13 @@ impl FigureRow {
     /// Returns true if the model cannot reproduce the published value with any values of the unpublished parameters. In
     /// this case, a rule of the model is wrong.
     ///
-    /// The values that the model can reach are the interval of the analytic level, extended on both sides. The
-    /// extension is the distance between `analytic` and `simulated`. The two levels may differ as much at the ends of
-    /// the ranges as at the presets. The published value is compared with its printed range, or with its last digit if
-    /// no range is printed.
+    /// The model can reach the interval of the analytic level. The interval is extended on both sides by the distance
+    /// between `analytic` and `simulated`. The two levels may differ by this distance at all values of the parameters.
+    /// The published value is compared with its printed range, or with its last digit if no range is printed.
     #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };
-        // Allow for the distance between the levels and for the printed precision.
+        // The margin has the difference between the two levels and the precision of the printed figure.
         let of_levels = self.analytic.map_or(0.0, |analytic| (analytic - self.simulated).abs());
         let spread = self.spread.unwrap_or(0.0);
         let slack = of_levels + spread.max(self.published.abs() * ROUNDING);
@@ -180,18 +175,15 @@ impl FigureRow {
 
 /// A number of a paper that is an input of the model, or that follows from printed numbers by arithmetic alone.
 ///
-/// A simulation cannot give another value, so a definition is neither met nor missed.
+/// A simulation always gives this value, so a definition tests nothing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Definition {
     /// Name under which the documents of the project list the number.
     pub id: &'static str,
-    /// Description of the number and of its inputs.
     pub statement: Cow<'static, str>,
     /// Section or page of the paper that prints the number, or "derived".
     pub source: &'static str,
-    /// Value of the number in `unit`.
     pub value: f64,
     pub unit: &'static str,
-    /// Provenance of the value: printed or derived.
     pub provenance: Provenance,
 }

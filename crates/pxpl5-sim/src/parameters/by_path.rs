@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct Parameter {
     /// Prefix of the table and name of the parameter, such as `ring.word_ns`.
     pub path: String,
-    /// Unit, provenance, range and source.
+    /// Unit, provenance, range and source of the parameter.
     #[serde(flatten)]
     pub info: ParameterInfo,
     /// Value in the unit that the table states.
@@ -53,8 +53,8 @@ pub type PathTable<'a> = (&'static str, &'a dyn ParameterTable);
 /// A table of parameters that can be changed, with the first part of their paths.
 pub type PathTableMut<'a> = (&'static str, &'a mut dyn ParameterTable);
 
-/// Returns the table of the parameter at a path such as `ring.word_ns`. The first and the last result are the parts of
-/// the path. Returns `None` if no table has the parameter.
+/// Finds the parameter at a path such as `ring.word_ns`. Returns the first part of the path, the table, and the name of
+/// the parameter. Returns `None` if no table has the parameter.
 pub fn table_at<'a, 'p>(
     tables: impl IntoIterator<Item = PathTableMut<'a>>,
     path: &'p str,
@@ -64,9 +64,8 @@ pub fn table_at<'a, 'p>(
     tables.into_iter().find(|(own, table)| *own == prefix && has(*table)).map(|(own, table)| (own, table, name))
 }
 
-/// A setting that is no number of a table, such as a choice among names.
+/// A setting that is not a number in a table of parameters, such as a choice among names.
 pub struct Choice<S> {
-    /// Path of the setting.
     pub path: &'static str,
     /// Sets the setting to the value that a text denotes. The error states the expected texts.
     pub set: fn(&mut S, &str) -> Result<(), SettingError>,
@@ -82,7 +81,8 @@ pub fn choose<T: Copy>(field: &mut T, all: &[(&'static str, T)], text: &str) -> 
     Ok(())
 }
 
-/// Settings that texts change by path. The settings are the numbers of tables and a list of choices.
+/// Settings that users change with texts such as `screen.lines = 480`. The settings are the numbers of tables and a
+/// list of choices.
 ///
 /// ```
 /// use pxpl5_sim::parameters::{Choice, PathSettings, choose};
@@ -117,16 +117,16 @@ pub fn choose<T: Copy>(field: &mut T, all: &[(&'static str, T)], text: &str) -> 
 /// # Ok::<(), pxpl5_sim::parameters::SettingError>(())
 /// ```
 pub trait PathSettings: Sized + 'static {
-    /// Settings that are no numbers of a table.
+    /// Settings that are not numbers in a table of parameters, such as choices among names.
     const CHOICES: &'static [Choice<Self>];
 
     /// Returns all tables of parameters, each with the first part of their paths.
     fn tables(&self) -> Vec<PathTable<'_>>;
 
-    /// Returns the tables of [`PathSettings::tables`] for changes.
+    /// Returns the same tables as [`PathSettings::tables`], with mutable access.
     fn tables_mut(&mut self) -> Vec<PathTableMut<'_>>;
 
-    /// Called after a text has changed the setting at a path.
+    /// Is called after a text has changed the setting at `_path`.
     fn was_set(&mut self, _path: &str, _text: &str) {}
 
     /// Returns all numbers with their paths and current values.
@@ -156,7 +156,7 @@ pub trait PathSettings: Sized + 'static {
     /// Returns a [`SettingError`] with the most similar path, or with the allowed values.
     fn set(&mut self, path: &str, text: &str, place: &str) -> Result<(), SettingError> {
         let done = match Self::CHOICES.iter().find(|choice| choice.path == path) {
-            // An option that is named like its path names the path already.
+            // If the option has the name of the path, the message already states the path.
             Some(choice) if place.strip_prefix("--") == Some(path) => (choice.set)(self, text),
             Some(choice) => (choice.set)(self, text).map_err(|error| error.at(path)),
             None => match table_at(self.tables_mut(), path) {
@@ -204,8 +204,8 @@ fn set_number(table: &mut dyn ParameterTable, name: &str, path: &str, text: &str
     table.set(name, value).map_err(|_| expected())
 }
 
-/// Defines [`PathSettings::tables`] and [`PathSettings::tables_mut`] for fields that are tables of parameters. Each
-/// field follows the first part of the paths of its parameters.
+/// Defines [`PathSettings::tables`] and [`PathSettings::tables_mut`] for fields that are tables of parameters. The list
+/// has the first part of the parameters' paths before each field, as in `"screen": screen`.
 #[macro_export]
 macro_rules! tables_at {
     ($($prefix:literal : $($field:ident).+),+ $(,)?) => {

@@ -1,20 +1,17 @@
-//! The error of a setting or an argument.
-
 use crate::parameters::{FileError, FileErrorKind, Value, nearest};
 use std::fmt::{self, Display};
 
 /// Largest number of valid names that the message of an error lists after the most similar name.
 const MAX_LISTED: usize = 12;
 
-/// Largest number of valid names that the message of an error lists if it does not state the most similar name.
+/// Largest number of valid names that an error message lists if the message does not state the most similar name.
 const FEW_NAMES: usize = 4;
 
-/// Error of a setting or an argument that cannot be used. The message states the place, the name, the expected and the
-/// found value.
+/// Error of a setting or an argument that cannot be used. The message states where the setting was written, the name of
+/// the setting, the expected value and the found value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SettingError {
-    /// Reason why the setting cannot be used.
     pub kind: SettingErrorKind,
     /// Place where the setting was written, such as a file with a line, or a command line option. Empty if the place is
     /// clear from the call.
@@ -22,15 +19,15 @@ pub struct SettingError {
     /// Name or path of the setting, such as `ring.word_ns`. For an unknown name, this text is the kind of thing that
     /// the name should denote, such as `pipeline`.
     pub name: Box<str>,
-    /// The expected value, in words.
+    /// The expected value in words, such as `a whole number of 1 to 4096 lines`.
     pub expected: Box<str>,
-    /// The value or name that the setting has.
+    /// The value or name that the user wrote.
     pub found: Box<str>,
-    /// Valid name that is most similar to an unknown name. Empty for errors of another kind.
+    /// Valid name that is most similar to the unknown name. Empty if the error is not about an unknown name.
     pub nearest: Box<str>,
 }
 
-/// Reason why a setting or an argument cannot be used.
+/// The kind of a [`SettingError`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum SettingErrorKind {
@@ -42,12 +39,10 @@ pub enum SettingErrorKind {
     UnknownName,
     /// The setting is a fixed property of a chip. Programs can read the property but cannot change the property.
     ReadOnly,
-    /// The setting is missing.
     Missing,
-    /// Two settings exclude each other, a setting does not apply to the experiment, or the text of a setting has
-    /// another fault.
+    /// Two settings exclude each other, or a setting does not apply to the experiment. This kind is also for faults of
+    /// a setting's text that no other kind describes.
     Combination,
-    /// A scene has contents that the program cannot use.
     Scene,
     /// A file that the setting names cannot be used.
     File(FileErrorKind),
@@ -147,7 +142,8 @@ impl SettingError {
         if holds { Ok(()) } else { Err(Self::value(name, expected, found)) }
     }
 
-    /// Adds the place of the setting: a file with a line, or a command line option. An empty place adds nothing.
+    /// Adds to the message the place where the setting was written: a file with a line, or a command line option. An
+    /// empty place adds nothing.
     #[must_use]
     pub fn at(self, place: impl Display) -> Self {
         match place.to_string() {
@@ -225,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_name_comes_first_and_only_a_short_list_is_printed() {
+    fn the_error_suggests_the_nearest_name_and_lists_all_names_only_if_the_list_is_short() {
         let short = SettingError::unknown("level", "cycles", ["analytic", "transaction", "cycle"]);
         assert_eq!(short.to_string(), "expected cycle, analytic or transaction, found `cycles`");
         assert_eq!(&*short.nearest, "cycle");

@@ -9,7 +9,6 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FileError {
-    /// Reason why the file cannot be used.
     pub kind: FileErrorKind,
     /// Path or name of the file. Empty if the text does not come from a file.
     pub file: Box<str>,
@@ -21,7 +20,7 @@ pub struct FileError {
     pub found: Box<str>,
 }
 
-/// Reason why a file or a text cannot be used.
+/// The kind of a [`FileError`], from an unreadable file to invalid content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FileErrorKind {
@@ -51,14 +50,15 @@ pub enum FileErrorKind {
     Damaged,
     /// A file or directory that already exists prevents the writing of the file.
     Occupied,
-    /// Results of the same work are there already, and the work was not to be resumed.
+    /// Results of the same work exist already, and the user did not ask to resume the work.
     Unfinished,
     /// Another process is writing the file.
     Locked,
 }
 
 impl FileError {
-    /// Creates the error of a text. [`FileError::at`] and [`FileError::in_file`] add the position and the file.
+    /// Creates an error about the content of a file. [`FileError::at`] adds the position in the file, and
+    /// [`FileError::in_file`] adds the name of the file.
     #[must_use]
     pub fn new(kind: FileErrorKind, expected: impl Display, found: impl Display) -> Self {
         let [expected, found] = [expected.to_string().into(), found.to_string().into()];
@@ -71,7 +71,7 @@ impl FileError {
         Self::new(FileErrorKind::Unreadable, expected, error).in_file(file)
     }
 
-    /// Creates an error whose message is the sentence `reason`, without an expected content.
+    /// Creates an error whose message is only the sentence `reason`.
     #[must_use]
     pub fn because(kind: FileErrorKind, reason: impl Display) -> Self {
         Self::new(kind, "", reason)
@@ -83,13 +83,11 @@ impl FileError {
         move |error| Self::because(FileErrorKind::Unreadable, format_args!("{doing}: {error}")).in_file(file.display())
     }
 
-    /// Adds the position of the error in the file.
     #[must_use]
     pub fn at(self, place: impl Display) -> Self {
         Self { place: place.to_string().into(), ..self }
     }
 
-    /// Adds the path or name of the file.
     #[must_use]
     pub fn in_file(self, file: impl Display) -> Self {
         Self { file: file.to_string().into(), ..self }
@@ -137,9 +135,9 @@ mod tests {
     use super::text_of;
 
     #[test]
-    fn a_byte_that_is_no_text_is_told_by_line_and_byte() {
+    fn a_byte_that_is_not_text_is_reported_with_line_and_byte() {
         assert_eq!(text_of("a\né".as_bytes()), Ok("a\né"));
-        // The e with an acute of Latin-1, and a character of UTF-8 that ends early.
+        // An e with an acute accent in Latin-1, and a character of UTF-8 that ends early.
         for (bytes, place, byte) in [
             (&b"\xe9"[..], "line 1, byte 1", "0xe9"),
             (b"a\nb\ncaf\xe9\n", "line 3, byte 4", "0xe9"),

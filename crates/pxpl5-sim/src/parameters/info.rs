@@ -1,5 +1,3 @@
-//! Unit, provenance, range and source of a parameter.
-
 use crate::parameters::{SettingError, Value};
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +25,7 @@ crate::parameters::named!(Provenance, "provenance", Provenance::ALL);
 /// Unit, provenance, range and source of one parameter of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct ParameterInfo {
-    /// Field name of the parameter within its table.
+    /// Name of the parameter within its table.
     pub name: &'static str,
     /// Unit of the value, the range and the limits. The unit "1" stands for a pure number.
     pub unit: &'static str,

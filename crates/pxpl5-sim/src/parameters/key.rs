@@ -1,5 +1,3 @@
-//! Keys: settings with a name, allowed values, a unit, a default and an explanation.
-
 use crate::parameters::SettingError;
 use std::fmt;
 use std::sync::Arc;
@@ -7,7 +5,6 @@ use std::sync::Arc;
 /// The value of a setting (key).
 #[derive(Clone, Debug, PartialEq)]
 pub enum KeyValue {
-    /// A choice between true and false.
     Flag(bool),
     /// A whole number within the range that the key allows.
     Whole(u64),
@@ -31,26 +28,23 @@ impl fmt::Display for KeyValue {
     }
 }
 
-/// The values that a key allows.
+/// The values that a [`Key`] permits.
 #[derive(Clone, Copy, Debug)]
 pub enum KeyValues {
-    /// The key allows true and false.
     Flag,
     /// The key allows whole numbers from the first number to the second number, inclusive.
     Whole(u64, u64),
     /// The key allows real numbers from the first number to the second number, inclusive.
     Real(f64, f64),
-    /// The key allows one of these names.
     Names(&'static [&'static str]),
-    /// The key allows texts of a form. The first part describes the form in words and may be empty. The second part
-    /// checks a text.
+    /// The key allows texts of a certain form. The first value describes the form in words and may be empty. The second
+    /// value checks a text.
     Text(&'static str, fn(&str) -> Result<(), SettingError>),
 }
 
 impl KeyValues {
     /// Any text, which other settings or files restrict further.
     pub const ANY: Self = Self::Text("", |_| Ok(()));
-    /// Any finite number.
     pub const NUMBER: Self = Self::Real(f64::MIN, f64::MAX);
 }
 
@@ -69,8 +63,9 @@ impl fmt::Display for KeyValues {
     }
 }
 
-/// A setting: `name = value` in experiment files. The settings of pipelines are also options `--name value` of
-/// commands.
+/// A setting: `name = value` in experiment files.
+///
+/// The settings of pipelines are also options `--name value` of commands.
 ///
 /// ```
 /// use pxpl5_sim::parameters::{Key, KeyValues};
@@ -83,28 +78,26 @@ impl fmt::Display for KeyValues {
 pub struct Key {
     /// Name in experiment files. On the command line, `-` replaces `_`.
     pub name: &'static str,
-    /// Meaning of the key, in one line.
     pub about: &'static str,
-    /// Values that the key allows.
     pub values: KeyValues,
     /// Unit of a number, or an empty text.
     pub unit: &'static str,
     /// Default value with its provenance, in words. Empty if the key has no default, if the default depends on the
-    /// pipeline, or if the about text states the default.
+    /// pipeline, or if [`Key::about`] states the default.
     pub default: &'static str,
     /// Paths of machine parameters that the key sets too. A user must not set both the key and one of these parameters.
     pub sets: &'static [&'static str],
 }
 
 impl Key {
-    /// Creates a key without a unit and a stated default.
+    /// Creates a key that states no unit and no default.
     #[must_use]
     pub const fn new(name: &'static str, about: &'static str, values: KeyValues) -> Self {
         Self { name, about, values, unit: "", default: "", sets: &[] }
     }
 
-    /// Returns the meaning, the allowed values, the unit and the default in one line. Names that the meaning explains
-    /// are not repeated.
+    /// Returns the meaning, the allowed values, the unit and the default in one line. A name is left out of the allowed
+    /// values if the text about the meaning explains the name.
     #[must_use]
     pub fn help(&self) -> String {
         let Self { about, values, unit, default, .. } = self;
@@ -133,7 +126,6 @@ fn with_unit(text: String, unit: &str) -> String {
     if unit.is_empty() { text } else { format!("{text} {unit}") }
 }
 
-/// Returns the names in a list of names and values.
 #[must_use]
 pub const fn names<T, const N: usize>(all: &[(&'static str, T); N]) -> [&'static str; N] {
     let mut names = [""; N];

@@ -3,8 +3,8 @@
 /// Declares a struct of parameters. Each parameter has an initial value, unit, provenance, range, limits and source.
 ///
 /// The upper limit can be written as `MAX`, which stands for [`MAX`](crate::parameters::MAX). The calling crate must
-/// depend on `serde`, because the macro makes the table serializable by field names. Deserialization rejects unknown
-/// names.
+/// depend on `serde`, because the macro makes the table serializable by parameter names. Deserialization rejects
+/// unknown names.
 ///
 /// ```
 /// pxpl5_sim::parameters::parameter_table! {

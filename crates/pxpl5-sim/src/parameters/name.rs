@@ -78,12 +78,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_is_found_exactly_or_not_at_all() {
+    fn a_name_must_match_exactly() {
         let all = [("one", 1), ("two", 2)];
         assert_eq!(find_named("number", "two", all), Ok(2));
         for wrong in ["", "Two", " two", "two ", "tw"] {
             let error = find_named("number", wrong, all).expect_err(wrong);
-            // The most similar name comes first. All names are as far from an empty text as they are long.
+            // The most similar name comes first. The distance of a name from an empty text is the length of the name.
             let expected = if wrong.is_empty() { "one or two" } else { "two or one" };
             assert_eq!(error.to_string(), format!("expected {expected}, found `{wrong}`"));
         }

@@ -29,7 +29,7 @@ mod tests {
     use super::nearest;
 
     #[test]
-    fn a_table_is_nearer_than_a_word_of_its_length() {
+    fn the_first_part_of_a_path_is_nearer_to_the_path_than_another_word_of_equal_length() {
         let keys = ["fit", "on", "n_gps", "gp.triangle_ns", "gp.pass_ns", "title"];
         for (name, expected) in [("gp", "gp.pass_ns"), ("gp.tri", "gp.triangle_ns"), ("fi", "fit"), ("tilte", "title")]
         {

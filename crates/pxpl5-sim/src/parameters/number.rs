@@ -1,5 +1,3 @@
-//! Number types of parameters, and the check of a value against its limits.
-
 use crate::parameters::{SettingError, Value};
 
 /// A number type that a parameter of a table can have: `u64` or `f64`.

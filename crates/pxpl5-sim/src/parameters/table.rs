@@ -1,5 +1,3 @@
-//! A trait for access to the parameters of a table by name.
-
 use crate::parameters::{ParameterInfo, SettingError, Value};
 
 /// A parameter of a table together with its current value.
@@ -7,7 +5,6 @@ use crate::parameters::{ParameterInfo, SettingError, Value};
 pub struct Entry {
     /// Name, unit, provenance, range, limits and source of the parameter.
     pub info: &'static ParameterInfo,
-    /// Current value of the parameter in the table.
     pub value: Value,
 }
 

@@ -1,12 +1,11 @@
-//! Values of parameters.
-
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-/// The value of a parameter, either a whole or a real number. Files and reports contain only the number, without the
-/// name of the variant.
+/// The value of a parameter, either a whole or a real number.
+///
+/// Files and reports contain only the number, without the name of the variant.
 ///
 /// A whole value never equals a real value, and neither is greater than the other. Two real values are compared in
 /// IEEE's total order. NaN therefore lies outside every range, and two tables can be compared for equality.

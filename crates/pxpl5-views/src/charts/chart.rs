@@ -35,7 +35,7 @@ pub struct ChartPoint {
     pub at: (f64, f64),
     /// Lower and upper end of the confidence interval. NaN means that there is no interval.
     pub interval: (f64, f64),
-    /// True for a hollow marker, which shows that the value cannot be compared with the other values.
+    /// True for a hollow marker. The point's value is then not comparable with the values of filled markers.
     pub is_hollow: bool,
 }
 
@@ -93,9 +93,8 @@ pub struct Chart {
 struct Measures {
     width: u32,
     height: u32,
-    /// Height of text, in drawing units.
     em: u32,
-    /// Width, height and their unit, as written in the SVG file.
+    /// Width and height of the chart, and the unit of these two lengths in the SVG file.
     outer: (f64, f64, &'static str),
     names_below: bool,
 }
@@ -212,7 +211,6 @@ impl Chart {
     }
 }
 
-/// A point in axis coordinates, with the ends of its confidence interval.
 #[derive(Clone, Copy)]
 struct Placed {
     at: (f64, f64),
@@ -220,7 +218,7 @@ struct Placed {
     is_hollow: bool,
 }
 
-/// Splits the points of a series into sequences, so that a line has a gap at each point without a position (NaN).
+/// Splits the points of a series at each point without a position (NaN), where a line has a gap.
 fn runs(points: &[ChartPoint], axes: (&Axis, &Axis)) -> Vec<Vec<Placed>> {
     let placed = |point: &ChartPoint| {
         let at = (axes.0.place(point.at.0), axes.1.place(point.at.1));
@@ -276,7 +274,6 @@ fn draw_series<'a>(
     Ok(())
 }
 
-/// Draws the legend entry of a series: a sample of its style, and the name.
 fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32, i32)) -> Result<(), Fault<'a>> {
     // The sample consists of a mark, of a line, or of both, as in the chart.
     let em = look.em as i32;

@@ -1,20 +1,14 @@
-//! Histograms of latencies.
-
 use crate::markup::Element;
 use crate::svg::{Tenths, anchored, hint, line};
 
-/// Width of the chart in SVG units.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 200.0;
-/// Space on the left of the bars, in SVG units.
 const LEFT: f64 = 44.0;
 const RIGHT: f64 = 30.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 42.0;
-/// Vertical position of the lower end of the bars, measured from the top.
 const FLOOR: f64 = HEIGHT - BOTTOM;
 
-/// Number of bars of a histogram.
 const BINS: usize = 24;
 /// Distance between the left edges of neighbouring bars: the width of a bar and of the gap.
 const STEP: f64 = (WIDTH - LEFT - RIGHT) / BINS as f64;
@@ -45,12 +39,11 @@ pub(crate) fn histogram_element(values_ms: &[f64]) -> Element {
     svg.child(&anchored(LEFT - 6.0, FLOOR, "end").text(0))
 }
 
-/// Returns the horizontal position of a bar's left edge.
 fn place_of(bin: usize) -> f64 {
     LEFT + STEP * bin as f64
 }
 
-/// A count of values for each bar of a histogram. The range of the values is divided into intervals of equal width.
+/// Number of values for each bar of a histogram. The range of the values is divided into intervals of equal width.
 struct Bins {
     begin: f64,
     width: f64,
@@ -58,7 +51,7 @@ struct Bins {
 }
 
 impl Bins {
-    /// Counts the values in each interval. If all values are equal, the middle interval contains all values.
+    /// Counts the values in each interval. If all values are equal, the middle interval gets all of them.
     fn of(values: &[f64]) -> Self {
         let low = values.iter().copied().fold(f64::MAX, f64::min);
         let high = values.iter().copied().fold(f64::MIN, f64::max);
@@ -98,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn every_value_is_in_a_bar() {
+    fn every_value_belongs_to_a_bar() {
         let values: Vec<f64> = (0..1_000).map(|i| 50.0 + f64::from(i) * 0.05).collect();
         let counts = histogram(&values);
         let counted: usize =

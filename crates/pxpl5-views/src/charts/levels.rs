@@ -14,7 +14,8 @@ pub struct SpeedAndError {
     pub mean_error_percent: f64,
 }
 
-/// Returns an SVG chart of simulated fields per host second, on a logarithmic axis, against the mean error.
+/// Returns an SVG chart of speed against mean error. The speed is the number of simulated fields per second of
+/// computing time, on a logarithmic axis.
 ///
 /// The error covers the published figures that were not used to fit parameters. A line joins the best levels of
 /// modelling: no other level is both faster and more accurate.
@@ -41,8 +42,8 @@ const fn point_of(level: &SpeedAndError) -> ChartPoint {
     ChartPoint { at, interval: (f64::NAN, f64::NAN), is_hollow: false }
 }
 
-/// Returns a line through the levels that no other level exceeds in both speed and accuracy, starting with the fastest
-/// level. Returns `None` if there are fewer than two such levels.
+/// Returns a line through the best levels, starting with the fastest level. No other level is both faster and more
+/// accurate than one of these levels. Returns `None` if there are fewer than two best levels.
 fn front(levels: &[SpeedAndError]) -> Option<ChartSeries> {
     let mut sorted: Vec<&SpeedAndError> = levels.iter().collect();
     sorted.sort_by(|a, b| {
@@ -69,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn the_front_joins_what_nothing_beats() {
+    fn the_front_joins_the_points_that_no_other_point_dominates() {
         let at = |speed, error| SpeedAndError {
             name: String::new(),
             fields_per_host_second: speed,
@@ -84,7 +85,7 @@ mod tests {
     /// Tests the position of a point in a chart with a logarithmic axis. A factor of 10 is a third of the distance from
     /// 100 to 100,000.
     #[test]
-    fn a_tenth_of_the_speed_stands_a_power_further_left() {
+    fn a_tenth_of_the_speed_is_one_decade_further_left() {
         let place = |speed: f64| {
             let svg = level_chart(&[level("a", speed), level("b < c", 100.0), level("d", 1e5)]);
             assert!(svg.contains("b &lt; c, 2.0 %"));

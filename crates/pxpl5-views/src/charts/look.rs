@@ -7,25 +7,22 @@ use plotters::element::{Circle, Cross, TriangleMarker};
 use plotters::style::{Color, RGBColor, ShapeStyle};
 
 /// Colours that are distinguishable with any colour vision (Okabe and Ito 2008, with a darker yellow). If a chart has
-/// more series, their lines are dashed.
+/// more series than colours, the additional series have dashed lines.
 const COLOURS: [u32; 8] = [0x00_0000, 0xe6_9f00, 0x56_b4e9, 0x00_9e73, 0x00_72b2, 0xd5_5e00, 0xcc_79a7, 0xb8_a900];
 
 /// Lengths of dashes and gaps, in tenths of the height of text. `None` is a solid line.
 const DASHES: [Option<(u32, u32)>; 3] = [None, Some((5, 3)), Some((2, 3))];
 
-/// Colour, dashes and marker of a series.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
     place: usize,
     pub(super) colour: RGBColor,
-    /// Height of text in drawing units.
     pub(super) em: u32,
-    /// True if the marker is hollow. A hollow marker is a wide ring.
+    /// True if the marker is hollow. A hollow marker is drawn as a wide ring.
     is_hollow: bool,
 }
 
 impl Look {
-    /// Returns the look of the series with the index `place`, counted from 0.
     pub(super) fn of(place: usize, em: u32) -> Self {
         let [_, red, green, blue] = COLOURS[place % COLOURS.len()].to_be_bytes();
         Self { place, colour: RGBColor(red, green, blue), em, is_hollow: false }
@@ -39,14 +36,13 @@ impl Look {
         self.colour.stroke_width(self.em / 8)
     }
 
-    /// Returns the lengths of dashes and gaps, or `None` for a solid line.
     pub(super) fn dashes(&self) -> Option<(u32, u32)> {
         let dashes = DASHES[self.place / COLOURS.len() % DASHES.len()];
         dashes.map(|(on, off)| (on * self.em / 10, off * self.em / 10))
     }
 
-    /// Draws the marker of the series. Successive series have a disc, a triangle, a cross and a ring, then a disc
-    /// again.
+    /// Draws the marker of the series. The markers of successive series are a disc, a triangle, a cross and a ring, and
+    /// then repeat.
     pub(super) fn mark<B, C>(
         &self,
         area: &DrawingArea<B, C>,

@@ -1,9 +1,6 @@
-//! Bar chart of the parts of latency.
-
 use crate::markup::Element;
 use crate::svg::{Tenths, anchored, hint};
 
-/// Width of the chart in SVG units.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 76.0;
 const MARGIN: f64 = 4.0;
@@ -19,7 +16,7 @@ pub struct MeanPart {
     pub published: bool,
 }
 
-/// Returns the colour of a part of the latency. Waiting times are grey.
+/// Returns the colour of a part of the latency: grey for waiting times.
 pub(crate) fn colour_of_part(name: &str) -> &'static str {
     match name {
         "send" => "#7f7f7f",
@@ -108,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn the_frame_lies_around_what_is_published() {
+    fn in_the_chart_of_parts_the_frame_surrounds_the_published_values() {
         let svg = part_bar(&[part("send", 1.0, false), part("copy", 2.0, true), part("scan", 1.0, false)]);
         // 4 ms take 632 units, and the frame begins at unit 4.
         assert!(svg.contains(r#"<rect x="162.0" y="11" width="316.0""#), "{svg}");

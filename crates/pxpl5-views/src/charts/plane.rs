@@ -21,7 +21,7 @@ pub struct MarkedPoint {
     pub at: (f64, f64),
     /// Lower and upper end of the confidence interval. NaN means that there is no interval.
     pub interval: (f64, f64),
-    /// True for a hollow marker, which shows that the value cannot be compared with the other values.
+    /// True for a hollow marker. The point's value is then not comparable with the values of filled markers.
     pub is_hollow: bool,
 }
 
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_breaks_the_line() {
+    fn a_missing_value_breaks_the_line() {
         let points = vec![(0.0, 0.0), (1.0, 2.0), (2.0, f64::NAN), (3.0, 4.0), (4.0, 4.0)];
         let svg = curve_chart(&axes(), &[Curve { name: "slats".to_owned(), points }]);
         let courses = courses(&svg);
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_without_numbers_is_in_the_legend_alone() {
+    fn a_point_without_numbers_is_only_in_the_legend() {
         let point = |name: &str, up: f64| MarkedPoint {
             name: name.to_owned(),
             at: (10.0, up),

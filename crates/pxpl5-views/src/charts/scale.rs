@@ -76,7 +76,7 @@ impl Axis {
     }
 }
 
-/// Makes the axis usable in the crate `plotters`. The values that `plotters` receives are positions on the axis.
+/// Makes the axis usable in the crate `plotters`, which receives positions on the axis instead of values.
 impl Ranged for Axis {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_show_is_an_axis_all_the_same() {
+    fn an_axis_without_values_is_drawn() {
         for scale in [AxisScale::FromZero, AxisScale::Fitted, AxisScale::Decades, AxisScale::Names(Vec::new())] {
             let axis = Axis::reaching(&scale, std::iter::empty());
             assert!(axis.ends.0 < axis.ends.1, "{scale:?}");
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn names_stand_a_step_apart() {
+    fn on_an_axis_of_names_the_names_are_one_step_apart() {
         let names = AxisScale::Names(vec!["whole".to_owned(), "split".to_owned()]);
         let axis = Axis::reaching(&names, [0.0, 1.0].into_iter());
         assert_eq!((axis.ends, axis.label(1.0)), ((-0.5, 1.5), "split".to_owned()));

@@ -20,8 +20,7 @@ pub(super) fn speed(report: &Value) -> [Element; 2] {
     [heading("Speed of the emulation"), paragraph(text)]
 }
 
-/// Returns the number of fields per second of the emulated display, computed from the latency in fields and in
-/// milliseconds.
+/// Returns the emulated display's fields per second, computed from the latency in fields and in milliseconds.
 fn real_time(report: &Value) -> String {
     let fields = number(&report["latency_fields"]["mean"]);
     let ms = number(&report["latency_ms"]["mean"]);
@@ -42,7 +41,6 @@ fn value_row(key: &str, value: &str) -> Element {
     row([Element::new("th").text(key), Element::new("td").child(&code)])
 }
 
-/// Returns a value as text, or `None` for lists and statistics.
 fn shown(value: &Value) -> Option<String> {
     match value {
         Value::Array(all) if all.is_empty() || !all.iter().all(Value::is_string) => None,
@@ -72,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn a_host_without_a_clock_has_no_rate() {
+    fn a_run_without_a_known_host_time_has_no_rate() {
         let [_, text] = speed(&json!({"fields": 12, "host_seconds": null}));
         assert_eq!(text.to_string(), "<p>12 fields; the host time is not known.</p>");
     }

@@ -23,7 +23,6 @@ pub fn html(runs: &[PageRun]) -> String {
     page(std::iter::once(summary(runs)).chain(runs.iter().flat_map(sections)))
 }
 
-/// Returns a page that contains `sections`, the parts of all experiments.
 pub(super) fn page(sections: impl IntoIterator<Item = Element>) -> String {
     let mut body = Element::new("body");
     body.end_line();
@@ -47,7 +46,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn markup_in_a_report_is_text() {
+    fn markup_in_a_report_is_escaped() {
         let report = json!({"scene": "<script>", "latency_ms": {"definition": "<b>", "mean": 1.0, "sd": 0.0}});
         let page = html(&[PageRun { name: "<img src=x>".to_owned(), report, ..PageRun::default() }]);
         assert!(!page.contains("<script>") && !page.contains("<b>") && !page.contains("<img src=x>"));
@@ -55,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn a_head_has_its_stages_and_its_errors() {
+    fn the_page_of_a_run_with_a_head_shows_its_stages_and_its_errors() {
         let head = json!({"tracker": "T", "predictor": "P", "display": "vdrt", "end_to_end": {"total_ms": 76.5},
             "error": {"pixels": {"p99": 14.25}, "degrees": {"mean": 0.5}}});
         let page = html(&[PageRun { report: json!({"head": head}), ..PageRun::default() }]);
@@ -66,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_asks_for_nothing_from_outside() {
+    fn a_page_loads_nothing_from_outside() {
         let run = PageRun { timeline: Some(b"<svg/>".to_vec()), latencies_ms: vec![1.0], ..PageRun::default() };
         let page = html(&[run]);
         assert!(!page.contains("http://") && !page.contains("https://"));
@@ -75,7 +74,7 @@ mod tests {
 
     /// Tests that a page fits on a screen of 390 px. Tables and the timeline must scroll, and long words must break.
     #[test]
-    fn nothing_makes_a_page_wider_than_a_telephone() {
+    fn a_page_is_never_wider_than_a_telephone() {
         let report = json!({"scene": "x".repeat(200), "config_hash": "f".repeat(32), "latency_parts_ms": [{"name": "copy"}],
             "latency_ms": {"definition": "d".repeat(300), "mean": 1.0, "sd": 0.0},
             "head": {"tracker": "T", "end_to_end": {"total_ms": 76.5}, "error": {}}});

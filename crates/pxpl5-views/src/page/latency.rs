@@ -25,7 +25,6 @@ pub(super) fn latency(report: &Value, latencies_ms: &[f64]) -> Vec<Element> {
     all
 }
 
-/// Returns a note that states the number of pictures from which the statistics are computed.
 fn of_how_many(n: &Value) -> Option<Element> {
     match n.as_u64()? {
         0 => Some(paragraph("No complete picture was shown after the warm-up, so there is no latency.")),
@@ -34,7 +33,7 @@ fn of_how_many(n: &Value) -> Option<Element> {
 }
 
 /// Returns a table with the numbers of due pictures: shown, late, incomplete and so on. If the scene was too heavy for
-/// the pipeline, a prominent line states this.
+/// the pipeline, the result also has a prominent warning.
 pub(super) fn due(report: &Value) -> Vec<Element> {
     let heavy = report["too_heavy"]["advice"].as_str().map(|advice| {
         let [missed, due] = ["not_shown", "due"].map(|key| known(&report["too_heavy"][key]));
@@ -73,7 +72,6 @@ fn part_row(part: &Value) -> Element {
     ])
 }
 
-/// Returns a small square in the colour of a part of the latency.
 fn swatch(name: &str) -> Element {
     let colour = format!("background:{}", colour_of_part(name));
     Element::new("span").with("class", "swatch").with("style", colour).text("")
@@ -85,7 +83,6 @@ const STAGES: [&str; 7] = ["tracking", "waiting", "sending", "drawing", "showing
 const ERRORS: [&str; 2] = ["pixels", "degrees"];
 const PERCENTILES: [&str; 5] = ["mean", "p50", "p90", "p99", "max"];
 
-/// Returns the section about the latency from the head's pose until the picture is lit, for a run with a tracker.
 pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
     if head.is_null() {
         return Vec::new();

@@ -20,7 +20,6 @@ fn place_of(names: &StringRecord, wanted: &str) -> Option<usize> {
     names.iter().position(|name| name == wanted)
 }
 
-/// Converts a time in whole picoseconds to milliseconds.
 fn milliseconds(text: &str) -> Option<f64> {
     let ps: u64 = text.parse().ok()?;
     Some(ps as f64 * 1e-9)

@@ -1,5 +1,3 @@
-//! Page sections of one experiment.
-
 use super::configuration::{configuration, speed};
 use super::latency::{due, head_to_light, latency};
 use super::run::{PagePicture, PageRun};
@@ -45,7 +43,6 @@ fn figure(picture: &PagePicture) -> Element {
     Element::new("figure").child(&image("image/png", &picture.png, &about)).child(&caption)
 }
 
-/// Returns a picture that is embedded in the page.
 pub(super) fn image(kind: &str, bytes: &[u8], about: &str) -> Element {
     let source = format!("data:{kind};base64,{}", STANDARD.encode(bytes));
     Element::new("img").with("src", source).with("alt", about)

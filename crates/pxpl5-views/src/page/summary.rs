@@ -34,7 +34,6 @@ fn summary_row(run: &PageRun) -> Element {
     ])
 }
 
-/// Returns a text with the number of due pictures that were not shown, and the number of all due pictures.
 fn not_shown(report: &Value) -> String {
     match report["missed_retraces"].as_u64() {
         Some(missed) => format!("{missed} of {}", known(&report["due"]["due"])),
@@ -42,7 +41,7 @@ fn not_shown(report: &Value) -> String {
     }
 }
 
-/// Returns mean and standard deviation as text. For a single picture, the text has only the mean.
+/// Returns mean and standard deviation as text. For a single picture, the result has only the mean.
 fn spread(statistics: &Value) -> String {
     match statistics["sd"].as_f64() {
         Some(sd) => format!("{} ± {sd:.3}", decimal(&statistics["mean"], 3)),

@@ -48,7 +48,7 @@ fn section(of: &PageTable) -> Element {
     section.child(&heading("Pictures")).child(&Element::new("div").with("class", "pair").children(figures))
 }
 
-/// Returns a table cell with a text. Numbers are aligned to the right.
+/// Returns a table cell, aligned to the right if its text is a number.
 fn shown(text: &str) -> Element {
     if text == "-" || text.parse::<f64>().is_ok() { number_cell(text) } else { cell(text) }
 }
@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_of_tables_is_well_formed_and_its_text_is_text() {
+    fn a_page_of_tables_is_well_formed_with_escaped_text() {
         let of = PageTable {
             name: "<sweep>".to_owned(),
             about: vec!["a & b".to_owned()],

@@ -12,8 +12,8 @@ pub(super) fn utilisation(report: &Value) -> Vec<Element> {
     all
 }
 
-/// A kind of board in the report: its name on the page, then the two keys that lead to its fractions of busy time. The
-/// last element has further fractions of time, each as its key and its name on the page.
+/// A kind of board in the report: its name on the page, and the two keys that lead to its busy fractions. The list at
+/// the end has more fractions of time for this kind of board, each with its key and its name on the page.
 type Kind = (&'static str, [&'static str; 2], &'static [(&'static str, &'static str)]);
 
 const KINDS: [Kind; 4] = [
@@ -85,13 +85,13 @@ mod tests {
     }
 
     #[test]
-    fn a_report_without_the_block_has_no_section() {
+    fn a_report_without_utilisation_has_no_section() {
         assert!(utilisation(&json!({})).is_empty());
         assert!(utilisation(&json!({"utilisation": null, "critical_path": null})).is_empty());
     }
 
     #[test]
-    fn shares_stand_as_percent_with_the_busiest_board() {
+    fn shares_are_printed_as_percent_with_the_busiest_board() {
         let shares = json!({"mean": 0.47, "max": 1.0, "busiest": 3, "idle": 9});
         let report = json!({"utilisation": {"of_ms": 2002.0, "renderers": {"executing": shares, "copying": 0.125, "waiting": 0.4}}});
         let page = text(&utilisation(&report));
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_path_is_told_with_its_chain() {
+    fn the_critical_path_is_printed_with_its_links() {
         let part = json!({"resource": "backing_store", "share": 0.25, "ms": 3.5, "board": "renderer 2"});
         let report =
             json!({"critical_path": {"pictures": 24, "limited_by": "COPY", "parts": [part], "chain": ["a", "b"]}});

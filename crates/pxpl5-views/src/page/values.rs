@@ -1,10 +1,7 @@
-//! Formatting of report values for a page.
-
 use crate::markup::Element;
 use serde_json::Value;
 use std::fmt::Display;
 
-/// Returns a value as a number, or NaN if the value is not a number.
 pub(super) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }
@@ -19,7 +16,7 @@ pub(super) fn known(value: &Value) -> String {
     if value.is_null() { "-".to_owned() } else { plain(value) }
 }
 
-/// Returns a value as text. Strings are returned without quotes.
+/// Returns a value as text, and a string without its quotes.
 pub(super) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
@@ -41,7 +38,6 @@ pub(super) fn cell(text: impl Display) -> Element {
     Element::new("td").text(text)
 }
 
-/// Returns a table cell with a number, aligned to the right.
 pub(super) fn number_cell(text: impl Display) -> Element {
     Element::new("td").with("class", "n").text(text)
 }
@@ -62,7 +58,6 @@ pub(super) fn table(names: &[&str], rows: impl IntoIterator<Item = Element>) -> 
     wide(&table)
 }
 
-/// Returns an element that scrolls if its content is wider than the page.
 pub(super) fn wide(content: &Element) -> Element {
     Element::new("div").with("class", "wide").child(content)
 }

@@ -1,5 +1,3 @@
-//! The writer of all CSV files.
-
 use csv::WriterBuilder;
 
 /// Returns a table as CSV: a line of names and a line for each row. Lines end with a line feed. A value with a comma, a
@@ -30,13 +28,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quotes_are_doubled_and_stand_in_quotes() {
+    fn quotes_are_doubled_within_quotes() {
         let text = csv_table(["a"], [["say \"no\""], ["two\nlines"]]);
         assert_eq!(text, "a\n\"say \"\"no\"\"\"\n\"two\nlines\"\n");
     }
 
     #[test]
-    fn a_table_without_rows_has_its_names() {
+    fn a_table_without_rows_has_its_column_names() {
         assert_eq!(csv_table(["a", "b"], [] as [[&str; 2]; 0]), "a,b\n");
     }
 }

@@ -1,5 +1,3 @@
-//! The table of pictures as Parquet.
-
 use super::origin::origin;
 use super::pictures::{Column, SCHEMA, columns, rows};
 use parquet::basic::{Compression, Repetition, Type as PhysicalType};

@@ -16,8 +16,8 @@ fn as_text(row: Vec<Option<u64>>) -> Vec<String> {
     row.into_iter().map(|value| value.map_or_else(String::new, |value| value.to_string())).collect()
 }
 
-/// Returns the quantities of a run as CSV, with one line per quantity. A line has the value of the quantity and the
-/// definition of the quantity. The value is empty if the run has no such value.
+/// Returns the quantities of a run as CSV. Each line has the name, the value and the definition of one quantity. The
+/// value is empty if the run has no such value.
 #[must_use]
 pub fn quantities_csv(measures: &[Measure], results: &Results) -> String {
     let rows = measures.iter().map(|measure| {

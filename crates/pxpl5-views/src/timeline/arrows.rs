@@ -28,14 +28,14 @@ pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<
     arrows
 }
 
-/// A bar of a timeline with its row and its lane. Lanes divide a row in which bars overlap.
+/// A bar of a timeline with its row and its lane. If bars of a row overlap, the row is divided into lanes, one below
+/// the other.
 #[derive(Clone, Copy)]
 struct Located<'a> {
     place: DrawingPlace,
     bar: &'a Bar,
 }
 
-/// Returns the bars of the picture whose dependencies are drawn, each with its row and lane.
 fn located(timeline: &Timeline) -> Vec<Located<'_>> {
     let mut located = Vec::new();
     for (row, bars) in timeline.rows.iter().map(|row| &row.bars).enumerate() {
@@ -71,14 +71,13 @@ fn cause<'a>(bars: &[Located<'a>], bar: &Bar) -> Option<Located<'a>> {
     before.iter().find_map(|stage| of_stage(bars, *stage, bar.surface))
 }
 
-/// Returns the first bar of a stage whose work concerns `surface`.
 fn of_stage<'a>(bars: &[Located<'a>], stage: Stage, surface: Option<SurfaceId>) -> Option<Located<'a>> {
     let mut of_stage = bars.iter().filter(|located| located.bar.stage == stage);
     of_stage.find(|located| concerns(located.bar.surface, surface)).copied()
 }
 
-/// Returns true if two bars have a surface in common. `one` and `other` are the surfaces of the bars, and `None` stands
-/// for all surfaces.
+/// Returns true if two bars have a surface in common. `one` and `other` are the surfaces of the bars. `None` stands for
+/// all surfaces.
 fn concerns(one: Option<SurfaceId>, other: Option<SurfaceId>) -> bool {
     one.is_none() || other.is_none() || one == other
 }
@@ -93,8 +92,8 @@ fn is_sequel(first: &Bar, second: &Bar) -> bool {
 
 /// Returns the arrow from the bar of an earlier stage to the bar of a later stage.
 ///
-/// The later stage may begin before the end of the earlier stage, because the later stage needs only a part of the
-/// earlier stage's result. The arrow is then vertical.
+/// The later stage may begin before the earlier stage ends, because it needs only a part of the earlier stage's result.
+/// The arrow is then vertical.
 fn follow(earlier: Located<'_>, later: Located<'_>) -> Arrow {
     let from = earlier.place;
     let to = later.place;

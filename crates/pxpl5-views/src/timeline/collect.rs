@@ -1,5 +1,3 @@
-//! Builds a timeline from the observations of a run.
-
 use super::arrows::arrows;
 use super::model::{Timeline, TimelineRow, TimelineScan};
 use super::options::{MAX_FIELDS, TimelineOptions};
@@ -12,8 +10,8 @@ use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
 
-/// Divisor for the greatest overlap of two bars in one lane (a part of a row). Bars may overlap by the drawn time span
-/// divided by this number. If they overlap more, they get separate lanes.
+/// Divisor of the drawn time. Two bars that overlap by more than 1/300 of the drawn time get separate lanes (parts of a
+/// row).
 const TOUCHING: u64 = 300;
 
 /// Smallest number of display periods in a drawing, if the user gives no number.
@@ -74,13 +72,11 @@ fn chosen(pictures: &[PictureTimes], wanted: Option<PictureNumber>) -> Option<&P
     }
 }
 
-/// Returns the time at which the host began the SEND with the number `update`. Returns `None` if the host has no row.
 fn sent_at(rows: &[TimelineRow], update: Option<PictureNumber>) -> Option<Time> {
     let bar = rows.first()?.bars.iter().find(|bar| Some(bar.picture) == update)?;
     (bar.stage == Stage::Send).then_some(bar.begin)
 }
 
-/// Returns the range of the first display's periods in which the timeline begins and ends.
 fn periods(
     run: &SoFar<'_>,
     options: &TimelineOptions,

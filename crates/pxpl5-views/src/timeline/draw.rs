@@ -1,5 +1,3 @@
-//! Draws a timeline as SVG.
-
 use super::legend::legend;
 use super::model::{Arrow, Bar, DrawingPlace, Timeline, TimelineRow, TimelineScan};
 use super::style::{class_of, definitions, letters, pattern, style};
@@ -7,11 +5,10 @@ use crate::markup::Element;
 use crate::svg::{self, Units, caption, hint, rectangle, segment};
 use pxpl5_sim::{Span, Time};
 
-/// Width of the document, in SVG units.
 const WIDTH: i64 = 960;
 const LEFT: i64 = 172;
 const RIGHT: i64 = 14;
-/// Height of the space above the rows, in SVG units.
+/// Height of the space above the rows of the timeline, in SVG units.
 const HEAD: i64 = 84;
 const LANE: i64 = 34;
 const GAP: i64 = 18;
@@ -22,20 +19,18 @@ const FOOT: i64 = 84;
 const STRIP: i64 = 6;
 const SHOWN: i64 = 18;
 
-/// Smallest number of drawn retraces for which the axis omits the word `field`, because space is short.
+/// Number of drawn retraces from which the axis omits the word `field`, because space is short.
 const CROWDED: usize = 10;
 
-/// A timeline that is being drawn, with the vertical positions of its rows.
+/// A timeline while it is drawn, with the vertical positions of its rows.
 struct Drawing<'a> {
     timeline: &'a Timeline,
     out: Element,
-    /// Vertical position of the top of the tracker's row.
     tracker: i64,
     rows: Vec<i64>,
     beam: i64,
 }
 
-/// Texts around a timeline: the title, and the origin of the drawing.
 pub(super) struct Words {
     pub(super) title: String,
     pub(super) subtitle: String,
@@ -82,7 +77,6 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Returns the horizontal position of a time, limited to the range of the time axis.
     fn x(&self, time: Time) -> Units {
         let Timeline { from, to, .. } = self.timeline;
         let all = (*to - *from).0;
@@ -147,8 +141,8 @@ impl<'a> Drawing<'a> {
         self.out.add_line(&rectangle("row", [LEFT, top, WIDTH - LEFT - RIGHT, height].map(Units::whole)));
     }
 
-    /// Draws the pictures that a port shows, each from its swap to the next swap, below the data that the port
-    /// receives.
+    /// Draws the pictures that a port shows, below the data that the port receives. Each picture lasts from its swap to
+    /// the next swap.
     fn shown(&mut self, row: &TimelineRow, top: i64) {
         let y = Units::whole(top + LANE * row.lanes as i64);
         for shown in &row.shown {
@@ -260,7 +254,7 @@ impl<'a> Drawing<'a> {
         let mut from = self.low(arrow.from);
         let mut to = self.high(arrow.to);
         if to <= from {
-            // Within a row, or upwards between its lanes, an arrow begins and ends at half height.
+            // An arrow within a row, also upwards between the row's lanes, begins and ends at half the height of a bar.
             from = self.high(arrow.from) + Units::whole(LANE / 2);
             to = self.high(arrow.to) + Units::whole(LANE / 2);
         }
@@ -302,7 +296,6 @@ fn about(bar: &Bar, timeline: &Timeline) -> String {
     format!("{letters} of {}: {begin} to {end} ms ({span} ms)", bar.picture)
 }
 
-/// Returns a time in milliseconds with three decimals.
 fn milliseconds(time: Time) -> String {
     format!("{}.{:03}", time.0 / 1_000_000_000, time.0 / 1_000_000 % 1_000)
 }

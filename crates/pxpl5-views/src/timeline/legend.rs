@@ -1,5 +1,3 @@
-//! Legend of a timeline.
-
 use super::model::Timeline;
 use super::style::{HATCHED_SURFACE, PLAIN_SURFACE, STAGES, class_of};
 use crate::markup::Element;
@@ -48,7 +46,6 @@ fn surfaces(line: &mut Line<'_>, surfaces: &[Surface]) {
     }
 }
 
-/// A line of the legend, to which entries are added from left to right.
 struct Line<'a> {
     out: &'a mut Element,
     x: i64,
@@ -77,7 +74,7 @@ impl Line<'_> {
     }
 }
 
-/// Estimates the width of a text in SVG units. Capitals count as wider than other letters.
+/// Estimates the width of a text in SVG units. Capitals count as wider than small letters.
 fn width(text: &str) -> i64 {
     text.chars().map(|c| if c.is_uppercase() { 11 } else { 8 }).sum()
 }

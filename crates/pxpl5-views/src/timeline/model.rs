@@ -9,7 +9,7 @@ use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 /// Work on one stage of a picture, drawn as a bar in a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bar {
-    /// Stage of the work.
+    /// Stage of the pipeline to which the work belongs.
     pub stage: Stage,
     /// Number of the picture. If the host sends head poses (views) independently of pictures, a bar of SEND has the
     /// number of the view instead.
@@ -28,7 +28,7 @@ pub struct Bar {
     pub end: Time,
     /// Index of the bar's lane in its row, counted from the top. Lanes divide a row in which bars overlap.
     pub lane: usize,
-    /// Time spans in which the port received data. The list is empty for all stages except COPY.
+    /// Time spans in which the port of the surface received data. The list is empty for all stages except COPY.
     pub receiving: Vec<(Time, Time)>,
 }
 
@@ -39,7 +39,7 @@ pub struct TimelineRow {
     pub name: String,
     /// Bars for the work of the resource, in the order of their start.
     pub bars: Vec<Bar>,
-    /// Number of lanes into which the row is divided, which is the largest number of overlapping bars.
+    /// Number of lanes into which the row is divided: the largest number of bars that overlap at one time.
     pub lanes: usize,
     /// Pictures that the port of this row showed. The list is empty unless the row belongs to a port that swaps
     /// independently.
@@ -79,14 +79,14 @@ pub struct Timeline {
     pub surfaces: Vec<Surface>,
     /// Picture whose dependencies are drawn.
     pub picture: Option<PictureNumber>,
-    /// Number of the SEND whose head pose was used for the picture whose dependencies are drawn.
+    /// Number of the SEND that supplied the head pose for the picture in [`Timeline::picture`].
     pub update: Option<PictureNumber>,
     /// Dependencies of the picture in [`Timeline::picture`].
     pub arrows: Vec<Arrow>,
 }
 
 impl Timeline {
-    /// Returns true if a bar belongs to the picture whose dependencies are drawn.
+    /// Returns true if a bar belongs to the picture in [`Timeline::picture`].
     #[must_use]
     pub fn is_chosen(&self, bar: &Bar) -> bool {
         let number = if bar.stage == Stage::Send { self.update } else { self.picture };

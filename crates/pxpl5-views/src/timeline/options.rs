@@ -1,5 +1,3 @@
-//! Options of a timeline.
-
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 
 /// Options that select the part of a run to draw, and the rows of the drawing.
@@ -15,7 +13,7 @@ pub struct TimelineOptions {
     pub fields: Option<u64>,
     /// Title above the drawing.
     pub title: Option<String>,
-    /// True if the rows of the host and the tracker are left out.
+    /// True for a drawing without the rows of the host and the tracker.
     pub without_host: bool,
 }
 

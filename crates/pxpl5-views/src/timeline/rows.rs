@@ -10,7 +10,8 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
-/// Returns all rows of a run from top to bottom: the host's row first, and the row of the last surface at the end.
+/// Returns all rows of a run from top to bottom: host, graphics processors, renderers, surfaces, and ports that swap
+/// independently.
 pub(super) fn rows(run: &SoFar<'_>, stages: &[StageSpan], options: &TimelineOptions) -> Vec<TimelineRow> {
     let mut rows = Vec::new();
     if !options.without_host {
@@ -30,8 +31,6 @@ fn row(name: &str, mut bars: Vec<Bar>) -> TimelineRow {
     TimelineRow { name: name.to_owned(), bars, lanes: 1, shown: Vec::new() }
 }
 
-/// Returns the row of a port that swaps independently: the data that the port received and the pictures that the port
-/// showed.
 fn port_row(run: &SoFar<'_>, port: &DisplayPort) -> TimelineRow {
     let bars = copies(run, |arrival| arrival.target.frame_buffer == port.node);
     TimelineRow { shown: shown(run, port.node), ..row(&port.name, bars) }
@@ -60,7 +59,8 @@ fn has_many_surfaces(record: &Record) -> bool {
     record.surfaces().nth(1).is_some()
 }
 
-/// COPY bars of a row. The key of a bar has the number of its picture and the number of the part of this picture.
+/// COPY bars of a row. The key of a bar has two numbers. The first is the number of the copied picture. The second is 1
+/// for the second COPY of the picture, otherwise 0.
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
 /// Returns the COPY bars of a surface or a port. A picture has one bar, or two bars if the picture arrived in two
@@ -106,7 +106,7 @@ fn first_line(record: &Record, arrival: &Arrival) -> u32 {
     top * height / grid.height.max(1)
 }
 
-/// Marks each bar as the top or bottom half of its picture, if the surface received both halves one after the other.
+/// Marks each bar as the top or bottom half of its picture, if the surface received the halves one after the other.
 fn name_halves(parts: &mut Parts) {
     let bottoms: Vec<PictureNumber> =
         parts.keys().filter(|(_, part)| *part == 1).map(|(picture, _)| *picture).collect();

@@ -13,7 +13,6 @@ struct Colours {
     dark: &'static str,
 }
 
-/// All stages that have bars, with their names.
 pub(super) const STAGES: [(Stage, &str); 5] = [
     (Stage::Send, "SEND"),
     (Stage::Edit, "EDIT"),
@@ -22,8 +21,8 @@ pub(super) const STAGES: [(Stage, &str); 5] = [
     (Stage::Copy, "COPY"),
 ];
 
-/// Returns the colours of a stage. Their hues can be distinguished with common kinds of colour blindness. In grey,
-/// their lightness differs.
+/// Returns the colours of a stage. The hues of two stages can be distinguished with common kinds of colour blindness.
+/// In grey, the lightness of two stages differs.
 const fn colours(stage: Stage) -> Colours {
     match stage {
         Stage::Send => Colours { light: "#d9d9d9", dark: "#4d4d4d" },
@@ -34,7 +33,6 @@ const fn colours(stage: Stage) -> Colours {
     }
 }
 
-/// Returns the name of a stage for class names in the style sheet.
 pub(super) const fn class_of(stage: Stage) -> &'static str {
     match stage {
         Stage::Send => "send",

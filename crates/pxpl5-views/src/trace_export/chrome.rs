@@ -22,7 +22,7 @@ pub fn chrome(trace: &Trace, mut out: impl Write) -> io::Result<()> {
     out.flush()
 }
 
-/// Returns a time in microseconds as text with six decimals. The text is exact. A JSON library would round the number.
+/// Returns a time in microseconds as exact text with six decimals. A JSON library would round the number.
 fn us(ps: u64) -> String {
     format!("{}.{:06}", ps / 1_000_000, ps % 1_000_000)
 }

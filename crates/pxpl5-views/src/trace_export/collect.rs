@@ -1,5 +1,3 @@
-//! Builds tracks from the observations of a run.
-
 use super::flows::connect;
 use super::groups::{Group, groups, named};
 use super::model::{Events, Slice, Trace, Track};
@@ -51,7 +49,6 @@ impl Trace {
         self.tracks.push(Track { group, name: name.to_owned(), events });
     }
 
-    /// Adds the stages of a board and the messages at the board's ring port.
     fn port(&mut self, outcome: &Outcome, groups: &[Group], group: usize, node: NodeId) {
         self.stages(outcome, group, node);
         if display_ports(outcome.record()).iter().any(|port| port.node == node) {
@@ -117,7 +114,6 @@ impl Trace {
         }
     }
 
-    /// Adds the regions that arrive for a surface, and the swaps of this surface.
     fn regions(&mut self, outcome: &Outcome, group: usize, surface: SurfaceId) {
         let record = outcome.record();
         let message = record.message_span();
@@ -154,7 +150,6 @@ impl Trace {
     }
 }
 
-/// Returns the event of a stage, from its start to the time stamp of its end.
 fn ended(record: &Record, mark: &Mark, begin: Time) -> Slice {
     let surface = mark.surface.and_then(|id| record.surface(id));
     stage_slice(mark.stage, mark.picture, surface.map(|surface| surface.label), [begin, mark.time])
@@ -182,7 +177,6 @@ fn period_slice(display: &dyn Display, pictures: &[PictureTimes], period: Period
     Slice { name: format!("field {period}{shown}"), begin, end: display.tick(period.next()), picture, flow: None }
 }
 
-/// Returns the picture that the display shows in the period after a retrace.
 fn shown(pictures: &[PictureTimes], retrace: Time) -> Option<PictureNumber> {
     let after = pictures.partition_point(|times| times.shown_at <= retrace);
     after.checked_sub(1).map(|last| pictures[last].picture)

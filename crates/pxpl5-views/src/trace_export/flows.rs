@@ -9,7 +9,7 @@ use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
-/// Position of an event with a duration (slice): its start time, its track and its index in the track.
+/// Position of a slice, an event with a duration: its start time, its track and its index in the track.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Stop {
     begin: Time,
@@ -17,7 +17,6 @@ struct Stop {
     place: usize,
 }
 
-/// Connects the events of each shown picture by a flow (a chain of arrows).
 pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
     let updates = Updates::of(&outcome.so_far(), &outcome.stages());
     let sends = firsts(trace, &[Stage::Send]);
@@ -42,7 +41,8 @@ fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<PictureNumber, Vec<Stop>>
     let names: Vec<&str> = stages.iter().map(|stage| stage_name(*stage)).collect();
     for (stop, track, slice) in stops(trace).filter(|(_, track, _)| names.contains(track)) {
         let Some(picture) = slice.picture else { continue };
-        // Slices of COPY are named by region, so the track replaces the name: the first region of each surface counts.
+        // Slices of COPY have the names of regions. The name of the track is used instead, so only the first region of
+        // each surface counts.
         let name = if track == "COPY" { format!("COPY {}", stop.track) } else { slice.name.clone() };
         let first = all.entry((picture, name)).or_insert(stop);
         *first = stop.min(*first);
@@ -54,7 +54,7 @@ fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<PictureNumber, Vec<Stop>>
     pictures
 }
 
-/// Returns all events with a duration (slices), with their positions and the names of their tracks.
+/// Returns all slices (events with a duration), each with its position and the name of its track.
 fn stops(trace: &Trace) -> impl Iterator<Item = (Stop, &str, &Slice)> {
     trace.tracks.iter().enumerate().flat_map(|(track, it)| {
         let slices = if let Events::Slices(slices) = &it.events { &slices[..] } else { &[] };
@@ -63,7 +63,6 @@ fn stops(trace: &Trace) -> impl Iterator<Item = (Stop, &str, &Slice)> {
     })
 }
 
-/// Returns the first period that shows each picture.
 fn first_shown(trace: &Trace) -> BTreeMap<PictureNumber, Stop> {
     let mut periods = BTreeMap::new();
     for (stop, _, slice) in stops(trace).filter(|(_, track, _)| *track == "displayed") {

@@ -37,7 +37,6 @@ fn numbered(name: &str, nodes: &[NodeId]) -> impl Iterator<Item = Group> {
     nodes.iter().enumerate().map(move |(i, node)| Group::of_port(format!("{name} {i}"), *node))
 }
 
-/// Returns the groups of a display. If a surface has its own port, surface and port form one group.
 fn of_display(record: &Record, display: &dyn Display, surfaces: &[(SurfaceId, &Surface)]) -> Vec<Group> {
     let nodes = display.nodes();
     let paired = nodes.len() == surfaces.len();

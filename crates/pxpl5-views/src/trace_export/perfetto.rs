@@ -5,7 +5,7 @@ use super::protobuf::Message;
 use pxpl5_sim::Time;
 use std::io::{self, Write};
 
-/// Numbers of members and of enumerators from the published `.proto` files.
+/// Numbers of fields and of enumerators from the published `.proto` files.
 mod proto {
     pub(super) const TRACE_PACKET: u32 = 1;
     pub(super) const PACKET_TIMESTAMP: u32 = 8;
@@ -40,7 +40,7 @@ mod proto {
 }
 use proto::*;
 
-/// Identifier of the sequence of packets. All packets have the same number, because a trace has a single writer.
+/// Identifier of the sequence of packets. All packets are in one sequence, because a trace has a single writer.
 const SEQUENCE: u64 = 1;
 
 /// Writes a trace in the Perfetto format.
@@ -120,7 +120,6 @@ fn track_descriptor(trace: &Trace, number: usize, track: &Track) -> Message {
     }
 }
 
-/// Returns an event on a track. `kind` is the number of the kind of event in the Perfetto format.
 fn event(kind: u64, track: u64) -> Message {
     Message::default().number(EVENT_TYPE, kind).number(EVENT_TRACK, track)
 }
@@ -139,7 +138,7 @@ fn counted(track: u64, value: i64) -> Message {
     event(COUNTER, track).number(EVENT_COUNTER_VALUE, value.cast_unsigned())
 }
 
-/// Returns the two Perfetto events that mark the start and the end of a slice (an event with a duration).
+/// Returns the two Perfetto events that mark the start and the end of a slice, which is an event with a duration.
 fn ends(track: u64, slice: &Slice) -> [(u64, Message); 2] {
     [(ns(slice.begin), begin(track, slice)), (ns(slice.end), event(SLICE_END, track))]
 }

@@ -1,6 +1,5 @@
 //! An encoder for Protocol Buffers, limited to the wire types that a trace needs.
 
-/// An encoded message that is being written.
 #[derive(Debug, Default)]
 pub(super) struct Message(pub(super) Vec<u8>);
 
@@ -17,16 +16,14 @@ impl Message {
         self.raw(u64::from(field) << 3 | wire_type);
     }
 
-    /// Appends a member of the message that holds an unsigned number or an enumerator. `field` is the number of the
-    /// member.
+    /// Appends an unsigned number or an enumerator as the message's field with the number `field`.
     pub(super) fn number(mut self, field: u32, value: u64) -> Self {
         self.tag(field, 0);
         self.raw(value);
         self
     }
 
-    /// Appends a member of the message that holds eight bytes. The least significant byte comes first. `field` is the
-    /// number of the member.
+    /// Appends eight bytes as the message's field with the number `field`. The least significant byte comes first.
     pub(super) fn fixed64(mut self, field: u32, value: u64) -> Self {
         self.tag(field, 1);
         self.0.extend(value.to_le_bytes());
@@ -54,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_examples_of_the_published_encoding_come_out() {
+    fn the_examples_of_the_published_encoding_are_encoded() {
         // The expected bytes are examples of the wire format's description: field 1 = 150, and field 2 = "testing".
         assert_eq!(Message::default().number(1, 150).0, [0x08, 0x96, 0x01]);
         let testing = [0x12, 0x07, 0x74, 0x65, 0x73, 0x74, 0x69, 0x6e, 0x67];

@@ -1,4 +1,4 @@
-//! Slices (events with a duration) of stages, messages and regions.
+//! Slices, which are events with a duration, for stages, messages and regions.
 
 use super::model::Slice;
 use pxpl5_gp::Stage;
@@ -6,7 +6,6 @@ use pxpl5_machine::{Arrival, Transfer};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 
-/// Returns the name of a stage as used in the papers.
 pub(super) const fn stage_name(stage: Stage) -> &'static str {
     match stage {
         Stage::Sample => "SAMPLE",
@@ -19,21 +18,21 @@ pub(super) const fn stage_name(stage: Stage) -> &'static str {
     }
 }
 
-/// Returns the slice (event with a duration) of a picture's stage. `label` names the surface for which the stage works,
-/// and `None` stands for all surfaces.
+/// Returns the slice for a stage of a picture. A slice is an event with a duration. `label` names the surface for which
+/// the stage works, and `None` stands for all surfaces.
 pub(super) fn stage_slice(stage: Stage, picture: PictureNumber, label: Option<&str>, [begin, end]: [Time; 2]) -> Slice {
     let surface = label.map_or_else(String::new, |label| format!(" {label}"));
     let name = format!("{} {picture}{surface}", stage_name(stage));
     Slice { name, begin, end, picture: Some(picture), flow: None }
 }
 
-/// Returns the slice (event with a duration) of a message. `toward` names the sender or the receiver.
+/// Returns the slice for a message. A slice is an event with a duration. `toward` names the sender or the receiver.
 pub(super) fn message_slice(transfer: &Transfer, toward: &str) -> Slice {
     let name = format!("{} words {toward}", transfer.words);
     Slice { name, begin: transfer.begin, end: transfer.end, picture: None, flow: None }
 }
 
-/// Returns the slice (event with a duration) of a region during its transfer to a surface. `message` is the duration of
+/// Returns the slice (event with a duration) for the transfer of a region to a surface. `message` is the duration of
 /// one ring message with a part of the region.
 pub(super) fn region_slice(arrival: &Arrival, message: Span) -> Slice {
     Slice {
@@ -45,8 +44,8 @@ pub(super) fn region_slice(arrival: &Arrival, message: Span) -> Slice {
     }
 }
 
-/// Sorts slices (events with a duration) by time. A slice that overlaps the previous slice is shortened to begin at the
-/// previous slice's end.
+/// Sorts slices (events with a duration) by time. If a slice overlaps the previous slice, it begins at the previous
+/// slice's end instead.
 pub(super) fn apart(slices: impl Iterator<Item = Slice>) -> Vec<Slice> {
     let mut slices: Vec<Slice> = slices.collect();
     slices.sort_by_key(|slice| (slice.end, slice.begin));

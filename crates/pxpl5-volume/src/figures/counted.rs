@@ -10,7 +10,6 @@ use spatialgl::{
     SpatialDisplay, SweptDisplay, Tiling, Topology, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
 };
 
-/// Returns all figures of the SpatialGL paper that are counted or measured.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let mut rows = passes(workers)?;
@@ -22,8 +21,8 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingEr
 }
 
 /// Width and height in pixels of the small slices on which passes are counted. At the rim, the exact volume of such a
-/// slice is thicker than a pixel. The tapered clip needs this, because it is a pixel thick at the axis and becomes
-/// thicker towards the rim.
+/// slice is thicker than a pixel. The tapered clip needs such slices, because its volume is a pixel thick at the axis
+/// and becomes thicker towards the rim.
 const SMALL: u64 = 192;
 
 /// Returns figure P5: the number of draws of one triangle per slice, without bins.
@@ -46,7 +45,6 @@ fn passes(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     published.into_iter().map(count).collect()
 }
 
-/// Returns the draw call of the triangle [`TRIANGLE`], scaled to slices of [`SMALL`] pixels.
 fn small_triangle() -> Result<CommandBuffer, SettingError> {
     let scale = SMALL as f64 / PerspectaConfig::PAPERS.width as f64;
     let corner = |corner: [f64; 3]| ColouredVertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);
@@ -81,8 +79,9 @@ fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<FigureRo
 }
 
 /// Returns figures D1, D2 and D5, computed from the matrices of the views and the instants of the strobes (flashes). D1
-/// is the angle between neighbouring slices. D2 is the number of distinct planes, and how often per second each plane
-/// is shown. D5 is the distance between the same pixel of neighbouring slices at the rim.
+/// is the angle between neighbouring slices. D2 has two numbers: the number of distinct planes, and the number of times
+/// per second that each plane is shown. D5 is the distance at the rim between a pixel of one slice and the same pixel
+/// of the next slice.
 fn planes(views: &[SliceView]) -> Vec<FigureRow> {
     let across = |k: usize| views[k].view.transpose().x_axis.truncate();
     let angle = |k: usize| {
@@ -91,7 +90,7 @@ fn planes(views: &[SliceView]) -> Vec<FigureRow> {
     };
     // D1: the angle between neighbouring slices.
     let pitch = (0..views.len() - 1).map(angle).fold(0.0, f64::max);
-    // D2: after how many slices the plane of slice 0 comes again, and how many planes are distinct.
+    // D2: the number of slices after which the plane of slice 0 occurs again, and the number of distinct planes.
     let mut distinct: Vec<_> = views.iter().map(plane).collect();
     let again = distinct.iter().skip(1).position(|other| *other == distinct[0]).map_or(0, |k| k as u64 + 1);
     distinct.sort_unstable();
@@ -144,8 +143,8 @@ fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// Number of steps on a circle around the axis. The circle is tested in the middle of each step, so no tested point
-/// lies in a plane between bins.
+/// Number of equal arcs into which a circle around the axis is divided. The middle of each arc is tested. No middle
+/// lies exactly on a plane that separates bins.
 const STEPS: u32 = 3_600;
 
 /// Returns figure P14: for each region, the number of planes that bound the region. Two conditions make a plane a

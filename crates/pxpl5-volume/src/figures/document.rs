@@ -42,7 +42,7 @@ fn head(text: &mut String, figures: &VolumeFigures) {
          The SpatialGL paper prints no times, rates or speed-ups. The times that `pxpl5 volume run` prints come from a model of a\n\
          computer of 2005.\n\n\
          The table has only rows for which the code could have produced another value. The section \"Definitions\" lists the\n\
-         inputs of the model and the numbers that follow from these inputs by arithmetic. The model meets {met} of {} rows.\n\n",
+         inputs of the model and the numbers that follow from these inputs by arithmetic. The model reproduces {met} of the {} rows.\n\n",
         figures.figures.len()
     );
 }
@@ -159,7 +159,6 @@ fn pictures(text: &mut String) {
     );
 }
 
-/// Writes the assumed values of the numbers that the SpatialGL paper does not give, with their ranges.
 fn numbers(text: &mut String) {
     let _ = write!(
         text,

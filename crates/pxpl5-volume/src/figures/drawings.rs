@@ -36,7 +36,6 @@ const FEW_SLICES: u64 = 12;
 const DARK: Rgb<u8> = Rgb([16, 16, 24]);
 const LIT: Rgb<u8> = Rgb([240, 200, 80]);
 
-/// Distinct colours for neighbouring slices and regions.
 const COLOURS: [[u8; 3]; 8] = [
     [230, 159, 0],
     [86, 180, 233],
@@ -134,9 +133,11 @@ fn plan(clip: ClipKind) -> Result<RgbImage, SettingError> {
     }))
 }
 
-/// Draws the disc of a display seen from above, to show the signs of the distances from the boundary planes of a slice.
-/// Points are red on the positive side of the first plane, and green on the positive side of the second plane. The half
-/// of the double wedge with two positive signs is yellow, and the half with two negative signs is dark.
+/// Draws the disc of a display seen from above, to show the volume of one slice.
+///
+/// Two vertical planes through the axis bound a slice. Between the planes lie two opposite wedges (a double wedge).
+/// Points are red on the positive side of the first plane, and green on the positive side of the second plane. So the
+/// wedge on the positive side of both planes is yellow, and the opposite wedge is dark.
 fn orientation() -> Result<RgbImage, SettingError> {
     let display = few(ClipKind::Exact)?;
     let spatialgl::SliceVolume::Wedge(planes, _) = display.views()[1].volume else {

@@ -19,7 +19,6 @@ pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150
 /// triangle (derived from the area of the intersection).
 const SLICE: usize = 13;
 
-/// Returns all figures of the SpatialGL paper that are measured on single slices.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let frame = draw(&exact, workers)?;
@@ -88,9 +87,9 @@ fn percent(total: usize, agreeing: usize) -> f64 {
     100.0 * agreeing as f64 / total as f64
 }
 
-/// Returns figures P3 and P4. P3 is the percentage of grid points whose bin code agrees with the printed rule. P4 is
-/// the percentage of grid points at which the clip agrees with the printed sign of the product of distances. There are
-/// two rows for P4, with the normals of the left and of the right part of the SpatialGL paper's figure 5.
+/// Returns figures P3 and P4. P3 is the percentage of grid points whose bin code agrees with the rule in the SpatialGL
+/// paper. P4 is the percentage of grid points at which the clip agrees with the paper's sign of the product of
+/// distances. There are two rows for P4, with the normals of the left and of the right part of the paper's figure 5.
 fn signs() -> Vec<FigureRow> {
     let layout = BinLayout::double_wedges(0.0);
     let rule = |plane: &[f64; 4], p: [f64; 3]| plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] >= 0.0;
@@ -110,9 +109,9 @@ fn signs() -> Vec<FigureRow> {
     ]
 }
 
-/// Returns true if slice 50 agrees with the printed rule at a point. By the rule, the slice contains the point if and
-/// only if the product of the signed distances is positive. With `orientation` -1 the second normal is reversed, and
-/// the product must be negative.
+/// Returns true if slice 50 agrees at a point with the rule in the SpatialGL paper. By this rule, the slice contains
+/// the point if and only if the product of the signed distances is positive. With `orientation` -1 the second normal is
+/// reversed, and the product must be negative.
 fn agrees(p: [f64; 3], orientation: f64) -> bool {
     let (sin, cos) = spatialgl::sin_cos_of_turn(99, 792);
     let (next_sin, next_cos) = spatialgl::sin_cos_of_turn(101, 792);

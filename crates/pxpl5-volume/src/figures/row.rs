@@ -35,8 +35,8 @@ pub struct MeasuredScene {
     pub bytes: [u64; 3],
     /// Modelled times of one volume in milliseconds: processor, GPU, bus.
     pub model_ms: [f64; 3],
-    /// Volumes per second of the model if processor, GPU and bus work one after the other, and if they work at the same
-    /// time.
+    /// Volumes per second of the time model in two cases: processor, GPU and bus work one after the other, or at the
+    /// same time.
     pub volumes_hz: [f64; 2],
     /// Hash of all bits of the volume.
     pub volume_hash: String,

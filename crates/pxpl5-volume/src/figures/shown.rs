@@ -25,8 +25,8 @@ pub struct ShownStatement {
     pub holds: bool,
 }
 
-/// Tests all statements of the paper that have no numbers. If a statement needs a scene, the test uses the first of
-/// `scenes`.
+/// Tests all statements of the SpatialGL paper that have no numbers. If a statement needs a scene, the test uses the
+/// first of `scenes`.
 pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<ShownStatement>, SettingError> {
     let mut shown = vec![dead_zone(), dilation()];
     if let Some(scene) = scenes.first() {
@@ -40,7 +40,7 @@ pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Sh
     Ok(shown)
 }
 
-/// Compares the lit pixels of the prism with the lit pixels of the exact clip, in rings of 8 px.
+/// Compares the lit pixels with the prism clip and with the exact clip, in rings of 8 px around the axis.
 fn prism(scene: &Scene, workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let rings = |clip| {
         let volume = Volume::draw(&VolumeSettings { clip, ..plain() }, scene, workers)?;
@@ -135,7 +135,7 @@ fn recording(vertices: Vec<spatialgl::ColouredVertex>, indices: &[u32]) -> Resul
 /// px. Every slice intersects equal facets, so all slices have the same gaps in an orthographic projection.
 fn noise(workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let likeness = |projection| {
-        // As many facets around the sphere as slices make the gaps of all slices equal.
+        // If the sphere has as many facets around it as there are slices, the gaps of all slices are equal.
         let (vertices, indices) = tessellated_sphere(glam::DVec3::ZERO, 300.0, 198, [255; 3]);
         let settings = VolumeSettings { projection, ..VolumeSettings::paper() };
         let volume = Volume::draw_commands(&settings, "sphere", recording(vertices, &indices)?, workers)?;
@@ -160,7 +160,7 @@ fn limits(volume: &Volume) -> ShownStatement {
     let size = volume.frame.planes.size();
     let time = volume.time();
     let unpacked = model.unpacked(stats, size);
-    // A volume with draws alone gives the time of the vertices, and the rest is fill.
+    // The time of a volume with draws alone is the time of the vertices. The remaining time is fill.
     let vertices_only = VolumeStats { draws: stats.draws, ..VolumeStats::default() };
     let vertices_ms = model.unpacked(&vertices_only, size).gpu_ms;
     let fill_ms = unpacked.gpu_ms - vertices_ms;

@@ -36,12 +36,13 @@ pub struct SliceBounds {
     pub copies: u64,
 }
 
-/// The time of each part for certain numbers of boards. Each of these times is a lower bound of the time for a volume.
+/// The time that each part of a machine with certain numbers of boards needs for a volume. Each of these times is a
+/// lower bound of the time for the volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BoundRow {
-    /// Number of renderers that share the slices.
+    /// Number of renderers among which the slices are divided.
     pub renderers: u64,
-    /// Number of graphics processors that share the triangles.
+    /// Number of graphics processors among which the triangles are divided.
     pub processors: u64,
     /// Times in milliseconds: renderers, ring (both directions), the display's port, processors.
     pub ms: [f64; 4],

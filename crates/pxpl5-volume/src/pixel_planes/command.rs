@@ -38,7 +38,6 @@ pub struct SliceTriangle {
     pub colour: [Linear; 3],
 }
 
-/// Number of steps of the sub-pixel grid per pixel.
 const STEPS: f64 = (1 << SUBPIXEL_BITS) as f64;
 
 /// Largest coefficient of the clip function (a hyperbola), in units of the last fraction bit. Double precision cannot

@@ -5,7 +5,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_renderer::isa::{ArrayInstruction, Operand, Test};
 use pxpl5_wire::Word;
 
-/// Number of bits of a dither threshold, the same as of a colour channel.
+/// Number of bits of a dither threshold. A colour channel has the same number of bits.
 const THRESHOLD_BITS: u8 = 8;
 
 /// Returns the location of the threshold in pixel memory: the first bits of the scratch memory. Clears and slice
@@ -52,7 +52,7 @@ pub fn halftone_clocks(layout: &Layout) -> u64 {
     halftone_program(layout).iter().map(|instruction| u64::from(instruction.clocks())).sum()
 }
 
-/// Returns the ring words of the halftone program: 3 x (1 + 2 + 1) = 12 words.
+/// Returns the number of words that the halftone program has on the ring: 3 x (1 + 2 + 1) = 12.
 #[must_use]
 pub fn halftone_words(layout: &Layout) -> Vec<Word> {
     let mut words = Vec::new();

@@ -13,7 +13,7 @@ use spatialgl::{Combine, HalfWedge, SliceImage, SliceRenderer, SliceStats, Slice
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
-/// A model of the pixel array, with which slices are drawn.
+/// The model of the pixel array that draws the slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrayKind {
     /// The fast array, which computes with whole numbers instead of single bits, and only for the pixels that a command
@@ -43,7 +43,7 @@ pub struct RendererWork {
 }
 
 /// A renderer of slices with a hyperbolic clip and an orthographic projection. If several triangles cover a pixel, the
-/// last triangle determines its colour.
+/// last triangle determines the colour of the pixel.
 ///
 /// A pixel counts as drawn if its colour is not black, because the arrays have no stencil.
 #[derive(Debug)]
@@ -56,7 +56,7 @@ pub struct PixelPlanesRenderer {
     loads: Mutex<HashMap<ViewKey, SliceLoad>>,
 }
 
-/// The work that a slice gives to a renderer.
+/// The work of a renderer for one slice.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SliceLoad {
     /// Number of triangles that can have pixels in the slice.
@@ -154,7 +154,6 @@ impl PixelPlanesRenderer {
         spatialgl::SliceClip::Hyperbolic(self.bias).reach(self.wedge) + 1e-6
     }
 
-    /// Executes the commands of a region on an array and draws the resulting colours into the image.
     fn region(&self, [left, top]: [u32; 2], placed: &[Placed], image: &mut SliceImage) -> RendererWork {
         let [width, height] = image.size();
         let within = [REGION_SIZE.min(width - left), REGION_SIZE.min(height - top)];
@@ -177,7 +176,6 @@ impl PixelPlanesRenderer {
         }
         let (clocks, colours) = self.execute(&words, within);
         work.clocks = clocks + halftone_clocks(&self.layout);
-        // Draw every pixel that is not black.
         for (at, colour) in (0u32..).zip(colours.iter()).filter(|(_, colour)| **colour != 0) {
             let [_, red, green, blue] = colour.to_be_bytes();
             image.draw_pixel(left + at % within[0], top + at / within[0], [red, green, blue], Combine::Last);
@@ -192,8 +190,8 @@ impl PixelPlanesRenderer {
         }
     }
 
-    /// Returns the clocks of a region without triangles. The renderer also selects, clears and halftones an empty
-    /// region.
+    /// Returns the number of clocks for a region without triangles. The renderer also selects, clears and halftones an
+    /// empty region.
     fn empty_clocks(&self) -> u64 {
         self.clocks(CommandKind::SelectRegion) + self.clocks(CommandKind::Clear) + halftone_clocks(&self.layout)
     }
@@ -207,8 +205,8 @@ impl PixelPlanesRenderer {
     }
 }
 
-/// Executes a list of commands and returns its clocks and colours. This crate made the commands, so every command is
-/// valid.
+/// Executes a list of commands, and returns the number of clocks and the colours. This crate made the commands, so
+/// every command is valid.
 fn run(array: &mut impl PixelArray, words: &[Word], width: u32, height: u32) -> (u64, std::sync::Arc<[Word]>) {
     let clocks = array.execute(words).expect("pxpl5-volume: commands of our own").clocks;
     (clocks, array.read_colour(width, height))

@@ -43,9 +43,9 @@ use std::sync::Arc;
 /// The result of simulating one volume on a machine with certain numbers of boards.
 #[derive(Clone, Debug, Serialize)]
 pub struct SimulatedRow {
-    /// Number of renderers that share the slices.
+    /// Number of renderers among which the slices are divided.
     pub renderers: u64,
-    /// Number of graphics processors that share the slices.
+    /// Number of graphics processors among which the slices are divided.
     pub processors: u64,
     /// Time from the start of the first command to the arrival of the last tile, in milliseconds.
     pub ms: f64,
@@ -94,7 +94,6 @@ enum Event {
     Made(usize),
 }
 
-/// A graphics processor, with the slices whose commands it still has to compute.
 #[derive(Debug, Default)]
 struct Processor {
     slices: VecDeque<usize>,
@@ -368,8 +367,8 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Requests a swap of the display's stores, and shows the volume at the first strobe 0 (first flash of a turn)
-    /// after the last tile.
+    /// Requests a swap of the display's stores. The volume is shown at the first strobe 0 (first flash of a turn) after
+    /// the arrival of the last tile.
     fn swap(&mut self) {
         let body = Body::Words(swap_request(1));
         self.deliver(self.last_tile_at, body);
@@ -418,9 +417,8 @@ fn words_of(body: &Body) -> u32 {
     if let Body::Words(words) = body { words.len() as u32 } else { 0 }
 }
 
-/// Returns the renderer's times for drawing slices. The programs for slices use the codes of other commands, so these
-/// codes get the times of the programs for slices. A slice triangle takes the place of a triangle, and a halftone takes
-/// the place of deferred shading.
+/// Returns the renderer's times for drawing slices. A slice triangle has the command code of a triangle, and a halftone
+/// has the code of deferred shading. Both codes therefore get the times of the programs for slices.
 fn slice_timing(layout: &Layout) -> RendererTiming {
     RendererTiming {
         triangle_clocks: u64::from(SliceTriangle::clocks(layout)),

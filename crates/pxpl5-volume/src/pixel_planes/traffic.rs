@@ -1,4 +1,5 @@
-//! The ring messages of a volume: the commands of every region of every slice, and the resulting packed tiles.
+//! The ring messages of a volume: the commands for every region of every slice, and the packed tiles that renderers
+//! send.
 
 use super::renderer::{PixelPlanesRenderer, SliceLoad};
 use pxpl5_wire::{REGION_SIZE, Word};
@@ -10,11 +11,9 @@ use std::sync::Arc;
 /// because the machine has no occlusion query.
 #[derive(Clone, Debug)]
 pub struct SliceTraffic {
-    /// Width and height of a slice, pixels.
     pub(super) size: Size,
     /// Maps of the tiles that will be sent, one message each.
     pub(super) maps: Vec<Arc<[Word]>>,
-    /// Messages of each slice, in the order of the slices.
     pub(super) slices: Vec<SliceMessages>,
 }
 

@@ -1,5 +1,3 @@
-//! The instant for which the view of a picture is predicted.
-
 use pxpl5_sim::Time;
 use serde::{Deserialize, Serialize};
 
@@ -15,8 +13,10 @@ pub struct LightTimes {
     pub last: Time,
 }
 
-/// The instant for which the view of a picture is predicted. All pipelines use the same choice. The instant follows
-/// from the [`LightTimes`] of the picture, the times at which the display shows it.
+/// The instant for which the view of a picture is predicted.
+///
+/// All pipelines use the same choice. The instant follows from the [`LightTimes`] of the picture, the times at which
+/// the display shows the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aim {
@@ -61,14 +61,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_aim_is_the_instant_that_its_name_says() {
+    fn every_aim_is_the_time_in_its_name() {
         let shown = LightTimes { tick: Time(10), first: Time(20), last: Time(41) };
         let instants = Aim::ALL.map(|(name, aim)| (name, aim.instant(&shown).0));
         assert_eq!(instants, [("middle", 30), ("first-pixel", 20), ("last-pixel", 41), ("retrace", 10)]);
     }
 
     #[test]
-    fn it_is_written_as_on_the_command_line() {
+    fn an_aim_is_printed_as_on_the_command_line() {
         for (name, aim) in Aim::ALL {
             assert_eq!(aim.to_string(), name);
             assert_eq!(serde_json::to_string(&aim).expect("a name"), format!("\"{name}\""));

@@ -1,5 +1,3 @@
-//! Configuration of displays: their parameters and their construction.
-
 use crate::NodeId;
 use crate::display::Display;
 use pxpl5_sim::parameters::{ParameterTable, SettingError};
@@ -92,7 +90,6 @@ impl Clone for Box<dyn DisplayConfig> {
     }
 }
 
-/// Returns all parameters of the tables with their values, in order.
 fn values(tables: Vec<(&'static str, &dyn ParameterTable)>) -> Vec<pxpl5_sim::parameters::Entry> {
     tables.into_iter().flat_map(|(_, table)| table.entries()).collect()
 }

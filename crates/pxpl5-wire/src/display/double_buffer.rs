@@ -5,7 +5,6 @@ use image::{Rgb, RgbImage};
 use pxpl5_sim::Time;
 use std::collections::BTreeMap;
 
-/// A region of which at least one message has arrived.
 #[derive(Clone, Debug)]
 struct PartialRegion {
     pixels: RegionPixels,
@@ -24,7 +23,9 @@ impl PartialRegion {
 
 type Regions = BTreeMap<RegionId, PartialRegion>;
 
-/// Two buffers for one surface. One of the buffers is shown.
+/// Two buffers for one surface.
+///
+/// One of the buffers is shown.
 ///
 /// **Not modelled:** pixels that arrive in the shown buffer during the scan. A display that models such pixels must
 /// keep the arrival times of all messages, like the NTSC frame buffer.
@@ -178,7 +179,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn a_request_takes_effect_at_a_tick_after_it_and_not_at_its_own_instant() {
+    fn a_request_takes_effect_only_at_a_later_tick() {
         let mut buffers = DoubleBuffer::new(640, 480);
         buffers.receive(Body::Words(swap_request(1)), Time(100));
         assert_eq!(buffers.swap(Time(100)), None);
@@ -187,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_third_buffer_is_a_fault() {
+    fn a_swap_request_for_a_third_buffer_is_a_fault() {
         let mut buffers = DoubleBuffer::new(640, 480);
         let receipt = buffers.receive(Body::Words(swap_request(2)), Time(1));
         assert!(matches!(receipt, BufferReceipt::Fault));
@@ -223,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_region_is_there_with_its_last_message_and_a_newer_one_takes_its_place() {
+    fn a_region_is_complete_with_its_last_message_and_replaced_by_a_newer_one() {
         let mut buffers = DoubleBuffer::new(100, 60);
         for (picture, colour) in [(1, 0x0010_2030), (2, 0x0040_5060)] {
             assert!(matches!(receive(&mut buffers, part(0, 1, picture, colour), 10 * picture), BufferReceipt::Part));
@@ -241,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_begun_and_not_ended_gives_way_to_the_next_picture() {
+    fn an_incomplete_region_is_replaced_by_the_next_picture() {
         let mut buffers = DoubleBuffer::new(100, 60);
         receive(&mut buffers, part(0, 0, 1, 1), 1);
         receive(&mut buffers, part(0, 0, 2, 2), 2);
@@ -254,7 +255,8 @@ mod tests {
         let mut buffers = DoubleBuffer::new(100, 60);
         receive(&mut buffers, part(0, 0, 1, 1), 1);
         let wrong = [
-            // A repeated message, a wrong number of messages, and a message, a buffer and a region that do not exist.
+            // Invalid messages: a repeated message, a wrong number of messages, and a message, a buffer and a region
+            // that do not exist.
             part(0, 0, 1, 1),
             RegionPixels { parts: 3, ..part(0, 1, 1, 1) },
             part(0, 2, 1, 1),

@@ -1,5 +1,3 @@
-//! Order and duration in which the pixels of a surface are lit.
-
 use pxpl5_sim::Span;
 use serde::Serialize;
 
@@ -20,7 +18,8 @@ pub enum ScanOrder {
     Global,
 }
 
-/// The brightness of a display's pixels over time: the order in which they start to shine, and for how long they shine.
+/// The brightness of a display's pixels over time: the order in which the pixels start to shine, and the time for which
+/// they shine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PixelLight {
     /// Order in which the pixels start to shine.
@@ -66,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn the_centre_of_an_even_light_is_half_way_and_a_lag_adds_its_time_constant() {
+    fn the_centre_of_uniform_light_is_half_its_duration_and_a_response_time_is_added() {
         assert_eq!(light(2_000, 0).centre(), Span(1_000));
         assert_eq!(light(2_000, 300).centre(), Span(1_300));
         assert!(light(0, 0).is_instant() && !light(0, 1).is_instant());
@@ -75,7 +74,7 @@ mod tests {
     /// Tests the mean time and the width of a pixel's light against a sum over small steps of time. The brightness
     /// rises as 1 - e^(-t/r) while the pixel is driven, and then falls as e^(-t/r). Here r is the response time.
     #[test]
-    fn centre_and_width_are_those_of_the_sum_over_the_brightness() {
+    fn centre_and_width_of_the_light_of_a_pixel_equal_the_numerical_sums() {
         let (persistence, response) = (2_000.0_f64, 400.0_f64);
         let brightness = |t: f64| {
             let rise = |t: f64| 1.0 - (-t / response).exp();

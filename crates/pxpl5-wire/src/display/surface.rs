@@ -1,5 +1,3 @@
-//! The visible surfaces of displays, and the counters of displays.
-
 use crate::{Eye, REGION_SIZE, RegionGrid};
 use serde::Serialize;
 

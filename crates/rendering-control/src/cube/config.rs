@@ -1,5 +1,3 @@
-//! The faces of a cube, which the firmware draws into the memories of a display.
-
 use crate::cube::faces::{CubeWork, face_view};
 use crate::cube::update::FaceUpdate;
 use crate::cube::warped_lists::WarpedLists;
@@ -16,7 +14,6 @@ use std::sync::Arc;
 pub struct Faces {
     /// Ring port of each display memory.
     pub memories: Vec<NodeId>,
-    /// Viewport, shading and layout of the pixels of each face.
     pub picture: Picture,
     /// Parts of a texel that are copied to a display memory, such as colour and depth.
     pub content: CopyContent,

@@ -1,5 +1,3 @@
-//! TRANSFORM for the six faces of a cube.
-
 use crate::cube::update::FaceUpdate;
 use address_recalculation::CubeFace;
 use glam::{Mat4, Vec4};

@@ -1,5 +1,3 @@
-//! Updates: the host's requests for a new drawing of one display memory.
-
 use crate::cube::warp::{FaceWarp, WARP_WORDS};
 use crate::drawn::Sent;
 use address_recalculation::{begin_update, swap_together};
@@ -12,7 +10,6 @@ use std::sync::Arc;
 pub struct FaceUpdate {
     /// Number of the update. All display memories together have one sequence of numbers, from 0.
     pub number: PictureNumber,
-    /// Index of the display memory.
     pub memory: u8,
     /// Buffer of the display memory that gets the update, 0 or 1.
     pub buffer: u8,
@@ -28,15 +25,16 @@ pub struct FaceUpdate {
     pub warp: Option<FaceWarp>,
 }
 
-/// Bit of the third word of an encoded update, set if the words of a warp follow the bits of the structures.
+/// Flag in the third word of an encoded update. The flag is set if the update has a warp. The words of the warp follow
+/// the words with one bit for each structure.
 const WARPED: Word = 1 << 24;
 
 /// Number of words of an encoded update before the bits of the structures.
 const HEADER: usize = 4;
 
 impl FaceUpdate {
-    /// Returns the two messages that announce the update to its display memory. They contain the list of regions that
-    /// will arrive, and the swap request.
+    /// Returns the two messages that announce the update to its display memory. The messages contain the list of
+    /// regions that will arrive, and the swap request.
     #[must_use]
     pub fn announcement(&self, face_texels: u32, regions: &[RegionId]) -> [Arc<[Word]>; 2] {
         let map = begin_update(face_texels, self.buffer, regions);
@@ -105,7 +103,7 @@ mod tests {
     use pxpl5_wire::ViewNumber;
 
     #[test]
-    fn every_update_survives_its_words() {
+    fn every_update_is_decoded_from_its_words() {
         let view = FrameView { number: ViewNumber(3), eyes: Vec::new(), edits: Vec::new() };
         let structures = (0..70).map(|i| i % 3 == 0).collect();
         let number = PictureNumber(1 << 33);

@@ -105,7 +105,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_warp_survives_its_words() {
+    fn a_warp_is_decoded_from_its_words() {
         let warp = warp();
         let words: [Word; WARP_WORDS] = warp.to_words().try_into().expect("as many as are said");
         assert_eq!(FaceWarp::from_words(&words), Some(warp));

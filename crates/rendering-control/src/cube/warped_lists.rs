@@ -1,5 +1,3 @@
-//! Display lists with displaced vertices.
-
 use crate::cube::update::FaceUpdate;
 use pphigs::{DisplayList, ModelFrame};
 use pxpl5_wire::PictureNumber;
@@ -106,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_and_stands_in_the_room_is_moved_and_nothing_else() {
+    fn only_cached_vertices_of_static_objects_are_moved() {
         let list = list();
         let update = update(7);
         let warp = update.warp.expect("said");

@@ -135,7 +135,7 @@ impl Rig {
 }
 
 #[test]
-fn an_update_takes_its_commands_and_a_pointer_for_each_entry_of_a_bin() {
+fn an_update_needs_memory_for_its_commands_and_a_pointer_for_each_bin_entry() {
     let mut rig = Rig::new(BIN_BYTES);
     rig.send(0);
     assert_eq!(rig.transformed(), [(0, TRIANGLES as u32)]);
@@ -146,7 +146,7 @@ fn an_update_takes_its_commands_and_a_pointer_for_each_entry_of_a_bin() {
 
 /// Tests a board whose memory holds the bins of only one update. The slave has two sets of bins and uses them in turn.
 #[test]
-fn an_update_waits_until_the_bins_of_the_one_before_are_free() {
+fn an_update_waits_until_the_bins_of_the_previous_update_are_free() {
     let mut rig = Rig::new(BIN_BYTES);
     rig.send(0);
     for number in 1..4 {
@@ -177,7 +177,7 @@ fn memory(processor: &Processor) -> Vec<u32> {
 }
 
 #[test]
-fn vertices_stand_in_the_memory_of_the_board_where_the_last_update_wants_them() {
+fn an_update_replaces_the_vertices_in_memory() {
     let lists = [0.0, 0.25].map(|moved| {
         let mut list = DisplayList::clone(&ahead(2));
         list.positions.iter_mut().for_each(|position| position.x += moved);
@@ -205,7 +205,7 @@ fn vertices_stand_in_the_memory_of_the_board_where_the_last_update_wants_them() 
 /// The triangle touches one face. The published times are 870 clocks (optimized code without extras) and 32 us (the
 /// design figure).
 #[test]
-fn by_code_a_triangle_takes_what_was_published() {
+fn the_code_of_a_triangle_takes_the_published_time() {
     let ns = |triangles: usize| {
         let share = Share::new(ahead(triangles), 0, 1);
         let mut processor = Processor::new(BOARD, 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());
@@ -220,7 +220,7 @@ fn by_code_a_triangle_takes_what_was_published() {
 }
 
 #[test]
-fn a_context_is_empty_when_all_tokens_of_its_update_have_been_here_and_can_be_filled_again() {
+fn a_context_can_be_reused_after_all_tokens_of_its_update() {
     let mut state = SlaveState::<FaceUpdate>::new();
     let tokens = [(0, 3, false), (1, 2, false), (0, 3, false), (0, 3, true), (1, 2, true)];
     for (context, of, is_last) in tokens.into_iter().chain(tokens) {

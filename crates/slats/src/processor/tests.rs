@@ -117,7 +117,7 @@ fn asked(message: &Message) -> Option<Asked> {
 /// it orders the copies of the bottom regions, because these copies occupy the ports of the frame buffers. A new field
 /// is written into the other buffer. After a late field, the next field has the lines of the other parity.
 #[test]
-fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
+fn a_late_field_is_replaced_by_the_last_complete_field_of_its_lines() {
     use Asked::{Show, Write};
     let mut rig = Rig::new(CopySchedule::Backup, 3);
     // The fields are 2 and 3 (in time), 4 (late), 5 and 6 (in time), 7 (late by more than a field), 8 (late because of
@@ -156,7 +156,7 @@ fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
 /// Tests the time of the second clump. The processor has one clump buffer, so it makes the clump when all receivers
 /// have begun to take the first clump. A clump takes 30 us for each triangle and eye.
 #[test]
-fn the_next_clump_is_made_while_the_one_before_is_drained() {
+fn the_next_clump_is_prepared_while_the_previous_one_is_drained() {
     const SECOND: usize = 7;
     let mut rig = Rig::new(CopySchedule::Whole, CLUMP + SECOND);
     let first_retrace = FIELD_MS * 1_000;
@@ -182,7 +182,7 @@ fn bottom_orders(rig: &Rig) -> Vec<Time> {
 /// Tests both orders of two events: the retrace, and the acknowledgement of the last of the ten top regions. The copies
 /// of the bottom regions must wait for both.
 #[test]
-fn bottom_regions_are_copied_when_the_last_top_region_is_acknowledged_and_the_retrace_has_been() {
+fn bottom_regions_are_copied_after_the_last_top_region_and_the_retrace() {
     let acknowledge = |rig: &mut Rig, count| {
         (0..count).for_each(|_| rig.deliver(Body::Words([COPY_ACKNOWLEDGEMENT, 0, 0, 0].into())));
     };
@@ -210,7 +210,7 @@ fn bottom_regions_are_copied_when_the_last_top_region_is_acknowledged_and_the_re
 /// Tests that the first commands of a field, which clear its bottom regions, wait for the copies of the previous
 /// field's bottom regions.
 #[test]
-fn the_next_field_is_not_drawn_over_regions_that_are_not_copied() {
+fn the_next_field_does_not_overwrite_regions_before_they_are_copied() {
     let mut rig = Rig::new(CopySchedule::Split, 3);
     rig.run_to(59_000, 0);
     let clumps = |rig: &Rig, from: Time| {

@@ -14,7 +14,8 @@ pub struct FlatDisplay {
 }
 
 impl FlatDisplay {
-    /// Creates a screen with any view matrix and any projection to clip coordinates with depths from 0 to 1.
+    /// Creates a screen with a view matrix and a projection. The projection maps to clip coordinates with depths from 0
+    /// to 1.
     ///
     /// # Errors
     ///

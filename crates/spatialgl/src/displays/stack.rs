@@ -22,7 +22,7 @@ impl PlaneStack {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] names the number, the expected range and the value found.
+    /// [`SettingError`] names the invalid number, the expected range and the found value.
     pub fn new(size: Size, planes: u32, depth: f64) -> Result<Self, SettingError> {
         check_size(size)?;
         SettingError::require((1..=65_536).contains(&planes), "display.slices", "1 to 65536", planes)?;
@@ -32,8 +32,8 @@ impl PlaneStack {
     }
 }
 
-/// Returns the z, in pixels, at which slab `i` begins. Slab `i` - 1 ends at exactly the same z, so no point lies
-/// between two slabs.
+/// Returns the z coordinate, in pixels, at which slab `i` begins. Slab `i` - 1 ends at exactly the same coordinate, so
+/// no point lies between two slabs.
 fn face(planes: u32, depth: f64, i: u32) -> f64 {
     depth * (f64::from(i) / f64::from(planes) - 0.5)
 }
@@ -49,7 +49,7 @@ fn plane(size: Size, planes: u32, depth: f64, i: u32) -> SliceView {
         [0.0, 0.0, 0.0, 1.0],
     ]);
     let mut view = SliceView::new(DMat4::IDENTITY, clip, SliceVolume::Slab { low, high }, size);
-    // A little slack keeps rounding from rejecting primitives that touch the slab.
+    // A small tolerance prevents rounding errors from rejecting primitives that touch the slab.
     let slack = depth * 1e-9;
     view.reach = Some([low - slack, high + slack]);
     view

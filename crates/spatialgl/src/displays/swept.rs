@@ -10,29 +10,26 @@ use glam::{DMat4, DVec3};
 use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
-/// The direction in which the screen turns.
+/// The direction in which the screen spins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rotation {
-    /// The screen turns from +x to +z.
     #[default]
     XToZ,
-    /// The screen turns from +z to +x.
     ZToX,
 }
 
 impl Rotation {
-    /// Both directions of the turn, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("x-to-z", Self::XToZ), ("z-to-x", Self::ZToX)];
 }
 
 pxpl5_sim::parameters::named!(Rotation, "sense of rotation", Rotation::ALL);
 
-/// The settings of a swept display.
+/// The parameters of a display that sweeps a volume with a spinning screen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweptConfig {
-    /// Number of slices per turn, even.
+    /// Number of slices per turn, which must be even.
     pub slices: u32,
     /// Width of an image in pixels, a multiple of 8. Half of the width is the radius of the display.
     pub width: u32,
@@ -40,13 +37,11 @@ pub struct SweptConfig {
     /// Angle of slice 0, radians.
     pub phase: f64,
     pub rotation: Rotation,
-    /// Method of clipping the scene to the volume of a slice.
     pub clip: SliceClip,
     /// Rule for points that lie exactly in the planes between slices.
     pub ties: TieRule,
-    /// Number of fraction bits to which values of boundary planes are rounded, or `None` for double precision.
+    /// Number of fraction bits in the evaluation of boundary planes, or `None` for double precision.
     pub plane_fraction_bits: Option<u32>,
-    /// Projection that maps points near a slice to the slice's image.
     pub projection: Projection,
 }
 
@@ -74,7 +69,6 @@ impl SweptConfig {
         f64::from(self.width) / 2.0
     }
 
-    /// Returns half of the wedge (part of space) that one slice of this display represents.
     #[must_use]
     pub fn half_wedge(&self) -> HalfWedge {
         HalfWedge::new(self.slices, self.radius())
@@ -98,7 +92,7 @@ impl SweptConfig {
     }
 }
 
-/// A display whose slices are arranged around an axis: the published display, or a display with other numbers.
+/// A display whose slices are arranged around an axis, with any number of slices.
 #[derive(Clone, Debug)]
 pub struct SweptDisplay {
     config: SweptConfig,
@@ -111,7 +105,7 @@ impl SweptDisplay {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] names the number, the expected range and the value found.
+    /// [`SettingError`] names the invalid number, the expected range and the found value.
     pub fn new(config: SweptConfig) -> Result<Self, SettingError> {
         config.check()?;
         let bins = BinLayout::double_wedges(config.clip.tolerance(config.half_wedge()));
@@ -157,7 +151,7 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
     let (sin, cos) = direction(config, 2 * i64::from(k));
     let rows = [[cos, 0.0, sin, 0.0], [0.0, 1.0, 0.0, 0.0], [-sin, 0.0, cos, 0.0], [0.0, 0.0, 0.0, 1.0]];
     let eye = config.projection.eye(k, wedge.radius, reach);
-    // A little slack keeps rounding from rejecting primitives that touch the slice.
+    // A small tolerance prevents rounding errors from rejecting primitives that touch the slice.
     let slack = reach * (1.0 + 1e-9) + 1e-6;
     let volume = config.clip.volume(boundaries(config, k), config.ties, wedge);
     let view: DMat4 = matrix_of_rows(rows);
@@ -176,8 +170,8 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
 /// Returns sine and cosine of an angle around the axis. The angle is counted from slice 0, in steps of half the angle
 /// between slices.
 ///
-/// Opposite directions are exact negatives of each other at every phase, because sine and cosine are computed for only
-/// one of the two directions.
+/// Sine and cosine are computed for only one of two opposite directions. Opposite directions are therefore exact
+/// negatives of each other, for every angle of slice 0.
 fn direction(config: &SweptConfig, half_slices: i64) -> (f64, f64) {
     let signed = if config.rotation == Rotation::XToZ { half_slices } else { -half_slices };
     if config.phase == 0.0 {

@@ -1,4 +1,5 @@
-//! The display on the ring: a port, a rotating screen, and a strobe (flash of the projector) for every slice.
+//! The Perspecta display as a board on the ring: a port, a rotating screen, and a strobe (flash of the projector) for
+//! every slice.
 
 use crate::perspecta::store::{FrameStore, StoreReceipt};
 use crate::perspecta::timing::PerspectaConfig;

@@ -10,8 +10,8 @@ use crate::{
 use pxpl5_sim::figures::{Definition, FigureRow, around};
 use pxpl5_sim::parameters::Provenance;
 
-/// Returns the row of a figure. A computed value agrees with the published value if the difference is at most
-/// `half_digit`.
+/// Returns the row that compares a figure's computed value with the published value. The values agree if their
+/// difference is at most `half_digit`.
 #[must_use]
 pub fn row(
     id: &'static str,
@@ -122,8 +122,8 @@ fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
     ]
 }
 
-/// Returns figures P20 and D12. P20 states how fast processors improve. D12 is the CPU's percentage of the total time
-/// in 18 months, if CPU and GPU take equal times today.
+/// Returns figures P20 and D12. P20 states how fast processors improve. CPU and GPU are assumed to take equal times
+/// today. D12 is then the CPU's percentage of the total time after 18 months.
 fn doubling() -> Vec<Definition> {
     // In 18 months the CPU takes half of its time. A GPU that doubles every m months takes 2^(-18/m) of its time.
     let share = |months: f64| 100.0 / (1.0 + libm::exp2(1.0 - CPU_DOUBLES_MONTHS / months));
@@ -157,8 +157,8 @@ pub fn measured(stats: &VolumeStats) -> Vec<FigureRow> {
     vec![occupancy.with_accepted([5.0, 20.0]), binned]
 }
 
-/// Returns figures from the packed words of white pixels: ten pixels per word (P10), and the percentage of unused bits
-/// in both packings (D6).
+/// Returns figures from the packed words of white pixels. P10 is the ten pixels per word of the dense packing. D6 is the
+/// percentage of unused bits in the usual and in the dense packing.
 #[must_use]
 pub fn packing() -> Vec<FigureRow> {
     let white = |pixels: usize| pack_dense(&vec![0b111; pixels]);
@@ -221,7 +221,7 @@ mod tests {
     /// Tests the definitions of the figures against the printed numbers of the SpatialGL paper. The
     /// expected values of D5, D7 and D12 were computed by hand for 396 slices of 768 x 768 pixels.
     #[test]
-    fn definitions_are_the_papers_numbers() {
+    fn the_definitions_of_the_figures_have_the_printed_numbers_of_the_paper() {
         let all = definitions();
         let values = |id: &str| all.iter().filter(|one| one.id == id).map(|one| one.value).collect::<Vec<_>>();
         for (id, expected) in [("P1", 396.0), ("P6", 32.0), ("P8", 90.625), ("P13", 4.0), ("P16", 32.0), ("P18", 4.0)] {
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn what_code_computes_and_packs_is_what_was_derived() {
+    fn the_derived_formulas_and_packing_figures_are_met() {
         for figure in formulas().into_iter().chain(packing()) {
             assert!(figure.is_met, "{figure:?}");
         }

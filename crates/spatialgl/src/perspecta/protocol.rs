@@ -13,16 +13,13 @@ use crate::{BitPlanes, Size, TileGrid, Tiling};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
 use std::sync::Arc;
 
-/// First word of a map of tiles.
 const MAP: Word = 0x0050_4D41;
 
-/// First word of a tile.
 const TILE: Word = 0x0050_5449;
 
 /// Number of words in a message before the map's bits or the tile's pixels.
 const HEADER_WORDS: usize = 3;
 
-/// A message in the form that the frame store reads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum StoreMessage<'a> {
     /// A map of the tiles that will arrive for each of `slices` slices, from slice `first` on. Bit i of `bits` is set
@@ -59,16 +56,15 @@ pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Wo
 /// The messages of one batch of slices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BatchMessages {
-    /// Map of the tiles that will arrive, sent before these tiles.
+    /// Message with the map of the tiles that will arrive. This message is sent before the tiles.
     pub map: Arc<[Word]>,
-    /// Occupied tiles, slice by slice.
+    /// Messages of the occupied tiles, slice by slice.
     pub tiles: Vec<TileMessage>,
 }
 
-/// The message of one tile.
+/// The message with the pixels of one tile of a slice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TileMessage {
-    /// Index of the slice in the revolution.
     pub slice: u32,
     /// Index of the tile in the slice, row by row from the top left.
     pub tile: u32,
@@ -128,7 +124,7 @@ fn has_light(words: &[Word], size: Size, grid: &TileGrid, number: u32) -> bool {
     rows(size, grid, number).any(|row| words[row].iter().any(|word| *word != 0))
 }
 
-/// Returns the parts of a slice's words that make up a tile, one range of indices for each row.
+/// Returns the words of a slice that make up a tile, as one range of indices for each row of the tile.
 pub(crate) fn rows(size: Size, grid: &TileGrid, number: u32) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
     let [left, top, right, bottom] = grid.rectangle(number);
     let row_words = size[0] / 8;

@@ -7,10 +7,10 @@ use pxpl5_wire::{Word, read_swap_request};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The words of one slice. Both stores share the words until one store writes to the slice.
+/// The words of one slice. Both frame stores share the words until one store writes to the slice.
 type Slice = Arc<Vec<Word>>;
 
-/// Two volumes of N slices.
+/// A memory for two volumes of N slices each.
 ///
 /// Tiles go to the volume that is not shown. A swap request waits until every tile announced by a map has arrived, so a
 /// volume with a partly written slice is never shown.
@@ -21,14 +21,14 @@ pub(crate) struct FrameStore {
     shown: usize,
     /// Slices of the store that was visible until the last strobe 0 (the first flash of a revolution).
     scanned: Vec<Slice>,
-    /// Tiles that were announced and have not arrived: slice, tile and tile size.
+    /// Announced tiles that have not yet arrived: index of the slice, index of the tile, and side of the tile in
+    /// pixels.
     missing: BTreeSet<(u32, u32, u32)>,
-    /// Arrival time of the last swap request, and the requested buffer.
+    /// Arrival time of the last swap request, and the number of the requested buffer.
     requested: Option<(Time, u8)>,
     pub(crate) tiles: u64,
 }
 
-/// The effect of a message on the frame store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StoreReceipt {
     /// The message was the last announced tile of the slice with this index.
@@ -73,7 +73,6 @@ impl FrameStore {
         StoreReceipt::Part
     }
 
-    /// Makes the tiles of these slices dark, and notes which tiles will arrive.
     fn announce(&mut self, first: u32, slices: u32, tile: u32, bits: &[Word]) -> StoreReceipt {
         let Some(tiling) = tiling(tile) else { return StoreReceipt::Fault("tiles of a size that is no multiple of 8") };
         let grid = tiling.grid(self.size);
@@ -130,8 +129,6 @@ impl FrameStore {
         self.volumes[self.shown].get(slice).map(|words| words.as_slice())
     }
 
-    /// Returns the words of a slice of the store that was visible until the last strobe 0, the first flash of a
-    /// revolution.
     pub(crate) fn scanned(&self, slice: usize) -> Option<&[Word]> {
         self.scanned.get(slice).map(|words| words.as_slice())
     }

@@ -1,4 +1,4 @@
-//! All parameters of the display, with their sources.
+//! All parameters of the Perspecta display, with their sources.
 
 use crate::{Rotation, SweptConfig};
 use pxpl5_sim::parameters::{ParameterTable, SettingError};
@@ -28,7 +28,7 @@ impl PerspectaConfig {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] names the number, the expected and the found value.
+    /// [`SettingError`] names the invalid number, the expected and the found value.
     pub fn check(&self) -> Result<(), SettingError> {
         ParameterTable::check(self).map_err(|error| error.in_table("perspecta"))?;
         SettingError::require(self.slices.is_multiple_of(2), "perspecta.slices", "an even number", self.slices)?;
@@ -61,7 +61,7 @@ impl PerspectaConfig {
     }
 
     /// Returns the number of volumes per second that an eye sees. There are two volumes per revolution, because the
-    /// screen passes every plane twice (D2).
+    /// screen passes every plane twice (figure D2).
     #[must_use]
     pub fn volume_hz(&self) -> f64 {
         2.0 * self.spin_rpm as f64 / 60.0

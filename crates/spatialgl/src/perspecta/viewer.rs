@@ -5,11 +5,11 @@ use image::{Rgb, RgbImage};
 use pxpl5_sim::parameters::SettingError;
 use std::sync::{Mutex, PoisonError};
 
-/// Units of light of one lit pixel in one strobe (flash). With 256 x 256 units, the parts of the light for four
-/// neighbouring picture pixels are integers.
+/// Light of one lit pixel in one strobe (flash), in integer units. With 256 x 256 units, the parts of this light for
+/// four neighbouring picture pixels are integers.
 const FULL: u64 = 1 << 16;
 
-/// Number of slices whose light one task sums before it adds this sum to the total.
+/// Number of slices whose light one task sums up, before the task adds this sum to the total.
 const SLICES_PER_TASK: u32 = 33;
 
 /// The position of an eye in front of the display, and the size of the eye's picture. The eye looks at the middle of
@@ -24,7 +24,6 @@ pub struct Camera {
     pub distance: f64,
     /// Focal length of the picture, in pixels of the picture.
     pub focal: f64,
-    /// Width and height of the picture, in pixels.
     pub size: Size,
 }
 
@@ -81,7 +80,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Options of a view: the part of the volume to show, and how brightness depends on the angle of the screen.
+/// Options of a view: the part of the volume to show, and the dependence of brightness on the angle of the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ViewOptions {
     /// Range of angles around the axis in which nothing is shown (a cutaway), in degrees from +x to +z. `None` shows
@@ -96,7 +95,7 @@ pub struct ViewOptions {
 }
 
 impl ViewOptions {
-    /// Returns the angle of slice `k` in degrees from +x to +z, with its sine and cosine.
+    /// Returns the angle of slice `k` in degrees, from +x to +z, with the angle's sine and cosine.
     fn angle(&self, k: u32, slices: u32) -> (f64, f64, f64) {
         let is_forward = self.rotation == Rotation::XToZ;
         let steps = if is_forward { i64::from(k) } else { -i64::from(k) };
@@ -112,7 +111,6 @@ impl ViewOptions {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PictureLight {
     size: Size,
-    /// Light of each pixel of the picture: red, green and blue.
     sums: Vec<[u64; 3]>,
 }
 
@@ -186,7 +184,7 @@ impl PictureLight {
     }
 }
 
-/// Returns the light of one revolution of a volume, as the display shows it after halftoning.
+/// Returns the light that an eye receives from a volume in one revolution of the screen, after halftoning.
 ///
 /// # Errors
 ///
@@ -212,8 +210,8 @@ pub fn view_planes(
     })
 }
 
-/// Returns the light of one revolution before halftoning, with all 256 levels. A comparison with [`view_planes`] shows
-/// the loss by the dither.
+/// Returns the light that an eye receives from a volume in one revolution, before halftoning, with all 256 levels. A
+/// comparison with [`view_planes`] shows the loss by the dither.
 ///
 /// Returns `None` if the frame was made without its colours.
 ///
@@ -275,7 +273,6 @@ struct Strobe {
     /// right, up and back along the eye's axes.
     across: [f64; 3],
     upward: [f64; 3],
-    /// Normal of the screen, in components along the eye's axes.
     normal: [f64; 3],
     distance: f64,
     focal: f64,
@@ -299,7 +296,7 @@ impl Strobe {
             focal: camera.focal,
             centre: camera.size.map(|side| f64::from(side) / 2.0),
             lambert: options.lambert,
-            // The half with u < 0 points in the opposite direction.
+            // The half of a slice with u < 0 points in the opposite direction.
             cut: [is_cut(options.cut_deg, angle + 180.0), is_cut(options.cut_deg, angle)],
         }
     }
@@ -334,7 +331,7 @@ fn is_cut(cut: Option<[f64; 2]>, angle: f64) -> bool {
 }
 
 /// Returns `frames` pictures from viewpoints on a circle around a volume. The first viewpoint is the camera's own, and
-/// all pictures have one exposure.
+/// all pictures have the same exposure.
 ///
 /// # Errors
 ///

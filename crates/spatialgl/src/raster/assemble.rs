@@ -5,10 +5,8 @@ use crate::command::{CommandBuffer, Primitive, Shape};
 use crate::slice_volume::SliceVolume;
 use crate::view::SliceView;
 
-/// Number of triangles that form the round end of a line.
 const CAP_TRIANGLES: usize = 12;
 
-/// The transformation of a view. Its matrices are stored as rows of numbers.
 #[derive(Clone, Debug)]
 pub(super) struct SliceTransform {
     pub(super) rows: [[f64; 4]; 3],
@@ -24,7 +22,6 @@ impl SliceTransform {
         Self { rows, window: view.window, volume: view.volume, magnification: view.magnification }
     }
 
-    /// Converts a point of the world to the coordinates of the slice.
     #[inline(always)]
     pub(super) fn local(&self, world: [f64; 3]) -> [f64; 3] {
         [along(&self.rows[0], world), along(&self.rows[1], world), along(&self.rows[2], world)]
@@ -41,14 +38,12 @@ impl SliceTransform {
         Corner { place: self.place(local), p, q, colour }
     }
 
-    /// Returns the homogeneous window coordinates of a point of the slice.
     #[inline(always)]
     pub(super) fn place(&self, local: [f64; 3]) -> Place {
         let [x, y, z, w] = &self.window;
         Place { x: along(x, local), y: along(y, local), z: along(z, local), w: along(w, local) }
     }
 
-    /// Converts a primitive to triangles, and calls `draw` with each triangle in the order of drawing.
     pub(super) fn triangles(
         &self,
         commands: &CommandBuffer,
@@ -88,14 +83,14 @@ impl SliceTransform {
 }
 
 /// Returns the position at which a line crosses the slice, as a fraction of the line's length. The arguments are the
-/// distances of both ends from the slice. Returns `None` if the line does not cross the slice.
+/// distances of the line's two ends from the slice. Returns `None` if the line does not cross the slice.
 fn crossing([from, to]: [f64; 2]) -> Option<f64> {
     (from * to < 0.0).then(|| from / (from - to))
 }
 
-/// Draws a line. The part between the near and far planes becomes a quad of the line's width. Each end between these
-/// planes gets a round cap. Another cap is drawn where the line crosses the slice, so that a line perpendicular to the
-/// slice is visible.
+/// Draws a line. The part between the near and far planes becomes a quad of the line's width. Each end of the line
+/// between these planes gets a round cap. One more cap is drawn where the line crosses the slice, so that a line
+/// perpendicular to the slice is visible.
 fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut dyn FnMut(&[Corner; 3])) {
     // Cut the line at the near and far planes.
     let Some([begin, end]) = between_planes(from, to) else { return };
@@ -125,14 +120,14 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
     }
 }
 
-/// Returns the part of a line between the near and far planes as a range within 0..1. Returns `None` if no part lies
-/// there.
+/// Returns the part of a line between the near and far planes, as a range of positions on the line. Position 0 is the
+/// corner `from`, and 1 is the corner `to`. Returns `None` if no part lies between these planes.
 fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
     let from = &from.place;
     let to = &to.place;
     for [a, b] in [[from.z, to.z], [from.w - from.z, to.w - to.z]] {
-        // Distances from a plane are negative beyond it.
+        // Distances from a plane are negative beyond the plane.
         if a < 0.0 && b < 0.0 {
             return None;
         }

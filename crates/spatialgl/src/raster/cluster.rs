@@ -57,7 +57,6 @@ impl<'a> Cluster<'a> {
     }
 }
 
-/// An iterator over the selected primitives of a cluster, in the order of drawing.
 pub(crate) struct ReachablePrimitives<'a> {
     rest: u64,
     primitives: &'a [u32],
@@ -96,13 +95,11 @@ impl Bin {
         Self { primitives, balls, each }
     }
 
-    /// Returns the indices of the primitives in the command buffer.
     #[must_use]
     pub fn primitives(&self) -> &[u32] {
         &self.primitives
     }
 
-    /// Returns the primitives cluster by cluster.
     #[inline(always)]
     pub(crate) fn clusters(&self) -> impl Iterator<Item = Cluster<'_>> {
         let balls = self.balls.iter().zip(&self.each);

@@ -8,7 +8,6 @@ use crate::command::Shape;
 use crate::curve::plane_curve;
 use crate::image::SliceImage;
 
-/// A point on the curve in which a triangle intersects the slice: window coordinates and colour.
 #[derive(Clone, Copy)]
 struct CurvePoint {
     at: [f64; 2],
@@ -37,8 +36,8 @@ pub(super) fn draw(work: SliceWork<'_>, transform: &SliceTransform, image: &mut 
     added
 }
 
-/// Draws a line of pixels between two points where no fragment was drawn before. There is one pixel for each step along
-/// the longer axis. Returns the number of pixels drawn.
+/// Draws a line of pixels between two points, except pixels on which a fragment was drawn before. There is one pixel
+/// for each step along the axis (x or y) on which the two points are farther apart. Returns the number of pixels drawn.
 fn line(from: CurvePoint, to: CurvePoint, image: &mut SliceImage) -> u64 {
     let Some([begin, end]) = inside(from.at, to.at, image.size()) else { return 0 };
     let mix = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;
@@ -56,7 +55,8 @@ fn line(from: CurvePoint, to: CurvePoint, image: &mut SliceImage) -> u64 {
     added
 }
 
-/// Returns the part of a line that lies inside the image, as a range within 0..1.
+/// Returns the part of a line that lies inside the image, as a range of positions on the line: 0 is the point `from`,
+/// and 1 is the point `to`.
 fn inside(from: [f64; 2], to: [f64; 2], size: [u32; 2]) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
     for axis in 0..2 {

@@ -92,7 +92,7 @@ fn triangle(
 ) -> Option<Setup> {
     let local = [transform.local(*a), transform.local(*b), transform.local(*c)];
     let places = [transform.place(local[0]), transform.place(local[1]), transform.place(local[2])];
-    // Most triangles are invisible and end here.
+    // Most triangles are invisible and need no further work.
     let bounds = bounds([&places[0], &places[1], &places[2]], size)?;
     let corner = |i: usize, world: &[f64; 3]| {
         let [p, q] = transform.volume.attributes(*world, local[i][0], local[i][2]);
@@ -101,7 +101,8 @@ fn triangle(
     Setup::within(&[corner(0, a), corner(1, b), corner(2, c)], bounds)
 }
 
-/// Returns true if all corners lie on one side of the range `low` to `high` of distances s that the slice can show.
+/// Returns true if the distances of all corners from the slice are below `low`, or if all are above `high`. The slice
+/// shows only distances between `low` and `high`.
 #[inline(always)]
 fn is_off_slice(row: &[f64; 4], corners: [&[f64; 3]; 3], low: f64, high: f64) -> bool {
     let a = along(row, *corners[0]);

@@ -1,7 +1,7 @@
 //! The inner loops of the fast rasterizer, in plain Rust. The loops process eight pixels of a row at a time.
 //!
 //! Each of the eight lanes computes the same as the reference model for one pixel, with the same operations in the same
-//! order. Two optimizations cannot change a result. The loops omit pixels outside a conservative range of a row. The
+//! order. Two optimizations cannot change a result. The loops omit pixels of a row that are certainly not covered. The
 //! loops also omit sums whose terms all have the same sign.
 
 use super::setup::{Edge, Setup, channel};
@@ -12,23 +12,20 @@ use crate::slice_volume::{SampleTest, hyperbolic, parallel, taper};
 /// Number of pixels in a vector, which is also the number of pixels in a byte of the stencil.
 const LANES: usize = 8;
 
-/// One value for each of the eight pixels of a vector.
 type EachLane = [f64; LANES];
 
-/// Largest number of pixels in a triangle's bounds for which all rows are drawn as one sequence of pixels.
+/// Largest number of pixels in the bounds of a triangle whose rows are drawn together, as one sequence of pixels.
 const SMALL: u32 = 64;
 
-/// Smallest width of a triangle, in pixels, for which the range of each row is computed before its pixels.
+/// Smallest width in pixels of a triangle for which the covered range of a row is computed before the row's pixels.
 const WIDE: u32 = 24;
 
-/// The number of generated fragments and of accepted fragments of a triangle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fragments {
     pub(super) generated: u64,
     pub(super) accepted: u64,
 }
 
-/// Settings that are the same for all fragments of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mode {
     pub(super) test: SampleTest,
@@ -59,7 +56,7 @@ pub(super) fn draw(setup: &Setup, mode: Mode, image: &mut SliceImage) -> Fragmen
     }
 }
 
-/// Draws a triangle if boundary planes are rounded to few bits, which needs a division for every pixel.
+/// Draws a triangle when boundary planes are rounded to few bits. The rounding needs a division for every pixel.
 fn draw_rounded(setup: &Setup, mode: Mode, scale: f64, image: &mut SliceImage) -> Fragments {
     let round = |x: f64, w: f64| (x / w * scale).round_ties_even() / scale;
     let exact = mode.test.without_rounding();
@@ -120,16 +117,15 @@ fn small(
 /// Eight pixels, and the weights of the triangle's corners at each pixel.
 struct Pixels {
     weights: [EachLane; 3],
-    /// Number of valid pixels, at most eight.
     count: u32,
     /// Column of the first pixel, in the top row of the block of pixels.
     x: u32,
     y: u32,
-    /// Width of the block if its rows follow each other in one sequence, or `u32::MAX` for pixels of one row.
+    /// Number of pixels in a row of the block of pixels. `u32::MAX` if all pixels are in one row.
     width: u32,
 }
 
-/// For the near and the far plane, true if pixels must be tested because some corner lies beyond the plane.
+/// Flags for the near and the far plane: true if pixels must be tested because a corner lies beyond the plane.
 #[derive(Clone, Copy)]
 struct Checks {
     near: bool,
@@ -187,7 +183,7 @@ fn chunk(
 ) {
     let weights = &pixels.weights;
     let [a, b, c] = weights;
-    // Test the edges first, since most vectors end here.
+    // Test the edges first, because this test rejects most vectors.
     let least = setup.least;
     let there = if pixels.count < LANES as u32 { (1 << pixels.count) - 1 } else { u8::MAX };
     let mut inside = there & bits(|i| (a[i] >= least[0]) & (b[i] >= least[1]) & (c[i] >= least[2]));
@@ -297,7 +293,7 @@ impl Setup {
     }
 
     /// Reduces a range of pixels to the part where a weighted sum is not negative. Leaves the range unchanged if
-    /// rounding could move its limit by a pixel.
+    /// rounding could move the limit of this part by a pixel.
     fn narrow_by(&self, range: &mut [f64; 2], row: [f64; 3], values: [f64; 3]) {
         let mut slope = 0.0;
         let mut constant = 0.0;

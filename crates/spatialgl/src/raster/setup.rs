@@ -1,9 +1,9 @@
 //! Set-up of a triangle in the window of a slice, in homogeneous coordinates (Olano and Greer 1997).
 //!
-//! The triangle needs neither clipping nor a division. Each edge is a linear function of the window, positive inside.
-//! The three functions are the weights of the corners at every sample, except for one positive factor that they share.
-//! Behind the eye, all three are negative. Vertex attributes are interpolated by these weights. Corners behind the eye
-//! or 10^6 px away therefore need no special case.
+//! The triangle needs neither clipping nor a division. Each edge is a linear function of the position in the window.
+//! This function is positive inside the triangle. The three functions are the weights of the corners at every sample,
+//! except for one common positive factor. Behind the eye, all three functions are negative. Vertex attributes are
+//! interpolated by these weights. Corners behind the eye or 10^6 px away therefore need no special case.
 
 /// A position in homogeneous window coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -38,14 +38,13 @@ impl Corner {
         }
     }
 
-    /// Returns the corner, moved in the window by (dx, dy) pixels.
     pub(super) fn moved(&self, [dx, dy]: [f64; 2]) -> Self {
         let Place { x, y, z, w } = self.place;
         Self { place: Place { x: x + dx * w, y: y + dy * w, z, w }, ..*self }
     }
 }
 
-/// Returns the scalar product of a matrix row and (p, 1).
+/// Returns the scalar product of the matrix row `row` and the vector (p, 1).
 #[inline(always)]
 pub(super) fn along(row: &[f64; 4], p: [f64; 3]) -> f64 {
     row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3]
@@ -130,7 +129,6 @@ pub(super) struct Bounds {
     pub(super) y: [u32; 2],
 }
 
-/// A triangle that is ready for sampling.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setup {
     /// Edges of the triangle. Edge i is opposite to corner i.
@@ -161,7 +159,6 @@ impl Setup {
         Self::within(corners, bounds)
     }
 
-    /// Prepares a triangle for sampling, with bounds from [`bounds`].
     #[inline(always)]
     pub(super) fn within(corners: &[Corner; 3], bounds: Bounds) -> Option<Self> {
         let [a, b, c] = corners;
@@ -228,7 +225,6 @@ pub(super) fn weighted(weights: [f64; 3], values: [f64; 3]) -> f64 {
     weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
 
-/// Returns a colour channel, interpolated and converted to 8 bits.
 #[inline(always)]
 pub(super) fn channel(weights: [f64; 3], values: [f64; 3], inverse_sum: f64) -> u8 {
     (weighted(weights, values) * inverse_sum + 0.5) as u8

@@ -16,7 +16,6 @@ use std::sync::{Mutex, PoisonError};
 pub struct Supersampled<R> {
     inner: R,
     factor: u32,
-    /// Images with several samples per pixel that are not in use at the moment.
     scratch: Mutex<Vec<SliceImage>>,
 }
 
@@ -61,7 +60,6 @@ impl<R: SliceRenderer> Supersampled<R> {
         self.places(x, y).any(|(sx, sy)| large.is_marked(sx, sy))
     }
 
-    /// Returns column and row of each sample of a pixel, in the large image.
     fn places(&self, x: u32, y: u32) -> impl Iterator<Item = (u32, u32)> + use<R> {
         let factor = self.factor;
         (0..factor * factor).map(move |i| (x * factor + i % factor, y * factor + i / factor))

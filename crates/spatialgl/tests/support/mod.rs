@@ -1,4 +1,4 @@
-//! The triangles of the specification's section 8, and functions that draw them.
+//! The triangles of the hard cases, and functions that draw them.
 #![allow(dead_code, reason = "each test uses some of it")]
 
 use glam::DVec3;
@@ -13,7 +13,7 @@ pub(crate) const T4: Triangle = [[-100.3, -80.2, -30.6], [120.4, -60.7, 40.3], [
 pub(crate) const T5: Triangle = [[3.3, -50.2, 2.1], [9.7, -50.2, -4.4], [5.1, 60.6, 6.3]];
 pub(crate) const T8: Triangle = [[0.1, -20.0, 5.0], [0.3, -20.0, 6.0], [0.2, 20.0, 5.5]];
 
-/// The eye and shear of case 9 in the specification.
+/// The eye and shear of the numbered case 9.
 pub(crate) const ASIDE: Projection =
     Projection::Perspective { eye: [100.0, -150.0], distance: 1536.0, shear: [0.05, 0.1] };
 

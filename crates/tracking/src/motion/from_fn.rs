@@ -1,5 +1,3 @@
-//! A motion that a function computes.
-
 use super::Motion;
 use crate::pose::Pose;
 use crate::time::PS_PER_S;

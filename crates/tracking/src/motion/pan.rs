@@ -49,14 +49,14 @@ mod tests {
     use crate::time::PS_PER_S;
 
     #[test]
-    fn after_an_hour_the_angle_is_still_exact() {
+    fn the_angle_of_a_pan_is_still_exact_after_an_hour() {
         // 200 deg/s x 3,600.45 s = 2,000 turns and 90 degrees.
         let pose = Pan::at(200.0).pose(3600 * PS_PER_S + 450_000_000_000);
         assert!(pose.angle_deg(&Pose::facing(rotation::about_y(90f64.to_radians()))) < 1e-9);
     }
 
     #[test]
-    fn the_angular_velocity_is_that_of_the_poses() {
+    fn the_angular_velocity_is_the_derivative_of_the_poses() {
         let start = Pose::facing(rotation::from_yaw_pitch_roll(1.0, 0.4, 0.2));
         assert_rates_agree_with_poses(&Pan { start, deg_per_s: -370.0 }, 7 * PS_PER_S, 1e-8);
     }

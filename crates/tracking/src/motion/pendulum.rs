@@ -82,8 +82,7 @@ impl Pendulum {
 }
 
 impl Motion for Pendulum {
-    /// Writes the length of the pendulum's arm and the modulus, which is the sine of half the amplitude. Frequency and
-    /// period follow from these two numbers.
+    /// Writes the arm's length and the sine of half the amplitude, which determine frequency and period.
     fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"pendulum");
         settings("motion.arm_m", &self.arm_m);
@@ -104,8 +103,8 @@ impl Motion for Pendulum {
     }
 }
 
-/// Number of steps of the arithmetic-geometric mean. The mean converges quadratically, so 8 steps suffice for every
-/// modulus below 0.99999.
+/// Number of steps of the arithmetic-geometric mean. Each step about doubles the number of correct digits, so 8 steps
+/// suffice for every modulus below 0.99999.
 const LEVELS: usize = 8;
 
 /// Returns the complete elliptic integral K(k) = pi / (2 agm(1, k')), where agm is the arithmetic-geometric mean and k'
@@ -114,8 +113,8 @@ fn quarter_period(modulus: f64) -> f64 {
     FRAC_PI_2 / mean_ladder(modulus).0
 }
 
-/// Returns the arithmetic-geometric mean of 1 and k', and the ratio c_n / a_n of each step of the iteration that
-/// computes this mean.
+/// Returns the arithmetic-geometric mean of 1 and k', and the ratio c_n / a_n of each step n of the mean (Abramowitz
+/// and Stegun 17.6).
 fn mean_ladder(modulus: f64) -> (f64, [f64; LEVELS]) {
     let mut a = 1.0;
     let mut b = (1.0 - modulus * modulus).sqrt();
@@ -166,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn the_closed_form_agrees_with_a_numerical_integration() {
+    fn the_closed_form_of_the_pendulum_agrees_with_a_numerical_integration() {
         for (arm, amplitude, t) in [(0.5, 20.0, 3.3), (0.5, 90.0, 2.1), (1.0, 170.0, 4.7)] {
             let closed = Pendulum::new(arm, amplitude).unwrap().angle(nearest_ps(t)).0;
             assert!((closed - integrate(arm, amplitude, t)).abs() < 1e-8, "{arm} {amplitude}");
@@ -200,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn energy_after_an_hour_is_the_energy_of_the_release() {
+    fn energy_is_conserved_for_an_hour() {
         let pendulum = Pendulum::rig();
         let (angle, rate) = pendulum.angle(3600 * PS_PER_S);
         let energy = 0.5 * (0.5 * rate).powi(2) - 9.80665 * 0.5 * angle.cos();
@@ -208,12 +207,12 @@ mod tests {
     }
 
     #[test]
-    fn the_rates_are_those_of_the_poses() {
+    fn the_rates_are_the_derivatives_of_the_poses() {
         (1..20).for_each(|i| assert_rates_agree_with_poses(&Pendulum::rig(), i * 77_777_777_777, 1e-6));
     }
 
     #[test]
-    fn a_low_point_past_the_end_of_time_is_the_end_of_time() {
+    fn a_low_point_beyond_the_end_of_time_is_the_end_of_time() {
         assert_eq!(Pendulum::rig().low_point_ps(u64::MAX), u64::MAX);
     }
 

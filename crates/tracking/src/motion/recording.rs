@@ -20,7 +20,7 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::span_s;
 
-/// Latest time stamp of a recording: 10^7 s (115 days). Simulated time ends after 213 days.
+/// Latest time stamp of a recording in seconds: 10^7 s (115 days). Simulated time ends after 213 days.
 const LATEST_S: f64 = 1e7;
 
 /// Greatest absolute coordinate in a recording, m. The value is assumed, with a range of 1e6 to 1e12. Map coordinates,
@@ -39,7 +39,6 @@ const GAP_TIMES: u64 = 5;
 /// which no interpolation can reconstruct.
 const GAP_S: f64 = 0.2;
 
-/// The time stamp (ps) and the pose of a sample.
 type Sample = (u64, Pose);
 
 /// The behaviour of the replayed head after the last sample of a recording.
@@ -76,8 +75,10 @@ pub struct RecordingFormat {
     pub axes: Option<Axes>,
 }
 
-/// A replayed recording of head poses. Positions are interpolated linearly, and orientations by slerp. Before the first
-/// sample the head stands still. [`End`] defines the behaviour after the last sample.
+/// A replayed recording of head poses.
+///
+/// Positions are interpolated linearly, and orientations by slerp. Before the first sample the head stands still.
+/// [`End`] defines the behaviour after the last sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     samples: Vec<Sample>,
@@ -160,12 +161,11 @@ impl Recording {
         Self { samples, end: End::default(), gaps, warnings }
     }
 
-    /// Returns true if a gap follows this sample and the head stands still during the gap.
     fn holds_between(&self, (before_ps, _): &Sample) -> bool {
         self.end == End::Hold && self.gaps.binary_search_by_key(before_ps, |(from_ps, _)| *from_ps).is_ok()
     }
 
-    /// Returns the same recording with another behaviour after its last sample.
+    /// Returns the same recording with the behaviour `end` after its last sample.
     #[must_use]
     pub fn ending(self, end: End) -> Self {
         Self { end, ..self }
@@ -181,12 +181,13 @@ impl Recording {
         self.samples.len()
     }
 
-    /// Appends the samples of another recording. All new samples must be later than the last sample of this recording.
+    /// Appends samples, all of which must be later than the last sample of this recording.
     pub(super) fn append(&mut self, more: &Self) {
         self.samples.extend_from_slice(&more.samples);
     }
 
-    /// Returns the instant of the recording that a loop shows at time `t_ps`, between the first and the last sample.
+    /// Returns the time at which the samples are read for the time `t_ps`. The two times differ only after the end of a
+    /// recording that loops.
     fn within(&self, t_ps: u64) -> u64 {
         let (first_ps, last_ps) = self.span_ps();
         match self.end {
@@ -244,8 +245,8 @@ impl Motion for Recording {
     }
 }
 
-/// Returns the gaps of a recording: pairs of successive samples that are much farther apart than the median time
-/// between samples.
+/// Returns the gaps of a recording. A gap lies between successive samples that are much farther apart in time than the
+/// median of all successive samples.
 fn gaps(samples: &[Sample]) -> Vec<(u64, u64)> {
     let spans = || samples.windows(2).map(|pair| (pair[0].0, pair[1].0));
     let mut lengths: Vec<u64> = spans().map(|(from_ps, to_ps)| to_ps - from_ps).collect();
@@ -260,7 +261,6 @@ fn gaps(samples: &[Sample]) -> Vec<(u64, u64)> {
     spans().filter(is_gap).collect()
 }
 
-/// Greatest number of gaps that a warning lists one by one.
 const GAPS_LISTED: usize = 3;
 
 fn gap_warning(gaps: &[(u64, u64)]) -> Option<String> {

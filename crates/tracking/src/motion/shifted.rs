@@ -8,7 +8,7 @@ use crate::pose::Pose;
 /// pose at t + `by_ps`.
 #[derive(Clone, Copy, Debug)]
 pub struct AdvancedMotion<M> {
-    /// The original motion. Its poses occur earlier by `by_ps` in the advanced motion.
+    /// The original motion, whose poses are reached `by_ps` later.
     pub motion: M,
     /// Time by which this motion is ahead of the original motion, ps.
     pub by_ps: u64,

@@ -28,7 +28,6 @@ impl Sinusoid {
         Self { start: Pose::IDENTITY, hz, yaw_deg, sway_m: 0.0 }
     }
 
-    /// Returns sine and cosine of the phase of both sine waves at an instant.
     fn phase(&self, t_ps: u64) -> (f64, f64) {
         libm::sincos(TAU * libm::fmod(self.hz * seconds(t_ps), 1.0))
     }
@@ -67,13 +66,13 @@ mod tests {
     use crate::time::PS_PER_S;
 
     #[test]
-    fn its_rates_are_those_of_its_poses() {
+    fn the_rates_are_the_derivatives_of_the_poses() {
         let motion = Sinusoid { hz: 1.3, yaw_deg: 20.0, sway_m: 0.4, start: Pose::at(DVec3::ONE) };
         assert_rates_agree_with_poses(&motion, 7 * PS_PER_S / 3, 1e-6);
     }
 
     #[test]
-    fn after_a_quarter_of_its_period_it_is_at_its_amplitude() {
+    fn after_a_quarter_period_a_sinusoid_is_at_its_amplitude() {
         let motion = Sinusoid { sway_m: 0.4, ..Sinusoid::of_yaw(20.0, 0.5) };
         let pose = motion.pose(PS_PER_S / 2);
         assert!((pose.position.x - 0.4).abs() < 1e-15);

@@ -11,7 +11,7 @@ use crate::time::seconds;
 /// quintic B-spline, which equals the centre value of the B-spline of degree 11: 655177 / 1663200.
 const VARIANCE: f64 = 655_177.0 / 1_663_200.0;
 
-/// Number of successive knots with the same activity level, so that periods of weak and of strong motion last some
+/// Number of successive knots with the same activity level. Periods of weak and of strong motion therefore last some
 /// seconds.
 const KNOTS_PER_SPELL: u64 = 8;
 
@@ -40,7 +40,6 @@ impl Activity {
 #[derive(Clone, Debug)]
 pub(super) struct Spline {
     spacing_ps: u64,
-    /// Standard deviation of the spline coefficients, for each of the three coordinates.
     scale: DVec3,
     activity: Activity,
     seeds: [u64; 3],
@@ -55,7 +54,6 @@ impl Spline {
         Self { spacing_ps, scale: deviation / VARIANCE.sqrt(), activity, seeds, spells }
     }
 
-    /// Writes the numbers that determine the splines as one setting.
     pub(super) fn identify(&self, key: &str, settings: &mut SettingSink) {
         let Self { spacing_ps, scale, activity, seeds, spells } = self;
         let Activity { calm, power } = activity;
@@ -64,7 +62,7 @@ impl Spline {
         settings(key, &format_args!("{spacing_ps} {x} {y} {z} {calm} {power} {a} {b} {c} {spells}"));
     }
 
-    /// Returns the three values of the splines at `t_ps`, and their rates of change per second.
+    /// Returns the three values of the splines at `t_ps`, and their derivatives per second.
     pub(super) fn at(&self, t_ps: u64) -> (DVec3, DVec3) {
         // Six B-splines overlap every knot interval.
         let knot = t_ps / self.spacing_ps;
@@ -121,7 +119,7 @@ mod tests {
     const EVEN: Activity = Activity { calm: 1.0, power: 1 };
 
     #[test]
-    fn the_basis_is_a_partition_of_unity() {
+    fn the_weights_of_the_spline_basis_add_up_to_one() {
         for u in [0.0, 0.1, 0.5, 0.77, 1.0] {
             let (weights, slopes) = basis(u);
             assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
@@ -141,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn the_variance_is_the_square_of_the_deviation() {
+    fn the_variance_of_the_random_spline_is_the_square_of_the_stated_deviation() {
         // The mean covers 200,000 knots. Neighbouring values are correlated, so the standard error is about 0.5 %.
         for activity in [EVEN, Activity { calm: 0.2, power: 3 }] {
             let spline = Spline::new(1000, DVec3::new(1.0, 2.0, 0.5), activity, 9, 4);

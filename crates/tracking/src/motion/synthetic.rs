@@ -28,7 +28,7 @@ pub struct Band {
     pub power: u32,
 }
 
-/// Index of the random stream that gives the seed of another motion of the same kind ([`Motion::sibling`]).
+/// Number of the stream of random numbers that gives the seed for [`Motion::sibling`].
 const SIBLING: u64 = 10;
 
 /// Settings of the random head motion [`Synthetic`]: one frequency band for each kind of movement, and the mean

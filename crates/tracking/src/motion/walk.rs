@@ -81,7 +81,6 @@ impl Walk {
     }
 }
 
-/// Returns a distance modulo the length of one round of the path.
 fn rounded(way: f64, round: f64) -> f64 {
     let rest = libm::fmod(way, round);
     if rest < 0.0 { rest + round } else { rest }
@@ -126,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn after_five_metres_it_is_one_metre_beyond_the_first_corner_and_after_a_round_at_the_start() {
+    fn positions_on_a_walk_follow_the_path() {
         let walk = square();
         assert_eq!(walk.length_m(), 16.0);
         assert!(walk.pose(5 * PS_PER_S).position.distance(DVec3::new(4.0, 1.7, 1.0)) < 1e-12);
@@ -135,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn it_looks_ahead_and_turns_into_a_corner_without_a_jump() {
+    fn the_gaze_follows_the_path_and_turns_without_a_jump() {
         let walk = square();
         let gaze = |t_ps: u64| walk.pose(t_ps).orientation * DVec3::NEG_Z;
         assert!(gaze(PS_PER_S).distance(DVec3::X) < 1e-12);
@@ -151,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn looking_around_changes_the_gaze_and_not_the_way() {
+    fn looking_around_changes_the_gaze_and_not_the_path() {
         let around = square().with_glances(3);
         let poses = [around.pose(PS_PER_S), square().pose(PS_PER_S)];
         assert_eq!(poses[0].position, poses[1].position);
@@ -159,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_path_is_refused() {
+    fn an_invalid_path_is_refused() {
         assert!(Walk::new(&[], 1.0).is_err());
         assert!(Walk::new(&[DVec3::ZERO], 1.0).is_err());
         assert!(Walk::new(&[DVec3::ZERO, DVec3::ZERO], 1.0).is_err());

@@ -11,8 +11,8 @@ pub(super) trait Channel<T>: Send {
     fn extrapolate(&self, dt_s: f64) -> T;
 }
 
-/// A quantity whose differences are vectors: a position (difference in m) or an orientation (difference as a rotation
-/// vector, rad).
+/// A quantity whose differences are vectors: a position (difference in m), or an orientation (difference as a rotation
+/// vector in rad).
 pub(super) trait VectorDifference: Copy + Send {
     fn since(self, origin: Self) -> DVec3;
     fn moved(self, by: DVec3) -> Self;

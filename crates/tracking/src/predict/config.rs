@@ -16,7 +16,7 @@ const LEAST_NOISE_M: f64 = 1e-6;
 /// Least orientation noise that a Kalman filter may assume, degrees.
 const LEAST_NOISE_DEG: f64 = 1e-4;
 
-/// A prediction method, which computes a pose at another instant from the tracker's reports.
+/// A prediction method, which computes the head's pose at a requested instant from earlier reports of the tracker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PredictorKind {
     /// No prediction: the method returns the pose of the last report.
@@ -64,11 +64,11 @@ pub struct PredictorConfig {
     pub position_noise_m: f64,
     /// Random orientation error that the filter assumes for each report, rms about each axis, degrees.
     pub orientation_noise_deg: f64,
-    /// Strength of random changes of the head's acceleration, as a Kalman filter assumes it, m/s^3/sqrt(Hz). The jerk
-    /// is white noise, and the value is the root of its spectral density.
+    /// Strength of random changes of the head's acceleration (jerk), as a Kalman filter assumes it, m/s^3/sqrt(Hz). The
+    /// jerk is white noise, and the value is the root of its spectral density.
     pub position_jerk: f64,
-    /// Strength of random changes of the head's angular acceleration, as a Kalman filter assumes it, rad/s^3/sqrt(Hz).
-    /// The angular jerk is white noise, and the value is the root of its spectral density.
+    /// Strength of random changes of the head's angular acceleration (angular jerk), as a Kalman filter assumes it,
+    /// rad/s^3/sqrt(Hz). The angular jerk is white noise, and the value is the root of its spectral density.
     pub orientation_jerk: f64,
     /// Longest time ahead for which the predictor extrapolates, ps. For later instants the predictor returns the last
     /// reported pose.
@@ -81,8 +81,8 @@ pub struct PredictorConfig {
     pub gate: table::Gate,
 }
 
-/// Standard deviations of the head's motion before the first report, as a Kalman filter assumes them. The assumed mean
-/// is a still head.
+/// Standard deviations that a Kalman filter assumes for the head's motion before the first report. The assumed mean is
+/// a still head.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Start {
@@ -124,7 +124,7 @@ impl PredictorConfig {
         Self::for_tracker_by(&table::Tables::PAPERS, kind, tracker)
     }
 
-    /// Returns the settings of [`Self::for_tracker`], but with the numbers from `tables`.
+    /// Returns the settings of [`Self::for_tracker`] with the numbers of `tables` instead of the papers' numbers.
     pub fn for_tracker_by(tables: &table::Tables, kind: PredictorKind, tracker: &TrackerConfig) -> Self {
         let filter = &tables.filter;
         Self {
@@ -165,8 +165,8 @@ impl PredictorConfig {
         Ok(())
     }
 
-    /// Returns these settings as a parameter table. `baseline` is the number of reports between the two poses whose
-    /// difference gives a speed. Position and orientation have one baseline each, but the table has only one.
+    /// Returns these settings as a parameter table. Position and orientation have one baseline each, but the table has
+    /// only one, `baseline`: the reports between the two poses whose difference gives a speed.
     pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,
@@ -210,7 +210,7 @@ impl PredictorConfig {
     }
 }
 
-/// Returns `x * x`. All hosts round a product equally, but may round a power function differently.
+/// Returns `x * x`. All computers round a product equally, but may round a power function differently.
 fn square(x: f64) -> f64 {
     x * x
 }

@@ -59,7 +59,7 @@ mod tests {
     use crate::tracker::{TrackerConfig, TrackerModel};
 
     #[test]
-    fn without_noise_it_knows_where_the_head_will_be() {
+    fn without_noise_the_prediction_is_exact() {
         let motion = Pendulum::rig();
         let tracker = TrackerModel::new(TrackerConfig::flock_of_birds().without_noise()).unwrap();
         let mut exact = ExactPredictor::new(&motion, table::Gate::PAPERS);
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn its_error_is_the_error_of_the_report_however_far_it_predicts() {
+    fn the_error_is_the_error_of_the_report_at_any_interval() {
         let motion = Pan::at(200.0);
         let tracker = TrackerModel::new(TrackerConfig::optical_ceiling()).unwrap();
         let mut exact = ExactPredictor::new(&motion, table::Gate::PAPERS);

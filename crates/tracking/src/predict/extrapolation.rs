@@ -8,11 +8,10 @@ use crate::time::span_s;
 /// The order of an extrapolation, which is the highest derivative that the extrapolation uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// No derivative: the prediction is the last value.
     Zeroth,
-    /// The first derivative: velocity stays constant.
+    /// Order 1: the first derivative (velocity) stays constant.
     First,
-    /// The second derivative: acceleration stays constant.
+    /// Order 2: the second derivative (acceleration) stays constant.
     Second,
 }
 
@@ -134,13 +133,13 @@ mod tests {
     }
 
     #[test]
-    fn second_order_is_exact_for_a_turn_that_speeds_up_about_one_axis() {
+    fn second_order_is_exact_for_an_accelerated_rotation_about_one_axis() {
         let filter = fed(Order::Second, 2, faster_and_faster);
         assert!(rotation::angle_deg(filter.extrapolate(0.1), faster_and_faster(0.133)) < 1e-10);
     }
 
     #[test]
-    fn with_few_reports_the_order_falls() {
+    fn with_few_reports_the_order_is_reduced() {
         let mut filter = Extrapolation::new(Order::Second, 4, DVec3::ZERO);
         filter.restart(0, DVec3::X);
         assert_eq!(filter.extrapolate(1.0), DVec3::X);
@@ -167,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sign_change_of_the_quaternion_is_no_turn() {
+    fn a_sign_change_of_the_quaternion_is_not_a_rotation() {
         let mut filter = Extrapolation::new(Order::First, 1, DQuat::IDENTITY);
         filter.restart(0, DQuat::IDENTITY);
         filter.update(PS_PER_MS, -DQuat::IDENTITY);

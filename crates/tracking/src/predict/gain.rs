@@ -1,8 +1,8 @@
 //! Exact formulas for the effect of prediction on a sinusoidal motion.
 //!
-//! A prediction of x = e^(j w t) by p seconds with exact derivatives multiplies x by a gain G(w p). A perfect
-//! prediction multiplies x by e^(j w p). The arguments of the functions are w p in radians: 2 pi x frequency x
-//! prediction time.
+//! The motion is x = e^(j w t) with the angular frequency w. A prediction by p seconds with exact derivatives
+//! multiplies x by a gain G(w p). A perfect prediction multiplies x by e^(j w p). The arguments of the functions are w
+//! p in radians: 2 pi x frequency x prediction time.
 
 /// The complex factor by which a prediction multiplies a sinusoidal motion e^(j w t), without unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,8 +32,7 @@ pub fn perfect(wp: f64) -> Gain {
     Gain { re, im }
 }
 
-/// Returns the gain without prediction. This gain is 1 for every w p, because the last reported pose is shown
-/// unchanged.
+/// Returns the gain without prediction. This gain is 1, because the last reported pose is shown unchanged.
 pub fn none(_wp: f64) -> Gain {
     Gain { re: 1.0, im: 0.0 }
 }
@@ -72,7 +71,7 @@ mod tests {
     ];
 
     #[test]
-    fn relative_errors_are_those_published_to_their_last_digit() {
+    fn relative_errors_equal_the_published_digits() {
         for (hz, p, published) in PUBLISHED {
             let digit = if published[0] < 1.0 { 5.1e-4 } else { 5.1e-3 };
             for (gain, expected) in [none, constant_velocity, constant_acceleration].into_iter().zip(published) {
@@ -83,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn the_magnitude_of_the_second_order_is_the_root_of_1_plus_wp_to_the_4_over_4() {
+    fn the_gain_of_second_order_prediction_has_the_magnitude_sqrt_of_1_plus_wp_to_the_4_over_4() {
         for wp in [1e-3, 0.3, 1.0, 2.5, 10.0f64] {
             let expected = (1.0 + wp.powi(4) / 4.0).sqrt();
             assert!((constant_acceleration(wp).magnitude() / expected - 1.0).abs() < 4.0 * f64::EPSILON);
@@ -91,21 +90,21 @@ mod tests {
     }
 
     #[test]
-    fn without_prediction_the_error_is_a_chord() {
+    fn without_prediction_the_relative_error_of_a_sinusoid_is_a_chord() {
         for wp in [0.1, 1.0, 2.5f64] {
             assert!((relative_error(none, wp) - 2.0 * (wp / 2.0).sin()).abs() < 4.0 * f64::EPSILON);
         }
     }
 
     #[test]
-    fn small_errors_follow_the_first_missing_power() {
+    fn small_prediction_errors_follow_the_first_power_that_the_order_omits() {
         let wp = 1e-2f64;
         assert!((relative_error(constant_velocity, wp) / (wp.powi(2) / 2.0) - 1.0).abs() < 1e-4);
         assert!((relative_error(constant_acceleration, wp) / (wp.powi(3) / 6.0) - 1.0).abs() < 1e-4);
     }
 
     #[test]
-    fn the_gain_is_what_x_plus_vp_plus_ap2_over_2_does_to_a_sinusoid() {
+    fn the_gain_equals_extrapolating_a_sinusoid_to_second_order() {
         let w = TAU * 1.3;
         let p = 0.07;
         let gain = constant_acceleration(w * p);

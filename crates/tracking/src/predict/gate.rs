@@ -14,8 +14,8 @@ pub struct ReportCounts {
     pub accepted: u64,
     /// Number of reports rejected because of NaN, infinity or a quaternion that is not of unit length.
     pub malformed: u64,
-    /// Number of reports rejected because of their time stamp. Such a time stamp precedes the time stamp of the last
-    /// accepted report, or follows it by less than the `interval` of [`table::Gate`].
+    /// Number of reports rejected because of their time stamp. The time stamp is earlier than the last accepted time
+    /// stamp, or later by less than the `interval` of [`table::Gate`].
     pub untimely: u64,
     /// Number of reports that were rejected because the head would have to move or turn faster than a head can.
     pub jumps: u64,
@@ -24,8 +24,6 @@ pub struct ReportCounts {
     pub restarts: u64,
 }
 
-/// The decision about a tracker report: to reject the report, to use the report, or to restart the filters with the
-/// report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     Reject,
@@ -33,7 +31,8 @@ pub(super) enum Verdict {
     Restart,
 }
 
-/// A check that rejects impossible reports before they reach the prediction filters, and that counts every decision.
+/// A check that rejects impossible reports before the reports reach the prediction filters. The check counts every
+/// decision.
 #[derive(Clone, Debug)]
 pub(super) struct Gate {
     limits: table::Gate,

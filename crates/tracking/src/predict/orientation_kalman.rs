@@ -149,7 +149,7 @@ fn isotropic(variance: f64) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(variance))
 }
 
-/// Returns the matrix of the cross product with `v` on the left.
+/// Returns the matrix M for which M w is the cross product of `v` and w.
 fn cross(v: DVec3) -> DMat3 {
     DMat3::from_cols(DVec3::new(0.0, v.z, -v.y), DVec3::new(-v.z, 0.0, v.x), DVec3::new(v.y, -v.x, 0.0))
 }

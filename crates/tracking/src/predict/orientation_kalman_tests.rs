@@ -98,7 +98,7 @@ fn the_covariance_grows_by_the_jacobian_of_the_propagation() {
 }
 
 #[test]
-fn a_correction_is_the_textbooks_in_another_library() {
+fn a_correction_equals_the_textbook_form_in_another_library() {
     let mut filter = turning();
     let p = dense(&filter.covariance);
     let h = SMatrix::<f64, 3, 9>::identity();
@@ -144,7 +144,7 @@ fn pan(t: f64) -> DQuat {
 }
 
 #[test]
-fn a_pan_through_180_degrees_is_followed_for_turns() {
+fn a_pan_is_followed_through_several_revolutions() {
     let mut filter = OrientationKalman::new(NoiseModel { measurement: 1e-10, ..BELIEF });
     for i in 1..=1200u64 {
         // The signs of the quaternions alternate, which must not matter.

@@ -3,12 +3,9 @@ use glam::{DMat3, DVec3};
 use super::channel::Channel;
 use crate::time::span_s;
 
-/// Assumptions of a Kalman filter about measurement noise and motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NoiseModel {
-    /// Variance of the measurement noise along each axis.
     pub(super) measurement: f64,
-    /// Spectral density of the motion's jerk, which the filter treats as white noise.
     pub(super) jerk: f64,
     /// Variances of the head's velocity and acceleration that the filter assumes before the first measurement.
     pub(super) start: (f64, f64),
@@ -91,7 +88,7 @@ impl Channel<DVec3> for PositionKalman {
     }
 }
 
-/// Returns the symmetric part of a covariance matrix. Only rounding makes the matrix asymmetric.
+/// Returns the mean of a covariance matrix and its transpose, because rounding makes the matrix asymmetric.
 pub(super) fn symmetric(m: DMat3) -> DMat3 {
     (m + m.transpose()) * 0.5
 }
@@ -128,7 +125,7 @@ mod tests {
         }
 
         #[test]
-        fn one_step_agrees_with_the_textbook_in_another_library(dt in 1e-4..0.2f64, x in -1.0..1.0f64) {
+        fn a_step_of_the_position_filter_agrees_with_another_library(dt in 1e-4..0.2f64, x in -1.0..1.0f64) {
             let mut filter = PositionKalman::new(BELIEF);
             let p = oracle(&filter.covariance);
             filter.update(nearest_ps(dt), DVec3::X * x);
@@ -160,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn without_noise_a_parabola_is_followed_to_its_end() {
+    fn without_noise_a_parabola_is_followed_exactly() {
         let mut filter = PositionKalman::new(NoiseModel { measurement: 1e-12, ..BELIEF });
         for i in 0..240u64 {
             filter.update(i * PS_PER_S / 120 + 1, parabola(i as f64 / 120.0));
@@ -169,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn after_an_hour_the_error_is_still_that_of_the_covariance() {
+    fn after_an_hour_the_error_of_the_position_filter_stays_within_its_covariance() {
         // The head is still. Errors over the last minute stay within the deviation that the filter claims, because the
         // filter expects jerks that do not occur.
         let mut filter = PositionKalman::new(BELIEF);

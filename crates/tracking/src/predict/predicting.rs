@@ -8,8 +8,8 @@ use crate::pose::Pose;
 use crate::time::span_s;
 use crate::tracker::TrackerReport;
 
-/// A predictor with two filters, one for position and one for orientation. A check rejects impossible reports before
-/// they reach the filters.
+/// A predictor with one filter for position and one filter for orientation. A check rejects impossible reports before
+/// the reports reach the filters.
 #[derive(Clone, Debug)]
 pub(super) struct GatedFilterPair<P, O> {
     gate: Gate,

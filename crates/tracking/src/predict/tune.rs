@@ -10,14 +10,14 @@ use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{TrackerModel, TrackerReport};
 
 /// Length in seconds of the motion on which a filter is tuned. The motion must be long, because periods of fast motion
-/// are rare. With only 20 seconds, the filter tuned for predictions of 200 ms was worse on another motion than the
-/// filter tuned for 50 ms.
+/// are rare. In a test with only 20 seconds, the filter tuned for predictions of 200 ms was worse than the filter tuned
+/// for 50 ms. The test used a motion on which no filter was tuned.
 const TRAINING_S: u64 = 100;
-/// Time at the start of the motion that is not evaluated, seconds.
+/// Time at the start of the training motion for which predictions are not evaluated, seconds.
 const SETTLING_S: u64 = 1;
 
-/// Greatest number of reports on which a filter is tuned: a 120 Hz tracker sends this number in `TRAINING_S`. A faster
-/// tracker reaches the limit sooner.
+/// Greatest number of reports on which a filter is tuned. A 120 Hz tracker sends this number in `TRAINING_S` seconds. A
+/// tracker with a higher rate reaches the limit in less time.
 const MOST_REPORTS: usize = 12_000;
 
 /// Seed of the tracker's noise when a filter is tuned. If the noise of the evaluated run has the same seed, the tuning
@@ -33,20 +33,21 @@ const JERKS_A_ROUND: usize = 13;
 /// Number of rounds of the search. The second round covers only the neighbourhood of the best value of the first round.
 const ROUNDS: usize = 2;
 
-/// Greatest number of reports between the two poses whose difference gives a velocity.
+/// Greatest baseline, the number of reports between the two poses whose difference gives a velocity.
 const LONGEST_BASELINE: u32 = 16;
 
-/// The conditions under which a prediction filter was tuned, and the errors that remained.
+/// Conditions of the tuning of a prediction filter, and the errors that remained.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Training {
-    /// Time from the instant at which a reported pose was true to the predicted instant, ps.
+    /// Prediction interval of the tuning, ps: from the instant at which a reported pose was true to the predicted
+    /// instant.
     pub interval_ps: u64,
     /// True if the filter was tuned on another random motion of the same kind, false if the filter was tuned on the
     /// evaluated motion.
     pub sibling: bool,
     /// Length of the motion on which the filter was tuned, seconds. Up to one second at its start is not evaluated.
     pub seconds: f64,
-    /// Number of reports from which a prediction was evaluated.
+    /// Number of evaluated predictions, one from each report.
     pub reports: u64,
     /// Seed of the tracker's noise during the tuning. This seed always differs from the seed of the noise in the
     /// evaluated run.
@@ -119,24 +120,20 @@ pub fn tune<M: Motion + ?Sized>(
     Ok(Tuned { config, training: Some(training) })
 }
 
-/// The data on which a filter is tuned: reports, and for each report the true pose that should be predicted.
 struct TrainingData {
     reports: Vec<TrackerReport>,
     truths: Vec<Pose>,
-    /// Number of reports at the start that the filter receives but whose predictions are not evaluated.
+    /// Number of reports that the filter receives before the first evaluated prediction.
     settled: usize,
     seconds: f64,
-    /// Time from the instant of a report to the predicted instant, ps.
     interval_ps: u64,
     /// Root mean squares of speed, acceleration, angular velocity and angular acceleration along each axis.
     rates: [f64; 4],
 }
 
 impl TrainingData {
-    /// Collects reports of a tracker on a motion, with the true poses to predict. Returns `None` if no report can be
-    /// evaluated.
     fn of<M: Motion + ?Sized>(motion: &M, tracker: &TrackerModel, interval_ps: u64, seed: u64) -> Option<Self> {
-        // A head that stands still at its end teaches the filter nothing.
+        // The part of a motion in which the head stands still at the end does not help to tune a filter.
         let until_ps = motion.moves_until_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);
         let settling_ps = (SETTLING_S * PS_PER_S).min(until_ps / 2);
         let in_time = |report: &TrackerReport| report.measured_ps.saturating_add(interval_ps) <= until_ps;
@@ -163,7 +160,6 @@ impl TrainingData {
         PredictorConfig { start, ..base }
     }
 
-    /// Returns the mean errors of a predictor in metres and degrees.
     fn errors(&self, config: &PredictorConfig) -> Result<[f64; 2], SettingError> {
         let mut predictor = config.build()?;
         let mut sums = [0.0; 2];
@@ -179,8 +175,8 @@ impl TrainingData {
         Ok(sums.map(|sum| sum / (self.reports.len() - self.settled) as f64))
     }
 
-    /// Returns the settings with the strengths of jerk that give the least errors. The second value has these mean
-    /// errors in metres and degrees.
+    /// Returns the settings with the strengths of jerk that give the least errors, and the mean errors in metres and
+    /// degrees.
     fn best_jerks(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut spans = [JERK_DECADES; 2];
         let mut best = [(f64::INFINITY, 0.0); 2];
@@ -202,8 +198,8 @@ impl TrainingData {
         Ok((PredictorConfig { position_jerk, orientation_jerk, ..*base }, best.map(|(error, _)| error)))
     }
 
-    /// Returns the settings with the baselines that give the least errors. A baseline is the number of reports between
-    /// the two poses of a difference. The second value has these mean errors in metres and degrees.
+    /// Returns the settings with the baselines that give the least errors, and the mean errors in metres and degrees. A
+    /// baseline is the number of reports between the two poses of a difference.
     fn best_baselines(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut best = [(f64::INFINITY, 1.0); 2];
         for baseline in 1..=LONGEST_BASELINE {
@@ -231,7 +227,6 @@ fn jerk(decades: f64) -> f64 {
     within("position_jerk", libm::pow(10.0, decades))
 }
 
-/// Clamps a number to the range that the filter's parameter table allows.
 fn within(name: &str, value: f64) -> f64 {
     let limits = Filter::INFOS.iter().find(|info| info.name == name).map(|info| info.limits);
     limits.map_or(value, |(low, high)| value.clamp(low.real(), high.real()))

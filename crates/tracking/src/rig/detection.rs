@@ -27,15 +27,15 @@ impl Detection {
     }
 }
 
-/// A detector of the pendulum's passes through its lowest point in a sequence of reports. After each detected pass, the
-/// detector ignores further passes for a quarter of a swing, because noise could cause them.
+/// A detector of the pendulum's passes through its lowest point in a sequence of reports. For a quarter of a swing
+/// after each detected pass, the detector ignores passes, because noise could cause them.
 #[derive(Clone, Debug)]
 pub(super) struct Detector {
     how: Detection,
     dead_ps: u64,
     dead_until_ps: u64,
-    /// Sign and height in the last report. `true` stands for a positive x ([`Detection::Crossing`]) or an upward
-    /// movement ([`Detection::VelocitySign`]).
+    /// A sign and the height of the pendulum, both from the last report. The sign is `true` for a positive x
+    /// ([`Detection::Crossing`]) or an upward movement ([`Detection::VelocitySign`]).
     last: Option<(bool, f64)>,
 }
 

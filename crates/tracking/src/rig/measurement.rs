@@ -35,7 +35,6 @@ pub struct OutsidePass {
     pub light_ps: u64,
 }
 
-/// Returns the statistics of a latency over all passes of the pendulum, in seconds.
 fn over<P>(passes: &[P], span: impl Fn(&P) -> (u64, u64)) -> Statistics {
     Statistics::of(passes.iter().map(span).map(|(from, to)| span_s(from, to)))
 }
@@ -76,7 +75,7 @@ impl Side {
 const ROUNDING_S: f64 = 1e-12;
 
 /// Latencies of the same passes of the pendulum, measured by oscilloscope ("outside") and by time stamps ("inside").
-/// The measurement also has limits of the differences between both methods.
+/// The measurement also has limits for the differences between outside and inside latencies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// Measurements with the oscilloscope, one for each pass of the pendulum in order.

@@ -81,13 +81,13 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_is_centred_on_its_instant() {
+    fn a_pulse_is_centred_on_its_time() {
         let trace = ScopeTrace::pulsing("low point", [100, 200].into_iter(), 10);
         assert_eq!([94, 95, 104, 105, 195].map(|t| trace.level(t)), [false, true, true, false, true]);
     }
 
     #[test]
-    fn samples_are_the_levels() {
+    fn samples_of_a_trace_are_its_levels_at_the_sample_times() {
         let trace = ScopeTrace::toggling("screen", vec![10, 30]);
         let levels: Vec<f64> = trace.samples(0, 50, 10).map(|(_, v)| v).collect();
         assert_eq!(levels, [0.0, 1.0, 1.0, 0.0, 0.0]);

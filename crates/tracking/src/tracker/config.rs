@@ -4,7 +4,9 @@ use serde::{Deserialize, Serialize};
 use super::{MagneticDistortion, SerialLine, SerialRead, TrackerFault};
 use crate::config::{self as table, Tables};
 
-/// Settings of a tracker, its cable and the host's serial port. The presets take every number from [`crate::config`].
+/// Settings of a tracker, its cable and the host's serial port.
+///
+/// The presets take every number from [`crate::config`].
 ///
 /// The tracker begins measurement n (called a solution) at sync signal n, at the time n x receivers / rate. The
 /// measurement is ready for the cable `sync_to_output_ps` after this signal. At this instant, the measured position has

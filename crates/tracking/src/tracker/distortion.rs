@@ -28,9 +28,9 @@ pub struct MagneticDistortion {
 }
 
 impl MagneticDistortion {
-    /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`. The error
-    /// grows with the squared distance, but more slowly far from the transmitter (`reach_m`). With the squared distance
-    /// alone, the error 1 m from the transmitter would be 20 mm (assumed).
+    /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`. Near the
+    /// transmitter, the error at a distance of r metres is 0.02 r^2 metres (assumed). Farther away than `reach_m`, the
+    /// error grows more slowly.
     pub fn floor_below(transmitter_m: DVec3) -> Self {
         Self::floor_below_by(&Tables::PAPERS, transmitter_m)
     }
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_plane_looks_like_a_bowl() {
+    fn metal_makes_a_level_plane_look_like_a_bowl() {
         // The depth is 20 mm at 1 m, divided by 1 + 1/4 because of the reach.
         assert_eq!(height(0.0), 0.0);
         assert!((height(1.0) + 0.016).abs() < 1e-12);
@@ -98,21 +98,21 @@ mod tests {
     }
 
     #[test]
-    fn the_head_tilts_as_the_surface_does() {
+    fn the_reported_orientation_of_the_head_tilts_with_the_distorted_plane() {
         let tilted = METAL.distort(&Pose::at(DVec3::X)).orientation * DVec3::X;
         let slope = (height(1.0 + 1e-6) - height(1.0 - 1e-6)) / 2e-6;
         assert!((tilted.y / tilted.x - slope).abs() < 1e-4, "{tilted} {slope}");
     }
 
     #[test]
-    fn a_still_head_is_misplaced_always_by_the_same() {
+    fn a_still_head_has_a_constant_position_error() {
         let head = Pose::at(DVec3::new(0.5, 0.7, -0.4));
         assert_eq!(METAL.distort(&head), METAL.distort(&head));
         assert!(METAL.distort(&head).distance_m(&head) > 5e-3);
     }
 
     #[test]
-    fn far_away_the_error_stays_below_depth_times_reach_squared() {
+    fn far_from_the_metal_the_position_error_stays_below_depth_times_reach_squared() {
         assert!(height(1e6).abs() <= 0.02 * 4.0);
     }
 }

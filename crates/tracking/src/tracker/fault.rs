@@ -3,7 +3,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{check, contradiction};
 
-/// Greatest allowed probability of a random fault. With a higher probability the tracker would hardly report at all.
+/// Greatest allowed probability of a random fault. With a higher probability the tracker would report too rarely for
+/// any run.
 const MOST_LIKELY: f64 = 0.99;
 
 /// A fault to inject into a tracker. Several faults can be combined. If two random faults hit one report, the first in

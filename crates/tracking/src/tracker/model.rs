@@ -3,7 +3,7 @@ use crate::error::{check, contradiction};
 use crate::time::{PS_PER_S, tick_ps};
 use pxpl5_sim::parameters::SettingError;
 
-/// Longest latency or polling interval that settings may have, ps.
+/// Greatest latency or polling interval that settings may have, ps.
 const LONGEST_PS: u64 = 10 * PS_PER_S;
 
 /// A tracker whose settings have been checked.
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_solution_at_an_instant_is_the_first_sync_not_before_it() {
+    fn the_first_solution_at_or_after_a_sync_is_the_solution_of_this_sync() {
         for config in [TrackerConfig::fastrak(), TrackerConfig { receivers: 3, ..TrackerConfig::fastrak() }] {
             let tracker = model(config);
             for n in [0, 1, 2, 7, 1_000_003] {
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_settings_are_errors() {
+    fn invalid_settings_of_a_tracker_are_errors() {
         let good = TrackerConfig::fastrak;
         let bad = [
             TrackerConfig { rate_hz: 0, ..good() },
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_configuration_survives_a_file_and_unknown_keys_do_not() {
+    fn a_configuration_is_read_back_from_a_file_and_unknown_keys_are_refused() {
         let config = TrackerConfig::polhemus_3space();
         let text = serde_json::to_string(&config).unwrap();
         assert_eq!(serde_json::from_str::<TrackerConfig>(&text).unwrap(), config);

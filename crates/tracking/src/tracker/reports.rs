@@ -22,7 +22,6 @@ pub struct Reports<M> {
     model: TrackerModel,
     motion: M,
     noise: u64,
-    /// Constant error of the tracker: an offset in metres, and a rotation vector in radians.
     bias: (DVec3, DVec3),
     faults: u64,
     poll_phase_ps: u64,
@@ -175,7 +174,8 @@ impl<M: Motion> Reports<M> {
         Some(config.host.seen_ps(complete_ps, self.poll_phase_ps))
     }
 
-    /// Schedules the crash of a host with a patched Unix kernel. The delay counts from the arrival of the first report.
+    /// Schedules the crash of a host with a patched Unix kernel. The time until the crash counts from the arrival of
+    /// the first report.
     fn schedule_crash(&mut self, arrives_ps: u64) {
         if let Some(after_ps) = self.model.config().crashes_patched_host_after_ps.filter(|_| self.crashes) {
             self.silent_from_ps = self.silent_from_ps.min(arrives_ps.saturating_add(after_ps));
@@ -184,7 +184,6 @@ impl<M: Motion> Reports<M> {
     }
 }
 
-/// Computes the constant errors of the tracker from the seed: an offset in metres and a rotation vector in radians.
 fn bias(config: &TrackerConfig, seed: u64) -> (DVec3, DVec3) {
     let [(a, b), (c, d), (e, f)] = core::array::from_fn(|i| normal_pair(seed, i as u64));
     let turn = DVec3::new(d, e, f) * config.orientation_bias_deg.to_radians();
@@ -222,7 +221,6 @@ impl<M: Motion> Iterator for Reports<M> {
     }
 }
 
-/// Returns a random unit vector, computed from the random numbers `first` and `first + 1` of the seed.
 fn random_direction(seed: u64, first: u64) -> DVec3 {
     let (x, y) = normal_pair(seed, first);
     let (z, _) = normal_pair(seed, first + 1);

@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_that_completes_at_the_look_is_seen_and_one_picosecond_later_waits() {
+    fn a_record_complete_at_a_poll_is_read_at_this_poll_and_a_later_record_waits_for_the_next_poll() {
         let line = SerialRead::unix();
         let look = 5 + 30 * PS_PER_MS;
         assert_eq!(line.seen_ps(look, 5), look);
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_patched_kernel_adds_nothing() {
+    fn a_patched_kernel_adds_no_delay_to_a_received_character() {
         assert_eq!(SerialRead::InterruptPerCharacter.seen_ps(123, 5), 123);
     }
 }

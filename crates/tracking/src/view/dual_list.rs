@@ -51,21 +51,21 @@ mod tests {
     }
 
     #[test]
-    fn on_the_screen_the_error_reaches_0_34_px_at_the_edge() {
+    fn screen_interpolation_has_an_error_of_0_34_px_at_the_edge() {
         // tan is interpolated: f x turn^2 / 8 x 2 tan 30 / cos^2 30 = 0.339 px over a whole field.
         let error = worst(screen_space, NTSC_FIELD_PS, 300.0);
         assert!((error - 0.34).abs() < 0.005, "{error}");
     }
 
     #[test]
-    fn on_the_screen_the_error_vanishes_in_the_middle() {
+    fn screen_interpolation_has_no_error_in_the_middle() {
         // Within 1 px of the middle tan is straight to the third order: f x turn^3 / 36 = 0.003 px.
         let error = worst(screen_space, NTSC_FIELD_PS, 1.0);
         assert!(error < 0.004, "{error}");
     }
 
     #[test]
-    fn in_the_view_the_error_stays_below_0_002_px() {
+    fn interpolation_in_eye_space_has_an_error_below_0_002_px() {
         // The error is atan(u tan h) - u h, where h is half the turn. The chord of an arc, seen from its centre, runs
         // ahead by turn^3 / (36 sqrt 3) at most. The edge of a flat picture magnifies this by f / cos^2 30. T1 is the
         // end of the visible field, 240 lines after T0. Over a whole field, with the retrace, the error would reach
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn both_meet_the_ends_of_the_field() {
+    fn both_interpolations_are_exact_at_the_ends_of_the_field() {
         let view = Hmd::unc();
         let start = DVec3::new(0.3, 0.2, -2.0);
         let end = DVec3::new(0.1, 0.3, -3.0);
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_that_passes_the_eye_has_no_place() {
+    fn a_vertex_that_passes_behind_the_eye_has_no_interpolated_position() {
         let view = Hmd::unc();
         assert_eq!(screen_space(&view, DVec3::NEG_Z, DVec3::Z, 0.1), None);
         assert!(view_space(&view, DVec3::NEG_Z, DVec3::Z, 0.1).is_some());

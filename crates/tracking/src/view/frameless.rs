@@ -48,7 +48,7 @@ impl RandomOrder {
         }
     }
 
-    /// Permutes the numbers 0..2^width by a Feistel network. The upper and the lower bits of the number exchange their
+    /// Permutes the numbers 0..2^width by a Feistel network. The upper and the lower bits of `place` exchange their
     /// roles in each round, so that `width` can be odd.
     fn permuted(&self, place: u32) -> u32 {
         let mut low_bits = self.half_bits;
@@ -77,7 +77,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_pixel_comes_once_in_a_pass(n in 1u32..5000, seed in any::<u64>()) {
+        fn every_pixel_is_drawn_once_in_a_pass(n in 1u32..5000, seed in any::<u64>()) {
             let order = RandomOrder::new(n, seed).unwrap();
             let mut seen = vec![false; n as usize];
             for step in 0..u64::from(n) {
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn in_the_long_run_the_mean_age_of_a_pixel_is_half_a_pass() {
-        // Ages in steps after each update of the third pass; at any moment they are 0..n-1, mean (n - 1) / 2.
+        // After each update of the third pass, the ages of the pixels are 0 to n - 1 steps. Their mean is (n - 1) / 2.
         let n = 1000u64;
         let order = RandomOrder::new(n as u32, 3).unwrap();
         let mut updated = vec![0; n as usize];
@@ -111,8 +111,8 @@ mod tests {
     }
 
     #[test]
-    fn the_order_is_spread_over_the_picture() {
-        // The first 3,000 of 300,000 pixels: 300 +- 17 in each tenth of the picture.
+    fn the_first_pixels_of_a_pass_are_spread_over_the_whole_picture() {
+        // Each tenth of the picture contains 300 +- 17 of the first 3,000 of 300,000 pixels.
         let order = RandomOrder::new(300_000, 9).unwrap();
         let mut tenths = [0; 10];
         (0..3000).for_each(|step| tenths[(order.pixel(step) / 30_000) as usize] += 1);
@@ -120,10 +120,10 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_in_time_are_not_neighbours_in_place() {
+    fn blocks_drawn_in_succession_are_not_adjacent() {
         let order = RandomOrder::new(300_000, 9).unwrap();
         let near = (0..3000u64).filter(|&s| order.pixel(s).abs_diff(order.pixel(s + 1)) < 3000).count();
-        // By chance 2 x 3,000 / 300,000 = 2 % of 3,000: 60 +- 8.
+        // A random order gives 2 x 3,000 / 300,000 = 2 % of 3,000 pairs: 60, with a standard deviation of 8.
         assert!((25..95).contains(&near), "{near}");
     }
 
@@ -133,13 +133,13 @@ mod tests {
     }
 
     #[test]
-    fn seeds_give_different_orders_and_the_same_seed_the_same() {
+    fn different_seeds_give_different_pixel_orders_and_a_repeated_seed_gives_the_same_order() {
         assert_eq!(first_pixels(1), first_pixels(1));
         assert_ne!(first_pixels(1), first_pixels(2));
     }
 
     #[test]
-    fn no_pixels_is_an_error() {
+    fn a_picture_without_pixels_is_an_error() {
         assert!(RandomOrder::new(0, 1).is_err());
         assert!(RandomOrder::new(1, 1).is_ok_and(|order| order.pixel(7) == 0));
     }

@@ -99,12 +99,12 @@ pub struct Hmd {
     focal_px: f64,
 }
 
-/// The offset between the shown and the true position of a point in the picture.
+/// Difference between the shown and the true position of a point in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misregistration {
     /// Shown position minus true position, px, x to the right and y down.
     pub offset_px: DVec2,
-    /// Length of the offset, px.
+    /// Distance from the true position to the shown position, px.
     pub pixels: f64,
     /// Angle between the shown and the true direction of the point, seen from the eye, degrees.
     pub degrees: f64,
@@ -129,7 +129,7 @@ impl Hmd {
         Self::new(HmdConfig::unc()).expect("the table's values are in range")
     }
 
-    /// Returns the same display with pictures of another size in pixels.
+    /// Returns the same display with pictures of `width_px` x `height_px` pixels.
     ///
     /// # Panics
     ///
@@ -204,7 +204,6 @@ impl Hmd {
         self.misregistration_at(point, begun, shown)
     }
 
-    /// Returns the matrix from eye to clip coordinates ([`View::projection`](super::View::projection)).
     pub(super) fn projection(&self) -> Mat4 {
         let HmdConfig { width_px, height_px, near_m: near, far_m: far, .. } = self.config;
         // Half the width and half the height of the picture at a distance of 1.
@@ -225,7 +224,7 @@ pub fn drift_deg(deg_per_s: f64, span_ps: u64) -> f64 {
     deg_per_s * seconds(span_ps)
 }
 
-/// Returns the angle between two vectors, radians. Small angles keep full accuracy.
+/// Returns the angle between two vectors, radians. The formula is accurate for small angles too.
 pub(super) fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
@@ -246,12 +245,12 @@ mod tests {
     }
 
     #[test]
-    fn up_is_a_smaller_y() {
+    fn a_higher_point_has_a_smaller_y_coordinate_on_the_screen() {
         assert!(Hmd::unc().project(DVec3::new(0.0, 0.1, -1.0)).unwrap().y < 240.0);
     }
 
     #[test]
-    fn behind_the_eye_there_is_no_picture() {
+    fn points_behind_the_eye_are_not_projected() {
         assert_eq!(Hmd::unc().project(DVec3::Z), None);
         assert_eq!(Hmd::unc().project(DVec3::X), None);
         let behind = Pose::facing(rotation::about_y(3.0));
@@ -260,7 +259,7 @@ mod tests {
 
     // J1 and J2 of the published figures: 200 deg/s, 60 degrees, 600 px.
     #[test]
-    fn one_transform_a_field_is_3_3_degrees_and_33_px_off() {
+    fn with_one_transform_per_field_the_error_is_3_3_degrees_and_33_px() {
         let view = Hmd::unc().with_pixels(600, 480);
         let degrees = drift_deg(200.0, NTSC_FIELD_PS);
         assert!((degrees - 3.3).abs() < 0.05);
@@ -269,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn one_transform_a_scanline_is_0_013_degrees_and_0_13_px_off() {
+    fn with_one_transform_per_scanline_the_error_is_0_013_degrees_and_0_13_px() {
         let view = Hmd::unc().with_pixels(600, 480);
         let degrees = drift_deg(200.0, ntsc_lines_ps(1));
         assert!((degrees - 0.013).abs() < 5e-4);
@@ -288,8 +287,8 @@ mod tests {
     }
 
     #[test]
-    fn latencies_of_90_and_50_ms_err_as_1_8_to_1() {
-        // At 40 deg/s, the mean speed of recorded use. The tangent adds 0.1 %.
+    fn errors_at_90_and_50_ms_have_the_ratio_1_8() {
+        // 40 deg/s is the mean speed of recorded use. The tangent adds 0.1 %.
         let pan = Pan::at(40.0);
         let [at_90, at_50] = [90, 50]
             .map(|ms| Hmd::unc().centre_misregistration(&pan.pose(0), &pan.pose(ms * PS_PER_MS), 5.0).unwrap().pixels);

@@ -28,29 +28,29 @@ pub struct RasterOffset {
 }
 
 impl RasterOffset {
-    /// Returns the offset at `at_ps` for a picture that was drawn for the pose `predicted` and is seen from the pose
-    /// `actual`. This offset does not change during the field.
+    /// Returns the raster offset at `at_ps` for a picture that was drawn for the pose `predicted` and is seen from the
+    /// pose `actual`. The rates of this offset are 0, so the offset does not change during the field.
     pub fn between(predicted: &Pose, actual: &Pose, at_ps: u64) -> Self {
         let error = actual.orientation.conjugate() * predicted.orientation;
         let (yaw, pitch, _roll) = rotation::to_yaw_pitch_roll(error);
         Self { yaw, pitch, yaw_rate: 0.0, pitch_rate: 0.0, at_ps }
     }
 
-    /// Returns the offset with rates of change for a head that turns with `angular_velocity` (rad/s, world frame) after
-    /// the picture was drawn. The rates are exact for a turn about either axis alone.
+    /// Returns this raster offset with new rates of yaw and pitch. The rates follow from `angular_velocity` (rad/s,
+    /// world frame), with which the head turns after the picture was drawn. The rates are exact if the head turns only
+    /// about its yaw axis or only about its pitch axis.
     pub fn with_rates(self, actual: &Pose, angular_velocity: DVec3) -> Self {
         let of_head = actual.orientation.conjugate() * angular_velocity;
         Self { yaw_rate: -of_head.y, pitch_rate: -of_head.x, ..self }
     }
 
-    /// Returns yaw and pitch of the offset at `t_ps`, radians.
     fn angles(&self, t_ps: u64) -> (f64, f64) {
         let dt_s = span_s(self.at_ps, t_ps);
         (self.yaw + self.yaw_rate * dt_s, self.pitch + self.pitch_rate * dt_s)
     }
 
-    /// Returns the direction in which a viewer sees a point at `t_ps` that was drawn in the direction `drawn`. The
-    /// raster rotates as a whole.
+    /// Returns the direction in which a viewer sees a point at the time `t_ps`. The point was drawn in the direction
+    /// `drawn`. The raster rotates as a whole.
     pub fn turned(&self, drawn: DVec3, t_ps: u64) -> DVec3 {
         let (yaw, pitch) = self.angles(t_ps);
         rotation::about_y(yaw) * (rotation::about_x(pitch) * drawn)
@@ -62,8 +62,8 @@ impl RasterOffset {
         view.project(middle).map_or(DVec2::ZERO, |place| place - view.centre_px())
     }
 
-    /// Returns the angular error (degrees) of a world point that remains after the offset at `t_ps`, on a raster that
-    /// rotates as a whole. The point was drawn for the pose `predicted` and is seen from the pose `actual`.
+    /// Returns the angular error (degrees) of a world point after the offset at `t_ps`, on a raster that rotates as a
+    /// whole. The point was drawn for the pose `predicted` and is seen from the pose `actual`.
     pub fn residual_deg(&self, world: DVec3, predicted: &Pose, actual: &Pose, t_ps: u64) -> f64 {
         let shown = self.turned(predicted.view_of(world), t_ps);
         angle_between(shown, actual.view_of(world)).to_degrees()
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn yaw_and_pitch_errors_of_distant_points_vanish() {
+    fn the_raster_offset_removes_yaw_and_pitch_errors_of_distant_points() {
         let predicted = Pose::facing(rotation::from_yaw_pitch_roll(0.7, -0.3, 0.2));
         for (yaw, pitch) in [(0.05, 0.0), (0.0, -0.04), (0.06, 0.03)] {
             let actual = wrong_by(yaw, pitch, 0.0, &predicted);
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn roll_remains_and_turns_the_edge_by_its_sine() {
+    fn the_raster_offset_does_not_remove_roll_errors() {
         let predicted = Pose::IDENTITY;
         let actual = wrong_by(0.05, 0.02, 0.03, &predicted);
         let offset = RasterOffset::between(&predicted, &actual, 0);
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn translation_remains_for_near_points_and_vanishes_with_distance() {
+    fn the_raster_offset_leaves_the_error_of_a_translation_at_near_points() {
         let predicted = Pose::IDENTITY;
         let actual = Pose::at(DVec3::X * 0.01);
         let offset = RasterOffset::between(&predicted, &actual, 0);
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flat_raster_is_right_in_the_middle_and_wrong_at_the_edge() {
+    fn a_flat_raster_is_correct_in_the_middle_and_wrong_at_the_edge() {
         let view = Hmd::unc();
         let pan = Pan::at(200.0);
         let predicted = pan.pose(0);
@@ -161,7 +161,7 @@ mod tests {
             (drawn + shift - view.project(actual.view_of(point)).unwrap()).length()
         });
         assert!(error_middle < 1e-9);
-        // f (tan(30 deg) - tan(30 deg - turn)) less f tan(turn): 9.1 px.
+        // f (tan(30 deg) - tan(30 deg - turn)) minus f tan(turn): 9.1 px.
         let f = view.focal_px();
         let turn = 200f64.to_radians() * NTSC_FIELD_PS as f64 / 1e12;
         let expected = f * (edge.tan() - (edge - turn).tan() - turn.tan());

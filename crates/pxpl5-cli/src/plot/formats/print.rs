@@ -1,22 +1,19 @@
-//! Converts a figure to PDF and PNG. The typeface is built in.
+//! Converters of a figure to PDF and PNG with a built-in typeface.
 
 use crate::error::CliError;
 use svg2pdf::usvg::{Options, Transform, Tree};
 use svg2pdf::{ConversionOptions, PageOptions};
 
-/// Resolution of a PNG file in dots per inch.
 const PNG_DOTS: f32 = 300.0;
 
 /// Resolution of an SVG drawing. The unit of length is the CSS pixel, and an inch has 96 CSS pixels.
 const SVG_DOTS: f32 = 96.0;
 
-/// Converts a figure from SVG to a PDF page of the same size.
 pub(super) fn pdf(svg: &str) -> Result<Vec<u8>, CliError> {
     let page = PageOptions { dpi: SVG_DOTS };
     svg2pdf::to_pdf(&tree(svg)?, ConversionOptions::default(), page).map_err(CliError::failure)
 }
 
-/// Converts a figure from SVG to a PNG file with 300 dots per inch.
 pub(super) fn png(svg: &str) -> Result<Vec<u8>, CliError> {
     let tree = tree(svg)?;
     let scale = PNG_DOTS / SVG_DOTS;

@@ -43,7 +43,6 @@ impl ByCells {
         }
     }
 
-    /// Returns the index of the display memory that holds a structure.
     fn memory(&self, structure: usize) -> usize {
         let cells = self.cells.get(structure).into_iter().flatten();
         cells.map(|cell| self.policy.dealing().memory(*cell)).min().unwrap_or(0)
@@ -84,7 +83,7 @@ impl DuePolicy for ByCells {
         if !update.due.contains(&true) {
             return VecDeque::new();
         }
-        // All memories of the cycle use one view.
+        // All memories in one cycle of the policy use the same view.
         let view = updates.view(number, now);
         let from = view.eyes.first().map_or(eye, |eye| place(&eye.world_to_eye));
         for (memory, drawn_from) in self.drawn_from.iter_mut().enumerate() {

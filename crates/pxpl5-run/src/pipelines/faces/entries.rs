@@ -13,7 +13,6 @@ use pxpl5_machine::NamedTable;
 use pxpl5_sim::parameters::Key;
 use std::sync::Arc;
 
-/// Settings (keys) of the pipelines of each policy.
 const KEYS: [&[Key]; 4] =
     [&[SHADING, LENS], &[SHADING, LENS], &[SHADING, LENS, SEGMENT], &[SHADING, LENS, SEGMENT, WARP]];
 
@@ -23,7 +22,6 @@ const IDEAL_KEYS: &[Key] = &[SHADING, LENS, POLICY, SEGMENT, WARP];
 
 const TABLES: &[NamedTable] = &[("priority", || Box::new(PriorityTiming::PAPERS))];
 
-/// Returns a registry entry of the family `arp`.
 const fn named(
     name: &'static str,
     about: &'static str,
@@ -77,11 +75,11 @@ fn build_ideal(latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     Arc::new(with_settings(FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(policy) }, latch, settings))
 }
 
-/// Descriptions of pipelines that latch orientations more often than the preceding pipeline in the list of pipelines.
+/// Description of a pipeline with an orientation for each line. The list has this pipeline after the same pipeline with
+/// one orientation for each field.
 const BY_LINE: &str = "the same, with an orientation for each line";
 const BY_PIXEL: &str = "the same, with an orientation for each pixel, as far as the host's connection can carry them";
 
-/// Creates a registry entry from a policy and a latch mode.
 macro_rules! entry {
     ($policy:ident, $latch:ident, $about:expr) => {
         entry((FacePolicy::$policy, Latch::$latch), $about, |settings| {
@@ -90,7 +88,6 @@ macro_rules! entry {
     };
 }
 
-/// Registry entries of the address recalculation pipelines.
 pub(crate) const ENTRIES: [PipelineEntry; 15] = [
     entry!(Full, Field, "six faces in one memory, looked up with one orientation for each field (VRAIS 93)"),
     entry!(Full, Line, BY_LINE),

@@ -126,8 +126,8 @@ impl Outcome {
         self.record().attached().map_or_else(Vec::new, RequestedUpdates::all)
     }
 
-    /// Returns the rotation latency of the middle pixel of every field, from the first field that has one. The list is
-    /// empty without a tracked head, or if the display does not accept cube faces.
+    /// Returns the rotation latency of the middle pixel of every field, beginning with the first field that has a
+    /// rotation latency. The list is empty without a tracked head, or if the display does not accept cube faces.
     #[must_use]
     pub fn rotation_latencies(&self) -> Vec<RotationLatency> {
         let run = self.final_results();

@@ -1,6 +1,3 @@
-//! Cube faces that an ideal renderer draws without delay, and the host's connection that carries the faces to the
-//! display.
-
 use super::plan::{Due, DuePolicy, Plan, Updates};
 use crate::pipeline::Setup;
 use crate::pipelines::faces::latched_head::lights_of;
@@ -57,7 +54,6 @@ impl HostLine for IdealFaces {
     }
 }
 
-/// Returns the last instant before a field begins.
 fn before(scan: &FaceScan, field: PeriodNumber) -> Time {
     Time(scan.retrace(field).0.saturating_sub(BEFORE_RETRACE.0))
 }
@@ -97,7 +93,6 @@ pub(super) fn seen_next(setup: &Setup, scan: FaceScan) -> Setup {
     Setup { views: Arc::new(views), ..setup.clone() }
 }
 
-/// A policy that draws the whole scene into display memory 0 in every cycle.
 pub(super) struct All {
     pub(super) structures: Arc<[bool]>,
 }
@@ -142,7 +137,6 @@ impl DrawnCube {
     }
 }
 
-/// A region of the cube faces that an update draws.
 #[derive(Debug)]
 struct DrawnRegion {
     cube: Arc<DrawnCube>,

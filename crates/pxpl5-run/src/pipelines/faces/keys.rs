@@ -1,11 +1,8 @@
-//! Names and settings of the address recalculation pipelines.
-
 use super::policy::FacePolicy;
 use address_recalculation::Lens;
 use address_recalculation::priority::Falloff;
 use pxpl5_sim::parameters::{Key, KeyValues, names};
 
-/// Pipeline names by policy and latch mode.
 pub(super) const NAMES: [[&str; 3]; 4] = [
     ["arp-full", "arp-full-line", "arp-full-pixel"],
     ["arp-priority", "arp-priority-line", "arp-priority-pixel"],
@@ -13,7 +10,6 @@ pub(super) const NAMES: [[&str; 3]; 4] = [
     ["arp-cells-warp", "arp-cells-warp-line", "arp-cells-warp-pixel"],
 ];
 
-/// Names of pipelines with an ideal renderer, by latch mode.
 pub(super) const IDEAL_NAMES: [&str; 3] = ["arp-ideal", "arp-ideal-line", "arp-ideal-pixel"];
 
 pub(super) const LENS: Key = Key::new(

@@ -7,7 +7,6 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::{Aim, Display, LightTimes};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
-/// Returns the time span in which a field of a scan is lit.
 pub(crate) fn lights_of(scan: &FaceScan, field: PeriodNumber) -> LightTimes {
     let tick = scan.retrace(field);
     let top = FieldParity::of_field(field).first_line();
@@ -15,7 +14,6 @@ pub(crate) fn lights_of(scan: &FaceScan, field: PeriodNumber) -> LightTimes {
     LightTimes { tick, first: light(0, top), last: light(scan.width() - 1, scan.height() - 2 + top) }
 }
 
-/// Number of words of an orientation message on the host's connection to the display.
 pub(crate) const ORIENTATION_WORDS: u32 = 9;
 
 /// Timing of the orientation register of a display with cube faces.
@@ -59,10 +57,10 @@ impl OrientationTiming {
         self.scan.latches(self.latch, x, y, field)
     }
 
-    /// Returns the first time after an instant at which a new orientation is in the register.
+    /// Returns the first time later than `after` when a new orientation is in the register.
     ///
     /// The first orientation arrives when the machine starts. Each later orientation comes from a report, or from the
-    /// schedule for latching by line or pixel. `reports` returns the arrival time of the first report after an instant.
+    /// schedule for latching by line or pixel. `reports(t)` returns the arrival time of the first report after `t`.
     pub(crate) fn next(&self, after: Time, reports: impl Fn(Time) -> Option<Time>) -> Option<Time> {
         let first = self.loaded(Time::ZERO);
         if after < first {
@@ -84,7 +82,6 @@ impl OrientationTiming {
         (self.sent(loaded), aimed)
     }
 
-    /// Returns the time at which the host sends the orientation that is in the register at the time `loaded`.
     fn sent(&self, loaded: Time) -> Time {
         Time(loaded.0.saturating_sub(self.link.0))
     }
@@ -100,7 +97,8 @@ impl OrientationTiming {
         self.aim.instant(&lights_of(&self.scan, field))
     }
 
-    /// Returns the time up to which the host used reports for a pixel's orientation, and the instant of the prediction.
+    /// Returns the time up to which the host used reports for a pixel's orientation, and the instant for which this
+    /// orientation was predicted.
     ///
     /// Before the first report, the host has the head's initial pose. Returns `None` before an orientation is loaded.
     #[must_use]
@@ -137,7 +135,9 @@ impl OrientationTiming {
     }
 }
 
-/// Parts of the rotation latency. The sum of the parts is the latency.
+/// Parts of the rotation latency.
+///
+/// The sum of the parts is the latency.
 ///
 /// Rotation latency is the time from the measurement of an orientation until a pixel that uses the orientation is lit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -150,7 +150,7 @@ pub struct RotationLatency {
     ///
     /// For latching by line or pixel, the host waits for this time before it predicts from the report.
     pub wait_for_latch: Span,
-    /// Time that a pixel takes through the stages of the display's pipeline.
+    /// Time that a pixel takes through the hardware of the display.
     pub pipeline: Span,
     /// Time from the lighting of the first pixel with the latched orientation to the lighting of this pixel.
     pub scan: Span,

@@ -14,7 +14,7 @@ use pxpl5_wire::{FieldParity, PeriodNumber};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadSchedule {
     scan: FaceScan,
-    /// Delay of a pixel through all stages of the display's pipeline.
+    /// Delay of a pixel in the hardware of the display.
     depth: Span,
     /// Time between two successive loads of the display's orientation register within a line.
     link: Span,
@@ -48,12 +48,10 @@ impl LoadSchedule {
         Some(Self { scan, depth, link, lines, loads, aim })
     }
 
-    /// Returns the number of lines of a field.
     fn height(&self) -> u32 {
         self.scan.height() / 2
     }
 
-    /// Returns the instant at which a pixel of a line of a field is lit.
     fn light(&self, x: u32, line: u32, field: PeriodNumber) -> Time {
         let y = 2 * line + FieldParity::of_field(field).first_line();
         self.scan.when(x, y, field).unwrap_or_else(|| self.scan.retrace(field))
@@ -67,8 +65,9 @@ impl LoadSchedule {
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }
 
-    /// Returns the instant at which an orientation is in the display's register. At most one pixel's time later, the
-    /// display latches this orientation for the first pixel that uses the orientation.
+    /// Returns the instant at which the display's register receives an orientation. The display latches (copies) the
+    /// orientation from the register when the first pixel that uses the orientation begins. The display latches at most
+    /// one pixel's time after the returned instant.
     pub(crate) fn loaded(&self, load: Load) -> Time {
         let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
         Time(first.0.saturating_sub(self.depth.0))
@@ -89,14 +88,11 @@ impl LoadSchedule {
         self.aim.instant(&light)
     }
 
-    /// Returns the first pixel of a line that can use the load with the index `number` of the display's orientation
-    /// register.
     fn first_pixel(&self, line: u32, number: u32, field: PeriodNumber) -> u32 {
         let from = self.light(0, line, field) + self.link * u64::from(number);
         partition(self.scan.width() - 1, |x| self.light(x, line, field) < from)
     }
 
-    /// Returns the first load of the display's orientation register that is complete after an instant.
     pub(crate) fn next(&self, after: Time) -> Load {
         let mut field = self.scan.field_at(after);
         loop {
@@ -172,7 +168,7 @@ mod tests {
     /// Tests the number of register loads. A message of nine words takes 7.2 us, so the 63.56 us of a line have room
     /// for 8 loads.
     #[test]
-    fn a_line_has_one_load_and_with_pixels_as_many_as_the_line_carries() {
+    fn a_line_has_one_orientation_or_the_number_of_orientations_that_the_host_line_can_carry() {
         for (latch, link_ns, expected) in [
             (Latch::Line, 7_200, 2 * 240),
             (Latch::Pixel, 7_200, 2 * 240 * 8),
@@ -194,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pixels_load_is_there_when_it_is_latched_and_no_later_one_is() {
+    fn for_each_pixel_the_display_latches_the_newest_orientation_in_its_register() {
         for latch in [Latch::Line, Latch::Pixel] {
             let schedule = schedule(latch, 7_200);
             for (x, y, field) in

@@ -1,6 +1,3 @@
-//! Policy `objects`: each structure is in the slowest (least often updated) display memory in which its image stays
-//! correct.
-
 use super::plan::{Due, DuePolicy, Updates};
 use address_recalculation::FaceScan;
 use address_recalculation::priority::{ObjectView, Objects, PriorityTiming, Threshold};
@@ -18,18 +15,15 @@ pub(super) struct ByObjects {
     threshold: Threshold,
     spheres: Vec<ObjectSphere>,
     cycle: u64,
-    /// Field in which the last cycle (round of updates) began, and the eye position at that time.
     began: Option<(PeriodNumber, DVec3)>,
 }
 
-/// A sphere that contains a structure that does not move.
 #[derive(Clone, Copy, Debug)]
 struct ObjectSphere {
     centre: DVec3,
     radius_m: f64,
 }
 
-/// Returns a sphere that contains a structure. Its centre is the middle of the structure's bounding box.
 fn sphere_around(list: &DisplayList, structure: &DisplayStructure) -> ObjectSphere {
     let corners = list.triangles[structure.triangles.clone()].iter().flatten();
     let points = corners.map(|corner| (list.positions[*corner as usize].as_dvec3(), 0.0));

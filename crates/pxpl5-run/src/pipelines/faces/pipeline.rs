@@ -63,8 +63,8 @@ pub struct FacePipeline {
     /// Otherwise each whole structure is in the fastest (most often updated) display memory among the memories of the
     /// cells that the structure touches.
     pub segmented: bool,
-    /// Rule by which, for warped cells, the displacement of vertices decreases with the distance from the border to a
-    /// display memory with a lower update rate.
+    /// Decrease of the displacement of vertices, for warped cells, with the distance from the border to a display
+    /// memory with a lower update rate.
     pub falloff: Falloff,
     /// Lens between display and eye.
     pub lens: FaceLens,
@@ -108,7 +108,6 @@ impl FaceLens {
         }
     }
 
-    /// Returns the lens as text for an experiment file, or `None` for the lens of the display.
     fn text(self) -> Option<String> {
         match self.lens()? {
             Lens::Radial { k1, k2: 0.0 } => Some(format!("radial:{k1}")),
@@ -167,7 +166,6 @@ impl FacePipeline {
         Ok(Faces { memories, picture, content, warped: WarpedLists::default() })
     }
 
-    /// Returns the plan (a function) by which the host selects the next update of a display memory.
     fn plan(self, machine: &mut Machine, setup: &Setup) -> Result<Plan, SettingError> {
         let notes = Arc::new(RequestedUpdates::default());
         machine.attach(Arc::clone(&notes) as Arc<dyn Attachment>);
@@ -208,7 +206,6 @@ impl FacePipeline {
     }
 }
 
-/// Returns the parameters of the policies after a check of their ranges.
 fn priority_timing(config: &MachineConfig) -> Result<PriorityTiming, SettingError> {
     let timing = config.firmware_table().copied().unwrap_or(PriorityTiming::PAPERS);
     timing.check()?;
@@ -238,7 +235,6 @@ fn projection(display: &ArpConfig) -> Mat4 {
     Mat4::from_cols(x, y, z, w)
 }
 
-/// Index of the display port that receives the head's orientations.
 const ORIENTATION_PORT: usize = 0;
 
 /// Connection from the host to the display that carries the head's orientations.
@@ -398,7 +394,6 @@ impl Pipeline for FacePipeline {
 }
 
 impl PictureRules for FacePipeline {
-    /// Returns the updates of all display memories, in the order in which they are shown.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = display_of(record) else { return Vec::new() };
         let ports = record.ports().display().iter().take(display.config().timing.display_memories as usize);
@@ -460,8 +455,8 @@ impl FacePipeline {
         }
     }
 
-    /// Connects the line that carries orientations from the host to the display. Every renderer of faces needs this
-    /// line.
+    /// Adds the connection that carries orientations from the host to the display. Every renderer of faces needs this
+    /// connection.
     fn plug_orientations(self, machine: &mut Machine, setup: &Setup) {
         let link = setup.host.link_span(ORIENTATION_WORDS);
         if let Some(latched) = OrientationTiming::before(machine.record().display(), link, setup.aim) {
@@ -494,7 +489,6 @@ fn matte(list: &DisplayList) -> DisplayList {
     DisplayList { is_matte: true, recent: RecentViews::default(), ..list.clone() }
 }
 
-/// Returns the times of an update that was drawn without delay.
 const fn drawn_at_once(shown: Shown) -> PictureTimes {
     let drawn = shown.first_region_at;
     PictureTimes {

@@ -14,17 +14,14 @@ use rendering_control::cube::{FaceUpdate, FaceWarp};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Function that returns the next action of a host, when the host is ready for an update.
 pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction<FaceUpdate>>;
 
-/// State that all plans of a host share: views, starts of frames, and the record of updates.
 pub(super) struct Updates {
     pub(super) setup: Setup,
     pub(super) projection: Mat4,
     pub(super) notes: Arc<RequestedUpdates>,
     /// Flag of each structure of the scene: true if the structure moves by itself or with the head.
     pub(super) moving: Vec<bool>,
-    /// Number of updates that were sent so far, for each display memory.
     sent: Vec<u64>,
     /// True if any structure is attached to the head. The position of such a structure depends on the head's direction.
     has_head_frame: bool,
@@ -38,7 +35,6 @@ impl Updates {
         Self { setup, projection, notes, moving, sent: vec![0; memories], has_head_frame }
     }
 
-    /// Returns the newest view of the head for an update that the host sends now.
     pub(super) fn view(&self, number: PictureNumber, now: Time) -> FrameView {
         (self.setup.views)(ViewNumber::taken_for(number), now)
     }
@@ -49,7 +45,7 @@ impl Updates {
         // The two buffers of a memory take turns.
         let buffer = (self.sent[due.memory] + 1) % 2;
         self.sent[due.memory] += 1;
-        // From this record, later code finds the update that each swap has shown.
+        // Later code uses this record to find the update that each swap has shown.
         self.notes.write(RequestedUpdate {
             picture: number,
             view: view.number,
@@ -68,8 +64,8 @@ impl Updates {
         }
     }
 
-    /// Returns the view of an eye at the position of the eye in `view`. The axes of the returned view are the world's
-    /// axes, without rotation.
+    /// Returns a view with the same eye position as `view`, but without the rotation of the head. The axes of the
+    /// returned view are the axes of the world.
     ///
     /// Structures attached to the head are drawn for the newest direction of the head. Until the next update, these
     /// structures turn with the faces.
@@ -83,7 +79,7 @@ impl Updates {
     }
 }
 
-/// A display memory that must be redrawn, with the content of its update.
+/// A display memory that must be redrawn, and the content of its update.
 #[derive(Clone, Debug)]
 pub(super) struct Due {
     pub(super) memory: usize,
@@ -95,7 +91,6 @@ pub(super) struct Due {
     pub(super) warp: Option<FaceWarp>,
 }
 
-/// Returns the position of an eye from its world-to-eye matrix.
 pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
     let matrix = world_to_eye.as_dmat4();
     -(DMat3::from_mat4(matrix).transpose() * matrix.w_axis.truncate())
@@ -134,7 +129,6 @@ impl Full {
     }
 }
 
-/// A policy that selects the display memories to redraw at the beginning of a cycle.
 pub(super) trait DuePolicy {
     /// Returns the display memories to redraw, in the order of sending. The first memory gets the update number
     /// `number`.
@@ -145,13 +139,12 @@ pub(super) trait DuePolicy {
 ///
 /// A cycle begins when all display memories of the previous cycle have been sent, but never in the field in which the
 /// previous cycle began. The selected memories are sent in ascending order. On a machine that is fast enough, each
-/// cycle takes one field and begins with the field.
+/// cycle lasts one field and begins with the field.
 pub(super) struct Cycles<P> {
     updates: Updates,
     scan: FaceScan,
     policy: P,
     pending: VecDeque<Due>,
-    /// Field in which the last cycle (round of updates of display memories) began.
     began: Option<PeriodNumber>,
 }
 

@@ -1,5 +1,3 @@
-//! Policies by which structures are drawn into display memories.
-
 /// Policy that decides which structures are drawn into which display memory, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FacePolicy {

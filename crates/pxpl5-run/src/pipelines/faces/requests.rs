@@ -1,5 +1,3 @@
-//! Record of the cube-face updates that a host has requested.
-
 use pxpl5_machine::{Attachment, Record};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
@@ -21,13 +19,14 @@ pub struct RequestedUpdate {
     pub structures: Arc<[bool]>,
 }
 
-/// A record of the updates of a run that were not discarded. The record grows during the run.
+/// A record of the updates of a run that were not discarded.
+///
+/// The record grows during the run.
 #[derive(Debug, Default)]
 pub struct RequestedUpdates(Mutex<Held>);
 
 #[derive(Debug, Default)]
 struct Held {
-    /// Number of updates that were requested so far, by display memory.
     asked: BTreeMap<usize, u64>,
     /// Updates that were not discarded, in order. Each entry begins with the number of earlier updates of the same
     /// display memory.
@@ -62,7 +61,7 @@ impl RequestedUpdates {
 }
 
 impl Attachment for RequestedUpdates {
-    /// Discards the updates that each display memory showed before its first swap in memory.
+    /// Discards the updates that each display memory showed before the first swap that the record still holds.
     fn discard(&self, record: &Record) {
         let ports = record.ports().display().iter();
         let first: Vec<u64> = ports.map(|port| record.observation().first_swap_held(*port)).collect();

@@ -91,7 +91,6 @@ struct Pieces {
 }
 
 impl Pieces {
-    /// Creates an empty scene with the settings of another scene.
     fn of(scene: &Scene) -> Self {
         let parts = SceneParts {
             vertices: Vec::new(),
@@ -154,14 +153,12 @@ impl Pieces {
     }
 }
 
-/// Appends elements to a list and returns their range of indices.
 fn appended<T>(all: &mut Vec<T>, more: impl Iterator<Item = T>) -> Range<usize> {
     let first = all.len();
     all.extend(more);
     first..all.len()
 }
 
-/// Returns the vertex at which a cut crosses an edge.
 fn between(vertices: &[Vertex], place: DVec3, made: &CutVertex) -> Vertex {
     let [from, to] = made.between.map(|i| vertices[i as usize]);
     let share = made.share as f32;

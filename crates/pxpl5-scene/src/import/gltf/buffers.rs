@@ -16,9 +16,9 @@ use crate::import::Source;
 /// The bytes of all buffers. A buffer that no triangle needs may be missing.
 pub(super) struct Buffers<'a> {
     buffers: Vec<Result<Cow<'a, [u8]>, ErrorText>>,
-    /// Number of bytes in files beside the model.
+    /// Number of bytes of the files beside the model that hold buffers.
     pub(super) file_bytes: usize,
-    /// Number of decoded bytes from the JSON.
+    /// Number of bytes of the buffers that were decoded from text inside the JSON.
     pub(super) decoded_bytes: usize,
 }
 
@@ -43,11 +43,6 @@ impl<'a> Buffers<'a> {
         all
     }
 
-    /// Returns the bytes of a buffer.
-    ///
-    /// # Errors
-    ///
-    /// Fails if the buffer does not exist or could not be read.
     pub(super) fn get(&self, source: &Source<'_>, number: usize) -> Result<&[u8], FileError> {
         match self.buffers.get(number) {
             Some(Ok(bytes)) => Ok(bytes),
@@ -80,13 +75,12 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// Returns the first characters of a uri in quotation marks.
 fn excerpt(uri: &str) -> String {
     crate::import::source::excerpt(uri)
 }
 
-/// Returns the path of a uri. `None` for an absolute path, for a path that leaves its folder, and for a uri with a
-/// scheme, such as `https:`.
+/// Returns the relative path that a URI states. `None` for an absolute path, for a path that leaves its folder, and for
+/// a URI with a scheme, such as `https:`.
 fn path_of(uri: &str) -> Option<PathBuf> {
     let decoded = percent_decoded(uri)?;
     let path = Path::new(&decoded);
@@ -94,7 +88,7 @@ fn path_of(uri: &str) -> Option<PathBuf> {
     (stays_below && !decoded.is_empty() && !decoded.contains([':', '\\'])).then(|| path.to_owned())
 }
 
-/// Replaces each `%` and two hexadecimal digits by the byte that they stand for.
+/// Replaces `%` and two hexadecimal digits by the byte with this hexadecimal number.
 fn percent_decoded(uri: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.bytes();

@@ -13,7 +13,6 @@ const HEADER: usize = 12;
 /// Number of bytes of a chunk before its content: 4 bytes for the length and 4 for the type.
 const CHUNK: usize = 8;
 
-/// The JSON of a file, the position of the JSON in the file, and the binary chunk.
 pub(super) struct Chunks<'a> {
     pub(super) json: &'a [u8],
     pub(super) binary: Option<&'a [u8]>,
@@ -54,7 +53,7 @@ impl<'a> Chunks<'a> {
     ///
     /// # Errors
     ///
-    /// Fails for JSON that is not glTF, and for JSON that would take more memory than its size allows.
+    /// Fails for JSON that is not glTF, and for JSON that would take too much memory for the size of the file.
     pub(super) fn parse(&self, source: &Source<'_>) -> Result<Root, FileError> {
         Root::from_slice(self.json).map_err(|error| {
             // The library adds the position to its message. The `at` of our error states this position already.
@@ -102,13 +101,13 @@ impl<'a> Chunks<'a> {
     }
 }
 
-/// Greatest number of bytes that a JSON object takes after parsing. The largest type of an item in a list is a node or
-/// a material. While a list grows, it takes up to three times the size of its items.
+/// Greatest number of bytes that a JSON object takes after parsing. The largest objects in a list are nodes and
+/// materials. A growing list takes up to three times the size of its items.
 const OBJECT_BYTES: usize = 3 * max(size_of::<gltf_json::Node>(), size_of::<gltf_json::Material>());
-/// Greatest number of bytes of a text in a growing list, without its characters.
+/// Greatest number of bytes that a text takes in a growing list, in addition to its characters.
 const TEXT_BYTES: usize = 3 * size_of::<String>();
-/// Greatest number of bytes of an index or a number in a growing list. The largest numbers are the limits of an
-/// accessor, which are stored as JSON values.
+/// Greatest number of bytes that an index or a number takes in a growing list. The largest numbers in memory are the
+/// limits of an accessor, because the parser stores each limit as a JSON value.
 const NUMBER_BYTES: usize = 3 * size_of::<gltf_json::Value>();
 
 const fn max(a: usize, b: usize) -> usize {

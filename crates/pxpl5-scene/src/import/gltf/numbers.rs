@@ -7,7 +7,7 @@ use pxpl5_sim::parameters::FileError;
 
 use super::document::Document;
 
-/// Items of one type in a buffer, at equal distances from one item to the next.
+/// Items of one type at equal distances in a buffer.
 #[derive(Clone, Copy)]
 struct Items<'a> {
     bytes: &'a [u8],
@@ -32,7 +32,7 @@ impl Items<'_> {
     }
 }
 
-/// Numbers of an accessor. All positions in buffers are checked.
+/// Numbers of an accessor, whose positions in buffers have been checked.
 pub(super) struct Numbers<'a> {
     /// Numbers before the sparse replacements. `None` stands for zeros.
     base: Option<Items<'a>>,
@@ -51,7 +51,8 @@ impl<'a> Numbers<'a> {
     ///
     /// # Errors
     ///
-    /// Fails if the accessor or its buffer does not exist, is too short, or has another type.
+    /// Fails if the accessor or its buffer does not exist or is too short. Also fails if the type of the accessor is
+    /// not allowed.
     pub(super) fn of(
         document: &'a Document<'_>,
         index: usize,
@@ -63,7 +64,7 @@ impl<'a> Numbers<'a> {
         let Some(accessor) = document.root.accessors.get(index) else {
             return fail("", "an accessor with this index".into(), count(document.root.accessors.len(), "accessors"));
         };
-        // Types.
+        // Check the types of the numbers.
         let kind = match accessor.component_type {
             Checked::Valid(kind) if kinds.contains(&kind.0) => kind.0,
             Checked::Valid(kind) => {
@@ -78,7 +79,7 @@ impl<'a> Numbers<'a> {
         if !components.contains(&of_item) {
             return fail(".type", format!("one with {components:?} numbers"), format!("one with {of_item}"));
         }
-        // Positions.
+        // Find the positions of the items in the buffer.
         let length = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
         let item = (kind, of_item * kind.size());
         let base = match accessor.buffer_view {
@@ -113,7 +114,7 @@ impl<'a> Numbers<'a> {
         std::array::from_fn(|component| self.number(item, component))
     }
 
-    /// Finds the sparse value that replaces an item, by bisection of the sparse indices.
+    /// Finds the sparse value that replaces an item. The search bisects the sparse indices.
     fn replacement(&self, item: usize) -> Option<(Items<'a>, usize)> {
         let (indices, values, count) = self.sparse?;
         let [mut from, mut to] = [0, count];
@@ -130,7 +131,6 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// Finds the items of a buffer view, and checks that the view has all these items.
 fn items<'a>(
     document: &'a Document<'_>,
     part: &str,

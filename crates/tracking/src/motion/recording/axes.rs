@@ -34,7 +34,7 @@ impl Axes {
         Self::NAMES.iter().find(|(_, axes)| *axes == self).map_or("", |(name, _)| name)
     }
 
-    /// Returns W, the rotation from the recorded world's axes to this crate's world axes.
+    /// Returns the rotation W of [`Axes`], from the recorded world's axes to this crate's world axes.
     fn of_world(self) -> DQuat {
         match self {
             Self::OpenGl => DQuat::IDENTITY,
@@ -43,7 +43,7 @@ impl Axes {
         }
     }
 
-    /// Returns B, the rotation from this crate's head axes (right, up, back) to the recorded head axes.
+    /// Returns the rotation B of [`Axes`], from this crate's head axes (right, up, back) to the recorded head axes.
     fn of_head(self) -> DQuat {
         match self {
             Self::OpenGl => DQuat::IDENTITY,
@@ -65,7 +65,6 @@ impl Axes {
     }
 }
 
-/// Returns the rotation that maps the x, y and z axes to the vectors `x`, `y` and `z`.
 fn from_images(x: DVec3, y: DVec3, z: DVec3) -> DQuat {
     DQuat::from_mat3(&DMat3::from_cols(x, y, z))
 }
@@ -84,7 +83,7 @@ mod tests {
     ];
 
     #[test]
-    fn right_up_and_ahead_stay_what_they_are() {
+    fn converting_the_axes_of_a_recording_keeps_right_up_and_ahead() {
         let any = DQuat::from_xyzw(0.1, -0.7, 0.3, 0.5).normalize();
         for (axes, [right, up, ahead], world_up) in MEANING {
             let recorded = Pose { position: world_up * 3.0, orientation: any };

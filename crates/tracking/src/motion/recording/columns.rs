@@ -2,7 +2,6 @@ use pxpl5_sim::parameters::{FileError, FileErrorKind, SettingError};
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
-/// Text for error messages: a mapping that gives a column to every quantity of a sample.
 const EXPECTED: &str = "t (or t_ms, t_us, t_ns), x, y, z (or x_mm, y_mm, z_mm), qw, qx, qy and qz, each with the name or number of a column";
 
 /// A mapping from the quantities of a sample to the columns of a text file. A column is given by its name in the header
@@ -17,7 +16,6 @@ pub struct Columns {
     given: Vec<(&'static Field, String)>,
 }
 
-/// A quantity of a sample, such as the time or one coordinate, with its unit.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Field {
     name: &'static str,
@@ -48,7 +46,7 @@ static FIELDS: [Field; 14] = [
     field("qz", 7, 0),
 ];
 
-/// A column of a file: index, name and unit. The unit is 10^-`places` seconds or metres.
+/// A column of a file. The unit of its numbers is 10^-`places` seconds or metres.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Column {
     pub(super) index: usize,
@@ -118,13 +116,12 @@ impl Columns {
             })?;
             found[field.slot] = Some(Column { index, name: wanted.clone(), places: field.places });
         }
-        // Every slot needs a column: a missing one makes the mapping incomplete.
+        // Every value of a sample needs a column. Without a column for a value, the mapping is incomplete.
         let all: Vec<Column> = found.into_iter().flatten().collect();
         all.try_into().map_err(|_| FileError::new(FileErrorKind::Syntax, EXPECTED, self).at("columns"))
     }
 }
 
-/// Returns the error for a line with a wrong form. `line` is the number of the line, counted from 1.
 pub(super) fn of_line(line: u64, expected: impl Display, found: impl Display) -> FileError {
     FileError::new(FileErrorKind::Syntax, expected, found).at(format_args!("line {line}"))
 }
@@ -137,7 +134,6 @@ fn number(column: &str) -> Option<usize> {
 impl FromStr for Columns {
     type Err = SettingError;
 
-    /// Parses the same text as [`Columns::parse`].
     fn from_str(text: &str) -> Result<Self, SettingError> {
         Self::parse(text)
     }

@@ -1,4 +1,4 @@
-/// Greatest number of digits in a time stamp. A time stamp in nanoseconds since 1970 has 19 digits.
+/// Greatest number of digits in a time stamp. Nanoseconds since 1970 have only 19 digits.
 const MOST_DIGITS: usize = 30;
 
 /// Parses a decimal number exactly and rounds it to a multiple of 10^-`places`. For seconds, 12 places give
@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_finer_than_the_unit_is_rounded() {
+    fn digits_below_a_picosecond_are_rounded() {
         assert_eq!(scaled("0.0000000000005", 12), Some(1));
         assert_eq!(scaled("0.00000000000049", 12), Some(0));
         assert_eq!(scaled("-1.5e-12", 12), Some(-2));
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_none() {
+    fn text_that_is_not_a_number_is_none() {
         for text in ["", "-", ".", "inf", "NaN", "1.2.3", "0x10", "1e", "1e99", "12a", "1 2"] {
             assert_eq!(scaled(text, 12), None, "{text}");
         }
@@ -69,7 +69,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_agrees_with_floating_point_to_its_precision(x in -1e6..1e6f64) {
+        fn decimals_agree_with_floating_point_to_its_precision(x in -1e6..1e6f64) {
             let exact = scaled(&format!("{x:.9}"), 12).unwrap() as f64 * 1e-12;
             prop_assert!((exact - x).abs() <= 1e-9 + x.abs() * 1e-15);
         }

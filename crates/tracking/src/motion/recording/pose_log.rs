@@ -18,8 +18,8 @@ const NAMES: [&str; 8] = [
     "orientation_z",
 ];
 
-/// Suffixes of the names of time columns, with the units that the suffixes stand for. A unit is a number of decimal
-/// places of a second. A time column without suffix is in nanoseconds, as an `XrTime` of OpenXR.
+/// Suffixes of the names of time columns, with the decimal places of their units. For example, `_ns` has 9 places,
+/// because a nanosecond is 10^-9 s. A time column without suffix is in nanoseconds, as an `XrTime` of OpenXR.
 const UNITS: [(&str, i32); 4] = [("_ns", 9), ("_us", 6), ("_ms", 3), ("_s", 0)];
 
 const NANOSECONDS: i32 = 9;
@@ -111,7 +111,6 @@ fn flatten(path: &str, value: &Value, all: &mut Vec<(String, String)>) {
     }
 }
 
-/// Returns the columns of a sample that was parsed from JSON, in the order of [`NAMES`].
 pub(super) fn json_columns(time: &Column) -> [Column; 8] {
     std::array::from_fn(|index| Column {
         index,
@@ -140,7 +139,7 @@ mod tests {
 "#;
 
     #[test]
-    fn both_kinds_of_a_log_are_the_same_motion_whose_time_counts_from_its_first_line() {
+    fn csv_and_json_logs_give_the_same_motion_with_time_from_the_first_line() {
         for text in [CSV, JSON] {
             let recording = read(text).expect("a pose log");
             assert_eq!(recording.span_ps(), (0, 1_000_000_000_000));
@@ -152,14 +151,14 @@ mod tests {
     }
 
     #[test]
-    fn a_time_may_have_a_unit_and_columns_any_order() {
+    fn the_time_of_a_pose_log_may_have_a_unit_and_the_columns_may_have_any_order() {
         let text = "orientation_w;orientation_x;orientation_y;orientation_z;position_x;position_y;position_z;predicted_display_time_ms\n\
             1;0;0;0;0;0;0;20\n1;0;0;0;1;0;0;30.5\n";
         assert_eq!(read(text).expect("a pose log").span_ps(), (0, 10_500_000_000));
     }
 
     #[test]
-    fn a_log_without_a_column_lists_what_is_missing_and_what_it_has() {
+    fn a_log_without_a_column_is_refused_with_the_missing_and_existing_columns() {
         let error = read("predictedDisplayTime,position_x,position_y,roll\n0,0,0,0\n").expect_err("no pose");
         assert_eq!(
             error.to_string(),
@@ -171,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_that_are_no_numbers_or_no_json_are_named() {
+    fn lines_without_numbers_or_json_are_refused_by_line() {
         let error = read(&JSON.replace("1.5, 0]", "\"up\", 0]")).expect_err("a word").to_string();
         assert!(error.starts_with("line 3, position_y: expected a finite number"), "{error}");
         let error = read(&JSON.replace("[2, 1.5, 0]", "[2, 1.5")).expect_err("an open list").to_string();

@@ -15,7 +15,7 @@ use crate::time::{PS_PER_S, span_s};
 /// world axes, real part first.
 const OWN: [&str; 8] = ["time_s", "x", "y", "z", "qw", "qx", "qy", "qz"];
 
-/// Suffixes of the column names of a EuRoC ground truth file, without units, in the order of the file.
+/// Endings of the column names of a EuRoC ground truth file, without units, in the order of the file.
 const EUROC: [&str; 8] = ["timestamp", "_x", "_y", "_z", "_w", "_x", "_y", "_z"];
 
 /// Columns of a TUM trajectory file in their order, with the real part of the quaternion last. A TUM file has no
@@ -30,22 +30,19 @@ const TUM_ORDER: [usize; 8] = [0, 1, 2, 3, 7, 4, 5, 6];
 /// smaller difference.
 const LENGTH_TOLERANCE: f64 = 1e-2;
 
-/// The format of the lines of a file: separator, columns and header.
 struct Layout {
     /// Character between two columns, or `None` if white space separates the columns.
     separator: Option<char>,
-    /// Columns of time, x, y, z, qw, qx, qy, qz.
     columns: [Column; 8],
     /// Exact number of columns in each line. `None` allows lines with any number of additional columns.
     n_fields: Option<usize>,
     axes: Axes,
-    /// True if time counts from the first sample, whose time stamp can have any value.
+    /// True if the first sample defines time 0. Its time stamp can then have any value.
     from_first: bool,
     /// Line number of the header, or 0 without a header. Samples begin after this line.
     begins_after: u64,
 }
 
-/// A non-empty line of a file with its number.
 struct Line<'a> {
     number: u64,
     text: &'a str,
@@ -60,19 +57,16 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Removes blanks and quotes around the text of a column.
 fn bare(field: &str) -> &str {
     field.trim().trim_matches('"')
 }
 
-/// The samples of a recorded file, and warnings about the file.
 pub(super) struct Samples {
     pub(super) samples: Vec<Sample>,
     /// Warning about samples that were left out because their time stamps equal the time stamp of the preceding sample.
     pub(super) repeated: Option<String>,
 }
 
-/// Reads the samples of a recorded file and converts the samples to this crate's axes.
 pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Samples, FileError> {
     // Number the lines from 1, and drop a byte order mark and empty lines.
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
@@ -106,7 +100,6 @@ pub(super) fn given_samples(given: impl IntoIterator<Item = (f64, Pose)>) -> Res
     collect(&lines, &layout, None)
 }
 
-/// Reads the samples of a file with one JSON object per line.
 fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, FileError> {
     let read = lines.iter().map(|line| Ok((line.number, pose_log::json_fields(line.number, line.text)?)));
     let read: Vec<(u64, ([String; 8], Column))> = read.collect::<Result<_, FileError>>()?;
@@ -125,7 +118,6 @@ fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, FileError>
     collect(&lines, &layout, axes)
 }
 
-/// Parses lines as samples and converts the samples to this crate's axes.
 fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Samples, FileError> {
     let axes = axes.unwrap_or(layout.axes);
     let mut first_ps = None;
@@ -150,7 +142,6 @@ fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Sa
     if samples.is_empty() { Err(no_sample()) } else { Ok(Samples { samples, repeated: repeated.warning() }) }
 }
 
-/// A count of the samples that have the same time stamp as the preceding sample.
 #[derive(Default)]
 struct Repeated {
     count: usize,
@@ -186,7 +177,6 @@ fn check_speed(line: &Line<'_>, (before_ps, before): &Sample, (t_ps, pose): &Sam
     })
 }
 
-/// Recognizes the format of a file from its first lines.
 fn recognised(lines: &[Line<'_>]) -> Result<Layout, FileError> {
     let first = lines.first().ok_or_else(no_sample)?;
     let header: Vec<&str> = first.text.trim_start_matches('#').split(',').map(bare).collect();
@@ -230,8 +220,8 @@ fn recognised(lines: &[Line<'_>]) -> Result<Layout, FileError> {
     Err(of_line(first.number, FORMATS, first.text))
 }
 
-/// Returns true if a header belongs to a EuRoC ground truth file. Columns after the first eight (velocity, biases) are
-/// ignored.
+/// Returns true for the header of a EuRoC ground truth file. Columns after the first eight (velocity, biases) have no
+/// effect.
 fn is_euroc(header: &[&str]) -> bool {
     let name = |column: &str| column.split('[').next().unwrap_or_default().trim().to_owned();
     header.len() >= EUROC.len() && header.iter().zip(EUROC).all(|(column, end)| name(column).ends_with(end))
@@ -242,7 +232,6 @@ fn in_order(names: &[&str; 8], order: [usize; 8], time_places: i32) -> [Column; 
     std::array::from_fn(|slot| Column { index: order[slot], name: names[order[slot]].to_owned(), places: places(slot) })
 }
 
-/// Returns the line format of a file whose columns are given by the user's mapping.
 fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, FileError> {
     let first = lines.first().ok_or_else(no_sample)?;
     let separator = [',', ';', '\t'].into_iter().find(|separator| first.text.contains(*separator));
@@ -303,8 +292,8 @@ impl Layout {
         Err(out_of_range(place(line, &names.join(",")), "a quaternion of length 1", found))
     }
 
-    /// Returns the time stamp of a sample. Checks that the time is not earlier than the previous time and stays below
-    /// the limit.
+    /// Returns the time stamp of a sample. Checks that the time is not earlier than the time of the previous sample and
+    /// is not above the greatest allowed time.
     fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, FileError> {
         let place = || place(line, &self.columns[0].name);
         let found_s = t_ps as f64 / PS_PER_S as f64;
@@ -330,7 +319,6 @@ fn not_a_number(line: &Line<'_>, column: &Column, found: &str) -> FileError {
     error.at(place(line, &column.name))
 }
 
-/// The formats that are recognised without a mapping of columns.
 const FORMATS: &str = "the columns time_s,x,y,z,qw,qx,qy,qz, a EuRoC file (#timestamp [ns],p_RS_R_x [m],...), a TUM file (eight numbers \
                        separated by spaces), a pose log (predicted_display_time,position_x,...,orientation_w as CSV or JSON lines) or a \
                        mapping of columns";

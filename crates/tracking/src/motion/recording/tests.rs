@@ -9,7 +9,7 @@ fn load(rows: &str) -> Result<Recording, FileError> {
 }
 
 #[test]
-fn half_way_between_two_samples_lie_half_the_way_and_half_the_turn() {
+fn poses_between_two_samples_are_interpolated() {
     let recording = load("1,0,0,0,1,0,0,0\n2, 2,0,0, 0.70710678,0,0.70710678,0\n").unwrap();
     let pose = recording.pose(PS_PER_S * 3 / 2);
     assert!((pose.position - DVec3::X).length() < 1e-12);
@@ -19,7 +19,7 @@ fn half_way_between_two_samples_lie_half_the_way_and_half_the_turn() {
 }
 
 #[test]
-fn outside_of_a_held_recording_the_head_stands_still() {
+fn with_the_end_held_the_head_stands_still_before_and_after_the_recording() {
     let recording = load("1,5,0,0,1,0,0,0\n2,6,0,0,1,0,0,0\n").unwrap();
     assert_eq!(recording.ends_ps(), Some(2 * PS_PER_S), "a run must not go on after it");
     let held = recording.ending(End::Hold);
@@ -30,7 +30,7 @@ fn outside_of_a_held_recording_the_head_stands_still() {
 }
 
 #[test]
-fn a_recording_in_a_loop_begins_again() {
+fn a_looped_recording_starts_again() {
     let recording = load("1,5,0,0,1,0,0,0\n2,6,0,0,1,0,0,0\n").unwrap().ending(End::Loop);
     for (ms, x) in [(1_250, 5.25), (2_000, 6.0), (2_250, 5.25), (7_750, 5.75)] {
         assert!((recording.pose(ms * PS_PER_MS).position.x - x).abs() < 1e-12, "{ms} ms");
@@ -41,13 +41,13 @@ fn a_recording_in_a_loop_begins_again() {
 }
 
 #[test]
-fn a_sign_change_of_the_quaternion_is_no_motion() {
+fn a_sign_change_of_the_quaternion_is_not_a_motion() {
     let recording = load("0,0,0,0,1,0,0,0\n1,0,0,0,-1,0,0,0\n").unwrap();
     assert!(recording.pose(PS_PER_S / 2).angle_deg(&Pose::IDENTITY) < 1e-12);
 }
 
 #[test]
-fn bad_rows_are_named_by_line_and_column_and_times_are_in_seconds() {
+fn bad_rows_are_named_by_line_and_column_with_times_in_seconds() {
     let good = "0.5,0,0,0,1,0,0,0\n";
     let cases = [
         ("1,0,0,NaN,1,0,0,0\n", "line 3, z: expected a finite number, found \"NaN\""),
@@ -68,7 +68,7 @@ fn bad_rows_are_named_by_line_and_column_and_times_are_in_seconds() {
 }
 
 #[test]
-fn places_and_speeds_that_no_head_has_are_refused() {
+fn impossible_positions_and_speeds_of_a_head_are_refused() {
     let good = "0.5,0,0,0,1,0,0,0\n";
     for (row, message) in [
         ("1,0,1e308,0,1,0,0,0\n", "line 3, y: expected -1e8 to 1e8 m, found 1e308 m"),
@@ -112,9 +112,9 @@ fn bytes_that_are_not_text_are_an_error() {
     assert_eq!(Recording::read(&b"\xff\xfe"[..]).expect_err("no UTF-8").kind, FileErrorKind::Unreadable);
 }
 
-// One motion in three kinds of file. The head stands at (0, 1.7, 0) and looks along -z. Half a second later it has
-// turned a quarter to the left and moved to (0.25, 1.7, -0.5). Then it looks 30 degrees up. In the other two files up
-// is z, and y replaces -z. The quaternions were computed by hand from matrices whose columns are the directions of the
+// One motion in three kinds of file. The head stands at (0, 1.7, 0) and looks along -z. Half a second later it has made
+// a quarter turn to the left and moved to (0.25, 1.7, -0.5). Then it looks 30 degrees up. In the other two files up is
+// z, and y replaces -z. The quaternions were computed by hand from matrices whose columns are the directions of the
 // sensor's axes. At the start the optical frame has x east, y down, z north: (w, x, y, z) = (s, -s, 0, 0) with s =
 // sqrt(1/2). EuRoC's frame has x up, y east, z north: (1, -1, -1, -1) / 2.
 const OWN: &str = "time_s,x,y,z,qw,qx,qy,qz
@@ -183,7 +183,7 @@ fn other_columns_are_read_by_a_mapping_of_names_or_numbers() {
 }
 
 #[test]
-fn a_mapping_that_is_not_whole_is_an_error() {
+fn an_incomplete_mapping_is_an_error() {
     for (mapping, found) in [
         ("t=1,x=2,y=3", "found t=1,x=2,y=3"),
         ("t=1,t_ms=2", "found t and t_ms"),
@@ -202,8 +202,8 @@ fn a_mapping_that_is_not_whole_is_an_error() {
 }
 
 #[test]
-fn axes_can_be_said() {
-    // A robot that faces north and turns a quarter to the left about its upward z axis.
+fn axes_can_be_chosen() {
+    // A robot that faces north and makes a quarter turn to the left about its upward z axis.
     let text = "1 0 0 1.7 0 0 0.70710678 0.70710678\n2 0 0 1.7 0 0 1 0\n";
     let format = RecordingFormat { axes: Some(Axes::Robot), ..RecordingFormat::default() };
     let recording = Recording::read_as(text.as_bytes(), &format).unwrap();
@@ -213,7 +213,7 @@ fn axes_can_be_said() {
 }
 
 #[test]
-fn of_samples_of_one_time_the_first_is_kept_and_the_others_are_told() {
+fn the_first_of_simultaneous_samples_is_kept_and_the_others_are_reported() {
     let twice = "0.0 0 0 0 0 0 0 1\n1.0 0 0 0 0 0 0 1\n1.0 0.001 0 0 0 0 0 1\n4.0 0 0 0 0 0 0 1\n";
     let recording = Recording::read(twice.as_bytes()).unwrap();
     assert_eq!((recording.n_samples(), recording.pose(PS_PER_S).position), (3, DVec3::ZERO));
@@ -240,7 +240,7 @@ fn with_gap(from_ms: u64, to_ms: u64) -> String {
 }
 
 #[test]
-fn a_stretch_without_samples_is_told_and_no_run_may_need_it_unless_the_head_is_held() {
+fn a_gap_causes_a_warning_and_a_run_needs_a_held_head_to_cross_the_gap() {
     let recording = load(&with_gap(280, 2_490)).unwrap();
     assert_eq!(recording.warnings(), ["no pose for 2.210 s from 0.280 s on"]);
     let gap = (280 * PS_PER_MS, 2_490 * PS_PER_MS);
@@ -257,7 +257,7 @@ fn a_stretch_without_samples_is_told_and_no_run_may_need_it_unless_the_head_is_h
 }
 
 #[test]
-fn short_pauses_and_slow_recordings_are_no_gaps() {
+fn short_pauses_and_slow_recordings_are_not_gaps() {
     assert!(load(&with_gap(280, 470)).unwrap().warnings().is_empty(), "less than a fifth of a second");
     assert_eq!(load(&with_gap(280, 530)).unwrap().warnings().len(), 1);
     let slow: String = [0, 1, 2, 6, 7, 8].map(|s| format!("{s},0,0,0,1,0,0,0\n")).concat();
@@ -271,11 +271,11 @@ fn comments_of_recordings_may_be_in_any_encoding() {
 }
 
 #[test]
-fn samples_of_a_program_are_checked_like_those_of_a_file() {
+fn samples_made_by_a_program_are_checked_like_samples_of_a_file() {
     let at = |s: f64| (s, Pose { position: DVec3::new(s.sin(), 1.7, -0.1), ..Pose::IDENTITY });
     let given = Recording::from_samples([at(0.0), at(0.125), at(1.0 / 3.0)]).expect("samples");
     assert_eq!((given.n_samples(), given.span_ps()), (3, (0, 333_333_333_333)));
-    // The numbers stay the same bits.
+    // The stored numbers keep all of their bits.
     assert_eq!(given.pose(125_000_000_000), at(0.125).1);
     let turned = Pose { orientation: glam::DQuat::from_xyzw(0.0, 0.0, 0.0, 2.0), ..Pose::IDENTITY };
     for (samples, says) in [

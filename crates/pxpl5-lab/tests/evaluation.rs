@@ -44,7 +44,7 @@ fn offset_px(outcome: &Outcome, (x, y): (u32, u32)) -> DVec2 {
 }
 
 #[test]
-fn a_translation_is_off_by_focal_length_times_way_over_distance() {
+fn the_error_of_a_translation_is_focal_length_times_movement_over_distance() {
     const SPEED: f64 = 0.5;
     let room = || pxpl5_scene::builtin("room").expect("built in");
     // The wall ahead is 2 m away. `head.evaluate_at` overrides this distance.
@@ -90,7 +90,7 @@ fn wheel(hinge: Hinge) -> Scene {
 }
 
 #[test]
-fn an_object_that_turns_under_a_still_head_is_off_by_the_chord_of_its_turn() {
+fn the_error_of_a_rotating_object_is_the_chord_of_its_rotation() {
     // At the evaluated field the swing is near its middle, where its rate is highest: 30 degrees x 2 pi x 0.5 Hz.
     let hinge = Hinge {
         point: Vec3::ZERO,
@@ -115,7 +115,7 @@ fn an_object_that_turns_under_a_still_head_is_off_by_the_chord_of_its_turn() {
 }
 
 #[test]
-fn objects_fixed_to_the_head_are_evaluated_like_a_point_behind_them() {
+fn objects_fixed_to_the_head_are_evaluated_as_the_point_behind_them() {
     let scene = pxpl5_scene::builtin("full-screen:4").expect("built in");
     let outcome = run(scene, head(Slide::right_at(0.5))).expect("it runs");
     assert!(PixelErrors::of(&outcome).pixels.mean > 0.1);
