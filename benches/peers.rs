@@ -18,7 +18,7 @@ fn peers(criterion: &mut Criterion) {
     let mut euc = Euc::new(&head);
     let mut ours = Ours::new(&head, Lanes::new);
     let mut skipping = Ours::new(&head, |layout| BitSerial::new(layout).skipping());
-    let mut literal = Ours::new(&head, BitSerial::new);
+    let mut reference = Ours::new(&head, BitSerial::new);
     let mut retrofire = Retrofire::new(&head);
     euc.draw(&head, &views[0]);
     retrofire.draw(&head, &views[0]);
@@ -35,7 +35,7 @@ fn peers(criterion: &mut Criterion) {
     group.bench_function("retrofire 0.4", |b| b.iter(|| retrofire.draw(&head, next())));
     group.bench_function("ours", |b| b.iter(|| ours.draw(next())));
     group.bench_function("ours, bit serial, skipping", |b| b.iter(|| skipping.draw(next())));
-    group.bench_function("ours, bit serial, literal", |b| b.iter(|| literal.draw(next())));
+    group.bench_function("ours, bit serial, reference model", |b| b.iter(|| reference.draw(next())));
     group.finish();
 }
 

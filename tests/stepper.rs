@@ -208,7 +208,7 @@ fn the_contents_of_a_fifo_agree_with_the_record_of_traffic() {
 fn the_array_shows_all_sent_commands_when_the_last_command_has_started() {
     let mut stepper = slats().stepper().expect("it can be built");
     stepper.run_to(stepper.record().tick(PeriodNumber(4)));
-    let started = |stepper: &Stepper, at: Time| stepper.record().renderers()[0].look(at).fifo_words == Some(0);
+    let started = |stepper: &Stepper, at: Time| stepper.record().renderers()[0].snapshot(at).fifo_words == Some(0);
     let end = stepper.end();
     let pause = stepper.run_until(end, |stepper, _| {
         stepper.renderer(0).is_some_and(|look| look.stands_at_copy) && started(stepper, stepper.now())

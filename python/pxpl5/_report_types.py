@@ -227,7 +227,7 @@ class ReprojectionData(TypedDict):
     pixels_per_s: float
     poses_per_s: float
     pose_age_ms: PercentilesData
-    looked_at: int
+    checked_pixels: int
     empty_share: float | None
     disoccluded_share: float | None
 

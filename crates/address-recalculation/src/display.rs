@@ -5,7 +5,7 @@ use crate::address::Footprint;
 use crate::config::ArpConfig;
 use crate::face::Vector;
 use crate::field::{Field, Optics, ShownBuffers};
-use crate::lookup::LookStats;
+use crate::lookup::LookupStats;
 use crate::memory::{DisplayMemory, MemoryKind, PixelReceipt};
 use crate::orientation::{MatrixWords, OrientationLatch};
 use crate::protocol::{ArpMessage, read};
@@ -100,7 +100,7 @@ impl AddressRecalculationPipeline {
 
     /// Returns the number of extra memory accesses for a past field, beyond one access per pixel and memory.
     #[must_use]
-    pub fn look_stats(&self, eye: Eye, field: PeriodNumber) -> Option<LookStats> {
+    pub fn lookup_stats(&self, eye: Eye, field: PeriodNumber) -> Option<LookupStats> {
         let mut frame = self.empty_frame();
         Some(self.field(eye.index(), field)?.draw(&mut frame))
     }

@@ -3,7 +3,7 @@
 use crate::address::{AddressUnit, Footprint};
 use crate::config::ArpConfig;
 use crate::lens::LensTable;
-use crate::lookup::{Addressing, LookStats, Lookup};
+use crate::lookup::{Addressing, Lookup, LookupStats};
 use crate::memory::{MemoryKind, Regions};
 use crate::orientation::{MatrixWords, OrientationLatch};
 use crate::protocol::region_grid;
@@ -65,7 +65,7 @@ impl Field<'_> {
         AddressUnit::new(&self.optics.config.timing).footprint(turned)
     }
 
-    pub(crate) fn draw(&self, frame: &mut RgbImage) -> LookStats {
+    pub(crate) fn draw(&self, frame: &mut RgbImage) -> LookupStats {
         let parity = FieldParity::of_field(self.number).first_line();
         let lines = (parity..self.optics.scan.height()).step_by(2);
         let runs: Vec<Run> = lines.flat_map(|y| self.runs(y)).collect();
@@ -75,7 +75,7 @@ impl Field<'_> {
         let mut memories: Vec<&FaceSet> = faces.iter().collect();
         let background = if self.optics.config.has_background_memory { memories.pop() } else { None };
         let mut lookup = Lookup::new(&self.optics.config, self.optics.table(), memories, background);
-        let mut stats = LookStats::default();
+        let mut stats = LookupStats::default();
         let mut colours = vec![0; self.optics.scan.width() as usize];
         // Compute the pixels of each run with its own orientation.
         for run in runs {

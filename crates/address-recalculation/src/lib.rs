@@ -63,7 +63,7 @@
 //!
 //! # Reference model and fast model
 //!
-//! [`literal`] is the reference model. This model simulates, clock by clock, the registers of every stage, partial
+//! [`reference`] is the reference model. This model simulates, clock by clock, the registers of every stage, partial
 //! products, restoring dividers and banks. [`Lookup`] is the fast model. This model processes 64 pixels at a time in
 //! doubles, which are exact for these word lengths. tests/equal.rs checks that the two models give identical bits.
 //!
@@ -87,12 +87,12 @@ mod display;
 mod face;
 mod field;
 mod lens;
-pub mod literal;
 mod lookup;
 mod memory;
 mod orientation;
 pub mod priority;
 mod protocol;
+pub mod reference;
 mod scan;
 mod texel;
 mod timing;
@@ -103,7 +103,7 @@ pub use config::ArpConfig;
 pub use display::AddressRecalculationPipeline;
 pub use face::{CubeFace, FaceGeometry, TexelAddress, Vector};
 pub use lens::{Lens, LensPicture, LensTable};
-pub use lookup::{LookStats, Lookup};
+pub use lookup::{Lookup, LookupStats};
 pub use memory::{DisplayMemory, MemoryStats};
 pub use orientation::{MatrixWords, Orientation, OrientationLatch};
 pub use protocol::{begin_update, face_region, orientation_message, region_grid, swap_together};

@@ -21,7 +21,7 @@ use std::cell::Cell;
 
 /// Counts of extra memory accesses for a picture, beyond one access per pixel and memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LookStats {
+pub struct LookupStats {
     /// Number of pixels whose footprint (its four texels) extends beyond one face.
     pub split: u64,
     /// Number of pixels whose footprint (its four texels) has two texels in one bank and therefore needs a second
@@ -29,7 +29,7 @@ pub struct LookStats {
     pub conflicts: u64,
 }
 
-impl LookStats {
+impl LookupStats {
     pub const fn add(&mut self, other: Self) {
         self.split += other.split;
         self.conflicts += other.conflicts;
@@ -158,8 +158,8 @@ impl<'a> Lookup<'a> {
     /// # Panics
     ///
     /// Panics if the pixels exceed the table of viewing vectors.
-    pub fn run(&mut self, first: usize, matrix: &MatrixWords, out: &mut [u32]) -> LookStats {
-        let mut stats = LookStats::default();
+    pub fn run(&mut self, first: usize, matrix: &MatrixWords, out: &mut [u32]) -> LookupStats {
+        let mut stats = LookupStats::default();
         let vectors = self.addressing.table.run(first, out.len());
         for (group, pixels) in out.chunks_mut(BATCH).enumerate() {
             let here = group * BATCH..group * BATCH + pixels.len();
@@ -193,8 +193,8 @@ impl<'a> Lookup<'a> {
         Some(nearest.0)
     }
 
-    fn group(&mut self, vectors: [&[i32]; 3], matrix: &MatrixWords, out: &mut [u32]) -> LookStats {
-        let mut stats = LookStats::default();
+    fn group(&mut self, vectors: [&[i32]; 3], matrix: &MatrixWords, out: &mut [u32]) -> LookupStats {
+        let mut stats = LookupStats::default();
         let is_filled = self.composition.order == CompositionOrder::DepthFirst
             && self.addressing.fill(&mut self.batch, vectors, matrix);
         // Compute footprints that lie inside a face in groups.

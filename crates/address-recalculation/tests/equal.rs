@@ -2,7 +2,7 @@
 
 mod support;
 
-use address_recalculation::literal::{BankedMemory, ReferencePipeline};
+use address_recalculation::reference::{BankedMemory, ReferencePipeline};
 use address_recalculation::{
     ArpConfig, ArpTiming, CompositionOrder, FaceSet, Lens, Lookup, Orientation, ScanTiming, Vector,
 };
@@ -66,8 +66,8 @@ fn check(config: &ArpConfig, orientation: &Orientation, seed: u64) {
 
 fn compare(config: &ArpConfig, orientation: &Orientation, memories: &[FaceSet], behind: Option<&FaceSet>) {
     let fast = by_lookup(config, orientation, memories, behind);
-    let literal = by_registers(config, orientation, memories, behind);
-    assert_eq!(fast, literal, "{config:?} {orientation:?}");
+    let reference = by_registers(config, orientation, memories, behind);
+    assert_eq!(fast, reference, "{config:?} {orientation:?}");
 }
 
 /// Returns a strategy for random word lengths within the limits of the parameter table.

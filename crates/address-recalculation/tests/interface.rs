@@ -143,7 +143,7 @@ fn only_regions_that_a_pixel_reads_are_computed() {
         let found: Vec<u32> =
             seen.pixels().map(|pixel| u32::from_be_bytes([0, pixel[0], pixel[1], pixel[2]])).collect();
         assert!(found == pixels, "case {case}");
-        let stats = bench.arp().look_stats(Eye::Left, PeriodNumber(2)).expect("remembered");
+        let stats = bench.arp().lookup_stats(Eye::Left, PeriodNumber(2)).expect("remembered");
         let lines = read.chunks(30).step_by(2).flatten();
         let [split, conflicts] = lines.fold([0, 0], |[split, conflicts], footprint| {
             [split + u64::from(footprint.is_split), conflicts + u64::from(footprint.has_conflict())]
@@ -224,7 +224,7 @@ fn a_recorded_field_has_the_matrix_of_each_pixel() {
     assert_eq!(latched(41, 2), None, "an odd line in an even field");
     assert_eq!(latched(40, 4), None, "it has not been");
     assert_eq!(bench.arp().latched(Eye::Right, 17, 40, PeriodNumber(2)), None, "there is one eye");
-    assert_eq!(bench.arp().look_stats(Eye::Left, PeriodNumber(4)), None);
+    assert_eq!(bench.arp().lookup_stats(Eye::Left, PeriodNumber(4)), None);
 }
 
 /// Checks the size of a memory: two buffers of six faces. The background memory stores only colours.

@@ -22,13 +22,13 @@ fn at(x: f64, z: f64) -> DVec3 {
 /// assignments of cells.
 fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64) {
     let mut updates = vec![0; 8];
-    let mut deals = 0;
+    let mut reassignments = 0;
     for eye in path {
         let update = cells.frame(eye);
         update.memories().for_each(|memory| updates[memory] += 1);
-        deals += u64::from(update.deals_anew);
+        reassignments += u64::from(update.reassigns_cells);
     }
-    (updates, deals)
+    (updates, reassignments)
 }
 
 /// Returns the update rates of the memories over two minutes of straight walking at 1 m/s. `heading` is the direction
@@ -105,10 +105,10 @@ fn a_jump_of_a_kilometre_assigns_objects_once_and_leaves_no_tear() {
     let mut cells = Cells::new(&EQUAL_RINGS, square(300), true);
     cells.frame(at(1.0, 2.0));
     let update = cells.frame(at(1_001.0, 2.0));
-    assert!(update.deals_anew && update.due == [true; 4], "{update:?}");
+    assert!(update.reassigns_cells && update.due == [true; 4], "{update:?}");
     assert_eq!(update.together_bits(), 0b1111);
     assert!((0..4).all(|k| cells.drawn_from(k) == Some(at(1_001.0, 2.0))));
-    assert_eq!(cells.dealing().home, Cell { x: 200, z: 0 });
+    assert_eq!(cells.assignment().home, Cell { x: 200, z: 0 });
     assert_eq!(cells.frame(at(1_001.0, 2.0)).due, [false; 4]);
 }
 
@@ -145,14 +145,14 @@ fn a_warped_border_is_closed_in_every_frame() {
     for n in 0..600 {
         let turn = f64::from(n) * 0.01;
         let update = cells.frame(at(6.0 * turn.sin(), 6.0 * turn.cos() * turn.sin()));
-        let dealing = *cells.dealing();
+        let assignment = *cells.assignment();
         for memory in update.memories().filter(|memory| *memory < 3) {
             let [own, slower] = [memory, memory + 1].map(|k| cells.drawn_from(k).expect("drawn"));
             let warp = RegionWarp::new(Falloff::Linear, 5.0, own, slower).expect("a length");
-            let ring = dealing.last_ring(memory) as f64;
-            let border = (dealing.home.x as f64 + ring + 1.0) * 5.0;
-            let vertex = DVec3::new(border, 1.0, dealing.home.z as f64 * 5.0 + 1.0);
-            assert_eq!(dealing.to_slower(vertex, memory), Some(0.0));
+            let ring = assignment.last_ring(memory) as f64;
+            let border = (assignment.home.x as f64 + ring + 1.0) * 5.0;
+            let vertex = DVec3::new(border, 1.0, assignment.home.z as f64 * 5.0 + 1.0);
+            assert_eq!(assignment.to_slower(vertex, memory), Some(0.0));
             vertices[memory] = vec![warp.moved(vertex, Some(0.0)) - own, vertex];
         }
         for (memory, drawn) in vertices.iter().enumerate().take(3) {
@@ -180,7 +180,7 @@ proptest! {
             eye += DVec3::new(x, 0.0, z);
             cells.frame(eye);
             for cell in square(6) {
-                let memory = cells.dealing().memory(cell);
+                let memory = cells.assignment().memory(cell);
                 let place = DVec3::new(cell.x as f64 + point.0, 0.0, cell.z as f64 + point.2) * 5.0 + DVec3::Y * point.1;
                 let from = cells.drawn_from(memory).expect("drawn");
                 let off = (place - eye).angle_between(place - from);
@@ -256,19 +256,19 @@ fn an_approaching_object_changes_memories_in_a_frame_that_draws_both_memories() 
 fn cells_are_assigned_again_when_the_eye_leaves_its_cell_and_the_slowest_memory_is_due() {
     let mut cells = Cells::new(&EQUAL_RINGS, square(8), false);
     let first = cells.frame(at(12.5, 12.5));
-    assert!(!first.deals_anew && first.due == [true; 4], "{first:?}");
-    assert_eq!(cells.dealing().home, Cell { x: 2, z: 2 });
+    assert!(!first.reassigns_cells && first.due == [true; 4], "{first:?}");
+    assert_eq!(cells.assignment().home, Cell { x: 2, z: 2 });
     let within = cells.frame(at(12.5 + 0.054, 12.5));
-    assert!(!within.deals_anew && within.due == [true; 4], "{within:?}");
+    assert!(!within.reassigns_cells && within.due == [true; 4], "{within:?}");
     assert_eq!(within.together, [false; 4]);
     let mut cells = Cells::new(&EQUAL_RINGS, square(8), false);
     cells.frame(at(14.999, 12.5));
     let across = cells.frame(at(15.001, 12.5));
-    assert!(!across.deals_anew && !across.due[3], "{across:?}");
-    assert_eq!(cells.dealing().home, Cell { x: 2, z: 2 }, "2 mm make nothing due but the fastest");
+    assert!(!across.reassigns_cells && !across.due[3], "{across:?}");
+    assert_eq!(cells.assignment().home, Cell { x: 2, z: 2 }, "2 mm make nothing due but the fastest");
     let farther = cells.frame(at(15.1, 12.5));
-    assert!(farther.deals_anew && farther.due == [true; 4] && farther.together == [true; 4], "{farther:?}");
-    assert_eq!(cells.dealing().home, Cell { x: 3, z: 2 });
+    assert!(farther.reassigns_cells && farther.due == [true; 4] && farther.together == [true; 4], "{farther:?}");
+    assert_eq!(cells.assignment().home, Cell { x: 3, z: 2 });
 }
 
 /// The eye walks through the middle of a hall of seven cells of 5 m.
@@ -282,13 +282,13 @@ fn a_memory_without_cells_is_never_due_and_does_not_delay_an_assignment() {
     let mut cells = Cells::new(&timing, hall(), false);
     let eye = |z: f64| at(17.5, z);
     cells.frame(eye(17.5));
-    assert_eq!(cells.dealing().home, Cell { x: 3, z: 3 });
+    assert_eq!(cells.assignment().home, Cell { x: 3, z: 3 });
     assert_eq!(cells.way(eye(17.5), 3), f64::INFINITY);
-    let (updates, deals) = walk(&mut cells, (1..=120).map(|n| eye(17.5 + f64::from(n) * FRAME_M)));
-    assert_eq!((updates[3], deals), (0, 0), "two metres within the middle cell");
+    let (updates, reassignments) = walk(&mut cells, (1..=120).map(|n| eye(17.5 + f64::from(n) * FRAME_M)));
+    assert_eq!((updates[3], reassignments), (0, 0), "two metres within the middle cell");
     let across = cells.frame(eye(20.01));
-    assert!(across.deals_anew && across.due[3], "one ring on, a row of cells is four rings away: {across:?}");
-    assert_eq!(cells.dealing().home, Cell { x: 3, z: 4 });
+    assert!(across.reassigns_cells && across.due[3], "one ring on, a row of cells is four rings away: {across:?}");
+    assert_eq!(cells.assignment().home, Cell { x: 3, z: 4 });
 }
 
 /// The hall has seven cells of 5 m in a row along z. The eye is in the last cell, 2 m from the cell's border in front.
@@ -315,8 +315,8 @@ fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
     let mut cells = Cells::new(&EQUAL_RINGS, [Cell { x: 2, z: 0 }], false);
     cells.frame(at(2.5, 2.5));
     let update = cells.frame(at(7.5, 2.5));
-    assert!(update.deals_anew && update.due == [true; 4], "5 m make all due, changed or not");
-    assert_eq!((update.together, cells.dealing().memory(Cell { x: 2, z: 0 })), (vec![true, true, false, false], 0));
+    assert!(update.reassigns_cells && update.due == [true; 4], "5 m make all due, changed or not");
+    assert_eq!((update.together, cells.assignment().memory(Cell { x: 2, z: 0 })), (vec![true, true, false, false], 0));
 }
 
 /// Experiment E4 has point objects, uniform on a disc of 100 m around a walker.

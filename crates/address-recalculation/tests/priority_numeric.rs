@@ -133,7 +133,7 @@ fn angles_to_faces_agree_with_the_symmetry_of_the_cube() {
     near(angle_to_face(DVec3::ONE, DVec3::NEG_X), (1.0_f64 / 3.0).acos(), 1e-12);
 }
 
-fn dealing() -> CellAssignment {
+fn assignment() -> CellAssignment {
     CellAssignment { home: Cell { x: 0, z: 0 }, side_m: 5.0, inner_rings: 1, ring_growth: 1, memories: 4 }
 }
 
@@ -141,33 +141,33 @@ fn dealing() -> CellAssignment {
 fn case_22_the_borders_of_memories_give_the_computed_distances_and_periods() {
     let eye = at(2.0, 1.0);
     for (k, distance, way_mm, frames) in [(1, 6.0, 18.408, 2.0), (2, 11.0, 33.748, 3.0), (3, 16.0, 49.087, 3.0)] {
-        near(dealing().distance(eye, k), distance, 1e-12);
+        near(assignment().distance(eye, k), distance, 1e-12);
         let way = threshold().way(distance);
         near(1e3 * way, way_mm, 5e-4);
         near((way * 60.0).ceil(), frames, 0.0);
     }
-    assert_eq!(dealing().distance(eye, 0), 0.0);
+    assert_eq!(assignment().distance(eye, 0), 0.0);
     // A memory ends at the border where the next slower memory begins.
-    assert_eq!([0, 1, 2, 3].map(|k| dealing().to_slower(eye, k)), [Some(6.0), Some(11.0), Some(16.0), None]);
-    assert_eq!(dealing().to_slower(at(99.0, 1.0), 1), Some(0.0), "outside");
-    assert_eq!(dealing().distance(at(99.0, 1.0), 2), 0.0, "outside");
+    assert_eq!([0, 1, 2, 3].map(|k| assignment().to_slower(eye, k)), [Some(6.0), Some(11.0), Some(16.0), None]);
+    assert_eq!(assignment().to_slower(at(99.0, 1.0), 1), Some(0.0), "outside");
+    assert_eq!(assignment().distance(at(99.0, 1.0), 2), 0.0, "outside");
 }
 
 #[test]
 fn cases_23_and_24_positions_belong_to_the_expected_cells_and_memories() {
     let cells = [(12.3, -0.1), (5.0, 0.0), (-5.0, 4.999)].map(|(x, z)| Cell::of(x, z, 5.0));
     assert_eq!(cells, [Cell { x: 2, z: -1 }, Cell { x: 1, z: 0 }, Cell { x: -1, z: 0 }]);
-    let memories = [(0, 0), (1, -1), (2, 0), (3, -3), (4, 1), (9, 9)].map(|(x, z)| dealing().memory(Cell { x, z }));
+    let memories = [(0, 0), (1, -1), (2, 0), (3, -3), (4, 1), (9, 9)].map(|(x, z)| assignment().memory(Cell { x, z }));
     assert_eq!(memories, [0, 0, 1, 2, 3, 3]);
     let far = Cell { x: i64::MAX, z: i64::MIN };
-    assert_eq!(dealing().memory(far), 3);
+    assert_eq!(assignment().memory(far), 3);
 }
 
 /// Memory k begins outside ring q + 1 + g + ... + g^(k-2). With q = 1 and g = 2, memories 1 to 3 begin outside rings 1,
 /// 2 and 4.
 #[test]
 fn with_doubling_rings_memories_1_to_3_begin_outside_rings_1_2_and_4() {
-    let doubling = CellAssignment { ring_growth: 2, ..dealing() };
+    let doubling = CellAssignment { ring_growth: 2, ..assignment() };
     assert_eq!([0, 1, 2].map(|memory| doubling.last_ring(memory)), [1, 2, 4]);
     let memories = (0..=7).map(|ring| doubling.memory(Cell { x: -ring, z: 0 })).collect::<Vec<_>>();
     assert_eq!(memories, [0, 0, 1, 2, 2, 3, 3, 3]);
@@ -293,7 +293,7 @@ fn a_frame_lasts_a_sixtieth_of_a_second() {
 #[test]
 fn the_memories_that_swap_together_are_encoded_as_a_bit_mask() {
     let update =
-        Update { due: vec![true, false, true, true], together: vec![true, false, true, false], deals_anew: false };
+        Update { due: vec![true, false, true, true], together: vec![true, false, true, false], reassigns_cells: false };
     assert_eq!(update.together_bits(), 0b0101);
     assert!(update.memories().eq([0, 2, 3]));
     assert_eq!(Update { together: vec![true; 8], ..update }.together_bits(), 0xFF);

@@ -96,9 +96,9 @@ fn cells_of_5_m_cut_a_wall_of_12_m_into_three_segments() {
     }
     // The bottom, the top and the diagonal are each cut at x = 5 and x = 10.
     assert_eq!(cut.cuts.len(), 6);
-    let dealing =
+    let assignment =
         CellAssignment { home: Cell { x: 4, z: 0 }, side_m: 5.0, inner_rings: 1, ring_growth: 1, memories: 4 };
-    assert_eq!(cut.fastest_memory(&dealing), Some(1), "as its nearest cell, two rings away");
+    assert_eq!(cut.fastest_memory(&assignment), Some(1), "as its nearest cell, two rings away");
 }
 
 #[test]
@@ -130,14 +130,14 @@ fn a_vertex_on_a_border_is_not_duplicated() {
 
 #[test]
 fn an_empty_mesh_is_in_no_memory() {
-    let dealing =
+    let assignment =
         CellAssignment { home: Cell { x: 0, z: 0 }, side_m: 5.0, inner_rings: 1, ring_growth: 1, memories: 4 };
     let mesh = |x: f64| {
         let corners = [0.0, 1.0, 2.0].map(|along| DVec3::new(x + along, along * along, 1.0));
-        Segmentation::new(&corners, &[[0, 1, 2]], 5.0).expect("cut").fastest_memory(&dealing)
+        Segmentation::new(&corners, &[[0, 1, 2]], 5.0).expect("cut").fastest_memory(&assignment)
     };
     assert_eq!([1.0, 11.0, 16.0].map(mesh), [Some(0), Some(1), Some(2)], "0, 2 and 3 rings away");
-    assert_eq!(Segmentation::new(&[], &[], 5.0).expect("nothing").fastest_memory(&dealing), None);
+    assert_eq!(Segmentation::new(&[], &[], 5.0).expect("nothing").fastest_memory(&assignment), None);
 }
 
 /// The number of pieces is bounded by the cells of a triangle's bounding rectangle. 3,125 x 3,200 is ten million, the

@@ -277,7 +277,7 @@ impl Clock {
     /// later.
     #[inline]
     fn load_integer<B: Bus>(&mut self, address: u32, dest: u8, bus: &B) {
-        self.board.forget(dest);
+        self.board.release(dest);
         if let Some(transfer) = self.load(address, BUS_BYTES, bus)
             && self.common.costs.applies(Freeze::LoadMissUse)
         {

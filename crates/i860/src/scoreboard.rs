@@ -195,7 +195,7 @@ impl Scoreboard {
 
     /// Removes the wait for an integer register, because a new load overwrites the register.
     #[inline]
-    pub(crate) fn forget(&mut self, dest: u8) {
+    pub(crate) fn release(&mut self, dest: u8) {
         self.pending &= !(1 << dest);
     }
 

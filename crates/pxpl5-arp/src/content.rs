@@ -27,7 +27,7 @@ impl Content {
     pub fn place(&self, vertex: DVec3) -> DVec3 {
         self.warp
             .as_ref()
-            .map_or(vertex, |(warp, dealing, memory)| warp.moved(vertex, dealing.to_slower(vertex, *memory)))
+            .map_or(vertex, |(warp, assignment, memory)| warp.moved(vertex, assignment.to_slower(vertex, *memory)))
     }
 
     /// Returns the direction from the eye in which a vertex is drawn. The vector does not have unit length.
@@ -51,12 +51,12 @@ impl Content {
 /// often. `places` are the eye positions from which `memory` and the memory beyond the border were drawn.
 pub(crate) fn warp(
     settings: &crate::settings::WalkSettings,
-    dealing: &CellAssignment,
+    assignment: &CellAssignment,
     memory: usize,
     places: [DVec3; 2],
 ) -> Result<Option<(RegionWarp, CellAssignment, usize)>, SettingError> {
     let warp = RegionWarp::new(settings.falloff, settings.numbers.falloff_length_m(), places[0], places[1])?;
-    Ok(Some((warp, *dealing, memory)))
+    Ok(Some((warp, *assignment, memory)))
 }
 
 /// Returns the angle between two directions in radians. The formula is also accurate for small angles.

@@ -2,7 +2,7 @@
 
 use crate::cube_faces::DrawCounts;
 use crate::simulation::Simulation;
-use address_recalculation::{ArpConfig, FaceSet, LensTable, LookStats, Lookup, Orientation};
+use address_recalculation::{ArpConfig, FaceSet, LensTable, Lookup, LookupStats, Orientation};
 use glam::DQuat;
 use image::{Rgb, RgbImage};
 use pxpl5_sim::parameters::SettingError;
@@ -59,7 +59,7 @@ impl WalkFaces {
     /// # Errors
     ///
     /// Returns a [`SettingError`] if the lens or the orientation is invalid.
-    pub fn seen(&self, orientation: DQuat) -> Result<(RgbImage, LookStats), SettingError> {
+    pub fn seen(&self, orientation: DQuat) -> Result<(RgbImage, LookupStats), SettingError> {
         let table = self.config.table()?;
         let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);
         let mut pixels = vec![0; (table.width() * table.height()) as usize];

@@ -6,7 +6,7 @@ use crate::settings::{PolicyKind, WalkSettings};
 use crate::tears::TearWidths;
 use crate::walk::{MemoryTally, WalkTally};
 use crate::world::World;
-use address_recalculation::{ArpConfig, Latch, LookStats};
+use address_recalculation::{ArpConfig, Latch, LookupStats};
 use pxpl5_sim::Span;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
@@ -151,7 +151,7 @@ impl ArpReport {
 
     /// Adds the counts of extra memory accesses for the pixels of a view, and of the triangles drawn for the view.
     #[must_use]
-    pub fn with_view(mut self, stats: &LookStats, drawing: &DrawCounts) -> Self {
+    pub fn with_view(mut self, stats: &LookupStats, drawing: &DrawCounts) -> Self {
         self.footprints_split = Some(stats.split);
         self.bank_conflicts = Some(stats.conflicts);
         self.priority.faces_per_primitive = Some(drawing.on_faces as f64 / drawing.triangles.max(1) as f64);

@@ -48,7 +48,7 @@ pub struct FrameOutcome {
     /// Flag of each memory: true if its update was incomplete at the retrace.
     pub missed: Vec<bool>,
     /// True if cells (squares of the floor) were newly assigned to memories in this frame.
-    pub deals_anew: bool,
+    pub reassigns_cells: bool,
 }
 
 /// A viewer's walk through a scene, simulated frame by frame.
@@ -110,9 +110,9 @@ impl<'a> Simulation<'a> {
 
     /// Returns the current assignment of cells to memories. Returns `None` unless the policy is `cells`.
     #[must_use]
-    pub const fn dealing(&self) -> Option<&CellAssignment> {
+    pub const fn assignment(&self) -> Option<&CellAssignment> {
         match &self.policy {
-            Policy::Cells(cells) => Some(cells.dealing()),
+            Policy::Cells(cells) => Some(cells.assignment()),
             Policy::Full | Policy::Objects(_) => None,
         }
     }
@@ -141,7 +141,7 @@ impl<'a> Simulation<'a> {
             due: update.due.clone(),
             swapped: vec![false; update.due.len()],
             missed: vec![false; update.due.len()],
-            deals_anew: update.deals_anew,
+            reassigns_cells: update.reassigns_cells,
         };
         // Draw: an ideal source shows the contents at once.
         match self.settings.source {
@@ -189,7 +189,7 @@ impl<'a> Simulation<'a> {
         // The validity of an object depends on the eye's speed since the previous frame.
         let speed = self.before.map_or(0.0, |before| before.distance(eye) * self.settings.numbers.frame_hz);
         match &mut self.policy {
-            Policy::Full => Update { due: vec![true], together: vec![false], deals_anew: false },
+            Policy::Full => Update { due: vec![true], together: vec![false], reassigns_cells: false },
             Policy::Cells(cells) => cells.frame(eye),
             Policy::Objects(objects) => {
                 let threshold = Threshold::of_degrees(self.settings.numbers.theta_deg);
@@ -220,7 +220,7 @@ impl<'a> Simulation<'a> {
         let Policy::Cells(cells) = &self.policy else { return Ok(None) };
         let is_warped = self.settings.falloff != Falloff::None && self.settings.is_segmented;
         match cells.drawn_from(memory + 1) {
-            Some(slower) if is_warped => Ok(warp(&self.settings, cells.dealing(), memory, [eye, slower])?),
+            Some(slower) if is_warped => Ok(warp(&self.settings, cells.assignment(), memory, [eye, slower])?),
             _ => Ok(None),
         }
     }
@@ -231,7 +231,7 @@ impl<'a> Simulation<'a> {
             Policy::Objects(objects) => objects.memory(unit).unwrap_or(0),
             Policy::Cells(cells) => {
                 let inside = &self.world.segments[self.units[unit].segments.clone()];
-                inside.iter().map(|segment| cells.dealing().memory(segment.cell)).min().unwrap_or(0)
+                inside.iter().map(|segment| cells.assignment().memory(segment.cell)).min().unwrap_or(0)
             }
         }
     }

@@ -67,7 +67,7 @@ impl WalkTally {
 
     fn count(&mut self, simulation: &Simulation<'_>, outcome: FrameOutcome) {
         self.frames += 1;
-        self.redeals += u64::from(outcome.deals_anew);
+        self.redeals += u64::from(outcome.reassigns_cells);
         for (memory, tally) in self.memories.iter_mut().enumerate() {
             tally.missed += u64::from(outcome.missed[memory]);
             let Some(content) = &simulation.shown()[memory] else { continue };

@@ -197,8 +197,8 @@ fn a_jump_of_a_kilometre_assigns_objects_once_and_leaves_no_tear() {
     let mut simulation = simulated(&WARPED);
     simulation.frame(PATH.place(0.0)).expect("drawn");
     let far = DVec3::new(1_000.0, 1.7, 0.0);
-    assert!(simulation.frame(far).expect("drawn").deals_anew);
-    assert!(!simulation.frame(far).expect("drawn").deals_anew);
+    assert!(simulation.frame(far).expect("drawn").reassigns_cells);
+    assert!(!simulation.frame(far).expect("drawn").reassigns_cells);
     assert!(Tears::of(&WORLD, simulation.shown()).after.iter().all(|gap| *gap < 1e-12));
 }
 

@@ -196,7 +196,7 @@ fn chart(rows: &[FigureRow]) -> Chart {
             interval: row.interval.map_or((f64::NAN, f64::NAN), |ends| relative(ends, row.published)),
             is_hollow: !is_free,
         });
-        ChartSeries { name: name.to_owned(), points: points.collect(), look: SeriesStyle::Points }
+        ChartSeries { name: name.to_owned(), points: points.collect(), style: SeriesStyle::Points }
     };
     Chart {
         axes: ChartAxes {

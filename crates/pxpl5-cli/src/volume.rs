@@ -3,11 +3,11 @@
 mod compare;
 mod figures;
 mod heads;
-mod look;
 mod run;
 mod settings;
 mod slices;
 mod sweep;
+mod view;
 
 use crate::error::CliError;
 use clap::{Args, Subcommand};
@@ -36,9 +36,9 @@ enum VolumeCommand {
     /// Draw one slice, before and after halftoning.
     Slice(slices::SliceArgs),
     /// Render what an eye sees during one turn of the display.
-    View(look::ViewArgs),
+    View(view::ViewArgs),
     /// Write an animated PNG in which the eye goes once around the volume.
-    Film(look::FilmArgs),
+    Film(view::FilmArgs),
     /// Compare all clips (ways to cut the scene into slices) and projections.
     Compare(compare::CompareArgs),
     /// Draw a volume at every point of a parameter space.
@@ -52,8 +52,8 @@ pub(crate) fn run(args: VolumeArgs) -> Result<(), CliError> {
         VolumeCommand::Run(args) => run::run(args),
         VolumeCommand::Sheet(args) => slices::sheet(args),
         VolumeCommand::Slice(args) => slices::slice(args),
-        VolumeCommand::View(args) => look::view(args),
-        VolumeCommand::Film(args) => look::film(args),
+        VolumeCommand::View(args) => view::view(args),
+        VolumeCommand::Film(args) => view::film(args),
         VolumeCommand::Compare(args) => compare::run(args),
         VolumeCommand::Sweep(args) => sweep::run(args),
         VolumeCommand::Figures(args) => figures::run(args),

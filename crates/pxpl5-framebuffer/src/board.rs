@@ -2,7 +2,7 @@
 
 use crate::buffer::{Buffer, Regions};
 use crate::region::RegionWrite;
-use crate::seen::{BufferContents, ScannedField};
+use crate::scanned::{BufferContents, ScannedField};
 use crate::{Faults, FrameBufferConfig, FrameBufferEvent, FrameBufferFault, FrameBufferOutput, Video};
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Context, Span, Time};

@@ -130,7 +130,7 @@ impl Buffer {
         }
         // The search by pixels is slow, so run it only after the arrival of many regions.
         if self.held.len() > self.search_above {
-            self.forget_covered(width, height);
+            self.discard_covered(width, height);
             self.search_above = FEW.max(2 * self.held.len());
         }
     }
@@ -140,7 +140,7 @@ impl Buffer {
     ///
     /// A port receives one region at a time. A region that is still arriving is therefore the newest, and no region
     /// covers it.
-    fn forget_covered(&mut self, width: u32, height: u32) {
+    fn discard_covered(&mut self, width: u32, height: u32) {
         // Mark the pixels of each region, from the newest region to the oldest.
         let mut covered = vec![false; (width * height) as usize];
         for held in self.held.iter_mut().rev() {

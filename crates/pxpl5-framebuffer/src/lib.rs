@@ -71,8 +71,8 @@ mod panel;
 mod picture;
 mod port;
 mod region;
+mod scanned;
 mod scans;
-mod seen;
 mod timing;
 
 pub use board::{FrameBuffer, FrameBufferStats};
@@ -82,7 +82,7 @@ pub use ntsc::{NtscDisplay, seen_at};
 pub use panel::{HiResConfig, LcdConfig, OledConfig, Panel, PanelConfig, PanelNumbers};
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
 pub use pxpl5_wire::Video;
-pub use seen::{BufferContents, ScannedField, ScannedLateRegion};
+pub use scanned::{BufferContents, ScannedField, ScannedLateRegion};
 pub use timing::{PortTiming, VideoTiming};
 
 #[cfg(doctest)]

@@ -100,7 +100,7 @@ fn the_beam_reaches_a_region_at_the_first_pixel_of_the_region_in_that_field() {
 }
 
 #[test]
-fn every_preset_lies_in_its_range() {
+fn every_preset_is_in_range() {
     assert_eq!(VideoTiming::PAPERS.out_of_range(), []);
 }
 

@@ -310,7 +310,7 @@ impl GpBoard {
 
     /// Returns a snapshot of the board at time `now`, which must not be earlier than the last handled event.
     #[must_use]
-    pub fn look(&self, now: Time) -> GpSnapshot {
+    pub fn snapshot(&self, now: Time) -> GpSnapshot {
         GpSnapshot::of(&self.shared.borrow(), self.tasks.iter().map(|task| task.priority), now)
     }
 

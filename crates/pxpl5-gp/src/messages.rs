@@ -245,6 +245,6 @@ mod tests {
         assert_eq!(sent, 1, "what came later is not answered");
         let fault = board.fault().expect("it stopped").to_string();
         assert_eq!(fault, "node 9: unexpected message of 1025 words from node 2");
-        assert!(board.blocked().is_none() && board.look(Time(4_000_000_000)).programs.is_empty());
+        assert!(board.blocked().is_none() && board.snapshot(Time(4_000_000_000)).programs.is_empty());
     }
 }

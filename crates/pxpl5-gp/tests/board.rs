@@ -331,11 +331,14 @@ fn a_snapshot_shows_the_remaining_work_and_the_waiting_messages() {
         work_left: left_ns.map(Span::from_ns),
     };
     const WORK: &str = "the end of its own work";
-    let look = rig.board.look(Time::ZERO);
-    assert_eq!(look.programs, [Priority::Interrupt, Priority::Foreground].map(|priority| program(priority, "", None)));
+    let snapshot = rig.board.snapshot(Time::ZERO);
+    assert_eq!(
+        snapshot.programs,
+        [Priority::Interrupt, Priority::Foreground].map(|priority| program(priority, "", None))
+    );
 
     rig.run_to(400);
-    let programs = |rig: &Rig, at_ns| rig.board.look(ns(at_ns)).programs;
+    let programs = |rig: &Rig, at_ns| rig.board.snapshot(ns(at_ns)).programs;
     let waits = program(Priority::Interrupt, "a message", None);
     assert_eq!(programs(&rig, 900), [waits, program(Priority::Foreground, WORK, Some(2_100))]);
 
@@ -346,15 +349,15 @@ fn a_snapshot_shows_the_remaining_work_and_the_waiting_messages() {
     let ends = [program(Priority::Interrupt, WORK, None), program(Priority::Foreground, WORK, Some(2_000))];
     assert_eq!(programs(&rig, 1_500), ends, "at the instant at which it ends");
     let mail = |arrived_ns, source| WaitingMessageInfo { arrived: ns(arrived_ns), source: NodeId(source) };
-    assert_eq!(rig.board.look(ns(1_300)).inbox, [mail(1_200, 6), mail(1_250, 5)]);
+    assert_eq!(rig.board.snapshot(ns(1_300)).inbox, [mail(1_200, 6), mail(1_250, 5)]);
 
     rig.run_to(10_000);
-    let look = rig.board.look(ns(10_000));
-    assert_eq!((look.unaccepted, look.chains), (vec![NodeId(2), NodeId(1)], vec![1]));
-    assert_eq!((look.busy, look.period), (Span::from_ns(3_000 + 500 + 2 * MESSAGE_NS), PeriodNumber(3)));
-    assert_eq!(rig.board.busy(), look.busy);
+    let snapshot = rig.board.snapshot(ns(10_000));
+    assert_eq!((snapshot.unaccepted, snapshot.chains), (vec![NodeId(2), NodeId(1)], vec![1]));
+    assert_eq!((snapshot.busy, snapshot.period), (Span::from_ns(3_000 + 500 + 2 * MESSAGE_NS), PeriodNumber(3)));
+    assert_eq!(rig.board.busy(), snapshot.busy);
     let waits = program(Priority::Interrupt, "nothing more", None);
-    assert_eq!(look.programs, [waits, program(Priority::Foreground, "the end", None)]);
+    assert_eq!(snapshot.programs, [waits, program(Priority::Foreground, "the end", None)]);
     assert_eq!(rig.board.blocked(), Some("the end"));
 }
 
@@ -369,7 +372,7 @@ fn a_snapshot_shows_each_account_of_the_memory() {
         gp.reserve(Account::Bins(3), 60, None)
     });
     rig.run_to(0);
-    let held: Vec<u64> = rig.board.look(Time::ZERO).memory.into_iter().map(|(_, bytes)| bytes).collect();
+    let held: Vec<u64> = rig.board.snapshot(Time::ZERO).memory.into_iter().map(|(_, bytes)| bytes).collect();
     assert_eq!(held, [1, 2, 30, 4, 5, 60]);
     assert_eq!(rig.board.memory_peak_bytes(), held.iter().sum::<u64>());
 }

@@ -7,21 +7,21 @@
 //! - `PICTURES` counts only for a run that computes all pixels.
 //! - A run that keeps all observations has `kept = fields (FIELD + COPY blocks)`. A run that keeps statistics and its
 //!   last pictures has `kept = fields STATISTICS + min(fields, WINDOW) BLOCK blocks`.
-//! - A tracked head adds `min(fields, JUDGED) ERRORS` to `kept`.
+//! - A tracked head adds `min(fields, EVALUATED_FIELDS) ERRORS` to `kept`.
 //! - `batch` is the number of blocks of pixels drawn with one head pose. `blocks` is the greatest number of blocks that
 //!   the ring can carry in a field. `batch` and `blocks` are 0 except in frameless rendering.
 //!
 //! The constants of memory come from the measured peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
 //!
 //! Time in seconds on one core: `runs (FIELD_S fields + pictures eyes (PICTURE_S + GP_S gps) + BLOCK_S blocks fields) +
-//! LOAD_S eyes primitives + JUDGED_FIELD_S fields`
+//! LOAD_S eyes primitives + EVALUATED_FIELD_S fields`
 //!
 //! - `runs` is `RUNS_OF_HEAD` for a tracked head, otherwise 1.
 //! - `LOAD_S` counts only if a closed form gives the times of pictures. At the cycle level, the time of a picture also
 //!   contains `PRIMITIVE_AS_CODE_S primitives`.
 //! - `BLOCK_S` counts only for pipelines that draw blocks. Here `blocks` is the number of blocks that the processors of
 //!   the experiment can send in a field.
-//! - `JUDGED_FIELD_S` counts only for a tracked head.
+//! - `EVALUATED_FIELD_S` counts only for a tracked head.
 //!
 //! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and
 //! sweep-costs-heads.toml, release build). The fit minimizes the error of the logarithms, so that overestimates and
@@ -96,7 +96,7 @@ const WINDOW: f64 = 240.0;
 /// Bytes for the pixel errors of one display field.
 const ERRORS: f64 = 1e3;
 /// Maximum number of display fields for which a run stores separate pixel errors.
-const JUDGED: f64 = 20_971.0;
+const EVALUATED_FIELDS: f64 = 20_971.0;
 
 /// Seconds to simulate a field, including its retrace and the samples of the head pose.
 const FIELD_S: f64 = 3.5e-4;
@@ -113,7 +113,7 @@ const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;
 /// Number of simulations with a tracked head: a dry run, which measures the prediction interval, and the run itself.
 const RUNS_OF_HEAD: f64 = 2.0;
 /// Seconds to evaluate the pixel errors of a field.
-const JUDGED_FIELD_S: f64 = 6e-4;
+const EVALUATED_FIELD_S: f64 = 6e-4;
 /// Factor on the time for a computer that is busy with other work. Assumed. Four measured runs on two busy cores took
 /// 1.3 to 12 times as long as the estimate for an idle core.
 pub const BUSY: f64 = 2.5;
@@ -213,7 +213,7 @@ impl RunWork {
         } else {
             fields * STATISTICS + fields.min(WINDOW) * BLOCK * self.most_blocks()
         };
-        let errors = if self.is_tracked { fields.min(JUDGED) * ERRORS } else { 0.0 };
+        let errors = if self.is_tracked { fields.min(EVALUATED_FIELDS) * ERRORS } else { 0.0 };
         let pictures = if self.computes_all_pixels { PICTURES } else { 0.0 };
         let lists = PRIMITIVE * self.primitives as f64 + WAITING * self.batch as f64;
         BASE + pictures + GP * self.gps as f64 + lists + kept + errors
@@ -228,7 +228,7 @@ impl RunWork {
         // Fields, pictures and blocks each add their own cost.
         let run = fields * FIELD_S + fields * self.pictures_a_field * picture + fields * self.blocks() * BLOCK_S;
         let load = if self.uses_closed_form { LOAD_S * eyes * primitives } else { 0.0 };
-        let (runs, evaluated) = if self.is_tracked { (RUNS_OF_HEAD, fields * JUDGED_FIELD_S) } else { (1.0, 0.0) };
+        let (runs, evaluated) = if self.is_tracked { (RUNS_OF_HEAD, fields * EVALUATED_FIELD_S) } else { (1.0, 0.0) };
         runs * run + load + evaluated
     }
 }

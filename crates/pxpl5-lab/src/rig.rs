@@ -226,7 +226,7 @@ impl Photodiode {
 
     /// Samples the photodiode in a period that has ended. `screen` caches the picture of the period for all
     /// photodiodes.
-    fn look(&mut self, period: PeriodNumber, record: &Record, screen: &mut Option<Option<RgbImage>>) {
+    fn sample(&mut self, period: PeriodNumber, record: &Record, screen: &mut Option<Option<RgbImage>>) {
         let display = record.display();
         let Some(surface) = display.surfaces().first() else { return };
         let (first_row, row_distance) = display.rows_lit(period);
@@ -266,7 +266,7 @@ fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outc
         // The stop comes before the retrace that ends the previous period.
         if let Some(over) = period.before(2) {
             let mut screen = None;
-            photodiodes.iter_mut().for_each(|photodiode| photodiode.look(over, machine.record(), &mut screen));
+            photodiodes.iter_mut().for_each(|photodiode| photodiode.sample(over, machine.record(), &mut screen));
         }
         Ok(())
     });

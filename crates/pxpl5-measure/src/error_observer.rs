@@ -24,7 +24,7 @@ pub(crate) struct ErrorSum {
     /// Display mode of the pictures. `None` uses the mode of the head's display.
     showing: Option<Showing>,
     without: Option<Cause>,
-    judging: Option<Evaluation>,
+    evaluation: Option<Evaluation>,
     /// First period of the result window. `None` while the window is unknown.
     window_from: Option<PeriodNumber>,
     collected: Option<Collected>,
@@ -40,7 +40,7 @@ impl ErrorSum {
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let Some(head) = run.head else { return };
         let showing = self.showing.unwrap_or_else(|| head.head().raster().into());
-        let judging = self.judging.get_or_insert_with(|| Evaluation::begin(run, head, showing, self.without));
+        let evaluation = self.evaluation.get_or_insert_with(|| Evaluation::begin(run, head, showing, self.without));
         let window_from = run.window.map(|window| window.first_period);
         if self.window_from != window_from {
             // The window has moved. All sums so far belong to periods before the window.
@@ -52,14 +52,14 @@ impl ErrorSum {
             let eye = EyeSum::keeping(run.samples, !display.light().is_instant(), showing.device(display));
             Collected::keeping(run.samples, eye)
         });
-        judging.shown.take(run, head);
-        let fields = judging.fields(run);
+        evaluation.shown.take(run, head);
+        let fields = evaluation.fields(run);
         // With a cause turned off, recompute the poses that these fields show.
         if let Some(cause) = self.without {
-            judging.replace_poses(run, head, &fields, cause);
+            evaluation.replace_poses(run, head, &fields, cause);
         }
-        fields.for_each(|field| judging.evaluate(run, field, collected));
-        judging.shown.forget(run);
+        fields.for_each(|field| evaluation.evaluate(run, field, collected));
+        evaluation.shown.discard(run);
     }
 
     /// Returns the pixel errors. Also returns an [`EyeReport`] if pixels are lit for more than an instant, or if a
@@ -283,7 +283,7 @@ impl Evaluation {
         let Collected { errors, eye, .. } = collected;
         // Only a device with depth can detect that a pixel's content is hidden in the picture.
         if by == Warp::Depth && !matches!(found, Moved::NotComplete(_)) {
-            eye.looked_at(matches!(found, Moved::Beyond), matches!(found, Moved::Hidden));
+            eye.add_pixel(matches!(found, Moved::Beyond), matches!(found, Moved::Hidden));
         }
         let (content, drawn) = match found {
             Moved::Shows(content, drawn) => (content, drawn),
@@ -347,7 +347,7 @@ impl Evaluation {
                 }
                 _ => return,
             };
-            eye.looked_at(!from.is_some_and(|from| view.contains(from)), false);
+            eye.add_pixel(!from.is_some_and(|from| view.contains(from)), false);
         }
     }
 }
@@ -443,7 +443,7 @@ mod tests {
     impl StreamingObserver for Watched {
         fn take(&mut self, results: &FinalResults<'_>) {
             self.sum.take(results);
-            self.held.extend(self.sum.judging.iter().map(|judging| judging.shown.held()));
+            self.held.extend(self.sum.evaluation.iter().map(|evaluation| evaluation.shown.held()));
         }
 
         fn result(self: Box<Self>) -> Box<dyn Any + Send + Sync> {

@@ -30,7 +30,7 @@ pub struct ReprojectionReport {
     /// Age of the newest pose when the pixel is lit: time since the measurement of the pose, in milliseconds.
     pub pose_age_ms: Percentiles,
     /// Number of checked pixels. For each of these pixels, the evaluation searched the picture for the pixel's content.
-    pub looked_at: u64,
+    pub checked_pixels: u64,
     /// Share of the checked pixels, 0 to 1, whose content lies beyond the edge of the picture. `None` if no pixel was
     /// checked.
     pub empty_share: Option<f64>,
@@ -53,7 +53,7 @@ pub(crate) struct EyeSum {
     smear: Option<Distribution>,
     device: Option<Device>,
     age_ms: Distribution,
-    looked_at: u64,
+    checked: u64,
     beyond: u64,
     hidden: u64,
 }
@@ -66,7 +66,7 @@ impl EyeSum {
         // last digit of a mean.
         let limit = limit.min(KEPT_SAMPLES);
         let smear = smears.then(|| Distribution::keeping(limit));
-        Self { smear, device, age_ms: Distribution::keeping(limit), looked_at: 0, beyond: 0, hidden: 0 }
+        Self { smear, device, age_ms: Distribution::keeping(limit), checked: 0, beyond: 0, hidden: 0 }
     }
 
     pub(crate) fn smeared(&mut self, px: f64) {
@@ -80,8 +80,8 @@ impl EyeSum {
     }
 
     /// Counts a pixel after the evaluation has searched the picture for the pixel's content.
-    pub(crate) fn looked_at(&mut self, is_beyond: bool, is_hidden: bool) {
-        self.looked_at += 1;
+    pub(crate) fn add_pixel(&mut self, is_beyond: bool, is_hidden: bool) {
+        self.checked += 1;
         self.beyond += u64::from(is_beyond);
         self.hidden += u64::from(is_hidden);
     }
@@ -89,13 +89,13 @@ impl EyeSum {
     /// Returns the report of the added values. `None` if pixels are lit for an instant only and no device moves
     /// pictures.
     pub(crate) fn result(self) -> Option<EyeReport> {
-        let share = |count: u64| (self.looked_at > 0).then(|| count as f64 / self.looked_at as f64);
+        let share = |count: u64| (self.checked > 0).then(|| count as f64 / self.checked as f64);
         let reprojection = self.device.map(|device| ReprojectionReport {
             device: device.setting,
             pixels_per_s: device.pixels_per_s,
             poses_per_s: device.poses_per_s,
             pose_age_ms: self.age_ms.percentiles(),
-            looked_at: self.looked_at,
+            checked_pixels: self.checked,
             empty_share: share(self.beyond),
             disoccluded_share: share(self.hidden).filter(|_| device.has_depth),
         });

@@ -90,7 +90,7 @@ impl Shown {
     /// Discards the data of pictures that no later period can show.
     ///
     /// Views that were made after the last period with final results are kept, because their pictures may still arrive.
-    pub(crate) fn forget(&mut self, run: &FinalResults<'_>) {
+    pub(crate) fn discard(&mut self, run: &FinalResults<'_>) {
         let instant = run.record.tick(run.until);
         self.screen.discard_before(instant);
         let still_seen = self.still_seen(run, instant);

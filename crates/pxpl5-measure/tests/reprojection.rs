@@ -154,7 +154,7 @@ fn the_empty_share_is_the_part_rotated_in_from_beyond_the_edge() {
             beyond += u64::from(from_right.abs() > 320.0 || from_up.abs() > 240.0);
         }
     }
-    assert_eq!(found.looked_at, all);
+    assert_eq!(found.checked_pixels, all);
     assert_eq!(found.empty_share, Some(beyond as f64 / all as f64));
     assert!(beyond > 0 && beyond < all / 10);
     // Without depths, the hidden parts of the scene are unknown.
@@ -257,7 +257,7 @@ fn vdrt_is_reported_as_a_reprojection_device_without_empty_pixels() {
     assert_eq!(Raster::Vdrt.reprojection(), Some(Reprojection::VDRT));
     let outcome = fields(head(turning(2.0)).with_raster(Raster::Vdrt), "full-screen:2");
     let eye = outcome.report().eye.expect("a device").reprojection.expect("a device");
-    assert_eq!((eye.device, eye.looked_at), (Reprojection::VDRT, 16 * 12 * (FIELDS - WARM_UP_PERIODS)));
+    assert_eq!((eye.device, eye.checked_pixels), (Reprojection::VDRT, 16 * 12 * (FIELDS - WARM_UP_PERIODS)));
     assert!(eye.pose_age_ms.mean > 0.0);
     assert_eq!(outcome.pixel_errors().expect("a head").empty, 0, "its picture goes on beyond the edge");
 }

@@ -1,6 +1,6 @@
 //! An experiment with checked settings, which Python can run.
 
-use crate::attended::{Progress, attended};
+use crate::background::{Progress, in_background};
 use crate::catalogue::python;
 use crate::errors::wrong_setting;
 use crate::frames::{Frames, film_bytes};
@@ -109,7 +109,7 @@ impl Experiment {
         let workstation = threads.map_or_else(Workstation::new, Workstation::with_threads);
         let functions = self.functions.clone();
         let native = self.native.clone().keep(keep);
-        let result = attended(py, progress, true, move |watch| run(&native, workstation, functions, watch));
+        let result = in_background(py, progress, true, move |watch| run(&native, workstation, functions, watch));
         // An exception of a Python function takes precedence over the error that it causes in the run.
         self.functions.check()?;
         outcome_of_run(py, result?, &self.plan.measure)
@@ -170,7 +170,7 @@ impl Experiment {
     /// Raises the same exceptions as :meth:`run`.
     fn what_if<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (native, functions) = (self.native.clone(), self.functions.clone());
-        let result = attended(py, None, true, move |watch| {
+        let result = in_background(py, None, true, move |watch| {
             let host = StoppableHost { workstation: Workstation::with_threads(1), watch, functions };
             what_if(&registry(), &native.host(host)).map_err(Box::new)
         });
@@ -187,7 +187,7 @@ impl Experiment {
         let (native, functions) = (self.native.clone().pixels(Pixels::Off), self.functions.clone());
         let is_analytic = self.plan.level == Level::Analytic;
         // Formulas do not check for a stop, so Ctrl-C does not wait for their result.
-        let result = attended(py, None, !is_analytic, move |watch| {
+        let result = in_background(py, None, !is_analytic, move |watch| {
             let workstation = Workstation::with_threads(1);
             if !is_analytic {
                 return run(&native, workstation, functions, watch).map(Results::of_run);

@@ -1,6 +1,6 @@
 //! All pictures of a run, one for each display period, as an iterator.
 
-use crate::attended::{Progress, STACK_BYTES};
+use crate::background::{Progress, STACK_BYTES};
 use crate::errors::{failed_run, wrong_setting};
 use crate::picture::Picture;
 use crate::policy::PythonFunctions;

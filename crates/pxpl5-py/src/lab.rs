@@ -1,6 +1,6 @@
 //! Functions that evaluate many experiments: published figures, limits and comparisons.
 
-use crate::attended::{Progress, attended};
+use crate::background::{Progress, in_background};
 use crate::catalogue::python;
 use crate::errors::{failed_run, failed_sweep, wrong_setting};
 use crate::settings::Settings;
@@ -44,8 +44,9 @@ pub(crate) fn figure<'py>(
     let Some(figure) = FIGURES.iter().find(|figure| figure.id == id) else {
         return Err(wrong_setting(SettingError::unknown("figure", id, FIGURES.iter().map(|figure| figure.id))));
     };
-    let measured =
-        attended(py, progress, false, move |watch| bench(level, &watch).measure(figure.id).map_err(|e| e.to_string()))?;
+    let measured = in_background(py, progress, false, move |watch| {
+        bench(level, &watch).measure(figure.id).map_err(|e| e.to_string())
+    })?;
     let measured = measured.map_err(|error| failed_run(format!("figure {id}: {error}")))?;
     python(py, &row(&figure.row(measured)))
 }
@@ -77,7 +78,7 @@ pub(crate) fn figures<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let level = self::level(level)?;
-    let figures = attended(py, progress, false, move |watch| {
+    let figures = in_background(py, progress, false, move |watch| {
         run_all_with(&bench(level, &watch), |done, of| watch.report(done, of))
     })?;
     let rows: Vec<serde_json::Value> = figures.map_err(failed_run)?.rows.iter().map(row).collect();
@@ -125,7 +126,7 @@ pub(crate) fn compare<'py>(
     query.set_length().map_err(wrong_setting)?;
     // With a folder, Ctrl-C waits until all runs have stopped, so that the comparison can be resumed at once.
     let waits = folder.is_some();
-    let comparison = attended(py, progress, waits, move |watch| {
+    let comparison = in_background(py, progress, waits, move |watch| {
         let store = folder.map(|folder| query.open_store(&folder, resume)).transpose()?;
         query.run_stoppable(store.as_ref(), &watch.stop_flag(), |done, of| watch.report(done, of), |_| {})
     })?;
@@ -178,7 +179,7 @@ pub(crate) fn limit<'py>(
     let drawn =
         query.model.as_ref().map_or(query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned());
     let criterion = query.criterion;
-    let found = attended(py, progress, false, move |watch| {
+    let found = in_background(py, progress, false, move |watch| {
         let query = LimitQuery { stop: watch.stop_flag(), ..query };
         query.search_with(|tried, of| watch.report(tried, of)).map_err(|error| error.to_string())
     })?;
@@ -230,7 +231,7 @@ pub(crate) fn limit_over<'py>(
     let goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(first.limit.goal);
     let query = OverQuery { file, key: key.to_owned(), values, goal, stop: StopFlag::default() };
     let tried = query.clone();
-    let limit = attended(py, progress, false, move |watch| {
+    let limit = in_background(py, progress, false, move |watch| {
         let tried = OverQuery { stop: watch.stop_flag(), ..tried };
         tried.search(|done, of| watch.report(done, of)).map_err(|error| error.to_string())
     })?;
@@ -283,7 +284,7 @@ pub(crate) fn rig<'py>(
     let tracker = tracker.ok_or_else(|| wrong_setting("the rig: expected a head with a tracker, found none"))?;
     let mut rig = Rig { seed: plan.seed, passes: passes.unwrap_or(PASSES), ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = line.unwrap_or(rig.rig.photodiode_line);
-    let measured = attended(py, None, false, move |watch| {
+    let measured = in_background(py, None, false, move |watch| {
         let rig = Rig { stop: watch.stop_flag(), ..rig };
         rig.measure(&plan.machine, plan.pipeline.clone()).map_err(|error| error.to_string())
     })?;
@@ -336,7 +337,7 @@ pub(crate) fn levels<'py>(
     let record = match experiments {
         None => LevelRecord::read(LEVELS).map_err(failed_run)?,
         Some(experiments) => {
-            let measured = attended(py, progress, false, move |watch| {
+            let measured = in_background(py, progress, false, move |watch| {
                 let query = LevelQuery { experiments, speeds, stop: watch.stop_flag() };
                 compare_with(query, |done, of| watch.report(done, of)).map_err(|error| error.to_string())
             })?;
@@ -362,7 +363,7 @@ pub(crate) fn readings<'py>(
     frames: u64,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let ranked = attended(py, progress, false, move |watch| {
+    let ranked = in_background(py, progress, false, move |watch| {
         let bench = bench(Level::Analytic, &watch).with_mig(seeds, frames);
         rank(&bench, best, |done, of| watch.report(done, of)).map_err(|error| error.to_string())
     })?;

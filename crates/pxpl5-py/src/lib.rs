@@ -11,7 +11,7 @@
 //! # Behaviour
 //!
 //! - Long work runs on a separate thread without the interpreter's lock. The calling thread reports progress and reacts
-//!   to Ctrl-C (attended.rs).
+//!   to Ctrl-C (in_background.rs).
 //! - Pictures are passed to NumPy without a copy of their pixels. Tables are passed through the Arrow PyCapsule
 //!   interface without a copy of their columns. Vertices from NumPy are copied once.
 //! - Errors become exceptions of `pxpl5._errors` with the same messages.
@@ -20,7 +20,7 @@
 //! HTML) is in python/pxpl5.
 
 mod arrays;
-mod attended;
+mod background;
 mod catalogue;
 mod command;
 mod errors;

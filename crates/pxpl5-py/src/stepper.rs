@@ -3,7 +3,7 @@
 //! The machine belongs to a thread of its own, because its programs cannot move to another thread. Python sends jobs to
 //! this thread and waits for the results without the interpreter's lock.
 
-use crate::attended::{LOOK, STACK_BYTES};
+use crate::background::{LOOK, STACK_BYTES};
 use crate::catalogue::python;
 use crate::errors::{failed_run, wrong_setting};
 use crate::outcome::outcome_of_run;

@@ -1,6 +1,6 @@
 //! Sweeps, which run an experiment at many points of a space of settings, and the folder with their rows.
 
-use crate::attended::attended;
+use crate::background::in_background;
 use crate::catalogue::python;
 use crate::errors::{failed_sweep, wrong_setting};
 use crate::settings::Settings;
@@ -48,7 +48,7 @@ impl Sweep {
     fn rows(&self, py: Python<'_>, points: Vec<u64>, seconds: f64) -> PyResult<Vec<(String, f64)>> {
         let sweep = Arc::clone(&self.sweep);
         let at_most = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
-        let rows = attended(py, None, false, move |_| sweep.rows(&points, at_most))?;
+        let rows = in_background(py, None, false, move |_| sweep.rows(&points, at_most))?;
         Ok(rows.into_iter().map(|(row, seconds)| (line(&row), seconds)).collect())
     }
 
@@ -56,7 +56,7 @@ impl Sweep {
     /// modelling.
     fn costs(&self, py: Python<'_>, points: Vec<u64>) -> PyResult<Vec<f64>> {
         let sweep = Arc::clone(&self.sweep);
-        attended(py, None, false, move |_| sweep.costs(&points))
+        in_background(py, None, false, move |_| sweep.costs(&points))
     }
 }
 
@@ -121,7 +121,7 @@ impl Store {
     fn run(&mut self, py: Python<'_>, threads: usize, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let mut store = self.store.take().ok_or_else(|| failed_sweep("the store is closed"))?;
         let sweep = Arc::clone(&self.sweep);
-        let (store, result) = attended(py, progress, true, move |watch| {
+        let (store, result) = in_background(py, progress, true, move |watch| {
             let of = sweep.space().points();
             let mut done = store.finished(Shard::ALL);
             let options = RunOptions { shard: Shard::ALL, threads };

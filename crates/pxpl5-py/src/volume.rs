@@ -1,7 +1,7 @@
 //! Scenes drawn as slices for a spinning volumetric display.
 
 use crate::arrays::Count;
-use crate::attended::attended;
+use crate::background::in_background;
 use crate::catalogue::python;
 use crate::errors::wrong_setting;
 use crate::picture::Picture;
@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use numpy::PyArray3;
 use numpy::ndarray::Array3;
 use pxpl5::PathSettings;
-use pxpl5::volume::pictures::{Look, coloured, halftoned, sheet};
+use pxpl5::volume::pictures::{EyeView, coloured, halftoned, sheet};
 use pxpl5::volume::spatialgl::Threads;
 use pxpl5::volume::{Volume as Native, VolumeSettings, figures};
 use pyo3::prelude::*;
@@ -40,7 +40,7 @@ pub(crate) fn volume_figures<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let scenes: Vec<_> = scenes.iter().map(|scene| Arc::clone(&scene.scene)).collect();
-    let all = attended(py, progress, false, move |watch| {
+    let all = in_background(py, progress, false, move |watch| {
         figures::all(&scenes, &Threads::all(), |done, of| watch.report(done, of)).map_err(|error| error.to_string())
     })?;
     python(py, &all.map_err(wrong_setting)?)
@@ -59,7 +59,7 @@ impl Volume {
             settings.assign(assignment, "Volume").map_err(wrong_setting)?;
         }
         let scene = Arc::clone(&scene.scene);
-        let drawn = attended(py, None, false, move |_| {
+        let drawn = in_background(py, None, false, move |_| {
             Native::draw(&settings, &scene, &Threads::all()).map_err(|error| error.to_string())
         })?;
         Ok(Self { volume: Arc::new(drawn.map_err(wrong_setting)?) })
@@ -122,9 +122,9 @@ impl Volume {
         if !(1..=8192).contains(&size) {
             return Err(wrong_setting(format!("size: expected 1 to 8192 pixels, found {size}")));
         }
-        let look = Look::around(&self.volume.settings, azimuth_deg, elevation_deg, size);
+        let view = EyeView::around(&self.volume.settings, azimuth_deg, elevation_deg, size);
         let picture =
-            py.detach(|| look.picture(&self.volume, None, &Threads::all()).map_err(|error| error.to_string()));
+            py.detach(|| view.picture(&self.volume, None, &Threads::all()).map_err(|error| error.to_string()));
         Picture::of(py, picture.map_err(wrong_setting)?, Vec::new())
     }
 

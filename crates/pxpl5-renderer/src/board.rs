@@ -460,7 +460,7 @@ impl Renderer {
 
     /// Returns a snapshot of the board at time `now`, which must not be earlier than the last handled event.
     #[must_use]
-    pub fn look(&self, now: Time) -> RendererSnapshot {
+    pub fn snapshot(&self, now: Time) -> RendererSnapshot {
         let passed = self.fifo.passed(now);
         RendererSnapshot {
             fifo_words: passed.map(|passed| (passed.entered - passed.started) as u32),

@@ -524,15 +524,15 @@ mod tests {
                 (0u64..40_000, proptest::collection::vec((1u32..40, 0u64..9_000, 1u32..25), 1..9)), 1..12)
         ) {
             let mut fifo = InputFifo::new(depth, WORD);
-            let mut literal = ReferenceFifo { depth: depth as usize, held: VecDeque::new(), last_word_at: Time::ZERO, free_at: Time::ZERO };
+            let mut reference = ReferenceFifo { depth: depth as usize, held: VecDeque::new(), last_word_at: Time::ZERO, free_at: Time::ZERO };
             let mut begins = Time::ZERO;
             for (gap_ns, runs) in messages {
-                begins = begins.max(literal.last_word_at) + Span::from_ns(gap_ns);
+                begins = begins.max(reference.last_word_at) + Span::from_ns(gap_ns);
                 let accepted = message(&mut fifo, begins, work(&runs)).accepted;
                 let commands: Vec<_> =
                     runs.iter().flat_map(|(words, ns, count)| vec![(*words, *ns); *count as usize]).collect();
-                prop_assert_eq!(accepted, Some(literal.message(begins, &commands).0));
-                prop_assert_eq!(fifo.free_at, Some(literal.free_at));
+                prop_assert_eq!(accepted, Some(reference.message(begins, &commands).0));
+                prop_assert_eq!(fifo.free_at, Some(reference.free_at));
             }
         }
 

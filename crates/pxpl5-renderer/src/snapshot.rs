@@ -64,7 +64,7 @@ impl SentLists {
         let context = usize::from(list.context) % MAX_CONTEXTS;
         if let Some(content) = list.content.clone().filter(|_| changes_pixels(&list.runs)) {
             let clear = words_before_clear(&list.runs).map(|words| first_word + words);
-            self.forget(started);
+            self.discard(started);
             self.0.push_back(SentList { context, first_word, clear, copy: None, content });
         }
         // A copy from pixel memory ends the region of its context, in this list or in earlier lists.
@@ -84,7 +84,7 @@ impl SentLists {
     }
 
     /// Removes the command lists whose pixels are erased because a later clear command has started.
-    fn forget(&mut self, started: u64) {
+    fn discard(&mut self, started: u64) {
         let cleared: [u64; MAX_CONTEXTS] = std::array::from_fn(|context| self.cleared_at(context, started));
         self.0.retain(|list| list.first_word >= cleared[list.context]);
     }

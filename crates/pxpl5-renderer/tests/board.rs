@@ -86,8 +86,8 @@ fn commands_behind_a_copy_from_pixel_memory_wait_for_its_last_pixel() {
     bench.announce(BEGIN, list(&[copy, run(CommandKind::Triangle, 1), copy], &orders));
     let sent_at = BEGIN + Span::from_us(600);
     bench.run();
-    let look = bench.device.look(BEGIN + Span::from_us(100));
-    assert_eq!((look.stands_at_copy, look.copying, look.busy), (true, Some(orders[0]), Span::ZERO));
+    let snapshot = bench.device.snapshot(BEGIN + Span::from_us(100));
+    assert_eq!((snapshot.stands_at_copy, snapshot.copying, snapshot.busy), (true, Some(orders[0]), Span::ZERO));
     let target = bench.device.blocked().expect("it waits");
     assert_eq!((target.frame_buffer, target.region), (NodeId(9), RegionId(1)));
     bench.delivered(sent_at);
@@ -96,8 +96,8 @@ fn commands_behind_a_copy_from_pixel_memory_wait_for_its_last_pixel() {
     assert_eq!(bench.sent().last().expect("sent").at, sent_at + TRIANGLE + CYCLE);
     bench.delivered(sent_at + Span::from_us(600));
     bench.run();
-    let look = bench.device.look(sent_at + Span::from_us(600));
-    assert_eq!((look.stands_at_copy, look.copying), (false, None));
+    let snapshot = bench.device.snapshot(sent_at + Span::from_us(600));
+    assert_eq!((snapshot.stands_at_copy, snapshot.copying), (false, None));
     assert_eq!(bench.device.blocked(), None);
 }
 
@@ -116,16 +116,16 @@ fn a_region_in_the_backing_store_leaves_during_the_following_commands() {
         bench.announce(BEGIN, list(&[copy, run(CommandKind::Triangle, 1), copy], &orders));
         let stored = BEGIN + COPY_WORDS + BLOCK * blocks;
         bench.run_until(Time(stored.0 - 1));
-        assert_eq!((bench.device.look(stored).stored_regions, departures(&bench).len()), (1, 0));
+        assert_eq!((bench.device.snapshot(stored).stored_regions, departures(&bench).len()), (1, 0));
         bench.run();
         assert_eq!(bench.device.busy(), TRIANGLE);
-        let look = bench.device.look(stored + TRIANGLE + BLOCK * blocks);
-        assert_eq!((look.stored_regions, look.copying), (1, Some(orders[0])));
+        let snapshot = bench.device.snapshot(stored + TRIANGLE + BLOCK * blocks);
+        assert_eq!((snapshot.stored_regions, snapshot.copying), (1, Some(orders[0])));
         let sent_at = stored + Span::from_us(900);
         bench.delivered(sent_at);
         bench.run();
         assert_eq!(departures(&bench), [stored + CYCLE, sent_at + CYCLE]);
-        assert_eq!(bench.device.look(sent_at).stored_regions, 0);
+        assert_eq!(bench.device.snapshot(sent_at).stored_regions, 0);
     }
 }
 
@@ -192,11 +192,11 @@ fn an_observed_fifo_counts_a_word_until_the_command_of_the_word_starts() {
         // The second triangle is complete after 60 words. It starts at the end of the first triangle, which started
         // after 30 words.
         let [first, second, started] = [WORD * 30, WORD * 60, WORD * 30 + TRIANGLE].map(|span| BEGIN + span);
-        let words = |at: Time| bench.device.look(at).fifo_words;
+        let words = |at: Time| bench.device.snapshot(at).fifo_words;
         assert_eq!([BEGIN, first, Time(second.0 - 1)].map(words), [Some(0); 3]);
         assert_eq!([second, Time(started.0 - 1)].map(words), [Some(30); 2]);
         assert_eq!(words(started), Some(0));
-        assert_eq!(bench.device.look(BEGIN).fifo_depth_words, 448);
+        assert_eq!(bench.device.snapshot(BEGIN).fifo_depth_words, 448);
         let mut changes = bench.device.take_fifo_changes();
         changes.sort_unstable();
         assert_eq!(changes, [(first, -30), (first, 30), (second, 30), (started, -30)]);
@@ -209,7 +209,7 @@ fn an_unwatched_fifo_has_no_counts() {
     let mut bench = Bench::new();
     bench.announce(BEGIN, list(&[run(CommandKind::Triangle, 2)], &[]));
     bench.run();
-    assert_eq!(bench.device.look(BEGIN).fifo_words, None);
+    assert_eq!(bench.device.snapshot(BEGIN).fifo_words, None);
     assert!(bench.device.take_fifo_changes().is_empty() && bench.device.array_at(BEGIN).is_none());
 }
 

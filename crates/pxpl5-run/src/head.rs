@@ -79,7 +79,7 @@ impl fmt::Debug for Head {
     }
 }
 
-const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
+const EVALUATION_DISTANCE_M: (f64, f64) = (1e-3, 1e6);
 
 impl Head {
     /// Creates a head with a motion, a tracker and a predictor. The predictor assumes the same noise that the tracker
@@ -167,7 +167,7 @@ impl Head {
     ///
     /// Returns a [`SettingError`] for a distance that is not within 0.001 to 1,000,000 metres.
     pub fn evaluated_at(self, metres: f64) -> Result<Self, SettingError> {
-        let (low, high) = JUDGED_AT_M;
+        let (low, high) = EVALUATION_DISTANCE_M;
         let what = "distance at which errors are evaluated, m";
         SettingError::require((low..=high).contains(&metres), what, format_args!("{low} to {high}"), metres)?;
         Ok(Self { evaluate_at_m: Some(metres), ..self })

@@ -18,6 +18,7 @@
 
 mod assembled;
 mod assembly;
+mod board_text;
 mod display_list;
 mod dry_run;
 mod dry_run_observer;
@@ -48,7 +49,6 @@ mod report_schedule;
 mod reprojection;
 mod result_window;
 mod running;
-mod says;
 mod scene_views;
 mod so_far;
 mod stepper;
@@ -59,6 +59,7 @@ mod views;
 mod window;
 
 pub use assembly::check_coverage;
+pub use board_text::{PixelField, bit_of, in_ms, in_us};
 pub use display_list::display_list;
 pub use dry_run::{DryRun, SeenTimes};
 pub use due::DuePictures;
@@ -92,7 +93,6 @@ pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};
 pub use reprojection::{Every, Reprojection, Warp};
 pub use result_window::{ResultWindow, WARM_UP_PERIODS, WINDOW_DEFINITION};
-pub use says::{PixelField, bit_of, in_ms, in_us};
 pub use scene_views::{hmd_on, views};
 pub use so_far::SoFar;
 pub use stepper::{Pause, Stepper};

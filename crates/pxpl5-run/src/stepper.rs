@@ -247,13 +247,13 @@ impl Stepper {
     /// the machine does not have.
     #[must_use]
     pub fn processor(&self, board: Board) -> Option<GpSnapshot> {
-        Some(self.run.machine.board(board)?.look(self.now))
+        Some(self.run.machine.board(board)?.snapshot(self.now))
     }
 
     /// Returns a snapshot of a renderer, or `None` if the machine does not have that renderer.
     #[must_use]
     pub fn renderer(&self, number: usize) -> Option<RendererSnapshot> {
-        Some(self.record().renderers().get(number)?.look(self.now))
+        Some(self.record().renderers().get(number)?.snapshot(self.now))
     }
 
     /// Returns the pixel memory of a renderer after all commands that have started.
@@ -294,7 +294,7 @@ impl Stepper {
     fn advance_to(&mut self, now: Time) {
         self.now = now;
         self.last = None;
-        self.window.look(&self.experiment, &mut self.run, now);
+        self.window.update(&self.experiment, &mut self.run, now);
     }
 
     fn reached(&self, time: Time) -> Pause {

@@ -48,12 +48,12 @@ pub(crate) struct Closed {
 
 impl Window {
     pub(crate) fn new(experiment: &Experiment, record: &Record) -> Self {
-        let may_forget = match experiment.keep {
+        let may_discard = match experiment.keep {
             Keep::Everything => false,
             Keep::Statistics => !experiment.traffic,
             Keep::Recent => true,
         };
-        let forgets = may_forget && experiment.pipeline.can_discard_records();
+        let forgets = may_discard && experiment.pipeline.can_discard_records();
         let samples = if forgets { KEPT_SAMPLES } else { usize::MAX };
         let tally = Tally::new(experiment.end(), field_ms(record), samples);
         let sums = experiment.sums.filter(|_| forgets && experiment.keep == Keep::Statistics);
@@ -73,7 +73,7 @@ impl Window {
 
     /// Adds final results to the statistics and discards their records. Does nothing if the run has few records or must
     /// keep all records.
-    pub(crate) fn look(&mut self, experiment: &Experiment, run: &mut Assembled, now: Time) {
+    pub(crate) fn update(&mut self, experiment: &Experiment, run: &mut Assembled, now: Time) {
         if !self.forgets || run.records() < self.next_look {
             return;
         }

@@ -165,8 +165,8 @@ fn twenty_times_the_fields_need_no_more_memory_and_twenty_times_the_events() {
         ),
     ] {
         let [_, _, _, events, _] = work(&experiment, fields);
-        let [records_5, waiting_5, looked_at_5, _, poses_5] = work(&experiment, 5 * fields);
-        let [records_20, waiting_20, looked_at_20, events_20, poses_20] = work(&experiment, 20 * fields);
+        let [records_5, waiting_5, read_5, _, poses_5] = work(&experiment, 5 * fields);
+        let [records_20, waiting_20, read_20, events_20, poses_20] = work(&experiment, 20 * fields);
         // A run that ends just before a pass has twice as many records as a run that ends just after the pass.
         assert!(poses_20 <= 2 * poses_5, "{name}: {poses_20} poses, {poses_5} in a quarter of the time");
         // The sway of the head changes the visible part of the scene a little. Up to 60 fields may lie between two
@@ -176,8 +176,8 @@ fn twenty_times_the_fields_need_no_more_memory_and_twenty_times_the_events() {
             "{name}: {records_20} records, {records_5} in a quarter of the time"
         );
         assert!(waiting_20 <= 2 * waiting_5, "{name}: {waiting_20} events wait, {waiting_5} in a quarter of the time");
-        let looks = looked_at_20 as f64 / (4 * looked_at_5) as f64;
-        assert!(looks < 1.25, "{name}: {looks} times the records looked at a field");
+        let reads = read_20 as f64 / (4 * read_5) as f64;
+        assert!(reads < 1.25, "{name}: {reads} times the records read for each field");
         let growth = events_20 as f64 / (20 * events) as f64;
         assert!((growth - 1.0).abs() < 0.02, "{name}: {growth} times the events a field");
     }

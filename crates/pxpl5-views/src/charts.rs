@@ -10,10 +10,10 @@
 //!
 //! The crate `plotters` draws all charts except the last two, whose bars have tooltips.
 
+mod appearance;
 mod chart;
 mod histogram;
 mod levels;
-mod look;
 mod parts;
 mod plane;
 mod scale;

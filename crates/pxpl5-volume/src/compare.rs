@@ -3,7 +3,7 @@
 
 use crate::choices::{ClipKind, Named, ProjectionKind};
 use crate::experiment::Volume;
-use crate::pictures::{Look, grid};
+use crate::pictures::{EyeView, grid};
 use crate::settings::VolumeSettings;
 use image::RgbImage;
 use pxpl5_scene::Scene;
@@ -154,7 +154,7 @@ pub fn compare(
     let mut exposure = None;
     if let Some(viewpoint) = viewpoint {
         let volume = reference.draw(settings, scene, workers)?;
-        exposure = Some(viewpoint.look(&volume).exposure(&volume, workers)?);
+        exposure = Some(viewpoint.eye_view(&volume).exposure(&volume, workers)?);
     }
     for variant in &all {
         let volume = variant.draw(settings, scene, workers)?;
@@ -162,7 +162,7 @@ pub fn compare(
         comparison.ring_px = volume.brightness().ring_px;
         comparison.variants.push(variant.row(&volume));
         if let Some(viewpoint) = viewpoint {
-            comparison.pictures.push(viewpoint.look(&volume).picture(&volume, exposure, workers)?);
+            comparison.pictures.push(viewpoint.eye_view(&volume).picture(&volume, exposure, workers)?);
         }
         finished(comparison.variants.len() as u64, all.len() as u64);
     }
@@ -171,8 +171,8 @@ pub fn compare(
 }
 
 impl ComparePoint {
-    fn look(&self, volume: &Volume) -> Look {
-        Look::around(&volume.settings, self.azimuth_deg, self.elevation_deg, self.side)
+    fn eye_view(&self, volume: &Volume) -> EyeView {
+        EyeView::around(&volume.settings, self.azimuth_deg, self.elevation_deg, self.side)
     }
 }
 

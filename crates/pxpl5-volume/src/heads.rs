@@ -24,7 +24,7 @@
 
 use crate::experiment::Volume;
 use crate::numbers::ViewerNumbers;
-use crate::pictures::{Look, grid};
+use crate::pictures::{EyeView, grid};
 use glam::{DMat4, DQuat, DVec2, DVec3};
 use image::{Rgb, RgbImage};
 use pxpl5_sim::parameters::SettingError;
@@ -256,7 +256,7 @@ impl<'a> HeadComparison<'a> {
     }
 
     /// Returns the views of both eyes, left and right. The upper row shows the volume, and the lower row the
-    /// head-mounted display. [`Look::picture`] describes `exposure`.
+    /// head-mounted display. [`EyeView::picture`] describes `exposure`.
     ///
     /// # Errors
     ///
@@ -270,7 +270,7 @@ impl<'a> HeadComparison<'a> {
     ) -> Result<RgbImage, SettingError> {
         let mut shown = Vec::new();
         for eye in [-1.0, 1.0] {
-            shown.push(self.look(time_ps, eye, side)?.picture(self.volume, Some(exposure), workers)?);
+            shown.push(self.eye_view(time_ps, eye, side)?.picture(self.volume, Some(exposure), workers)?);
         }
         for eye in [-1.0, 1.0] {
             shown.push(self.head_mounted(time_ps, eye, side)?);
@@ -281,7 +281,7 @@ impl<'a> HeadComparison<'a> {
     /// Returns the exposure that suits the left eye's view at an instant. Exposure is the brightness of one lit pixel
     /// of the volume, and all pictures use the same exposure.
     pub fn exposure(&self, time_ps: u64, side: u32, workers: &dyn Workers) -> Result<f64, SettingError> {
-        self.look(time_ps, -1.0, side)?.exposure(self.volume, workers)
+        self.eye_view(time_ps, -1.0, side)?.exposure(self.volume, workers)
     }
 
     /// Returns the instants of the frames of a film.
@@ -293,20 +293,20 @@ impl<'a> HeadComparison<'a> {
         self.instants(&HeadStudyConfig { instants: frames, ..*question })
     }
 
-    fn look(&self, time_ps: u64, side: f64, picture_px: u32) -> Result<Look, SettingError> {
+    fn eye_view(&self, time_ps: u64, side: f64, picture_px: u32) -> Result<EyeView, SettingError> {
         let eye = self.into_volume.transform_point3(self.eye(time_ps, side).position);
         let [azimuth_deg, elevation_deg] = around(eye);
-        let mut look = Look::around(&self.volume.settings, azimuth_deg, elevation_deg, picture_px);
-        look.camera.distance = eye.length();
-        look.check(&self.volume.settings)?;
-        Ok(look)
+        let mut view = EyeView::around(&self.volume.settings, azimuth_deg, elevation_deg, picture_px);
+        view.camera.distance = eye.length();
+        view.check(&self.volume.settings)?;
+        Ok(view)
     }
 
     fn head_mounted(&self, time_ps: u64, side: f64, picture_px: u32) -> Result<RgbImage, SettingError> {
         let then = time_ps - self.latency_ps;
         // Draw the scene for the position of the eye one latency before.
-        let look = self.look(then, side, picture_px)?;
-        let camera = look.camera;
+        let view = self.eye_view(then, side, picture_px)?;
+        let camera = view.camera;
         let azimuth = camera.azimuth_deg.to_radians();
         let elevation = camera.elevation_deg.to_radians();
         let display = FlatDisplay::around(camera.size, azimuth, elevation, camera.distance, camera.focal)?;

@@ -22,7 +22,7 @@ const MAP_COLUMNS: u32 = 11;
 
 /// The position of an eye in front of a volume, and the options of its view.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub struct EyeView {
     /// Position of the eye and size of its picture.
     pub camera: Camera,
     /// Options of the view, such as a range of angles in which nothing is shown.
@@ -31,7 +31,7 @@ pub struct Look {
     pub is_undithered: bool,
 }
 
-impl Look {
+impl EyeView {
     /// Creates the view of an eye four radii away, with a picture of `side` x `side` pixels.
     #[must_use]
     pub fn around(settings: &VolumeSettings, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Self {

@@ -21,9 +21,9 @@ mod code;
 mod diagram;
 mod files;
 mod glossary;
-mod look;
 mod pictures;
 mod session;
+mod state;
 mod volume;
 
 pub use files::Files;
@@ -114,13 +114,13 @@ impl WebMachine {
     /// free channel is null.
     #[must_use]
     pub fn channels(&self) -> String {
-        look::channels(self.0.stepper()).to_string()
+        state::channels(self.0.stepper()).to_string()
     }
 
     /// Returns the present state of each board as JSON.
     #[must_use]
     pub fn boards(&self) -> String {
-        look::boards(self.0.stepper()).to_string()
+        state::boards(self.0.stepper()).to_string()
     }
 
     /// Returns the messages that began after the instant `after_ps` (picoseconds) as JSON, at most `most` messages. If
@@ -163,7 +163,7 @@ impl WebMachine {
     /// text is empty before the renderer's first command, and for a position outside the pixel array.
     #[must_use]
     pub fn pixel(&self, renderer: usize, x: u32, y: u32) -> String {
-        look::pixel(self.0.stepper(), renderer, x, y).unwrap_or_default().join("\n")
+        state::pixel(self.0.stepper(), renderer, x, y).unwrap_or_default().join("\n")
     }
 
     /// Returns the picture on a surface as a viewer sees it now, drawn up to the beam's present position. The result is
@@ -213,27 +213,27 @@ impl WebMachine {
     /// Returns a timeline of the last `fields` display periods as SVG.
     #[must_use]
     pub fn timeline(&self, fields: u32) -> String {
-        look::timeline(self.0.stepper(), u64::from(fields))
+        state::timeline(self.0.stepper(), u64::from(fields))
     }
 
     /// Returns, as JSON, the parts of the latency for each of the last complete pictures. The result has at most `most`
     /// pictures.
     #[must_use]
     pub fn latencies(&self, most: usize) -> String {
-        look::latencies(self.0.stepper(), most).to_string()
+        state::latencies(self.0.stepper(), most).to_string()
     }
 
     /// Returns true if pictures after the warm-up were due, and no recent picture was complete in time.
     #[must_use]
     pub fn misses_all(&self) -> bool {
-        look::misses_all(self.0.stepper())
+        state::misses_all(self.0.stepper())
     }
 
     /// Returns, as JSON, the share of time for which each kind of board was busy, and the waits that delayed the last
     /// pictures. Shares are 0 to 1, and values that were not measured are null.
     #[must_use]
     pub fn limits(&self) -> String {
-        look::limits(self.0.stepper()).to_string()
+        state::limits(self.0.stepper()).to_string()
     }
 
     /// Returns the number of triangles and spheres in the scene, followed by the number that the pipeline shows in

@@ -1,8 +1,8 @@
 //! An experiment that runs in short steps, with the functions that the web page needs.
 
 use crate::files::Files;
-use crate::look;
 use crate::pictures::{self, Difference, rgba};
+use crate::state;
 use crate::volume::Volume;
 use pxpl5_lab::limit::{LimitQuery, Model, about};
 use pxpl5_lab::{ExperimentFile, Plan};
@@ -83,12 +83,12 @@ impl Session {
     }
 
     pub(crate) fn state(&self) -> Value {
-        look::state(&self.stepper, self.is_over)
+        state::state(&self.stepper, self.is_over)
     }
 
     pub(crate) fn board(&self, name: &str) -> Result<Vec<String>, String> {
         let board = name.parse::<Board>().map_err(|error| error.to_string())?;
-        look::board(&self.stepper, board).ok_or_else(|| format!("this machine has no {board}"))
+        state::board(&self.stepper, board).ok_or_else(|| format!("this machine has no {board}"))
     }
 
     pub(crate) const fn stepper(&self) -> &Stepper {
@@ -172,7 +172,7 @@ mod tests {
         let mut session = new(SETTINGS).expect("known settings");
         while session.state()["over"] == false {
             session.run_for(7_000_000_000);
-            let _ = (session.seen(0), pictures::renderer(session.stepper(), 0), look::timeline(session.stepper(), 4));
+            let _ = (session.seen(0), pictures::renderer(session.stepper(), 0), state::timeline(session.stepper(), 4));
         }
         let plan = ExperimentFile::parse(
             &SETTINGS.replace("slats", "\"slats\"").replace("full-screen:2", "\"full-screen:2\""),
@@ -273,7 +273,7 @@ mod tests {
     fn every_listed_board_has_a_snapshot_and_an_unknown_board_is_refused() {
         let mut session = new(SETTINGS).expect("known settings");
         session.run_for(40_000_000_000);
-        let boards = look::boards(session.stepper());
+        let boards = state::boards(session.stepper());
         for board in boards.as_array().expect("a list") {
             let name = board["name"].as_str().expect("a name");
             assert!(!session.board(name).expect("it is there").is_empty(), "{name}");
@@ -291,7 +291,7 @@ mod tests {
             let mut session = new(settings).expect("known");
             session.run_to(500_000_000_000);
             assert_eq!(session.state()["now_ps"], 500_000_000_000_u64);
-            (look::misses_all(session.stepper()), session.fitting())
+            (state::misses_all(session.stepper()), session.fitting())
         };
         let (misses, fitting) = misses_all("pipeline=slats\nscene=mig\nfields=60\npixels=off");
         assert!(misses);

@@ -60,9 +60,9 @@ fn every_sample_is_counted_as_a_fragment() {
 fn both_rasterisers_take_the_same_samples() {
     let commands = recording(&[T4, T5]);
     let fast = drawn(&commands, 4, "host");
-    let literal = drawn(&commands, 4, "oracle");
-    assert!(fast.planes == literal.planes && fast.colours == literal.colours);
-    assert_eq!(fast.stats, literal.stats);
+    let reference = drawn(&commands, 4, "oracle");
+    assert!(fast.planes == reference.planes && fast.colours == reference.colours);
+    assert_eq!(fast.stats, reference.stats);
 }
 
 /// Checks that the width of a line stays the same: the numbers of lit pixels differ by at most one on each side.

@@ -10,7 +10,7 @@ use tracking::time::{PS_PER_MS, PS_PER_S};
 use tracking::tracker::{TrackerConfig, TrackerModel};
 
 /// Seed of the noise and of the motion with which predictors are evaluated.
-const JUDGED: u64 = 2;
+const EVALUATION_SEED: u64 = 2;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let intervals = [20, 50, 80, 100, 200].map(|ms| ms * PS_PER_MS);
@@ -24,13 +24,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             ..TrackerConfig::optical_ceiling()
         };
         let model = TrackerModel::new(tracker)?;
-        let motion = Synthetic::recorded_use(JUDGED);
+        let motion = Synthetic::recorded_use(EVALUATION_SEED);
         let mean = |config: &PredictorConfig, interval: u64| -> Result<f64, pxpl5_sim::parameters::SettingError> {
             let span = (PS_PER_S, 300 * PS_PER_S);
-            Ok(prediction_errors(&motion, &model, config, JUDGED, &[interval], span)?[0].mean_deg)
+            Ok(prediction_errors(&motion, &model, config, EVALUATION_SEED, &[interval], span)?[0].mean_deg)
         };
         let base = |kind| PredictorConfig::for_tracker(kind, model.config());
-        let tuned = |kind, interval| tune(&motion, &model, interval, &base(kind), JUDGED).map(|tuned| tuned.config);
+        let tuned =
+            |kind, interval| tune(&motion, &model, interval, &base(kind), EVALUATION_SEED).map(|tuned| tuned.config);
         let once = tuned(PredictorKind::Kalman, 50 * PS_PER_MS)?;
         let mut rows: Vec<(&str, Vec<f64>)> = Vec::new();
         let all = |config: PredictorConfig| intervals.map(|at| mean(&config, at)).into_iter().collect::<Result<_, _>>();

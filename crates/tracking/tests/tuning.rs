@@ -12,7 +12,7 @@ use tracking::time::{PS_PER_MS, PS_PER_S};
 use tracking::tracker::{TrackerConfig, TrackerModel};
 
 /// Seed of the noise with which filters are evaluated.
-const JUDGED: u64 = 1;
+const EVALUATION_SEED: u64 = 1;
 
 fn model(config: TrackerConfig) -> TrackerModel {
     TrackerModel::new(config.without_systematic_errors()).unwrap()
@@ -20,7 +20,7 @@ fn model(config: TrackerConfig) -> TrackerModel {
 
 fn tuned(motion: &dyn Motion, tracker: &TrackerModel, kind: PredictorKind, interval_ps: u64) -> PredictorConfig {
     let base = PredictorConfig::for_tracker(kind, tracker.config());
-    tune(motion, tracker, interval_ps, &base, JUDGED).unwrap().config
+    tune(motion, tracker, interval_ps, &base, EVALUATION_SEED).unwrap().config
 }
 
 fn error(
@@ -30,7 +30,7 @@ fn error(
     interval_ps: u64,
 ) -> PredictionDeviation {
     let span = (PS_PER_S, 60 * PS_PER_S);
-    prediction_errors(motion, tracker, config, JUDGED, &[interval_ps], span).unwrap()[0]
+    prediction_errors(motion, tracker, config, EVALUATION_SEED, &[interval_ps], span).unwrap()[0]
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn a_filter_is_tuned_only_on_the_moving_part_of_a_recording_that_holds_its_end()
     let tracker = model(TrackerConfig::optical_ceiling());
     for kind in [PredictorKind::ConstantVelocity, PredictorKind::Kalman] {
         let base = PredictorConfig::for_tracker(kind, tracker.config());
-        let of = |end| tune(&recorded().ending(end), &tracker, 60 * PS_PER_MS, &base, JUDGED).unwrap();
+        let of = |end| tune(&recorded().ending(end), &tracker, 60 * PS_PER_MS, &base, EVALUATION_SEED).unwrap();
         assert_eq!(of(End::Hold), of(End::Refuse), "{kind:?}");
         assert!(of(End::Hold).training.unwrap().seconds < 5.1);
         assert!(of(End::Loop).training.unwrap().seconds > 50.0, "{kind:?}: it moves for ever");

@@ -126,7 +126,7 @@ impl CellAssignment {
 /// State of the policy `cells`: the assignment of cells, and the eye position from which each memory was drawn.
 #[derive(Clone, Debug)]
 pub struct Cells {
-    dealing: CellAssignment,
+    assignment: CellAssignment,
     threshold: Threshold,
     has_cascade: bool,
     to_held_cells: bool,
@@ -144,7 +144,7 @@ impl Cells {
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;
         // The first frame will assign the cells around the viewer's own cell.
-        let dealing = CellAssignment {
+        let assignment = CellAssignment {
             home: Cell { x: 0, z: 0 },
             side_m: timing.cell_m,
             inner_rings: timing.inner_rings,
@@ -152,7 +152,7 @@ impl Cells {
             memories,
         };
         Self {
-            dealing,
+            assignment,
             threshold: Threshold::of_degrees(timing.theta_deg),
             has_cascade,
             to_held_cells: timing.to_held_cells == 1,
@@ -163,8 +163,8 @@ impl Cells {
 
     /// Returns the current assignment of cells to memories.
     #[must_use]
-    pub const fn dealing(&self) -> &CellAssignment {
-        &self.dealing
+    pub const fn assignment(&self) -> &CellAssignment {
+        &self.assignment
     }
 
     /// Returns the eye position from which a memory was last drawn, or `None` if it was never drawn.
@@ -186,12 +186,12 @@ impl Cells {
     /// distance is measured to the border of the memory's block of cells, or to the memory's nearest occupied cell.
     fn distances(&self, eye: DVec3) -> Vec<f64> {
         if !self.to_held_cells {
-            return (0..self.dealing.memories).map(|memory| self.dealing.distance(eye, memory)).collect();
+            return (0..self.assignment.memories).map(|memory| self.assignment.distance(eye, memory)).collect();
         }
-        let mut distances = vec![f64::INFINITY; self.dealing.memories];
+        let mut distances = vec![f64::INFINITY; self.assignment.memories];
         for cell in &self.occupied {
-            let nearest = &mut distances[self.dealing.memory(*cell)];
-            *nearest = nearest.min(self.dealing.to_cell(eye, *cell));
+            let nearest = &mut distances[self.assignment.memory(*cell)];
+            *nearest = nearest.min(self.assignment.to_cell(eye, *cell));
         }
         distances[0] = 0.0;
         distances
@@ -199,7 +199,7 @@ impl Cells {
 
     /// Computes the updates of one frame for an eye position. Returns the memories to draw.
     pub fn frame(&mut self, eye: DVec3) -> Update {
-        let memories = self.dealing.memories;
+        let memories = self.assignment.memories;
         let is_first = self.drawn_from[0].is_none();
         // Find the memories whose images are wrong.
         let ways: Vec<f64> = self.distances(eye).into_iter().map(|distance| self.threshold.way(distance)).collect();
@@ -211,12 +211,12 @@ impl Cells {
             *from = Some(eye);
         }
         // Assign cells anew if the eye has left the home cell.
-        let cell = Cell::of(eye.x, eye.z, self.dealing.side_m);
-        let slowest_may_deal = due[memories - 1] || ways[memories - 1].is_infinite();
-        let deals_anew = cell != self.dealing.home && slowest_may_deal;
+        let cell = Cell::of(eye.x, eye.z, self.assignment.side_m);
+        let slowest_is_due = due[memories - 1] || ways[memories - 1].is_infinite();
+        let reassigns_cells = cell != self.assignment.home && slowest_is_due;
         let mut together = vec![false; memories];
-        if deals_anew {
-            together = self.deal(cell);
+        if reassigns_cells {
+            together = self.reassign(cell);
             for (due, changed) in due.iter_mut().zip(&together) {
                 *due |= changed;
             }
@@ -230,17 +230,17 @@ impl Cells {
         for (from, _) in self.drawn_from.iter_mut().zip(&due).filter(|(_, due)| **due) {
             *from = Some(eye);
         }
-        Update { due, together, deals_anew: deals_anew && !is_first }
+        Update { due, together, reassigns_cells: reassigns_cells && !is_first }
     }
 
     /// Assigns cells to memories around `home`, the new home cell. Returns, for each memory, true if the cells of the
     /// memory have changed.
-    fn deal(&mut self, home: Cell) -> Vec<bool> {
-        let before = self.dealing;
-        self.dealing.home = home;
+    fn reassign(&mut self, home: Cell) -> Vec<bool> {
+        let before = self.assignment;
+        self.assignment.home = home;
         let mut changed = vec![false; before.memories];
         for cell in &self.occupied {
-            let memories = [before.memory(*cell), self.dealing.memory(*cell)];
+            let memories = [before.memory(*cell), self.assignment.memory(*cell)];
             if memories[0] != memories[1] {
                 memories.into_iter().for_each(|memory| changed[memory] = true);
             }

@@ -60,7 +60,7 @@ impl Objects {
                 self.draws += 1;
             }
         }
-        Update { due, together, deals_anew: false }
+        Update { due, together, reassigns_cells: false }
     }
 
     fn place(&mut self, object: usize, frame: u64, period_s: f64, together: &mut [bool]) {

@@ -9,7 +9,7 @@ pub struct Update {
     /// visible together.
     pub together: Vec<bool>,
     /// True if cells (squares of the floor) were assigned to memories anew, around a new home cell.
-    pub deals_anew: bool,
+    pub reassigns_cells: bool,
 }
 
 impl Update {

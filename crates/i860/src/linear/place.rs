@@ -567,12 +567,12 @@ impl<'a> Placer<'a> {
         for value in read {
             self.uses_left[value] -= 1;
             if self.uses_left[value] == 0 {
-                self.forget(value, from);
+                self.release(value, from);
             }
         }
     }
 
-    fn forget(&mut self, value: usize, from: u32) {
+    fn release(&mut self, value: usize, from: u32) {
         let width = self.width(value);
         if let Place::Ready { register, .. } = self.places[value] {
             let file = if width == Width::Integer { &mut self.integers } else { &mut self.floats };

@@ -63,7 +63,7 @@ pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: D
     // Cells in the colours of their memories.
     for (x, z) in &cells {
         let cell = Cell { x: *x, z: *z };
-        let memory = simulation.dealing().map_or(0, |dealing| dealing.memory(cell));
+        let memory = simulation.assignment().map_or(0, |assignment| assignment.memory(cell));
         cell_box(
             &mut svg,
             &plan,
@@ -73,8 +73,8 @@ pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: D
         );
     }
     // Outline of the home cell.
-    if let Some(dealing) = simulation.dealing() {
-        cell_box(&mut svg, &plan, dealing.home, side, "fill=\"none\" stroke=\"black\" stroke-width=\"3\"");
+    if let Some(assignment) = simulation.assignment() {
+        cell_box(&mut svg, &plan, assignment.home, side, "fill=\"none\" stroke=\"black\" stroke-width=\"3\"");
     }
     // Walls, path and eye.
     upright_edges(&mut svg, world, &plan);
@@ -154,7 +154,7 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
         let Some(outcome) = tally.outcomes.get(frame as usize) else { break };
         let x = left + step * column as f64;
         // A dashed line marks a new assignment of cells.
-        if outcome.deals_anew {
+        if outcome.reassigns_cells {
             let _ = writeln!(
                 svg,
                 "<path d=\"M{x:.0} 12V{:.0}\" stroke=\"black\" stroke-dasharray=\"3 2\"/>",

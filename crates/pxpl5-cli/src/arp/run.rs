@@ -76,10 +76,10 @@ fn origin(outcome: &WalkOutcome) -> Vec<(&'static str, String)> {
 fn frames_csv(outcome: &WalkOutcome) -> String {
     let memories = outcome.tally.memories.len();
     let columns = (0..memories).map(|k| format!(",due_{k},shown_{k},missed_{k}")).collect::<String>();
-    let mut text = format!("frame,x_m,y_m,z_m,deals_anew{columns}\n");
+    let mut text = format!("frame,x_m,y_m,z_m,reassigns_cells{columns}\n");
     for (number, frame) in outcome.tally.outcomes.iter().enumerate() {
         let [x, y, z] = frame.eye.to_array();
-        let _ = write!(text, "{number},{x},{y},{z},{}", u8::from(frame.deals_anew));
+        let _ = write!(text, "{number},{x},{y},{z},{}", u8::from(frame.reassigns_cells));
         // Three columns for each memory: update due, picture shown, update missed.
         for k in 0..memories {
             let [due, shown, missed] = [&frame.due, &frame.swapped, &frame.missed].map(|list| u8::from(list[k]));

@@ -36,13 +36,13 @@ pub(super) fn time(stepper: &Stepper) -> String {
 }
 
 pub(super) fn boards(stepper: &Stepper) -> String {
-    let lines = stepper.boards().filter_map(|board| Some((board.to_string(), stepper.says(board)?)));
+    let lines = stepper.boards().filter_map(|board| Some((board.to_string(), stepper.description(board)?)));
     lines.map(|(name, says)| format!("{name:<12} {says}\n")).collect()
 }
 
 pub(super) fn board(stepper: &Stepper, board: Board) -> Result<String, String> {
     check(stepper, board)?;
-    let Some(says) = stepper.says(board) else { return Ok(ring(stepper)) };
+    let Some(says) = stepper.description(board) else { return Ok(ring(stepper)) };
     let details: String = stepper.details(board).iter().map(|line| format!("{line}\n")).collect();
     Ok(format!("{board}  {says}\n{details}"))
 }

@@ -53,8 +53,8 @@ fn series_of(by: &[String], groups: &[Group], names: Option<&[String]>) -> Chart
     let mut points: Vec<ChartPoint> = own.map(|group| point(group, across(group))).collect();
     points.sort_by(|one, other| one.at.0.total_cmp(&other.at.0));
     let is_curve = names.is_none() && points.len() > 1;
-    let look = if is_curve { SeriesStyle::Band } else { SeriesStyle::Points };
-    ChartSeries { name: by.join(", "), points, look }
+    let style = if is_curve { SeriesStyle::Band } else { SeriesStyle::Points };
+    ChartSeries { name: by.join(", "), points, style }
 }
 
 /// Returns the point of a group. The point is hollow if some due pictures of the group were not shown, because the mean

@@ -7,7 +7,7 @@ use crate::output::OutputFolder;
 use crate::terminal::{answer, json_text};
 use clap::Args;
 use pxpl5::views::results::csv_table;
-use pxpl5::volume::pictures::{Look, before_and_after, sheet, tile_map};
+use pxpl5::volume::pictures::{EyeView, before_and_after, sheet, tile_map};
 use pxpl5::volume::{PixelPlanesReport, Volume, VolumeReport};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -48,8 +48,8 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
         if let Some(map) = tile_map(&volume) {
             folder.put("tiles.png", &png(&map, &volume)?)?;
         }
-        let look = Look::around(&volume.settings, 40.0, 25.0, 512);
-        folder.put("view.png", &png(&look.picture(&volume, None, &threads)?, &volume)?)?;
+        let view = EyeView::around(&volume.settings, 40.0, 25.0, 512);
+        folder.put("view.png", &png(&view.picture(&volume, None, &threads)?, &volume)?)?;
         folder.commit()?;
     }
     answer(args.json, args.volume.settings.quiet, &json, || text(&report, args.out.as_deref()))

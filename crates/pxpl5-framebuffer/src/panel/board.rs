@@ -185,8 +185,8 @@ impl Display for Panel {
             let (first, distance) = self.rows(period);
             let bytes = self.numbers.width as usize * 3;
             let rows = seen.chunks_exact_mut(bytes).zip(before.as_raw().chunks_exact(bytes)).zip(0..);
-            let still_standing = rows.filter(|(_, y)| y % distance != first);
-            still_standing.for_each(|((row, old), _)| row.copy_from_slice(old));
+            let still_waiting = rows.filter(|(_, y)| y % distance != first);
+            still_waiting.for_each(|((row, old), _)| row.copy_from_slice(old));
         }
         Some(self.in_its_colours(seen))
     }

@@ -65,7 +65,7 @@ fn loading_a_program_again_restores_words_that_the_program_has_overwritten() {
 #[test]
 fn the_ring_window_is_not_cached() {
     let mut processor = Processor::new(NodeId(3), 1 << 20, CodeVersion::Compiled, i860::Config::cycle());
-    let look = program("start: ld.l 0(r16), r17\n adds r17, r0, r18\n bri r1\n nop");
+    let snapshot = program("start: ld.l 0(r16), r17\n adds r17, r0, r18\n bri r1\n nop");
     let mut looks = |address| {
         let mut look = || processor.call(&look, "start", &[(16, address)], 10).expect("it returns");
         // Fill the cache lines of code and data.

@@ -103,8 +103,8 @@ impl Sweep {
     /// Returns the [`SettingError`] of the first point if no point is valid.
     pub fn header(&self) -> Result<Header, SettingError> {
         // The header describes the first valid point.
-        let looked_at = self.space.points().min(MAX_POINTS_SEARCHED);
-        let mut points = (0..looked_at).map(|point| self.plan(point));
+        let searched = self.space.points().min(MAX_POINTS_SEARCHED);
+        let mut points = (0..searched).map(|point| self.plan(point));
         let first = points.find_map(Result::ok).map_or_else(|| self.plan(0), Ok)?;
         let measured = measures(&first);
         let fingerprint = first.fingerprint().to_string();

@@ -52,7 +52,7 @@ fn boards_that_run_programs_are_found_by_name() {
     });
     machine.switch_on();
     machine.run_until(us(10)).expect("it goes on");
-    let programs = |board: Board| machine.board(board).map(|found| found.look(us(10)).busy);
+    let programs = |board: Board| machine.board(board).map(|found| found.snapshot(us(10)).busy);
     assert_eq!(programs(Board::Host), Some(Span::ZERO));
     assert_eq!(programs(Board::Gp(0)), Some(Span::ZERO));
     assert_eq!(programs(Board::Gp(1)), Some(Span::from_us(3)));
@@ -103,8 +103,8 @@ fn the_first_display_is_the_sync_generator_of_the_first_processor() {
     let ticks = |display| of("tick").into_iter().filter(move |(_, board)| *board == Board::Display(display));
     assert!(ticks(0).map(|(time, _)| time).eq([0, 100, 200, 300].map(us)));
     assert!(ticks(1).map(|(time, _)| time).eq((0..11).map(|n| us(30 * n))));
-    assert_eq!(machine.processors()[1].look(us(301)).period, PeriodNumber(3));
-    assert_eq!(machine.processors()[2].look(us(301)).period, PeriodNumber(0));
+    assert_eq!(machine.processors()[1].snapshot(us(301)).period, PeriodNumber(3));
+    assert_eq!(machine.processors()[2].snapshot(us(301)).period, PeriodNumber(0));
 }
 
 /// A status line counts the swaps of the part of a surface at one port.

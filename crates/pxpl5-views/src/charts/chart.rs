@@ -1,6 +1,6 @@
 //! Charts of curves, points and bands over two axes, drawn by the crate `plotters`.
 
-use super::look::Look;
+use super::appearance::Appearance;
 use super::scale::{Axis, AxisScale};
 use crate::markup::is_allowed;
 use plotters::backend::SVGBackend;
@@ -58,7 +58,7 @@ pub struct ChartSeries {
     /// Points, in the order in which a line joins them.
     pub points: Vec<ChartPoint>,
     /// Style of the points.
-    pub look: SeriesStyle,
+    pub style: SeriesStyle,
 }
 
 /// Size of a chart.
@@ -170,7 +170,7 @@ impl Chart {
             let x = em * 1.2 + column * (i % columns) as f64;
             let first = if measures.names_below { 0.6 } else { 3.6 };
             let y = em * (first + NAME_HEIGHT_EM * (i / columns) as f64);
-            draw_name(&names, Look::of(i, measures.em), series, (x as i32, y as i32))?;
+            draw_name(&names, Appearance::of(i, measures.em), series, (x as i32, y as i32))?;
         }
         Ok(())
     }
@@ -205,7 +205,7 @@ impl Chart {
             .y_desc(&self.axes.up)
             .draw()?;
         for (i, series) in self.series.iter().enumerate() {
-            draw_series(&mut plane, Look::of(i, measures.em), series, (&across, &up))?;
+            draw_series(&mut plane, Appearance::of(i, measures.em), series, (&across, &up))?;
         }
         Ok(())
     }
@@ -236,7 +236,7 @@ fn runs(points: &[ChartPoint], axes: (&Axis, &Axis)) -> Vec<Vec<Placed>> {
 
 fn draw_series<'a>(
     plane: &mut Plane<'a, '_>,
-    look: Look,
+    appearance: Appearance,
     series: &ChartSeries,
     axes: (&Axis, &Axis),
 ) -> Result<(), Fault<'a>> {
@@ -244,56 +244,62 @@ fn draw_series<'a>(
     for run in runs(&series.points, axes) {
         let bounded: Vec<_> = run.iter().filter_map(|point| Some((point.at.0, point.interval?))).collect();
         // Intervals lie below the line and the marks.
-        match series.look {
+        match series.style {
             SeriesStyle::Band if bounded.len() > 1 => {
                 let lower = bounded.iter().map(|(x, (low, _))| (*x, *low));
                 let upper = bounded.iter().rev().map(|(x, (_, high))| (*x, *high));
-                plane.draw_series([Polygon::new(lower.chain(upper).collect::<Vec<_>>(), look.colour.mix(0.2))])?;
+                plane
+                    .draw_series([Polygon::new(lower.chain(upper).collect::<Vec<_>>(), appearance.colour.mix(0.2))])?;
             }
             SeriesStyle::Points | SeriesStyle::Band => {
                 let upright = |(x, (low, high)): &(f64, (f64, f64))| vec![(*x, *low), (*x, *high)];
-                plane.draw_series(bounded.iter().map(|point| PathElement::new(upright(point), look.stroke())))?;
+                plane.draw_series(bounded.iter().map(|point| PathElement::new(upright(point), appearance.stroke())))?;
             }
             SeriesStyle::Line => {}
         }
         let places = || run.iter().map(|point| point.at);
-        if matches!(series.look, SeriesStyle::Line | SeriesStyle::Band) {
-            match look.dashes() {
-                None => plane.draw_series(LineSeries::new(places(), look.stroke()))?,
+        if matches!(series.style, SeriesStyle::Line | SeriesStyle::Band) {
+            match appearance.dashes() {
+                None => plane.draw_series(LineSeries::new(places(), appearance.stroke()))?,
                 Some((on, off)) => {
                     let at = places().collect::<Vec<_>>().into_iter();
-                    plane.draw_series(DashedLineSeries::new(at, on, off, look.stroke()))?
+                    plane.draw_series(DashedLineSeries::new(at, on, off, appearance.stroke()))?
                 }
             };
         }
-        if series.look != SeriesStyle::Line {
+        if series.style != SeriesStyle::Line {
             let area = plane.plotting_area();
-            run.iter().try_for_each(|point| look.hollow(point.is_hollow).mark(area, point.at))?;
+            run.iter().try_for_each(|point| appearance.hollow(point.is_hollow).mark(area, point.at))?;
         }
     }
     Ok(())
 }
 
-fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32, i32)) -> Result<(), Fault<'a>> {
+fn draw_name<'a>(
+    area: &Area<'a>,
+    appearance: Appearance,
+    series: &ChartSeries,
+    (x, y): (i32, i32),
+) -> Result<(), Fault<'a>> {
     // The sample consists of a mark, of a line, or of both, as in the chart.
-    let em = look.em as i32;
+    let em = appearance.em as i32;
     // A series without a single comparable point has a hollow sample.
-    let look = look.hollow(!series.points.is_empty() && series.points.iter().all(|point| point.is_hollow));
-    if series.look == SeriesStyle::Points {
-        look.mark(area, (x + em, y))?;
+    let appearance = appearance.hollow(!series.points.is_empty() && series.points.iter().all(|point| point.is_hollow));
+    if series.style == SeriesStyle::Points {
+        appearance.mark(area, (x + em, y))?;
     } else {
         let ends = vec![(x, y), (x + 2 * em, y)];
-        match look.dashes() {
-            None => area.draw(&PathElement::new(ends, look.stroke()))?,
+        match appearance.dashes() {
+            None => area.draw(&PathElement::new(ends, appearance.stroke()))?,
             Some((on, off)) => {
-                area.draw(&plotters::element::DashedPathElement::new(ends, on, off, look.stroke()))?;
+                area.draw(&plotters::element::DashedPathElement::new(ends, on, off, appearance.stroke()))?;
             }
         }
-        if series.look == SeriesStyle::Band {
-            look.mark(area, (x + em, y))?;
+        if series.style == SeriesStyle::Band {
+            appearance.mark(area, (x + em, y))?;
         }
     }
     // The name stands to the right of the sample.
-    let style = TextStyle::from((FontFamily::SansSerif, f64::from(look.em)).into_font());
+    let style = TextStyle::from((FontFamily::SansSerif, f64::from(appearance.em)).into_font());
     area.draw(&Text::new(series.name.clone(), (x + em * 5 / 2, y), style.pos(Pos::new(HPos::Left, VPos::Center))))
 }

@@ -32,7 +32,7 @@ pub fn level_chart(levels: &[SpeedAndError]) -> String {
 
 fn series_of(level: &SpeedAndError) -> ChartSeries {
     let name = format!("{}, {:.1} %", level.name, level.mean_error_percent);
-    ChartSeries { name, points: vec![point_of(level)], look: SeriesStyle::Points }
+    ChartSeries { name, points: vec![point_of(level)], style: SeriesStyle::Points }
 }
 
 /// Returns the chart position of a level of modelling. A speed below one field per second is drawn at one field per
@@ -58,7 +58,7 @@ fn front(levels: &[SpeedAndError]) -> Option<ChartSeries> {
         }
     }
     let points = best.iter().map(|level| point_of(level)).collect();
-    (best.len() > 1).then(|| ChartSeries { name: "front of the best".to_owned(), points, look: SeriesStyle::Line })
+    (best.len() > 1).then(|| ChartSeries { name: "front of the best".to_owned(), points, style: SeriesStyle::Line })
 }
 
 #[cfg(test)]

@@ -51,12 +51,12 @@ fn on_screen(axes: &ChartAxes, up: AxisScale, series: Vec<ChartSeries>) -> Strin
 fn of_curve(curve: &Curve) -> ChartSeries {
     let point = |at: &(f64, f64)| ChartPoint { at: *at, interval: (f64::NAN, f64::NAN), is_hollow: false };
     let points = curve.points.iter().map(point).collect();
-    ChartSeries { name: curve.name.clone(), points, look: SeriesStyle::Line }
+    ChartSeries { name: curve.name.clone(), points, style: SeriesStyle::Line }
 }
 
 fn of_point(point: &MarkedPoint) -> ChartSeries {
     let points = vec![ChartPoint { at: point.at, interval: point.interval, is_hollow: point.is_hollow }];
-    ChartSeries { name: point.name.clone(), points, look: SeriesStyle::Points }
+    ChartSeries { name: point.name.clone(), points, style: SeriesStyle::Points }
 }
 
 #[cfg(test)]

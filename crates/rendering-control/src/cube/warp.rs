@@ -12,7 +12,7 @@ use pxpl5_wire::Word;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWarp {
     /// The display memory of each cell, where a cell is a square of the floor.
-    pub dealing: CellAssignment,
+    pub assignment: CellAssignment,
     /// The function by which the displacement decreases with the distance from the border.
     pub falloff: Falloff,
     /// Distance from the border at which the displacement ends, in metres.
@@ -38,11 +38,11 @@ impl FaceWarp {
     /// Returns a [`SettingError`] if the length of the falloff is not positive and finite.
     pub fn moved(&self, vertex: DVec3, memory: usize) -> Result<DVec3, SettingError> {
         let warp = RegionWarp::new(self.falloff, self.length_m, self.drawn_from, self.slower_from)?;
-        Ok(warp.moved(vertex, self.dealing.to_slower(vertex, memory)))
+        Ok(warp.moved(vertex, self.assignment.to_slower(vertex, memory)))
     }
 
     pub(crate) fn to_words(self) -> Vec<Word> {
-        let CellAssignment { home, side_m, inner_rings, ring_growth, memories } = self.dealing;
+        let CellAssignment { home, side_m, inner_rings, ring_growth, memories } = self.assignment;
         let falloff = Falloff::ALL.iter().position(|(_, falloff)| *falloff == self.falloff).unwrap_or_default();
         let cell = [home.x, home.z].map(|number| halves(number as u64)).concat();
         let counts = [inner_rings as Word | (ring_growth as Word) << 16, memories as Word, falloff as Word];
@@ -60,7 +60,7 @@ impl FaceWarp {
         let reals: Vec<f64> = reals.chunks_exact(2).map(|pair| f64::from_bits(joined(pair[0], pair[1]))).collect();
         let [side_m, length_m, places @ ..] = &reals[..] else { return None };
         Some(Self {
-            dealing: CellAssignment {
+            assignment: CellAssignment {
                 home: Cell { x: cell(x_low, x_high), z: cell(z_low, z_high) },
                 side_m: *side_m,
                 inner_rings: (rings & 0xFFFF).into(),
@@ -90,7 +90,7 @@ pub(crate) mod tests {
 
     pub(crate) fn warp() -> FaceWarp {
         FaceWarp {
-            dealing: CellAssignment {
+            assignment: CellAssignment {
                 home: Cell { x: -3, z: 1 << 40 },
                 side_m: 5.0,
                 inner_rings: 1,

@@ -82,7 +82,7 @@ mod tests {
     /// Returns an update of a display memory that holds all structures except the third. The fourth structure is moved
     /// by an edit.
     fn update(number: u64) -> FaceUpdate {
-        let dealing =
+        let assignment =
             CellAssignment { home: Cell { x: 0, z: 0 }, side_m: 10.0, inner_rings: 0, ring_growth: 1, memories: 2 };
         let eye = EyeView { world_to_eye: Mat4::IDENTITY, head_to_eye: Mat4::IDENTITY, projection: Mat4::IDENTITY };
         let edits = vec![ModelEdit { structure: 3, model: Mat4::IDENTITY }];
@@ -94,7 +94,7 @@ mod tests {
             view: FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits },
             structures: vec![true, true, false, true, true],
             warp: Some(FaceWarp {
-                dealing,
+                assignment,
                 falloff: Falloff::Smoothstep,
                 length_m: 4.0,
                 drawn_from: DVec3::new(5.0, 1.7, 5.0),

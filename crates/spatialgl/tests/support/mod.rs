@@ -43,10 +43,10 @@ pub(crate) fn volume(display: &dyn SpatialDisplay, commands: &CommandBuffer, con
 /// Draws as [`volume`] does, and checks that the reference model gives the same voxels and counts.
 pub(crate) fn both(display: &dyn SpatialDisplay, commands: &CommandBuffer, config: &VolumeConfig) -> VolumeFrame {
     let fast = volume(display, commands, config);
-    let literal = render_volume(display, commands, config, &ReferenceRenderer, &Threads::all()).expect("valid");
-    assert!(fast.planes == literal.planes, "the oracle has other voxels");
-    assert_eq!(fast.stats, literal.stats);
-    assert!(fast.colours == literal.colours);
+    let reference = render_volume(display, commands, config, &ReferenceRenderer, &Threads::all()).expect("valid");
+    assert!(fast.planes == reference.planes, "the oracle has other voxels");
+    assert_eq!(fast.stats, reference.stats);
+    assert!(fast.colours == reference.colours);
     fast
 }
 

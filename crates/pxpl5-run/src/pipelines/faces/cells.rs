@@ -45,7 +45,7 @@ impl ByCells {
 
     fn memory(&self, structure: usize) -> usize {
         let cells = self.cells.get(structure).into_iter().flatten();
-        cells.map(|cell| self.policy.dealing().memory(*cell)).min().unwrap_or(0)
+        cells.map(|cell| self.policy.assignment().memory(*cell)).min().unwrap_or(0)
     }
 
     /// Returns the displacement of vertices for a display memory. The displaced image meets the image of the memory
@@ -53,7 +53,7 @@ impl ByCells {
     fn warp(&self, memory: usize) -> Option<FaceWarp> {
         let slower_from = *self.drawn_from.get(memory + 1).filter(|_| self.falloff != Falloff::None)?;
         Some(FaceWarp {
-            dealing: *self.policy.dealing(),
+            assignment: *self.policy.assignment(),
             falloff: self.falloff,
             length_m: self.length_m,
             drawn_from: self.drawn_from[memory],

@@ -20,7 +20,7 @@ impl Stepper {
     /// Returns one line of text about what a board does now. Returns `None` for the ring, and for a board that the
     /// machine does not have.
     #[must_use]
-    pub fn says(&self, board: Board) -> Option<String> {
+    pub fn description(&self, board: Board) -> Option<String> {
         match board {
             Board::Host | Board::Gp(_) => Some(processor_line(&self.processor(board)?)),
             Board::Renderer(number) => self.renderer_line(number),

@@ -81,7 +81,7 @@ pub(crate) fn channels(stepper: &Stepper) -> Value {
 }
 
 pub(crate) fn boards(stepper: &Stepper) -> Value {
-    stepper.boards().filter_map(|board| Some(line(stepper, board, &stepper.says(board)?))).collect()
+    stepper.boards().filter_map(|board| Some(line(stepper, board, &stepper.description(board)?))).collect()
 }
 
 fn line(stepper: &Stepper, board: Board, says: &str) -> Value {
@@ -114,7 +114,7 @@ pub(crate) fn board(stepper: &Stepper, board: Board) -> Option<Vec<String>> {
     if board == Board::Ring {
         return Some(vec![format!("occupied channels: {}", stepper.channels().len())]);
     }
-    let mut lines = vec![stepper.says(board)?];
+    let mut lines = vec![stepper.description(board)?];
     lines.extend(stepper.details(board));
     if let Board::Renderer(number) = board {
         let look = stepper.renderer(number)?;

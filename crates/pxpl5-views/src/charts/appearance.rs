@@ -14,7 +14,7 @@ const COLOURS: [u32; 8] = [0x00_0000, 0xe6_9f00, 0x56_b4e9, 0x00_9e73, 0x00_72b2
 const DASHES: [Option<(u32, u32)>; 3] = [None, Some((5, 3)), Some((2, 3))];
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Look {
+pub(super) struct Appearance {
     place: usize,
     pub(super) colour: RGBColor,
     pub(super) em: u32,
@@ -22,7 +22,7 @@ pub(super) struct Look {
     is_hollow: bool,
 }
 
-impl Look {
+impl Appearance {
     pub(super) fn of(place: usize, em: u32) -> Self {
         let [_, red, green, blue] = COLOURS[place % COLOURS.len()].to_be_bytes();
         Self { place, colour: RGBColor(red, green, blue), em, is_hollow: false }

@@ -44,7 +44,7 @@ pub(crate) const LOOK: Duration = Duration::from_millis(50);
 /// work has stopped. If `waits` is false, the exception is raised immediately, and the result of the work is discarded.
 ///
 /// A panic of the work, which is a bug of the emulator, raises `RunError`.
-pub(crate) fn attended<T: Send + 'static>(
+pub(crate) fn in_background<T: Send + 'static>(
     py: Python<'_>,
     callback: Option<&Bound<'_, PyAny>>,
     waits: bool,

@@ -11,7 +11,7 @@ use crate::terminal::progress;
 use clap::Args;
 use pxpl5::views::Animation;
 use pxpl5::volume::VolumeSettings;
-use pxpl5::volume::pictures::Look;
+use pxpl5::volume::pictures::EyeView;
 use std::path::PathBuf;
 
 /// Options of the eye that looks at a volume.
@@ -96,13 +96,13 @@ fn cut(text: &str) -> Result<[f64; 2], String> {
 
 impl EyeArgs {
     /// Returns the settings of the eye. Fails if the eye cannot see the volume.
-    fn look(&self, settings: &VolumeSettings) -> Result<Look, CliError> {
-        let mut look = Look::around(settings, self.azimuth, self.elevation, self.size);
-        look.camera.distance = self.distance * settings.radius();
-        look.options.cut_deg = self.cut;
-        look.options.lambert = self.lambert;
-        look.check(settings)?;
-        Ok(look)
+    fn eye_view(&self, settings: &VolumeSettings) -> Result<EyeView, CliError> {
+        let mut view = EyeView::around(settings, self.azimuth, self.elevation, self.size);
+        view.camera.distance = self.distance * settings.radius();
+        view.options.cut_deg = self.cut;
+        view.options.lambert = self.lambert;
+        view.check(settings)?;
+        Ok(view)
     }
 }
 
@@ -117,9 +117,9 @@ pub(super) fn view(args: ViewArgs) -> Result<(), CliError> {
     }
     let file = OutputFile::open(&args.out, "--out")?;
     let settings = args.volume.settings.gather()?;
-    let look = Look { is_undithered: args.undithered, ..args.eye.look(&settings)? };
+    let view = EyeView { is_undithered: args.undithered, ..args.eye.eye_view(&settings)? };
     let volume = args.volume.draw(&settings)?;
-    let picture = look.picture(&volume, exposure, &args.volume.settings.threads())?;
+    let picture = view.picture(&volume, exposure, &args.volume.settings.threads())?;
     write(file, &picture, &volume)?;
     let from = format!("{} from azimuth {}, elevation {}", volume.scene, args.eye.azimuth, args.eye.elevation);
     say(args.volume.settings.quiet, &args.out, &from)
@@ -128,7 +128,7 @@ pub(super) fn view(args: ViewArgs) -> Result<(), CliError> {
 pub(super) fn film(args: FilmArgs) -> Result<(), CliError> {
     let file = OutputFile::open(&args.out, "--out")?;
     let settings = args.volume.settings.gather()?;
-    let look = args.eye.look(&settings)?;
+    let view = args.eye.eye_view(&settings)?;
     let volume = args.volume.draw(&settings)?;
     let threads = args.volume.settings.threads();
     let mut bytes = Vec::new();
@@ -137,7 +137,7 @@ pub(super) fn film(args: FilmArgs) -> Result<(), CliError> {
     let mut animation =
         Animation::begin(&mut bytes, size, args.frames, (1, args.rate), &origin(&volume)).map_err(CliError::failure)?;
     let bar = progress(u64::from(args.frames), "pictures", args.volume.settings.quiet);
-    for picture in look.film(&volume, args.frames, &threads) {
+    for picture in view.film(&volume, args.frames, &threads) {
         animation.add(&picture?).map_err(CliError::failure)?;
         bar.inc(1);
     }
