@@ -65,18 +65,18 @@ fn loading_a_program_again_restores_words_that_the_program_has_overwritten() {
 #[test]
 fn the_ring_window_is_not_cached() {
     let mut processor = Processor::new(NodeId(3), 1 << 20, CodeVersion::Compiled, i860::Config::cycle());
-    let snapshot = program("start: ld.l 0(r16), r17\n adds r17, r0, r18\n bri r1\n nop");
-    let mut looks = |address| {
-        let mut look = || processor.call(&look, "start", &[(16, address)], 10).expect("it returns");
+    let load = program("start: ld.l 0(r16), r17\n adds r17, r0, r18\n bri r1\n nop");
+    let mut read_twice = |address| {
+        let mut read = || processor.call(&load, "start", &[(16, address)], 10).expect("it returns");
         // Fill the cache lines of code and data.
-        let _cold = [look(), look()];
-        [look(), look()]
+        let _cold = [read(), read()];
+        [read(), read()]
     };
     // Four instructions, one freeze between the first and the second, and the clock of an indirect branch.
     let held = Processor::CLOCK * 6;
-    assert_eq!(looks(window::WINDOW - 32), [held; 2]);
+    assert_eq!(read_twice(window::WINDOW - 32), [held; 2]);
     for address in [window::WINDOW, window::RING_MEMORY.end - 4] {
-        let [first, second] = looks(address);
+        let [first, second] = read_twice(address);
         assert!(first > held && second > held, "{first:?}, {second:?} at {address:#x}");
     }
 }
