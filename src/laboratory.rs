@@ -135,7 +135,8 @@ pub use pxpl5_lab::Plan;
 
 pub use pxpl5_lab::{
     HeadChoice, MotionChoice, Outputs, Published, SceneChoice, Settings, Suitability, WhatIf, compare, figures, growth,
-    in_parallel, intervals, levels, limit, pipeline_figures, readings, registry, rig, sweep, tracking_parameters,
+    in_parallel, interpretations, intervals, levels, limit, pipeline_figures, registry, rig, sweep,
+    tracking_parameters,
 };
 
 /// Less common names of the laboratory: trackers, predictors, and estimates of the cost of a run.

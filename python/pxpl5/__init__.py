@@ -46,7 +46,7 @@ from ._lab import (
     pipelines,
     presets,
     quantities,
-    readings,
+    interpretations,
     rig,
     tracking_parameters,
 )
@@ -114,7 +114,7 @@ __all__ = [
     "pipelines",
     "presets",
     "quantities",
-    "readings",
+    "interpretations",
     "rig",
     "sweep",
     "tracking_parameters",

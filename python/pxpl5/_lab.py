@@ -23,7 +23,7 @@ from ._tables import table_of
 from ._types import RigData
 
 if TYPE_CHECKING:
-    from ._rows import Cell, FigureRow, LevelRow, PipelineRow, ReadingRow
+    from ._rows import Cell, FigureRow, LevelRow, PipelineRow, InterpretationRow
     from ._study_types import ComparisonData, FigureData
 
 
@@ -481,7 +481,7 @@ READING_DEFINITIONS = {
 }
 
 
-def readings(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Progress = None) -> Table[ReadingRow]:
+def interpretations(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Progress = None) -> Table[InterpretationRow]:
     """Ranks interpretations of the papers' open questions by their agreement with the figures of Rendering Control.
 
     The table has a row for each interpretation at the analytic level. Rows for the ``best`` interpretations at the transaction level
@@ -490,7 +490,7 @@ def readings(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Pro
     Raises :class:`RunError` if a figure cannot be simulated.
     """
     with reporting(progress, "runs") as reporter:
-        found = _native.readings(whole("best", best), whole("seeds", seeds, 1), whole("frames", frames, 10), reporter)
+        found = _native.interpretations(whole("best", best), whole("seeds", seeds, 1), whole("frames", frames, 10), reporter)
     rows = [
         {"evaluated_at": level, **{key: value for key, value in fit.items() if key in READING_DEFINITIONS}}
         for level, fits in (("analytic", found["analytic"]), ("transaction", found["transaction"]))

@@ -35,7 +35,7 @@ from ._study_types import (
     ParameterData,
     PipelineData,
     ProfileData,
-    ReadingsData,
+    InterpretationsData,
     SweepHeaderData,
     VolumeData,
     VolumeFiguresData,
@@ -79,7 +79,7 @@ __all__ = [
     "plot",
     "presets",
     "quantities",
-    "readings",
+    "interpretations",
     "rig",
     "scene_of_parts",
     "table_of_columns",
@@ -150,9 +150,9 @@ def rig(settings: Settings, passes: int | None = None, line: int | None = None) 
 def levels(
     experiments: int | None = None, speeds: bool = False, progress: Callable[[int, int], object] | None = None
 ) -> LevelRecordData: ...
-def readings(
+def interpretations(
     best: int = 20, seeds: int = 6, frames: int = 150, progress: Callable[[int, int], object] | None = None
-) -> ReadingsData: ...
+) -> InterpretationsData: ...
 def scene_of_parts(arrays: Mapping[str, NDArray[np.generic]], rest: Mapping[str, object]) -> Scene: ...
 def motion_of_text(text: bytes, columns: Mapping[str, str], end: str | None, about: str) -> Motion: ...
 def picture_of_parts(pixels: ArrayLike, texts: Sequence[tuple[str, str]]) -> Picture: ...

@@ -193,7 +193,7 @@ class FigureRow(VolumeFigureRow):
     high: float | None
 
 
-class ReadingRow(TypedDict):
+class InterpretationRow(TypedDict):
     """An interpretation of the papers' open questions."""
 
     evaluated_at: str

@@ -248,7 +248,7 @@ class FigureFitData(TypedDict):
 class ReadingFitData(TypedDict):
     """The fit of one interpretation of the papers' open questions."""
 
-    reading: dict[str, object]
+    interpretation: dict[str, object]
     words: str
     figures: list[FigureFitData]
     mean_error_percent: float | None
@@ -266,7 +266,7 @@ class LeaveOneOutData(TypedDict):
     error_percent: float | None
 
 
-class ReadingsData(TypedDict):
+class InterpretationsData(TypedDict):
     """Interpretations of the papers' open questions, ranked."""
 
     schema: str

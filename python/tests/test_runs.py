@@ -246,7 +246,7 @@ for _ in range(20):
         "pxpl5.limit_over('machine.n_gps', 'rendering-control', 'head', rate_hz=15, fields=2_000)",
         "pxpl5.figures(progress=False)",
         "pxpl5.levels(experiments=200, progress=False)",
-        "pxpl5.readings(progress=False)",
+        "pxpl5.interpretations(progress=False)",
         "pxpl5.compare('head', fields=100, seeds=1, only='rendering-control', limits=True, progress=False)",
         "pxpl5.rig('rendering-control', passes=2_000)",
     ],

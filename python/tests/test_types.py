@@ -124,8 +124,8 @@ def test_sweeps_volumes_and_profiles_have_their_types() -> None:
 
 @pytest.mark.slow
 def test_interpretations_have_their_types() -> None:
-    assert misfits(_native.readings(1, 1, 20), _study_types.ReadingsData) == []
-    check_rows(pxpl5.readings(best=1, seeds=1, frames=20, progress=False), _rows.ReadingRow)
+    assert misfits(_native.interpretations(1, 1, 20), _study_types.InterpretationsData) == []
+    check_rows(pxpl5.interpretations(best=1, seeds=1, frames=20, progress=False), _rows.InterpretationRow)
 
 
 def test_no_signature_has_the_type_any() -> None:

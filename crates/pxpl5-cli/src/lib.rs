@@ -26,6 +26,7 @@ mod estimate;
 mod figures;
 mod film;
 mod i860;
+mod interpretations;
 mod levels;
 mod limit;
 mod machines;
@@ -34,7 +35,6 @@ mod numbers;
 mod options;
 mod output;
 mod plot;
-mod readings;
 mod report;
 mod rig;
 mod rows;
@@ -93,7 +93,8 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Simulate every published figure, and compare the result with the published value.
     Figures(figures::FiguresArgs),
-    Readings(readings::ReadingsArgs),
+    #[command(alias = "readings")]
+    Interpretations(interpretations::InterpretationsArgs),
     /// Find the largest number of triangles that a pipeline draws in time.
     Limit(limit::LimitArgs),
     /// Compare the levels of modelling: speed against error.
@@ -183,7 +184,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Check(args)) => check::run(args),
         Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Figures(args)) => figures::run(args),
-        Some(Command::Readings(args)) => readings::run(args),
+        Some(Command::Interpretations(args)) => interpretations::run(args),
         Some(Command::Limit(args)) => limit::run(args),
         Some(Command::Levels(args)) => levels::run(args),
         Some(Command::Scenes(args)) => scenes::run(args),

@@ -238,9 +238,9 @@ impl RunWork {
 pub enum Study {
     /// The measurement of all published figures.
     Figures,
-    /// The ranking of interpretations ([`crate::readings`]), including the simulation of the fly-through of the scene
+    /// The ranking of interpretations ([`crate::interpretations`]), including the simulation of the fly-through of the scene
     /// "mig".
-    Readings {
+    Interpretations {
         /// Number of seeds of the fly-through.
         seeds: u64,
         /// Number of frames for each seed.
@@ -261,9 +261,9 @@ pub enum Study {
 /// profile `dist` on one core of 3 GHz (25 November 2026).
 const FIGURES_S: f64 = 36.0;
 /// CPU seconds to rank all interpretations with one frame of an application scene. Each interpretation that is also
-/// simulated with events adds the fraction `READINGS_BEST` of this time.
-const READINGS_FRAME_S: f64 = 0.0172;
-const READINGS_BEST: f64 = 0.1;
+/// simulated with events adds the fraction `INTERPRETATIONS_BEST` of this time.
+const INTERPRETATIONS_FRAME_S: f64 = 0.0172;
+const INTERPRETATIONS_BEST: f64 = 0.1;
 /// CPU seconds to simulate the published figures at all levels of detail. The next two constants are the CPU seconds of
 /// one random experiment at all levels, and of the measurement of all simulation speeds.
 const LEVELS_S: f64 = 56.0;
@@ -272,7 +272,7 @@ const SPEEDS_S: f64 = 23.0;
 /// Peak memory in bytes to measure all published figures. This constant and the next two constants were measured with
 /// two threads and rounded up.
 const FIGURES_BYTES: f64 = 300e6;
-const READINGS_BYTES: f64 = 60e6;
+const INTERPRETATIONS_BYTES: f64 = 60e6;
 const LEVELS_BYTES: f64 = 800e6;
 
 impl Study {
@@ -285,7 +285,7 @@ impl Study {
     const fn bytes(self) -> f64 {
         match self {
             Self::Figures => FIGURES_BYTES,
-            Self::Readings { .. } => READINGS_BYTES,
+            Self::Interpretations { .. } => INTERPRETATIONS_BYTES,
             Self::Levels { .. } => LEVELS_BYTES,
         }
     }
@@ -294,10 +294,10 @@ impl Study {
     fn core_seconds(self) -> f64 {
         match self {
             Self::Figures => FIGURES_S,
-            Self::Readings { seeds, frames, best } => {
+            Self::Interpretations { seeds, frames, best } => {
                 // The scene "mig" has all seeds, "molecules" a third of the seeds, and "head" a fifth.
                 let frames = frames * (seeds + seeds.div_ceil(3) + seeds.div_ceil(5));
-                READINGS_FRAME_S * frames as f64 * (1.0 + READINGS_BEST * best as f64)
+                INTERPRETATIONS_FRAME_S * frames as f64 * (1.0 + INTERPRETATIONS_BEST * best as f64)
             }
             Self::Levels { experiments, measures_speeds } => {
                 let speeds = if measures_speeds { SPEEDS_S } else { 0.0 };
@@ -389,15 +389,15 @@ mod tests {
     /// used to fit the constants of the estimates.
     const STUDIES: [(Study, f64, f64); 11] = [
         (Study::Figures, 36.1, 280.0),
-        (Study::Readings { seeds: 6, frames: 150, best: 20 }, 69.8, 52.7),
-        (Study::Readings { seeds: 3, frames: 100, best: 10 }, 21.0, 37.2),
-        (Study::Readings { seeds: 2, frames: 120, best: 20 }, 26.2, 36.4),
-        (Study::Readings { seeds: 4, frames: 80, best: 5 }, 12.5, 35.6),
-        (Study::Readings { seeds: 5, frames: 60, best: 12 }, 20.8, 34.0),
+        (Study::Interpretations { seeds: 6, frames: 150, best: 20 }, 69.8, 52.7),
+        (Study::Interpretations { seeds: 3, frames: 100, best: 10 }, 21.0, 37.2),
+        (Study::Interpretations { seeds: 2, frames: 120, best: 20 }, 26.2, 36.4),
+        (Study::Interpretations { seeds: 4, frames: 80, best: 5 }, 12.5, 35.6),
+        (Study::Interpretations { seeds: 5, frames: 60, best: 12 }, 20.8, 34.0),
         (Study::Levels { experiments: 20, measures_speeds: false }, 66.2, 690.3),
         (Study::Levels { experiments: 200, measures_speeds: false }, 159.5, 779.9),
         (Study::Levels { experiments: 200, measures_speeds: true }, 182.6, 779.9),
-        (Study::Readings { seeds: 8, frames: 40, best: 3 }, 9.0, 38.9),
+        (Study::Interpretations { seeds: 8, frames: 40, best: 3 }, 9.0, 38.9),
         (Study::Levels { experiments: 60, measures_speeds: false }, 86.2, 657.9),
     ];
 

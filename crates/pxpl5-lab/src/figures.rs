@@ -17,11 +17,11 @@ mod document;
 mod family;
 mod group;
 mod heads;
+mod interpretation;
 mod jitp;
 mod measure;
 mod measured;
 mod rates;
-mod reading;
 mod row;
 mod table;
 mod topics;
@@ -31,19 +31,19 @@ pub use document::markdown;
 pub use family::FigureFamily;
 pub use group::FigureGroup;
 pub use heads::PHOTODIODE_LINE;
+pub use interpretation::{FieldCount, Interpretation, LatencySamples, ROOM};
 pub use measure::Bench;
 pub use measured::FigureValue;
 pub use pxpl5_sim::figures::{Basis, Detail, FigureRow};
-pub use reading::{FieldCount, LatencySamples, ROOM, Reading};
 pub use row::{MISS_PERCENT, mean_error_percent};
 pub use table::{FIGURES, Figure, WITHOUT_CLOSED_FORM};
 pub use topics::figure_groups;
 
 use crate::application_time::{ApplicationTime, application_times};
 use crate::error::StudyError;
+use crate::interpretations::{self, Interpretations};
 use crate::intervals::{Interval, fill, intervals};
 use crate::parallel;
-use crate::readings::{self, Readings};
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -69,7 +69,7 @@ pub struct Alternatives {
     pub of_code: Vec<FigureRow>,
     /// Fit of the model to the published figures of Rendering Control, for each interpretation of the papers, at the
     /// analytic level.
-    pub readings: Readings,
+    pub interpretations: Interpretations,
     /// Latencies of the fly-throughs for several times of the application on the host, at the analytic level.
     pub application_times: Vec<ApplicationTime>,
 }
@@ -129,12 +129,13 @@ pub fn alternatives_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> R
         let rows = stepped(&step, || parallel::map(&FIGURES, |figure| row_of(&by_code, figure)));
         rows.into_iter().collect::<Result<Vec<_>, _>>()
     };
-    let readings = || stepped(&step, || readings::run(&ranked, 0, |_, _| {}));
+    let interpretations = || stepped(&step, || interpretations::run(&ranked, 0, |_, _| {}));
     let of_application = || stepped(&step, || application_times(&ranked));
-    let (of_code, (readings, times)) = parallel::both(of_code, || parallel::both(readings, of_application));
+    let (of_code, (interpretations, times)) =
+        parallel::both(of_code, || parallel::both(interpretations, of_application));
     Ok(Alternatives {
         of_code: of_code?,
-        readings: readings.map_err(StudyError::of_figure("7"))?,
+        interpretations: interpretations.map_err(StudyError::of_figure("7"))?,
         application_times: times.map_err(StudyError::of_figure("7"))?,
     })
 }

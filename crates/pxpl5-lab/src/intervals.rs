@@ -4,7 +4,7 @@
 //! level agrees closely enough with the transaction level.
 //!
 //! - *one at a time*: one parameter at the low or high end of its range, all others at their presets
-//! - *readings*: a different answer to one open question of the papers at a time ([`Reading::neighbours`])
+//! - *interpretations*: a different answer to one open question of the papers at a time ([`Interpretation::neighbours`])
 //! - *joint*: [`SAMPLES`] machines with every parameter drawn uniformly from its range, from a fixed seed
 //!
 //! Parameters that were fitted to a figure keep their values, except the two times per triangle of Slats. These two
@@ -15,7 +15,7 @@
 //! the depth of the FIFO and the number of channels of a sender. For the figure of the pendulum rig, the photodiode's
 //! position and the interpretations vary too.
 
-use crate::figures::{Bench, FIGURES, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
+use crate::figures::{Bench, FIGURES, Interpretation, PHOTODIODE_LINE, WITHOUT_CLOSED_FORM};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
 use pxpl5_sim::figures::FigureRow;
@@ -68,7 +68,7 @@ pub struct Interval {
     /// Minimum and maximum of the figure if one parameter at a time is set to each end of its range.
     pub one_at_a_time: [f64; 2],
     /// Minimum and maximum of the figure over the interpretations that change one answer at a time.
-    pub readings: [f64; 2],
+    pub interpretations: [f64; 2],
     /// Interpretations that change the figure, with the resulting value. The greatest change comes first.
     pub rules: Vec<(String, f64)>,
     /// Minimum and maximum of the figure over the random machines of the joint set.
@@ -80,11 +80,11 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Returns the minimum and maximum over `one_at_a_time`, `readings` and `joint`.
+    /// Returns the minimum and maximum over `one_at_a_time`, `interpretations` and `joint`.
     #[must_use]
     pub const fn bounds(&self) -> [f64; 2] {
         let [low, high] = self.of_parameters();
-        [low.min(self.readings[0]), high.max(self.readings[1])]
+        [low.min(self.interpretations[0]), high.max(self.interpretations[1])]
     }
 
     /// Returns the minimum and maximum while only the parameters vary, with the same interpretation of the papers.
@@ -148,9 +148,9 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
     let samples: Vec<u64> = (0..SAMPLES).collect();
     // Measure machines with all parameters drawn at random.
     let joint = crate::parallel::map(&samples, |sample| measure(&bench, draw(&variations, *sample)));
-    let neighbours = bench.reading.neighbours();
+    let neighbours = bench.interpretation.neighbours();
     // Measure with other interpretations, each with another answer to one question.
-    let read = crate::parallel::map(&neighbours, |reading| measure(&bench.with(*reading), Vec::new()));
+    let results = crate::parallel::map(&neighbours, |interpretation| measure(&bench.with(*interpretation), Vec::new()));
     // After a stop, values are missing.
     if bench.stop.is_stopped() {
         return Vec::new();
@@ -162,8 +162,9 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
         let ends: Vec<f64> = at_ends.iter().map(|all| all[index].unwrap_or(nominal)).collect();
         let joint = joint.iter().filter_map(|all| all[index]).collect();
         let mut interval = interval(figure.id, nominal, &ends, joint, &variations);
-        let values = neighbours.iter().zip(&read).filter_map(|(reading, all)| Some((*reading, all[index]?)));
-        interval.add_readings(&bench.reading, values);
+        let values =
+            neighbours.iter().zip(&results).filter_map(|(interpretation, all)| Some((*interpretation, all[index]?)));
+        interval.add_interpretations(&bench.interpretation, values);
         intervals.push(interval);
     }
     intervals.extend(of_rig(&bench));
@@ -213,10 +214,11 @@ fn of_rig(bench: &Bench) -> Option<Interval> {
     let nominal = value(bench.clone())?;
     let ends = ends_with_events(bench, OF_RIG, &variations, nominal);
     let mut interval = interval(OF_RIG, nominal, &ends, vec![nominal], &variations);
-    let neighbours = bench.reading.neighbours();
-    let read = crate::parallel::map(&neighbours, |reading| value(bench.with(*reading)));
-    let values = neighbours.into_iter().zip(read).filter_map(|(reading, value)| Some((reading, value?)));
-    interval.add_readings(&bench.reading, values);
+    let neighbours = bench.interpretation.neighbours();
+    let results = crate::parallel::map(&neighbours, |interpretation| value(bench.with(*interpretation)));
+    let values =
+        neighbours.into_iter().zip(results).filter_map(|(interpretation, value)| Some((interpretation, value?)));
+    interval.add_interpretations(&bench.interpretation, values);
     Some(interval)
 }
 
@@ -235,7 +237,7 @@ fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, v
         id,
         nominal,
         one_at_a_time: bounds(ends.iter().copied().chain([nominal])),
-        readings: [nominal; 2],
+        interpretations: [nominal; 2],
         rules: Vec::new(),
         joint: [percentile(&joint, 0.0), percentile(&joint, 1.0)],
         likely: [percentile(&joint, 0.05), percentile(&joint, 0.95)],
@@ -244,13 +246,14 @@ fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, v
 }
 
 impl Interval {
-    fn add_readings(&mut self, usual: &Reading, values: impl Iterator<Item = (Reading, f64)>) {
+    fn add_interpretations(&mut self, usual: &Interpretation, values: impl Iterator<Item = (Interpretation, f64)>) {
         let reach = |value: f64| (value / self.nominal - 1.0).abs();
         // Interpretations without a visible effect are left out.
         let moving = values.filter(|(_, value)| reach(*value) > VISIBLE);
-        let mut rules: Vec<_> = moving.map(|(reading, value)| (reading.difference(usual), value)).collect();
+        let mut rules: Vec<_> =
+            moving.map(|(interpretation, value)| (interpretation.difference(usual), value)).collect();
         rules.sort_by(|a, b| reach(b.1).total_cmp(&reach(a.1)));
-        self.readings = bounds(rules.iter().map(|(_, value)| *value).chain([self.nominal]));
+        self.interpretations = bounds(rules.iter().map(|(_, value)| *value).chain([self.nominal]));
         self.rules = rules;
     }
 }
@@ -321,7 +324,7 @@ mod tests {
             id: figure.id,
             nominal: 21.0,
             one_at_a_time: [20.5, 22.0],
-            readings: [21.0, 21.0],
+            interpretations: [21.0, 21.0],
             rules: Vec::new(),
             joint: [20.0, 21.5],
             likely: [20.2, 21.0],

@@ -5,7 +5,7 @@
 //! | question | module |
 //! |---|---|
 //! | values of the published figures in the model, with intervals | [`figures`], [`intervals`], [`pipeline_figures`] |
-//! | the interpretation of the papers that explains the figures best | [`readings`] |
+//! | the interpretation of the papers that explains the figures best | [`interpretations`] |
 //! | effect of the host application's time, which no paper prints | [`application_time`] |
 //! | differences between the levels of detail | [`levels`] |
 //! | times of primitives in executed code | [`code_times`] |
@@ -36,13 +36,13 @@ pub mod figures;
 pub mod growth;
 mod head_names;
 mod host;
+pub mod interpretations;
 pub mod intervals;
 pub mod levels;
 pub mod limit;
 pub mod manifest;
 mod parallel;
 pub mod pipeline_figures;
-pub mod readings;
 pub mod rig;
 mod snapshot;
 mod stop;

@@ -50,7 +50,7 @@ mod tests {
     use crate::figures::{Bench, run_all_with};
     use crate::levels::{LevelQuery, compare_with};
     use crate::limit::{LimitQuery, OverQuery};
-    use crate::{StudyError, readings};
+    use crate::{StudyError, interpretations};
     use pxpl5_run::{Goal, Level};
 
     /// Tests that each study returns the error `Stopped` after its stop flag was set. The flag is set at the first
@@ -94,7 +94,7 @@ mod tests {
 
         let stop = StopFlag::default();
         let bench = || Bench::new(Level::Analytic).with_mig(1, 12).with_stop(stop.clone());
-        let ended = readings::run(&bench(), 2, |_, _| stop.stop()).map(|_| ());
+        let ended = interpretations::run(&bench(), 2, |_, _| stop.stop()).map(|_| ());
         assert!(matches!(ended, Err(ExperimentError::Stopped(_))), "{ended:?}");
         assert!(run_all_with(&bench(), |_, _| {}).is_err_and(|error| error.to_string().contains("stopped")));
 

@@ -7,10 +7,10 @@ use crate::settings::Settings;
 use pxpl5::Statistics;
 use pxpl5::compare::{CONFIDENCE, CompareQuery, MAX_SEEDS, Precision, RowChoice, UntilPrecise};
 use pxpl5::figures::{Bench, FIGURES, FigureRow, run_all_with};
+use pxpl5::interpretations::run as rank;
 use pxpl5::lab::diff::Changed;
 use pxpl5::levels::{LevelQuery, LevelRecord, compare_with};
 use pxpl5::limit::{Limit, LimitQuery, Model, OverQuery};
-use pxpl5::readings::run as rank;
 use pxpl5::rig::{PASSES, Rig};
 use pxpl5::tracking::rig::Side;
 use pxpl5::{Goal, Level, SettingError, StopFlag, StudyError};
@@ -356,7 +356,7 @@ pub(crate) fn levels<'py>(
 /// Raises :class:`pxpl5.RunError` if a figure cannot be simulated.
 #[pyfunction]
 #[pyo3(signature = (best = 20, seeds = 6, frames = 150, progress = None))]
-pub(crate) fn readings<'py>(
+pub(crate) fn interpretations<'py>(
     py: Python<'py>,
     best: usize,
     seeds: u64,

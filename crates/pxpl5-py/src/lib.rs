@@ -55,7 +55,7 @@ mod _native {
     #[pymodule_export]
     use crate::frames::Frames;
     #[pymodule_export]
-    use crate::lab::{compare, diff, figure, figure_ids, figures, levels, limit, limit_over, readings, rig};
+    use crate::lab::{compare, diff, figure, figure_ids, figures, interpretations, levels, limit, limit_over, rig};
     #[pymodule_export]
     use crate::motion::{Motion, motion_of_text};
     #[pymodule_export]

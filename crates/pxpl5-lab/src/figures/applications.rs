@@ -161,17 +161,21 @@ fn locked<T>(all: &Mutex<T>) -> MutexGuard<'_, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::Reading;
+    use crate::figures::Interpretation;
     use pxpl5_machine::MachineConfig;
     use pxpl5_run::{Outcome, Pixels};
 
     /// Runs a scene with backing stores for `kept` finished regions. `finished` is the rule for the use of the backing
     /// store.
     fn run(scene: &str, kept: u64, finished: FinishedRegions) -> Outcome {
-        let reading = Reading { kept, finished, ..Reading::USUAL };
-        let machine = reading.on(MachineConfig::small_hmd()).expect("in range");
+        let interpretation = Interpretation { kept, finished, ..Interpretation::USUAL };
+        let machine = interpretation.on(MachineConfig::small_hmd()).expect("in range");
         let scene = scene_named(scene).expect("built in");
-        Experiment::new(machine, reading.pipeline(), scene).fields(40).pixels(Pixels::Off).run().expect("it runs")
+        Experiment::new(machine, interpretation.pipeline(), scene)
+            .fields(40)
+            .pixels(Pixels::Off)
+            .run()
+            .expect("it runs")
     }
 
     /// Tests that a run whose backing stores were never full has the same trace as each run with larger stores. Runs

@@ -1,10 +1,10 @@
 //! Writer of ACCURACY.md from the published figures and the model's values.
 
-use super::{Alternatives, Basis, FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
+use super::{Alternatives, Basis, FigureRow, Figures, Interpretation, MISS_PERCENT, mean_error_percent};
 use crate::application_time::{ApplicationTime, FlyThroughLatency, published};
+use crate::interpretations::{self, FigureFit, Fit, Interpretations};
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
-use crate::readings::{self, FigureFit, Fit, Readings};
 use pxpl5_sim::figures::column::{
     DETAILS, EXPERIMENT, INTERVAL, NUMBER, PROVENANCE, PUBLISHED, SIMULATED, STATEMENT, error, four, range,
 };
@@ -23,7 +23,7 @@ pub fn markdown(figures: &Figures, alternatives: &Alternatives) -> String {
     of_code(&mut text, rows, &alternatives.of_code);
     figures.groups.iter().for_each(|group| text.push_str(&group.markdown()));
     figures.families.iter().for_each(|family| text.push_str(&family.markdown()));
-    of_readings(&mut text, &alternatives.readings);
+    of_interpretations(&mut text, &alternatives.interpretations);
     of_application(&mut text, &alternatives.application_times);
     sensitivity(&mut text, &figures.intervals);
     let _ = write!(text, "\n## Experiments\n\n{}", table(&[NUMBER, EXPERIMENT, DETAILS], rows));
@@ -85,12 +85,15 @@ const BEST: usize = 12;
 
 /// Writes the table of interpretations with the figures that each interpretation explains, and the confidence of the
 /// choice.
-fn of_readings(text: &mut String, readings: &Readings) {
+fn of_interpretations(text: &mut String, interpretations: &Interpretations) {
     // State how likely the default interpretation is, compared with the most likely one.
-    let fits = &readings.analytic;
+    let fits = &interpretations.analytic;
     let likeliest = fits.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
-    let usual = fits.iter().find(|fit| fit.reading == Reading::USUAL).map_or(f64::NAN, |fit| fit.log_likelihood);
-    let place = |reading: &Reading| fits.iter().position(|fit| fit.reading == *reading).map_or(0, |place| place + 1);
+    let usual =
+        fits.iter().find(|fit| fit.interpretation == Interpretation::USUAL).map_or(f64::NAN, |fit| fit.log_likelihood);
+    let place = |interpretation: &Interpretation| {
+        fits.iter().position(|fit| fit.interpretation == *interpretation).map_or(0, |place| place + 1)
+    };
     let _ = write!(
         text,
         "\n## Interpretations: questions that the papers leave open\n\n\
@@ -104,17 +107,17 @@ fn of_readings(text: &mut String, readings: &Readings) {
          - Were the bins full with the triangles of one eye, or with the triangles of both eyes?\n\n\
          The possible answers to the questions give {} combinations, which are called *interpretations*. In each interpretation,\n\
          all figures use the same machine parameters. The table of interpretations has results of the analytic level. The command\n\
-         `pxpl5 readings` also measures the best interpretations with events.\n\n\
+         `pxpl5 interpretations` also measures the best interpretations with events.\n\n\
          In the table of interpretations, the columns *mean* and *worst* give the mean and the largest error of the figures in\n\
          percent. The column *log L* is the logarithm of the likelihood of the printed means and standard deviations. The\n\
          likelihood allows an error of 2 % for the conditions that the papers do not print.\n\n\
          The paper TR94 derives figures 3 and 5 from its rules and did not measure these figures. The table of interpretations\n\
          therefore compares figures 3 and 5 with the rules alone. Figures 3, 4b, 5 and 17 do not distinguish one interpretation\n\
          from another.\n\n\
-         | mean | worst | log L | {} | reading |\n|---|---|---|{}---|\n",
+         | mean | worst | log L | {} | interpretation |\n|---|---|---|{}---|\n",
         fits.len(),
-        readings::FIGURES.join(" | "),
-        "---|".repeat(readings::FIGURES.len()),
+        interpretations::FIGURES.join(" | "),
+        "---|".repeat(interpretations::FIGURES.len()),
     );
     // The table lists only the best interpretations.
     fits.iter().take(BEST).for_each(|fit| text.push_str(&fitted(fit)));
@@ -141,14 +144,14 @@ fn of_readings(text: &mut String, readings: &Readings) {
          Each row of the next table leaves out one figure. The interpretation is chosen by the other figures and then predicts\n\
          the figure that was left out.\n\n\
          | # | error | the others' choice |\n|---|---|---|\n",
-        Reading::USUAL,
-        place(&Reading::USUAL),
+        Interpretation::USUAL,
+        place(&Interpretation::USUAL),
         (likeliest - usual).exp(),
-        readings.rounding_percent,
-        readings.as_good,
+        interpretations.rounding_percent,
+        interpretations.as_good,
     );
     // Each figure is predicted without its own data.
-    for left_out in &readings.left_out {
+    for left_out in &interpretations.left_out {
         let _ = writeln!(text, "| {} | {:+.1} % | {} |", left_out.id, left_out.error_percent, left_out.words);
     }
 }

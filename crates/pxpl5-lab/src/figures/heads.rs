@@ -1,7 +1,7 @@
 //! Figures that need a tracked head: the pendulum rig, and the latency from head to display.
 
+use super::interpretation::Interpretation;
 use super::measured::{FigureValue, Result, detail, scene_named};
-use super::reading::Reading;
 use crate::StopFlag;
 use crate::error::StudyError;
 use crate::rig::Rig;
@@ -27,9 +27,13 @@ pub(super) struct RigLines {
 
 impl RigLines {
     /// Measures the latency with a pendulum and a photodiode. Also returns true if a backing store was full in the run.
-    pub(super) fn measure(machine: &MachineConfig, reading: &Reading, stop: &StopFlag) -> Result<(Self, bool)> {
+    pub(super) fn measure(
+        machine: &MachineConfig,
+        interpretation: &Interpretation,
+        stop: &StopFlag,
+    ) -> Result<(Self, bool)> {
         let lines = photodiode_lines();
-        let (measured, met_full_store) = under_lines(machine, (reading, stop), lines)?;
+        let (measured, met_full_store) = under_lines(machine, (interpretation, stop), lines)?;
         let mut lines = lines.into_iter();
         let measured = measured.map(|measured| (lines.next().unwrap_or_default(), Arc::new(measured)));
         Ok((Self { measured }, met_full_store))
@@ -65,7 +69,11 @@ fn photodiode_lines() -> [u32; 3] {
     range.map_or([assumed; 3], |(first, last)| [first as u32, assumed, last as u32])
 }
 
-pub(super) fn under_line(machine: &MachineConfig, of: (&Reading, &StopFlag), line: u64) -> Result<RigMeasurement> {
+pub(super) fn under_line(
+    machine: &MachineConfig,
+    of: (&Interpretation, &StopFlag),
+    line: u64,
+) -> Result<RigMeasurement> {
     let ([measured], _) = under_lines(machine, of, [u32::try_from(line).unwrap_or(u32::MAX)])?;
     Ok(measured)
 }
@@ -74,11 +82,11 @@ pub(super) fn under_line(machine: &MachineConfig, of: (&Reading, &StopFlag), lin
 /// store was full in the run.
 fn under_lines<const N: usize>(
     machine: &MachineConfig,
-    (reading, stop): (&Reading, &StopFlag),
+    (interpretation, stop): (&Interpretation, &StopFlag),
     lines: [u32; N],
 ) -> Result<([RigMeasurement; N], bool)> {
     let rig = Rig { stop: stop.clone(), ..Rig::assumed(TrackerConfig::optical_ceiling()) };
-    let measured = rig.measure_lines(machine, Arc::new(reading.pipeline()), lines);
+    let measured = rig.measure_lines(machine, Arc::new(interpretation.pipeline()), lines);
     let (measured, outcome) = measured.map_err(|error| match error {
         StudyError::Experiment(error) => error,
         error => ExperimentError::Scene(error.to_string()),
@@ -123,7 +131,7 @@ const FIELDS: u64 = 600;
 pub(super) fn tracker_and_rendering(
     machine: MachineConfig,
     pipeline: impl Pipeline,
-    (reading, stop): (&Reading, &StopFlag),
+    (interpretation, stop): (&Interpretation, &StopFlag),
 ) -> Result<FigureValue> {
     let motion = Arc::new(Synthetic::recorded_use(1));
     let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::None, 1)?;
@@ -135,7 +143,7 @@ pub(super) fn tracker_and_rendering(
     // The paper's sum contains its own mean latency of rendering, so rendering is measured as for figure 4. Eyes of
     // Slats have no TRANSFORM of their own.
     let of_eyes = outcome.summary();
-    let samples = reading.latencies_ms(&of_eyes);
+    let samples = interpretation.latencies_ms(&of_eyes);
     let rendering_ms =
         if samples.is_empty() { drawing_ms + showing_ms } else { Statistics::of(samples.iter().copied()).mean };
     let details = vec![

@@ -2,8 +2,8 @@
 
 use super::applications::{Applications, key_of};
 use super::heads::{self, PHOTODIODE_LINE, RigLines};
+use super::interpretation::{Interpretation, LatencySamples};
 use super::measured::{FigureValue, Result, detail, scene_named};
-use super::reading::{LatencySamples, Reading};
 use crate::StopFlag;
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
@@ -38,7 +38,7 @@ pub struct Bench {
     /// Number of evaluated frames for each seed of the fly-through of the scene "mig" (row 7 of ACCURACY.md).
     pub frames: u64,
     /// Answers to the questions that the papers leave open about Rendering Control.
-    pub reading: Reading,
+    pub interpretation: Interpretation,
     /// True if the figures' intervals are computed too. The intervals take half of the time of all measurements.
     pub intervals: bool,
     /// Flag with which another thread stops the measurements.
@@ -70,7 +70,7 @@ impl Bench {
             changes: Vec::new(),
             seeds: 10,
             frames: 150,
-            reading: Reading::USUAL,
+            interpretation: Interpretation::USUAL,
             intervals: true,
             stop: StopFlag::default(),
             applications: Arc::default(),
@@ -127,13 +127,13 @@ impl Bench {
         match id {
             "1" => Ok(self.trivial()?.region_copy_us.into()),
             "2" => self.trivial().map(|s| (s.first_copy_ms + s.last_copy_ms).into()),
-            "3" => self.with(Reading::THEORY).copy_alone(),
+            "3" => self.with(Interpretation::THEORY).copy_alone(),
             "4" => {
                 let summary = self.trivial()?;
-                Ok(spread_ms(Statistics::of(self.reading.latencies_ms(&summary).iter().copied())))
+                Ok(spread_ms(Statistics::of(self.interpretation.latencies_ms(&summary).iter().copied())))
             }
             "4b" => self.trivial().map(|summary| rate_hz(&summary).into()),
-            "5" => self.with(Reading::THEORY).equal_stages(),
+            "5" => self.with(Interpretation::THEORY).equal_stages(),
             "6" => self.long_stages(),
             "7" => self.application("mig", 1),
             "7b" => self.application("molecules", 3),
@@ -153,10 +153,16 @@ impl Bench {
             "17" => self.rig(),
             "18" => Ok(heads::ratio_of_errors()),
             "19" => {
-                let machine = self.reading.on(self.machine("small-hmd")?)?;
-                heads::tracker_and_rendering(machine, self.reading.pipeline(), (&self.reading, &self.stop))
+                let machine = self.interpretation.on(self.machine("small-hmd")?)?;
+                heads::tracker_and_rendering(
+                    machine,
+                    self.interpretation.pipeline(),
+                    (&self.interpretation, &self.stop),
+                )
             }
-            "19b" => heads::tracker_and_rendering(self.machine("slats")?, Slats::split(), (&self.reading, &self.stop)),
+            "19b" => {
+                heads::tracker_and_rendering(self.machine("slats")?, Slats::split(), (&self.interpretation, &self.stop))
+            }
             _ => Err(ExperimentError::Scene(format!("there is no figure {id}"))),
         }
     }
@@ -188,10 +194,10 @@ impl Bench {
         self.photodiode_line() == other.photodiode_line() && PRESETS.iter().all(is_same)
     }
 
-    /// Returns the same settings with `reading` as the interpretation of the papers.
+    /// Returns the same settings with `interpretation` as the interpretation of the papers.
     #[must_use]
-    pub fn with(&self, reading: Reading) -> Self {
-        Self { reading, ..self.clone() }
+    pub fn with(&self, interpretation: Interpretation) -> Self {
+        Self { interpretation, ..self.clone() }
     }
 
     /// Runs an experiment with a built-in scene and without pixels. The result is cached, because several figures and
@@ -216,7 +222,7 @@ impl Bench {
     }
 
     fn stereo(&self, machine: MachineConfig) -> Result<Arc<Summary>> {
-        self.run(self.reading.on(machine)?, self.reading.pipeline(), "full-screen:12", 80)
+        self.run(self.interpretation.on(machine)?, self.interpretation.pipeline(), "full-screen:12", 80)
     }
 
     /// Runs the experiment of rows 1, 2 and 4 of ACCURACY.md: twelve triangles that cover the screen.
@@ -227,8 +233,8 @@ impl Bench {
     /// Runs the experiment of rows 16b and 16c of ACCURACY.md. The scene has as many screen-filling triangles as fit
     /// into the bins according to the papers.
     fn full_bins(&self) -> Result<Arc<Summary>> {
-        let machine = self.reading.on(self.machine("small-hmd")?)?;
-        self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
+        let machine = self.interpretation.on(self.machine("small-hmd")?)?;
+        self.run(machine, self.interpretation.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
     }
 
     /// Measures row 3 of ACCURACY.md: the latency if all work except COPY takes no time.
@@ -248,10 +254,10 @@ impl Bench {
     /// Computes row 16 of ACCURACY.md: the number of screen-filling triangles whose entries fit into the slaves' bins,
     /// for one eye or for both eyes.
     fn most_in_bins(&self) -> Result<FigureValue> {
-        let machine = self.reading.on(self.machine("small-hmd")?)?;
+        let machine = self.interpretation.on(self.machine("small-hmd")?)?;
         let slaves = machine.n_gps as u64 - 1;
         let regions = u64::from(Viewport::FRAME.grid().regions());
-        let of_slave = machine.gp.bin_bytes / (regions * BIN_ENTRY_BYTES) / self.reading.bins;
+        let of_slave = machine.gp.bin_bytes / (regions * BIN_ENTRY_BYTES) / self.interpretation.bins;
         Ok(((of_slave * slaves) as f64).into())
     }
 
@@ -272,8 +278,8 @@ impl Bench {
         if let Some(measured) = lines.under(line) {
             return Ok(measured);
         }
-        let machine = self.reading.on(self.machine("small-hmd")?)?;
-        heads::under_line(&machine, (&self.reading, &self.stop), line).map(Arc::new)
+        let machine = self.interpretation.on(self.machine("small-hmd")?)?;
+        heads::under_line(&machine, (&self.interpretation, &self.stop), line).map(Arc::new)
     }
 
     fn photodiode_line(&self) -> Option<u64> {
@@ -283,11 +289,12 @@ impl Bench {
     /// Returns the measurements of the pendulum rig in one run. The measurements depend neither on the level of detail
     /// nor on the definition of latency samples.
     fn rig_lines(&self) -> Result<Arc<RigLines>> {
-        let machine = self.reading.on(self.machine("small-hmd")?)?;
+        let machine = self.interpretation.on(self.machine("small-hmd")?)?;
         // The line of the photodiode does not change the run, so it is no part of the cache's key.
         let changes = self.changes.iter().filter(|(path, _)| path != PHOTODIODE_LINE).cloned().collect();
-        let key = (self.reading.finished, changes);
-        self.applications.rig(key, self.reading.kept, || RigLines::measure(&machine, &self.reading, &self.stop))
+        let key = (self.interpretation.finished, changes);
+        self.applications
+            .rig(key, self.interpretation.kept, || RigLines::measure(&machine, &self.interpretation, &self.stop))
     }
 
     /// Returns a machine and a scene for which TRANSFORM and RENDER of one eye each take `ms` milliseconds.
@@ -315,7 +322,7 @@ impl Bench {
 
     fn equal_stages(&self) -> Result<FigureValue> {
         let (machine, scene) = self.stages_of(15.6)?;
-        let summary = self.run(self.reading.on(machine)?, self.reading.pipeline(), &scene, 160)?;
+        let summary = self.run(self.interpretation.on(machine)?, self.interpretation.pipeline(), &scene, 160)?;
         let latency = Statistics::of(summary.latencies_ms.iter().copied());
         let details = vec![detail("mean", latency.mean, "ms"), detail("frames a second", rate_hz(&summary), "Hz")];
         Ok(FigureValue::with(latency.max, details))
@@ -325,7 +332,7 @@ impl Bench {
         let mut means = Vec::new();
         for ms in LONG_STAGES_MS {
             let (machine, scene) = self.stages_of(ms as f64)?;
-            let summary = self.run(self.reading.on(machine)?, self.reading.pipeline(), &scene, 160)?;
+            let summary = self.run(self.interpretation.on(machine)?, self.interpretation.pipeline(), &scene, 160)?;
             // The latency is three times TRANSFORM: TRANSFORM of the first eye and RENDER of both eyes.
             means.push(Statistics::of(summary.latencies_ms.iter().copied()).mean);
         }
@@ -335,13 +342,14 @@ impl Bench {
     /// Measures rows 7, 7b and 7c of ACCURACY.md: a fly-through of an application scene. The number of seeds is divided
     /// by `seeds_of_one`, because larger scenes get fewer fly-throughs.
     fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
-        let samples_a_frame = if self.reading.samples == LatencySamples::EachEye { 2 } else { 1 };
+        let samples_a_frame = if self.interpretation.samples == LatencySamples::EachEye { 2 } else { 1 };
         let seeds: Vec<u64> = (1..=self.seeds.div_ceil(seeds_of_one)).collect();
         // One seed gives one fly-through.
         let latencies = parallel::map(&seeds, |seed| {
             let summary = self.fly_through(scene, *seed, seeds.len() as u64)?;
-            let samples = self.reading.latencies_ms(&summary).iter().take(samples_a_frame * self.frames as usize);
-            Ok(samples.map(|ms| self.reading.fields_of(*ms, summary.field_ms)).collect())
+            let samples =
+                self.interpretation.latencies_ms(&summary).iter().take(samples_a_frame * self.frames as usize);
+            Ok(samples.map(|ms| self.interpretation.fields_of(*ms, summary.field_ms)).collect())
         });
         let latencies = latencies.into_iter().collect::<Result<Vec<Vec<f64>>>>()?.concat();
         let samples = latencies.len() as f64;
@@ -358,7 +366,7 @@ impl Bench {
 
     fn fly_through(&self, scene: &'static str, seed: u64, seeds: u64) -> Result<Arc<Summary>> {
         let experiment = self.application_experiment(scene, seed)?;
-        let drawn = format!("{scene} {} {seeds}", self.reading.culled);
+        let drawn = format!("{scene} {} {seeds}", self.interpretation.culled);
         let key = key_of(&experiment.clone().level(self.level), &drawn);
         self.applications.summary(key, || self.fly_through_once(&experiment, scene, seed, seeds))
     }
@@ -375,8 +383,8 @@ impl Bench {
             return self.summarise(experiment);
         }
         let of_seeds = || (1..=seeds).map(|seed| stereo_loads(&self.application_experiment(scene, seed)?)).collect();
-        let loads = self.applications.loads((scene, self.reading.culled, seeds, self.frames), of_seeds)?;
-        let model = StereoModel::new(experiment.config(), self.reading.pipeline())?;
+        let loads = self.applications.loads((scene, self.interpretation.culled, seeds, self.frames), of_seeds)?;
+        let model = StereoModel::new(experiment.config(), self.interpretation.pipeline())?;
         Ok((model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()), true))
     }
 
@@ -384,9 +392,9 @@ impl Bench {
     /// the run has fewer frames.
     fn application_experiment(&self, scene: &'static str, seed: u64) -> Result<Experiment> {
         let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
-        let machine = self.reading.on(self.machine(self.reading.machine)?)?;
-        let drawn = self.applications.scene(scene, self.reading.culled)?;
-        Ok(Experiment::with(machine, Arc::new(self.reading.pipeline()), drawn).fields(fields).seed(seed))
+        let machine = self.interpretation.on(self.machine(self.interpretation.machine)?)?;
+        let drawn = self.applications.scene(scene, self.interpretation.culled)?;
+        Ok(Experiment::with(machine, Arc::new(self.interpretation.pipeline()), drawn).fields(fields).seed(seed))
     }
 
     fn slats(&self, triangles: u32, pipeline: Slats) -> Result<Arc<Summary>> {

@@ -3,7 +3,7 @@
 
 use super::group::{Measurement, free};
 use super::measured::{FigureValue, Result, detail, scene_named};
-use super::{Bench, PHOTODIODE_LINE, Reading};
+use super::{Bench, Interpretation, PHOTODIODE_LINE};
 use i860::{Cpu, Ram, RunEnd, assemble};
 use pphigs::Shading;
 use pxpl5_gp::Stage;
@@ -165,7 +165,7 @@ const TRIANGLES: u64 = 40_000;
 const FIELDS: u64 = 44;
 
 fn drawn(machine: MachineConfig, shading: Shading, triangles: u64, fields: u64) -> Result<Outcome> {
-    let pipeline = RenderingControl { shading, mono: true, ..Reading::USUAL.pipeline() };
+    let pipeline = RenderingControl { shading, mono: true, ..Interpretation::USUAL.pipeline() };
     let experiment = Experiment::new(machine, pipeline, scene_named(&format!("typical:{triangles}"))?);
     experiment.fields(fields).pixels(Pixels::Off).run()
 }

@@ -221,7 +221,7 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "triangles that cover the screen, as many as the bins of 12 slaves hold: about",
         (7_700.0, "triangles", None),
-        "full-screen:N on small-hmd: the largest N whose bins fit for one eye, computed from the size of the bins. The test tests/readings.rs runs this N and N + 1.",
+        "full-screen:N on small-hmd: the largest N whose bins fit for one eye, computed from the size of the bins. The test tests/interpretations.rs runs this N and N + 1.",
         Basis::Fitted("gp.bin_bytes"),
     ),
     figure(

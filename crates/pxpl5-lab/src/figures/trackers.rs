@@ -83,8 +83,8 @@ const FIELDS: u64 = 600;
 /// Returns the mean time in ms from the measurement of a head pose to the start of TRANSFORM for this pose.
 fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
     let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1)?;
-    let machine = bench.reading.on(bench.machine("small-hmd")?)?;
-    let experiment = Experiment::new(machine, bench.reading.pipeline(), scene_named("full-screen:12")?);
+    let machine = bench.interpretation.on(bench.machine("small-hmd")?)?;
+    let experiment = Experiment::new(machine, bench.interpretation.pipeline(), scene_named("full-screen:12")?);
     let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, .. } = Budget::of(&outcome);
     Ok(tracking_ms + waiting_ms + sending_ms)

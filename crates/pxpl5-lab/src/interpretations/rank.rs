@@ -2,7 +2,7 @@
 
 use super::FIGURES;
 use super::fit::{Fit, half_a_digit};
-use crate::figures::{Bench, Reading};
+use crate::figures::{Bench, Interpretation};
 use crate::parallel;
 use pxpl5_run::{ExperimentError, Level};
 use serde::Serialize;
@@ -18,7 +18,7 @@ pub struct LeaveOneOut {
     /// Number of the figure in ACCURACY.md.
     pub id: &'static str,
     /// Interpretation with the smallest mean error over all other figures.
-    pub chosen: Reading,
+    pub chosen: Interpretation,
     /// The interpretation `chosen` in words.
     pub words: String,
     /// Relative error in percent of the figure under the interpretation `chosen`.
@@ -27,7 +27,7 @@ pub struct LeaveOneOut {
 
 /// Ranking of all interpretations of the papers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Readings {
+pub struct Interpretations {
     /// Name and version of the JSON layout.
     pub schema: &'static str,
     /// Fits of all interpretations at the analytic level, by ascending mean error.
@@ -49,61 +49,75 @@ pub struct Readings {
 /// # Errors
 ///
 /// Fails in the same cases as [`Bench::measure`].
-pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Result<Readings, ExperimentError> {
-    let readings = Reading::all();
-    let best = best.min(readings.len());
-    let steps = (readings.len() + best) as u64;
+pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Result<Interpretations, ExperimentError> {
+    let interpretations = Interpretation::all();
+    let best = best.min(interpretations.len());
+    let steps = (interpretations.len() + best) as u64;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
     // The same steps serve both levels.
-    let fits = |level: Level, readings: &[Reading]| {
+    let fits = |level: Level, interpretations: &[Interpretation]| {
         let bench = Bench { level, ..bench.clone() };
-        let of_group = |group: &Vec<Reading>| {
-            let fit = |reading: &Reading| {
-                let fit = Fit::of(&bench, *reading);
+        let of_group = |group: &Vec<Interpretation>| {
+            let fit = |interpretation: &Interpretation| {
+                let fit = Fit::of(&bench, *interpretation);
                 step();
                 fit
             };
             group.iter().map(fit).collect::<Result<Vec<_>, _>>()
         };
-        let fits = parallel::map(&groups(readings), of_group);
+        let fits = parallel::map(&groups(interpretations), of_group);
         fits.into_iter().collect::<Result<Vec<_>, _>>().map(|fits| ranked(fits.concat()))
     };
-    let analytic = fits(Level::Analytic, &readings)?;
+    let analytic = fits(Level::Analytic, &interpretations)?;
     // Only the best interpretations are simulated with all events, which takes long.
-    let chosen: Vec<Reading> = analytic.iter().take(best).map(|fit| fit.reading).collect();
+    let chosen: Vec<Interpretation> = analytic.iter().take(best).map(|fit| fit.interpretation).collect();
     let transaction = fits(Level::Transaction, &chosen)?;
     let rounding_percent = rounding_percent(&analytic);
     let least = analytic.first().map_or(f64::NAN, |fit| fit.mean_error_percent);
     // Errors within the rounding of printed digits are indistinguishable.
     let as_good = analytic.iter().filter(|fit| fit.mean_error_percent <= least + rounding_percent).count();
     let left_out = FIGURES.iter().filter_map(|id| left_out(&analytic, id)).collect();
-    Ok(Readings { schema: "pxpl5-readings/1", analytic, transaction, left_out, as_good, rounding_percent })
+    Ok(Interpretations {
+        schema: "pxpl5-interpretations/1",
+        analytic,
+        transaction,
+        left_out,
+        as_good,
+        rounding_percent,
+    })
 }
 
 /// Groups the interpretations that differ at most in the number of regions in a backing store. Each group begins with
 /// the interpretation with the fewest regions. If no backing store is ever full in the run of this interpretation, the
 /// result also holds for the rest of the group.
-fn groups(readings: &[Reading]) -> Vec<Vec<Reading>> {
-    let mut groups: BTreeMap<Reading, Vec<Reading>> = BTreeMap::new();
-    for reading in readings {
-        let Reading { samples, fields, kept, .. } = Reading::USUAL;
-        groups.entry(Reading { samples, fields, kept, ..*reading }).or_default().push(*reading);
+fn groups(interpretations: &[Interpretation]) -> Vec<Vec<Interpretation>> {
+    let mut groups: BTreeMap<Interpretation, Vec<Interpretation>> = BTreeMap::new();
+    for interpretation in interpretations {
+        let Interpretation { samples, fields, kept, .. } = Interpretation::USUAL;
+        groups.entry(Interpretation { samples, fields, kept, ..*interpretation }).or_default().push(*interpretation);
     }
-    let mut groups: Vec<Vec<Reading>> = groups.into_values().collect();
-    groups.iter_mut().for_each(|group| group.sort_by_key(|reading| reading.kept));
+    let mut groups: Vec<Vec<Interpretation>> = groups.into_values().collect();
+    groups.iter_mut().for_each(|group| group.sort_by_key(|interpretation| interpretation.kept));
     groups
 }
 
 fn ranked(mut fits: Vec<Fit>) -> Vec<Fit> {
-    fits.sort_by(|a, b| a.mean_error_percent.total_cmp(&b.mean_error_percent).then(a.reading.cmp(&b.reading)));
+    fits.sort_by(|a, b| {
+        a.mean_error_percent.total_cmp(&b.mean_error_percent).then(a.interpretation.cmp(&b.interpretation))
+    });
     fits
 }
 
 fn left_out(fits: &[Fit], id: &'static str) -> Option<LeaveOneOut> {
     let chosen = fits.iter().min_by(|a, b| a.mean_error_without(id).total_cmp(&b.mean_error_without(id)))?;
     let figure = chosen.figures.iter().find(|figure| figure.id == id)?;
-    Some(LeaveOneOut { id, chosen: chosen.reading, words: chosen.words.clone(), error_percent: figure.error_percent })
+    Some(LeaveOneOut {
+        id,
+        chosen: chosen.interpretation,
+        words: chosen.words.clone(),
+        error_percent: figure.error_percent,
+    })
 }
 
 /// Returns the mean rounding error of the figures in percent. The rounding error of a figure is half of its last digit,
@@ -122,9 +136,9 @@ mod tests {
     #[test]
     fn sharing_runs_among_interpretations_changes_no_fit() {
         let shared = Bench::new(Level::Analytic).with_mig(1, 12);
-        for reading in Reading::all().into_iter().step_by(67) {
+        for interpretation in Interpretation::all().into_iter().step_by(67) {
             let alone = Bench::new(Level::Analytic).with_mig(1, 12);
-            let [one, other] = [&shared, &alone].map(|bench| Fit::of(bench, reading).expect("it runs"));
+            let [one, other] = [&shared, &alone].map(|bench| Fit::of(bench, interpretation).expect("it runs"));
             assert_eq!(serde_json::to_string(&one).ok(), serde_json::to_string(&other).ok(), "{}", one.words);
         }
     }

@@ -3,7 +3,7 @@
 
 mod support;
 
-use pxpl5::figures::{Bench, ROOM, Reading};
+use pxpl5::figures::{Bench, Interpretation, ROOM};
 use pxpl5::scene::{HeadMotion, HeadPath, Scene, Sway, builtin};
 use pxpl5::{
     Experiment, ExperimentError, Eye, FinishedRegions, Level, MachineConfig, Measured, Outcome, Pixels,
@@ -14,7 +14,7 @@ use pxpl5::{
 const FIELD_MS: f64 = 1001.0 / 60.0;
 
 fn bench(level: Level, kept: u64, finished: FinishedRegions) -> Bench {
-    Bench::new(level).with_mig(2, 60).with(Reading { kept, finished, ..Reading::USUAL })
+    Bench::new(level).with_mig(2, 60).with(Interpretation { kept, finished, ..Interpretation::USUAL })
 }
 
 /// Returns every number of regions that a renderer may keep, with either rule.

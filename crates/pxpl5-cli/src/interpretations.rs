@@ -1,4 +1,4 @@
-//! The command `pxpl5 readings`, which ranks interpretations of the papers on Rendering Control by their fit to the
+//! The command `pxpl5 interpretations`, which ranks interpretations of the papers on Rendering Control by their fit to the
 //! published figures.
 
 use crate::budget::BudgetArgs;
@@ -9,7 +9,7 @@ use crate::terminal::{advance, answer, json_text, progress};
 use clap::Args;
 use pxpl5::Level;
 use pxpl5::figures::Bench;
-use pxpl5::readings::{Fit, LeaveOneOut, Readings, run as rank};
+use pxpl5::interpretations::{Fit, Interpretations, LeaveOneOut, run as rank};
 use std::fmt::Write;
 
 /// Rank all interpretations of the papers' open questions by how well they explain the figures of Rendering Control.
@@ -20,10 +20,10 @@ use std::fmt::Write;
 /// does meanwhile with the renderer.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
-  pxpl5 readings
-  pxpl5 readings --best 5 --rows 40
-  pxpl5 readings --json > readings.json")]
-pub(crate) struct ReadingsArgs {
+  pxpl5 interpretations
+  pxpl5 interpretations --best 5 --rows 40
+  pxpl5 interpretations --json > interpretations.json")]
+pub(crate) struct InterpretationsArgs {
     /// Number of the best interpretations that are also simulated at the transaction level.
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = whole::<u64>(0, 256))]
     best: u64,
@@ -46,20 +46,22 @@ pub(crate) struct ReadingsArgs {
     budget: BudgetArgs,
 }
 
-pub(crate) fn run(args: ReadingsArgs) -> Result<(), CliError> {
-    let study = Study::Readings { seeds: args.seeds, frames: args.frames, best: args.best };
+pub(crate) fn run(args: InterpretationsArgs) -> Result<(), CliError> {
+    let study = Study::Interpretations { seeds: args.seeds, frames: args.frames, best: args.best };
     args.budget.admit_study(study, "take fewer --seeds, --frames or --best")?;
     let bench = Bench::new(Level::Analytic).with_mig(args.seeds, args.frames);
-    let bar = progress(0, "readings", args.quiet);
-    let readings = rank(&bench, args.best as usize, |done, of| advance(&bar, done, of));
+    let bar = progress(0, "interpretations", args.quiet);
+    let interpretations = rank(&bench, args.best as usize, |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
-    let readings = readings?;
-    answer(args.json, args.quiet, &json_text(&readings)?, || text(&readings, args.rows))
+    let interpretations = interpretations?;
+    answer(args.json, args.quiet, &json_text(&interpretations)?, || text(&interpretations, args.rows))
 }
 
-fn text(readings: &Readings, rows: usize) -> String {
-    let mut text = format!("{} interpretations\n", readings.analytic.len());
-    for (level, fits) in [("analytic level", &readings.analytic), ("transaction level", &readings.transaction)] {
+fn text(interpretations: &Interpretations, rows: usize) -> String {
+    let mut text = format!("{} interpretations\n", interpretations.analytic.len());
+    for (level, fits) in
+        [("analytic level", &interpretations.analytic), ("transaction level", &interpretations.transaction)]
+    {
         if let Some(first) = fits.first() {
             let _ = write!(text, "\n{level}, sorted by mean error\n{}", header(first));
             fits.iter().take(rows).for_each(|fit| text.push_str(&line(fit)));
@@ -69,10 +71,10 @@ fn text(readings: &Readings, rows: usize) -> String {
     let _ = writeln!(
         text,
         "\nThe number of interpretations that equal the best one within the printed digits ({:.2} % of a mean error) is {}.",
-        readings.rounding_percent, readings.as_good
+        interpretations.rounding_percent, interpretations.as_good
     );
     let _ = writeln!(text, "\nEach figure, predicted by the interpretation that fits the other figures best:");
-    readings.left_out.iter().for_each(|one| text.push_str(&left_out(one)));
+    interpretations.left_out.iter().for_each(|one| text.push_str(&left_out(one)));
     text
 }
 

@@ -1,7 +1,7 @@
 //! The fit of one interpretation of the papers to the published figures.
 
 use super::FIGURES;
-use crate::figures::{Bench, Figure, Reading};
+use crate::figures::{Bench, Figure, Interpretation};
 use pxpl5_run::ExperimentError;
 use serde::Serialize;
 
@@ -28,7 +28,7 @@ pub struct FigureFit {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
     /// The interpretation: one answer to each open question of the papers.
-    pub reading: Reading,
+    pub interpretation: Interpretation,
     /// The interpretation in words.
     pub words: String,
     /// Fit of each figure, in the order of [`FIGURES`].
@@ -112,13 +112,13 @@ impl Fit {
     /// # Errors
     ///
     /// Fails in the same cases as [`Bench::measure`].
-    pub fn of(bench: &Bench, reading: Reading) -> Result<Self, ExperimentError> {
-        let bench = Bench { reading, ..bench.clone() };
-        let of_reading = crate::figures::FIGURES.iter().filter(|figure| FIGURES.contains(&figure.id));
-        let figures = of_reading.map(|figure| FigureFit::new(&bench, figure)).collect::<Result<Vec<_>, _>>()?;
+    pub fn of(bench: &Bench, interpretation: Interpretation) -> Result<Self, ExperimentError> {
+        let bench = Bench { interpretation, ..bench.clone() };
+        let of_interpretation = crate::figures::FIGURES.iter().filter(|figure| FIGURES.contains(&figure.id));
+        let figures = of_interpretation.map(|figure| FigureFit::new(&bench, figure)).collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
-            reading,
-            words: reading.to_string(),
+            interpretation,
+            words: interpretation.to_string(),
             mean_error_percent: mean_without(&figures, None),
             greatest_error_percent: figures.iter().map(|figure| figure.error_percent.abs()).fold(0.0, f64::max),
             log_likelihood: figures.iter().map(FigureFit::log_likelihood).sum(),

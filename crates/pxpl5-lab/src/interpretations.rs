@@ -1,7 +1,7 @@
 //! Ranking of the interpretations of the papers: all figures of Rendering Control under every combination of answers.
 //!
 //! ```text
-//!   Reading::all() --Bench with a Reading, analytic--> Fit of each --best of them, transaction--> Readings: ranked
+//!   Interpretation::all() --Bench with an Interpretation, analytic--> Fit of each --best of them, transaction--> Interpretations: ranked
 //!                                                   |
 //!                                                   +--without one figure in turn--> LeaveOneOut: its prediction
 //! ```
@@ -16,7 +16,7 @@ mod fit;
 mod rank;
 
 pub use fit::{FigureFit, Fit};
-pub use rank::{LeaveOneOut, Readings, run};
+pub use rank::{Interpretations, LeaveOneOut, run};
 
 /// Numbers, in ACCURACY.md, of the Rendering Control figures that depend on the interpretation of the papers.
 pub const FIGURES: [&str; 12] = ["3", "4", "4b", "5", "6", "7", "7b", "7c", "16", "16b", "16c", "17"];

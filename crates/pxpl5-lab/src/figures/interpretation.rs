@@ -31,7 +31,7 @@ pub enum FieldCount {
 /// The members `samples` and `fields` define the published latencies. All other members concern the machine and the
 /// scenes. All figures are measured with the same interpretation, so that no answer is chosen for a single figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub struct Reading {
+pub struct Interpretation {
     /// Definition of the samples whose mean is a printed latency.
     pub samples: LatencySamples,
     /// Definition of the unit "field" in a published latency.
@@ -57,8 +57,8 @@ fn by_name<S: serde::Serializer>(finished: &FinishedRegions, serializer: S) -> R
 /// region take 32 bits per pixel.
 pub const ROOM: u64 = RendererTiming::PAPERS.backing_regions();
 
-impl Reading {
-    /// The interpretation with which figures are measured. `pxpl5 readings` ranks this interpretation among the best,
+impl Interpretation {
+    /// The interpretation with which figures are measured. `pxpl5 interpretations` ranks this interpretation among the best,
     /// and no text of the papers contradicts it.
     pub const USUAL: Self = Self {
         samples: LatencySamples::EachEye,
@@ -84,16 +84,19 @@ impl Reading {
     #[must_use]
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::USUAL];
-        all = varied(&all, &MACHINES, |reading, machine| Self { machine, ..reading });
-        all = varied(&all, &[false, true], |reading, culled| Self { culled, ..reading });
-        all = varied(&all, &FinishedRegions::ALL, |reading, finished| Self { finished, ..reading });
-        all = varied(&all, &KEPT, |reading, kept| Self { kept, ..reading });
-        all = varied(&all, &[1, 2], |reading, bins| Self { bins, ..reading });
-        all = varied(&all, &[LatencySamples::FirstEye, LatencySamples::EachEye], |reading, samples| Self {
+        all = varied(&all, &MACHINES, |interpretation, machine| Self { machine, ..interpretation });
+        all = varied(&all, &[false, true], |interpretation, culled| Self { culled, ..interpretation });
+        all = varied(&all, &FinishedRegions::ALL, |interpretation, finished| Self { finished, ..interpretation });
+        all = varied(&all, &KEPT, |interpretation, kept| Self { kept, ..interpretation });
+        all = varied(&all, &[1, 2], |interpretation, bins| Self { bins, ..interpretation });
+        all = varied(&all, &[LatencySamples::FirstEye, LatencySamples::EachEye], |interpretation, samples| Self {
             samples,
-            ..reading
+            ..interpretation
         });
-        varied(&all, &[FieldCount::Exact, FieldCount::Whole], |reading, fields| Self { fields, ..reading })
+        varied(&all, &[FieldCount::Exact, FieldCount::Whole], |interpretation, fields| Self {
+            fields,
+            ..interpretation
+        })
     }
 
     fn answers(&self) -> [String; 7] {
@@ -165,11 +168,15 @@ const KEPT: [u64; 4] = [1, 2, 3, ROOM];
 
 /// Returns one copy of each interpretation for each answer in `answers`. The function `answer` sets the answer in a
 /// copy.
-fn varied<A: Copy>(readings: &[Reading], answers: &[A], answer: impl Fn(Reading, A) -> Reading) -> Vec<Reading> {
-    readings.iter().flat_map(|reading| answers.iter().map(|one| answer(*reading, *one))).collect()
+fn varied<A: Copy>(
+    interpretations: &[Interpretation],
+    answers: &[A],
+    answer: impl Fn(Interpretation, A) -> Interpretation,
+) -> Vec<Interpretation> {
+    interpretations.iter().flat_map(|interpretation| answers.iter().map(|one| answer(*interpretation, *one))).collect()
 }
 
-impl std::fmt::Display for Reading {
+impl std::fmt::Display for Interpretation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.answers().join(", "))
     }
@@ -182,16 +189,16 @@ mod tests {
 
     #[test]
     fn every_combination_of_answers_is_one_interpretation_and_the_usual_interpretation_is_in_the_list() {
-        let all = Reading::all();
+        let all = Interpretation::all();
         assert_eq!(all.len(), 4 * 2 * 2 * 4 * 2 * 2 * 2);
         assert_eq!(all.iter().collect::<BTreeSet<_>>().len(), all.len());
-        assert!(all.contains(&Reading::USUAL) && all.contains(&Reading::THEORY));
+        assert!(all.contains(&Interpretation::USUAL) && all.contains(&Interpretation::THEORY));
     }
 
     #[test]
     fn a_neighbouring_interpretation_differs_in_the_answer_to_one_question() {
         // The neighbours are three other machines, three other numbers of regions, and the other answer to each of five
         // questions.
-        assert_eq!(Reading::USUAL.neighbours().len(), 3 + 3 + 5);
+        assert_eq!(Interpretation::USUAL.neighbours().len(), 3 + 3 + 5);
     }
 }
