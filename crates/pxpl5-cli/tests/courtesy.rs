@@ -36,7 +36,7 @@ fn a_value_outside_its_range_causes_one_warning_with_range_and_source() {
 #[test]
 fn times_of_the_timing_table_at_the_cycle_level_cause_a_warning() {
     let folder = Folder::new("times-of-the-table");
-    let few = ["--scene", "full-screen:4", "--fields", "45", "--level"];
+    let few = ["--scene", "full-screen:4", "--fields", "90", "--level"];
     let run = |pipeline: &[&str], level: &str| {
         let output = folder.run(&[&["run", "--json", "--pipeline"], pipeline, &few, &[level]].concat());
         let warnings = json(&output)["warnings"].as_array().cloned().unwrap_or_default();
