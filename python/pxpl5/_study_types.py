@@ -245,7 +245,7 @@ class FigureFitData(TypedDict):
     simulated_sd: float | None
 
 
-class ReadingFitData(TypedDict):
+class InterpretationFitData(TypedDict):
     """The fit of one interpretation of the papers' open questions."""
 
     interpretation: dict[str, object]
@@ -270,8 +270,8 @@ class InterpretationsData(TypedDict):
     """Interpretations of the papers' open questions, ranked."""
 
     schema: str
-    analytic: list[ReadingFitData]
-    transaction: list[ReadingFitData]
+    analytic: list[InterpretationFitData]
+    transaction: list[InterpretationFitData]
     left_out: list[LeaveOneOutData]
     as_good: int
     rounding_percent: float | None
