@@ -1,5 +1,5 @@
-//! The command `pxpl5 interpretations`, which ranks interpretations of the papers on Rendering Control by their fit to the
-//! published figures.
+//! The command `pxpl5 interpretations`, which ranks interpretations of the papers on Rendering Control by their fit to
+//! the published figures.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;

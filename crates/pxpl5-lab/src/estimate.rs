@@ -238,8 +238,8 @@ impl RunWork {
 pub enum Study {
     /// The measurement of all published figures.
     Figures,
-    /// The ranking of interpretations ([`crate::interpretations`]), including the simulation of the fly-through of the scene
-    /// "mig".
+    /// The ranking of interpretations ([`crate::interpretations`]), including the simulation of the fly-through of the
+    /// scene "mig".
     Interpretations {
         /// Number of seeds of the fly-through.
         seeds: u64,

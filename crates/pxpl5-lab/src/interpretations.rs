@@ -1,7 +1,7 @@
 //! Ranking of the interpretations of the papers: all figures of Rendering Control under every combination of answers.
 //!
 //! ```text
-//!   Interpretation::all() --Bench with an Interpretation, analytic--> Fit of each --best of them, transaction--> Interpretations: ranked
+//!   Interpretation::all() --Bench, analytic level--> Fit of each --the best, transaction level--> Interpretations
 //!                                                   |
 //!                                                   +--without one figure in turn--> LeaveOneOut: its prediction
 //! ```

@@ -58,8 +58,8 @@ fn by_name<S: serde::Serializer>(finished: &FinishedRegions, serializer: S) -> R
 pub const ROOM: u64 = RendererTiming::PAPERS.backing_regions();
 
 impl Interpretation {
-    /// The interpretation with which figures are measured. `pxpl5 interpretations` ranks this interpretation among the best,
-    /// and no text of the papers contradicts it.
+    /// The interpretation with which figures are measured. `pxpl5 interpretations` ranks this interpretation among the
+    /// best, and no text of the papers contradicts it.
     pub const USUAL: Self = Self {
         samples: LatencySamples::EachEye,
         fields: FieldCount::Whole,
