@@ -42,7 +42,7 @@ impl Work for WholeList<'_> {
     }
 }
 
-/// Returns the settings that select i860 code without bins, because a later search finds the primitives in each region.
+/// Returns the settings for i860 code that fills no bins. A later search finds the primitives of each region instead.
 pub(crate) const fn picture(viewport: Viewport, layout: Layout) -> Picture {
     Picture { viewport, shading: Shading::Gouraud, binning: RegionBinning::All, layout, pixels: false }
 }

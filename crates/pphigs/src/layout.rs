@@ -52,7 +52,7 @@ pub(crate) const ORDER_HEAD: u32 = 0x7_B800;
 pub(crate) const ORDER_VIEWS: u32 = 0x7_C000;
 pub(crate) const MOST_WINDOWS: u32 = 64;
 pub(crate) const WINDOW_BYTES: u32 = 32;
-/// Bytes at the end of memory for the primitives that one search finds.
+/// Size in bytes of the area at the end of memory for the list of primitives that one search finds.
 pub(crate) const ENTRY_BYTES: u32 = 4 * (LISTS_END - PIECES) / 8;
 /// Largest number of views that share a set of bins: the six faces of a cube.
 pub(crate) const MOST_VIEWS: u32 = 6;

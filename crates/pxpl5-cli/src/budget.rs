@@ -47,8 +47,9 @@ pub(crate) struct Watch {
     fields: u64,
     begun: Instant,
     bytes_before: Option<f64>,
-    /// Number of fields, time and memory at the first check. A dry run or the tuning of a predictor happens once before
-    /// the run. This work must not be extrapolated per field.
+    /// Number of simulated fields at the first check, and the time and memory until then. Later checks subtract these
+    /// values and extrapolate only the rest. Before the first field, the time can include a dry run or the tuning of a
+    /// predictor, which happen only once.
     first: OnceCell<(u64, Taken)>,
 }
 

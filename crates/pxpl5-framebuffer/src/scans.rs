@@ -41,8 +41,9 @@ impl Scans {
     /// Returns true if a fast test proves that the beam has shown the older region completely. The test treats the even
     /// rows and the odd rows of the region as two groups.
     ///
-    /// For each group, a field must show the first and the last pixel between the write of the older region and the
-    /// write of the newer region. The beam then also shows the other pixels of the group between these writes.
+    /// For each group, the test looks for a field in which the beam passes the first and the last pixel at the right
+    /// time. Both passes must come after the older region was written, and before the newer region was written. The
+    /// beam then also passes the other pixels of the group in this time.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
         // The older region must be complete before a field shows it.
         let Some(written) = pair.older.last_at() else { return false };

@@ -7,9 +7,10 @@
 //! - For each edge of the triangle, some point of the pixel-centre box is on the inner side. Points on right and bottom
 //!   edges do not count.
 //!
-//! Together, the two conditions are exact, because they test all sides of the Minkowski sum of triangle and box. Every
-//! region with a covered pixel is touched. A touched region can have no covered pixel, if the triangle passes between
-//! the pixel centres. A triangle between two adjacent columns or rows of pixel centres touches no region.
+//! If both conditions hold, the triangle overlaps the pixel-centre box, because the conditions test all sides of the
+//! Minkowski sum of triangle and box. Every region with a covered pixel is touched. A touched region can have no
+//! covered pixel, if the triangle passes between the pixel centres. A triangle between two adjacent columns or rows of
+//! pixel centres touches no region.
 
 use crate::outline::{Outline, extent};
 use crate::regions::RegionMask;

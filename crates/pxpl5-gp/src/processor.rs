@@ -110,7 +110,7 @@ impl Bus for Memory {
     }
 }
 
-/// Size of a data-cache line in bytes. The output of a bin context begins at a multiple of this size.
+/// Size of a data-cache line in bytes. The memory for each of the two sets of bins begins at a multiple of this size.
 const LINE: u32 = i860::timing::ChipSizes::PAPERS.line_bytes as u32;
 
 /// Integer register that holds the return address of a call.

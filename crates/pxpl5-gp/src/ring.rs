@@ -12,8 +12,10 @@
 //!
 //! Before each call, Rust code does the work of the ring interface's DMA. The simulated inbox holds any number of
 //! messages, but there are few receive buffers. The Rust code therefore puts a message into the next receive buffer
-//! only when the message software begins. For the i860 code, all earlier chains are already sent, because
-//! [`crate::Gp::start`] simulates the queue of chains.
+//! only when the message software begins.
+//!
+//! Before the i860 code builds a chain of messages, the Rust code marks all earlier chains as sent. The i860 code thus
+//! finds no unsent chain. [`crate::Gp::start`] simulates the queue of chains instead.
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};

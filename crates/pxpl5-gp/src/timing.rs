@@ -225,8 +225,8 @@ impl HostTiming {
         Span::from_ns(self.application_ns - jitter + spread as u64)
     }
 
-    /// Returns the timing table of the board that models the host. Only its CPU time of messages and its memory size
-    /// have an effect.
+    /// Returns the timing table of the board that models the host. The host model uses only two values of the table:
+    /// the CPU time to send or receive a message, and the memory size.
     #[must_use]
     pub const fn board(&self) -> GpTiming {
         GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }

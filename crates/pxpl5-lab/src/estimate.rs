@@ -260,9 +260,10 @@ pub enum Study {
 /// CPU seconds to measure all published figures. This constant and the constants below were measured with the build
 /// profile `dist` on one core of 3 GHz (25 November 2026).
 const FIGURES_S: f64 = 36.0;
-/// CPU seconds to rank all interpretations with one frame of an application scene. Each interpretation that is also
-/// simulated with events adds the fraction `INTERPRETATIONS_BEST` of this time.
+/// CPU seconds to rank all interpretations with one frame of an application scene.
 const INTERPRETATIONS_FRAME_S: f64 = 0.0172;
+/// Additional time for each interpretation that is also simulated with events, as a fraction of the time to rank all
+/// interpretations.
 const INTERPRETATIONS_BEST: f64 = 0.1;
 /// CPU seconds to simulate the published figures at all levels of detail. The next two constants are the CPU seconds of
 /// one random experiment at all levels, and of the measurement of all simulation speeds.

@@ -4,7 +4,7 @@
 //! level agrees closely enough with the transaction level.
 //!
 //! - *one at a time*: one parameter at the low or high end of its range, all others at their presets
-//! - *interpretations*: a different answer to one open question of the papers at a time ([`Interpretation::neighbours`])
+//! - *interpretations*: another answer to one open question of the papers at a time ([`Interpretation::neighbours`])
 //! - *joint*: [`SAMPLES`] machines with every parameter drawn uniformly from its range, from a fixed seed
 //!
 //! Parameters that were fitted to a figure keep their values, except the two times per triangle of Slats. These two
@@ -23,7 +23,7 @@ use pxpl5_sim::mix;
 use pxpl5_sim::parameters::Provenance;
 use serde::Serialize;
 
-/// Number of random machines in the joint set.
+/// Number of machines in the set of experiments *joint*. Each machine has random values of all varied parameters.
 pub const SAMPLES: u64 = 500;
 
 const SEED: u64 = 0x5EED_0F05;
@@ -258,7 +258,8 @@ impl Interval {
     }
 }
 
-/// Returns the value nearest to the position `share` in a sorted list, from 0 (first) to 1 (last).
+/// Returns a percentile of an ascending list. `share` is the position of the percentile: 0 means the first value of the
+/// list, and 1 means the last value. The position is rounded to the nearest value of the list.
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     sorted[((sorted.len() - 1) as f64 * share).round() as usize]
 }

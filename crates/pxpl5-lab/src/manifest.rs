@@ -53,8 +53,8 @@ impl Manifest {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-manifest/1";
 
-    /// Command name in the manifest of a sweep. The rows of a sweep may be the work of hours, so that other commands
-    /// never replace these rows.
+    /// Command name that the manifest in the folder of a sweep states. Other commands never replace the rows in a
+    /// folder with this command name, because the rows can be the work of hours.
     pub const SWEEP: &'static str = "sweep";
 
     /// Creates an empty manifest for a command.

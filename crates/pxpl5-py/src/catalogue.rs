@@ -16,8 +16,10 @@ pub(crate) fn python<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyR
     Ok(pythonize(py, &value)?)
 }
 
-/// Converts a Python number to the value of a setting. An integer stays an integer. Any other value raises
-/// `SettingError` with the path of the parameter.
+/// Converts a Python number to the value of a setting. An integer from 0 to 2^64 - 1 becomes a whole number, and every
+/// other number becomes a real number.
+///
+/// If `value` is not a number, the function raises `SettingError` with the path of the parameter.
 fn number(path: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if let Ok(whole) = value.extract::<u64>() {
         return Ok(Value::Whole(whole));

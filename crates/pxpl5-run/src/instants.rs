@@ -8,9 +8,11 @@ const BLOCK: u64 = 256;
 
 /// A compressed list of instants. Each instant has a number, such as the number of its view, and the numbers ascend.
 ///
-/// An entry stores how many numbers were skipped before it, and the difference between its instant and an expected
-/// instant. A step is the difference of two successive instants. The expected instant is the last instant plus the
-/// second last step. If two steps alternate, for example two and three periods, the difference is 0 and takes one byte.
+/// A *step* is the time between two successive instants. Two lengths of steps often alternate, for example two and
+/// three periods. The next step is therefore expected to be as long as the step before the last step.
+///
+/// An entry stores how many numbers were skipped before the entry. It also stores the difference between its instant
+/// and the instant after the expected step. If the steps alternate exactly, the difference is 0 and takes one byte.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Instants {
     written: Vec<u8>,

@@ -77,8 +77,11 @@ impl ResultWindow {
         Self { first_period: PeriodNumber(first), last_period, steady_from }
     }
 
-    /// Moves the start of the window to `from` or later, by whole intervals between due pictures. Returns `None` if
-    /// nothing remains.
+    /// Moves the start of the window to a later period if the window begins before `from`. The start moves by the
+    /// smallest multiple of `every` periods with which the window begins at or after `from`.
+    ///
+    /// `every` is the number of periods from one due picture to the next. `None` counts as 1. Returns `None` if no
+    /// period of the window remains.
     pub(crate) fn not_before(self, from: Option<PeriodNumber>, every: Option<u64>) -> Option<Self> {
         let every = every.unwrap_or(1).max(1);
         let later = from.map_or(0, |from| from.0.saturating_sub(self.first_period.0).div_ceil(every) * every);

@@ -143,8 +143,9 @@ impl WebMachine {
         diagram::age(self.0.stepper()).to_string()
     }
 
-    /// Returns the outlines of the ideal picture at the present instant as bytes, with transparent pixels elsewhere.
-    /// The ideal picture has no latency. The result is empty if a surface has no ideal picture.
+    /// Returns the outlines in the ideal picture of a surface at the present instant. The ideal picture has no latency.
+    /// Each pixel has four bytes: red, green, blue and opacity. Pixels outside the outlines are transparent. The result
+    /// is empty if the surface has no ideal picture.
     #[must_use]
     pub fn outlines(&self, surface: u16) -> Vec<u8> {
         self.0.outlines(surface)

@@ -85,8 +85,7 @@ impl CommandContent {
 /// The region of a picture for which renderer commands draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RegionPlace {
-    /// Ring port of the frame buffer that will receive the region. `None` if the commands suit any frame buffer and no
-    /// program has set the port.
+    /// Ring port of the frame buffer that will receive the region. `None` if no program has stated the frame buffer.
     pub frame_buffer: Option<NodeId>,
     /// Lines of the video frame that the rows of the picture fill.
     pub lines: Lines,

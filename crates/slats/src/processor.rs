@@ -135,7 +135,8 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
 }
 
 impl Backup {
-    /// Records that a field is complete, and shows the field at the next retrace if this is the field's period.
+    /// Records that a field is complete. If `field` is the number of the next period, the function also requests that
+    /// the frame buffers show the field at the next retrace.
     ///
     /// The field counts as complete before its bottom regions are copied, because the copies are faster than the beam.
     async fn show_next(self, gp: &Gp, state: &SharedState, field: PeriodNumber) {

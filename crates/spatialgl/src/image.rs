@@ -1,4 +1,5 @@
-//! The target image of one slice: eight-bit colours, the stencil, and depth if nearer surfaces hide farther surfaces.
+//! The image into which one slice is drawn: eight-bit colours, the stencil and the depth. The image has depths only if
+//! hidden surfaces are removed.
 
 use crate::command::Combine;
 use crate::projection::Size;

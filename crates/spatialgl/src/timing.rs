@@ -54,7 +54,8 @@ pub struct VolumeTime {
     pub gpu_ms: f64,
     /// Bus time for reading back from the GPU.
     pub readback_ms: f64,
-    /// Bus time for sending the same bytes to the projector.
+    /// Bus time for sending the pixels to the projector, after they were read back from the GPU. Equal to
+    /// `readback_ms`, because the number of bytes is equal.
     pub projector_ms: f64,
 }
 

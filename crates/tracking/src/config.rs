@@ -317,11 +317,11 @@ parameter_table! {
         speed: f64 = 8.0, "m/s", Assumed, 1.0..=100.0, "20 times the mean of recorded traces";
         /// Fastest turn of the head that a predictor accepts. A report that implies a faster turn is rejected.
         turn: f64 = 1000.0, "deg/s", Assumed, 370.0..=10000.0, "2.7 times the peak of LIST83";
-        /// Distance between two successive reported positions that noise alone can cause. This distance is subtracted
-        /// before the speed is compared with the limit `speed`.
+        /// Greatest distance between two successive reported positions of a still head, caused by noise. The predictor
+        /// subtracts this value from the reported distance before it compares the speed with the limit `speed`.
         distance: f64 = 30.0, "mm", Assumed, 1.0..=1000.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
-        /// Angle between two successive reported orientations that noise alone can cause. This angle is subtracted
-        /// before the turn is compared with the limit `turn`.
+        /// Greatest angle between two successive reported orientations of a still head, caused by noise. The predictor
+        /// subtracts this value from the reported angle before it compares the turn with the limit `turn`.
         angle: f64 = 6.0, "deg", Assumed, 0.1..=90.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
         /// Number of successive reports that a predictor rejects after a jump of the pose. The predictor accepts the
         /// pose of the next report and restarts.

@@ -12,8 +12,9 @@ pxpl5_sim::parameters::parameter_table! {
         /// Number of rings of cells of each memory, divided by the number of rings of cells of the memory that is drawn
         /// twice as often. Memory 1 holds one ring.
         ring_growth: 2, "1", Derived, 1..=2 in 1..=8, "CPR05 2.2: each memory has half the rate of the one before, so it may begin twice as far away; 1 gives equal rings";
-        /// Distance that determines when a memory is due. The value 0 selects the distance to the border of the block
-        /// of cells that the memory holds. The value 1 selects the distance to the memory's nearest occupied cell.
+        /// Choice of the distance from the eye that determines when a memory is due. With 0, the distance ends at the
+        /// border beyond which the cells of the memory lie. With 1, the distance ends at the memory's nearest occupied
+        /// cell.
         to_held_cells: 0, "1", Assumed, 0..=1, "not printed; `pxpl5 arp interpretations` ranks both";
         /// Side of a cell, which is a square of the floor.
         cell_m: f64 = 2.5, "m", Derived, 1.0..=100.0 in 1e-3..=1e6, "fitted to one rate of table 1";

@@ -240,7 +240,8 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns true if registers other than `but` are free for the value that a push would move out of the pipe.
+    /// Returns true if the registers have room for a push into the pipe. The push can move a value out of the pipe,
+    /// which then needs one free register or a free pair of registers. The register `but` does not count as free.
     fn can_push(&self, pipe: &[Option<usize>], stages: usize, but: Option<u8>) -> bool {
         match pipe[STAGES - stages] {
             Some(value) => self.floats.find(self.width(value).registers(), self.now, but).is_some(),

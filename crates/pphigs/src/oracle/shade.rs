@@ -1,5 +1,5 @@
-//! Colours of pixels. With Phong shading, a pixel stores a surface, whose colour is computed after all primitives are
-//! drawn.
+//! Colours of pixels. With Phong shading, each pixel first stores the normal and the unlit colour of the visible
+//! primitive. The lit colour is computed after all primitives are drawn.
 
 use pxpl5_renderer::Shade;
 use pxpl5_wire::Linear;

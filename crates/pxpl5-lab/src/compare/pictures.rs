@@ -54,8 +54,8 @@ pub fn edge_scene(yaw_deg: f64) -> Scene {
     .expect("a quadrangle is a scene")
 }
 
-/// Draws the edge on a machine while the head turns. The tracker is perfect and the head's velocity is constant. The
-/// pictures therefore differ only in the instant for which each line is drawn.
+/// Draws the vertical edge of the scene [`edge_scene`] on a machine while the head turns. The tracker is perfect and
+/// the head's velocity is constant. The pictures therefore differ only in the instant for which each line is drawn.
 ///
 /// # Errors
 ///

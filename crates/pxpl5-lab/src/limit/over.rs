@@ -113,11 +113,11 @@ struct Trial {
 }
 
 impl OverQuery {
-    /// Returns the values of a setting from `from` to `to`. Whole numbers are tried if both ends are whole. `None`
-    /// means the default value of an end.
+    /// Returns the values of a setting that a search can try, from `from` to `to`. The values are whole numbers if both
+    /// ends are whole and not negative. If an end is `None`, the default range gives this end.
     ///
-    /// For a number of boards, the default values end at the number in the largest preset. For any other parameter, the
-    /// default values cover the range that the sources of the parameter allow.
+    /// The default range of a number of boards is 1 to the number of boards in the largest preset. The default range of
+    /// any other parameter is the range that the sources of the parameter allow.
     ///
     /// # Errors
     ///

@@ -51,8 +51,9 @@ pub const fn square_root_clocks(n: u32) -> u32 {
 
 /// Returns the number of clocks of a product of an `a`-bit factor and a `b`-bit factor, with a result of `w` bits.
 ///
-/// For each bit of the second factor, the first factor and a carry are added. Then each bit of the result above the
-/// product takes one clock.
+/// For each bit of the second factor, an addition takes one clock for each bit of the first factor and one clock for
+/// the carry. Additions leave out bits beyond the result. If the result has more than `a + b` bits, each further bit
+/// takes one clock.
 #[must_use]
 pub fn multiply_clocks(w: u32, a: u32, b: u32) -> u32 {
     let additions: u32 = (0..b.min(w)).map(|j| (a + 1).min(w - j)).sum();

@@ -1,4 +1,5 @@
-//! The error of a file or text that cannot be used, and the conversion of users' files to text.
+//! The error of a file or text that cannot be used. The function [`text_of`] converts the bytes of a file to text, and
+//! returns this error if a byte is not UTF-8.
 
 use std::fmt::{self, Display};
 use std::io;
