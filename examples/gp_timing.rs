@@ -348,12 +348,12 @@ fn strip_causes() {
 fn lower_bounds() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n### Lower bound of the resources (Phong, dual)\n");
     println!(
-        "An instruction pair has a floating-point slot and a core slot. The table counts the slots that the operations of a part \
-         of the code (*stretch*) need. A product of doubles needs two slots. No schedule of a stretch has fewer pairs than the \
-         larger of the stretch's two numbers of slots. A stretch that transforms corners covers three corners. With separate \
-         corners, three corners form one triangle. In a strip, three corners form three triangles.\n"
+        "An instruction pair has a floating-point slot and a core slot. The table counts the slots that the operations of a \
+         linear stretch (a part of the code without branches) need. A product of doubles needs two slots. No schedule of a linear \
+         stretch has fewer pairs than the larger of its two numbers of slots. A linear stretch that transforms corners transforms \
+         three corners. With separate corners, three corners form one triangle. In a strip, three corners form three triangles.\n"
     );
-    head(&["stretch", "floating-point slots", "core slots", "least pairs", "pairs of the schedule"]);
+    head(&["linear stretch", "floating-point slots", "core slots", "least pairs", "pairs of the schedule"]);
     for (list, name) in [(KernelList::Strips, "strip"), (KernelList::Triangles, "own corners")] {
         for (slots, part) in linear::slots(&scheduled_phong(list).source())?.iter().zip(["three corners", "set-up"]) {
             let least = slots.floating.max(slots.core);

@@ -233,8 +233,9 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
         );
     }
     text.push_str(
-        "\nThe latencies are `latency_fields` of the pair of eyes, with back faces. Figure 7 counts whole retraces of each eye\n\
-         without back faces, so its values are lower ([One scene, several latencies](guide/latency.md#one-scene-several-latencies)).\n",
+        "\nThe column *latency* gives the latency of the pair of eyes in fields (`latency_fields`), with back faces. Figure 7 has\n\
+         lower values for two reasons. First, figure 7 counts whole retraces of each eye separately. Second, figure 7 leaves out\n\
+         back faces ([One scene, several latencies](guide/latency.md#one-scene-several-latencies)).\n",
     );
     text
 }

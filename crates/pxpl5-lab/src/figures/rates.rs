@@ -16,9 +16,10 @@ pub(super) const ABOUT: &str = "The rates of triangles are measured with the sce
 scene `typical:N` are right-angled, have 18 pixels, touch about 1.3 regions each, and are spread evenly. J. Leech of the \
 Pixel-Planes 5 team stated the published rates on 3 April 1991 in the newsgroup sci.virtual-worlds. Leech expected further \
 optimization of the code, and he stated neither the size of the machine nor the size of the triangles.\n\n\
-For the intervals of the rates, one parameter at a time is set to both ends of its range. The varied parameters are the \
-depth of the renderers' FIFO, the channels that a sender can use, and the channels for messages to FIFOs. The times of a \
-triangle on a processor and on a renderer also vary. All runs simulate events.";
+The column *interval* shows how much the rates depend on single parameters. In each run for an interval, one parameter has \
+the lowest or the highest value of its range. The varied parameters are the depth of the renderers' FIFO, the channels that a \
+sender can use, and the channels for messages to FIFOs. The times of a triangle on a processor and on a renderer also vary. All \
+runs simulate events.";
 
 /// Parameters that limit the machine's triangle rate with Gouraud shading.
 const OF_GOURAUD: &[&str] = &[

@@ -16,8 +16,8 @@ pub(super) const TITLE: &str = "Trackers";
 
 pub(super) const ABOUT: &str = "The unpatched operating system of the host polls the serial line every 30 ms (TR94). A report \
 waits for the next poll, and until then the host uses the pose of the last poll. The filter of the Fastrak computes its new \
-output x' = a x + (1 - a) x' from the report x and the previous output x'. The filter delays a steady turn by dt (1 - a) / a, \
-with dt = 1/120 s.";
+output a x + (1 - a) x' from the report x and the previous output x'. The constant a is the gain of the filter. For a gain a, \
+the filter delays a steady turn by dt (1 - a) / a. Here dt is the interval of 1/120 s between two reports.";
 
 pub(super) fn measurements() -> Vec<Measurement> {
     let row = |id, (paper, section), statement, value, experiment, cause, measure| Measurement {
