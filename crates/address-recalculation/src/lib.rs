@@ -63,7 +63,7 @@
 //!
 //! # Reference model and fast model
 //!
-//! [`reference`] is the reference model. This model simulates, clock by clock, the registers of every stage, partial
+//! [`mod@reference`] is the reference model. This model simulates, clock by clock, the registers of every stage, partial
 //! products, restoring dividers and banks. [`Lookup`] is the fast model. This model processes 64 pixels at a time in
 //! doubles, which are exact for these word lengths. tests/equal.rs checks that the two models give identical bits.
 //!
