@@ -136,7 +136,7 @@ impl TrackerConfig {
     pub fn polhemus_3space_by(tables: &Tables) -> Self {
         Self {
             host: SerialRead::unix_by(tables),
-            distortion: Some(MagneticDistortion::floor_below_by(tables, DVec3::ZERO)),
+            distortion: Some(MagneticDistortion::floor_below(tables, DVec3::ZERO)),
             ..Self::ideal_by(tables)
                 .named("Polhemus 3Space", tables.space.rate)
                 .with_noise(tables.space.position_noise, tables.space.orientation_noise)

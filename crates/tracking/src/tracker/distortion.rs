@@ -28,15 +28,10 @@ pub struct MagneticDistortion {
 }
 
 impl MagneticDistortion {
-    /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`. Near the
-    /// transmitter, the error at a distance of r metres is 0.02 r^2 metres (assumed). Farther away than `reach_m`, the
-    /// error grows more slowly.
-    pub fn floor_below(transmitter_m: DVec3) -> Self {
-        Self::floor_below_by(&Tables::PAPERS, transmitter_m)
-    }
-
-    /// Returns the distortion by metal in the floor below a transmitter, with the numbers of `tables`.
-    pub fn floor_below_by(tables: &Tables, transmitter_m: DVec3) -> Self {
+    /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`, with the numbers
+    /// of `tables`. Near the transmitter, the error at a distance of r metres is 0.02 r^2 metres for the papers' numbers
+    /// (assumed). Farther away than `reach_m`, the error grows more slowly.
+    pub fn floor_below(tables: &Tables, transmitter_m: DVec3) -> Self {
         Self {
             transmitter_m,
             towards_metal: DVec3::NEG_Y,
