@@ -171,8 +171,10 @@ impl Manifest {
     #[must_use]
     pub fn replace(&mut self, before: &Self, folder: &Path) -> Vec<PathBuf> {
         let gone = before.files.iter().chain(&before.replaced).filter(|entry| !self.lists(&entry.name));
-        // Files that the user has changed are kept.
-        let gone: Vec<ManifestEntry> = gone.filter(|entry| is_unchanged(folder, entry)).cloned().collect();
+        // Files that the user has changed are kept. A file can be in both lists if it was replaced and written again.
+        let mut gone: Vec<ManifestEntry> = gone.filter(|entry| is_unchanged(folder, entry)).cloned().collect();
+        gone.sort_by(|a, b| a.name.cmp(&b.name));
+        gone.dedup_by(|a, b| a.name == b.name);
         self.replaced = gone;
         self.replaced.iter().map(|entry| folder.join(&entry.name)).collect()
     }
@@ -244,6 +246,10 @@ mod tests {
         // If a run ended before it removed a file, the next run removes the file.
         let mut third = Manifest::new("run");
         assert_eq!(third.replace(&next, &folder), [folder.join("gone")], "`kept` has the old contents");
+        // Another command writes the file of the list `replaced` again. The next run removes the file once.
+        next.add("gone", b"old");
+        let mut fourth = Manifest::new("run");
+        assert_eq!(fourth.replace(&next, &folder), [folder.join("gone")], "the file is in both lists");
         fs::remove_dir_all(folder).expect("ours");
     }
 

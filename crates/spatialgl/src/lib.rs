@@ -70,6 +70,8 @@ mod render;
 mod scene;
 mod slice_volume;
 mod stats;
+#[cfg(feature = "threads")]
+mod threads;
 mod tile;
 mod timing;
 mod view;
@@ -98,10 +100,11 @@ pub use scene::{SCENE_REACH, record_scene, tessellated_sphere};
 pub use slice_volume::{SliceVolume, TieRule, WedgePlanes, WedgeTest};
 pub use stats::VolumeStats;
 #[cfg(feature = "threads")]
+pub use threads::Threads;
 pub use tile::{TileGrid, Tiling};
 pub use timing::{GpuTiming, TimeModel, VolumeTime};
 pub use view::{PixelFormat, SliceView, SpatialDisplay};
-pub use workers::{OneThread, Task, Threads, Workers};
+pub use workers::{OneThread, Task, Workers};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

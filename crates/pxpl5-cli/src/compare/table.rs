@@ -136,7 +136,7 @@ fn best(comparison: &Comparison) -> String {
         return "\nNo row showed every picture that was due.\n".to_owned();
     };
     format!(
-        "\nLeast error of the rows that showed every picture: {}, {} px ({} % interval {}); all over the fields from {} on.\n",
+        "\nLeast error of the pipelines that showed every picture: {}, {} px ({} % interval {}); all over the fields from {} on.\n",
         best.pipeline,
         number(best.error.mean_px.mean, 2),
         percent(comparison.confidence),
