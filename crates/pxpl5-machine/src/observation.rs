@@ -70,7 +70,7 @@ pub struct Observation {
     /// Ring messages, and use of channels and FIFOs. `None` unless recording was enabled.
     pub traffic: Option<Box<Traffic>>,
     /// Summary of observations that were discarded to save memory.
-    pub forgotten: DiscardedSummary,
+    pub discarded: DiscardedSummary,
 }
 
 /// Summary of the observations that [`Machine::discard_before`](crate::Machine::discard_before) has discarded in a long
@@ -83,6 +83,8 @@ pub struct DiscardedSummary {
     pub first_swap: Option<PeriodNumber>,
     /// Largest number of regions that arrived for one picture, up to the last call of `discard_before`.
     pub most_regions: u32,
+    /// Number of calls of `discard_before`.
+    pub passes: u64,
 }
 
 /// One stage of a picture, from the first board that begins to the last board that ends.
@@ -154,7 +156,7 @@ impl Observation {
     /// Returns the display period of the first swap in the run, or `None` if no display has swapped.
     #[must_use]
     pub fn first_swap(&self) -> Option<PeriodNumber> {
-        self.forgotten.first_swap.or_else(|| self.swaps.iter().map(|swap| swap.tick).min())
+        self.discarded.first_swap.or_else(|| self.swaps.iter().map(|swap| swap.tick).min())
     }
 
     /// Returns the number of swaps of a port that were discarded. Returns 0 if no swap of this port is in memory.
@@ -168,7 +170,7 @@ impl Observation {
     pub fn most_regions_of_a_picture(&self) -> u32 {
         let mut of_pictures: BTreeMap<PictureNumber, u32> = BTreeMap::new();
         self.arrivals.iter().for_each(|arrival| *of_pictures.entry(arrival.target.picture).or_default() += 1);
-        of_pictures.into_values().max().unwrap_or_default().max(self.forgotten.most_regions)
+        of_pictures.into_values().max().unwrap_or_default().max(self.discarded.most_regions)
     }
 
     /// Returns the number of time stamps, arrivals and swaps in memory.
@@ -198,7 +200,8 @@ impl Observation {
         self.marks.shrink_to(2 * self.marks.len());
         self.arrivals.shrink_to(2 * self.arrivals.len());
         self.drawn.shrink_to(2 * self.drawn.len());
-        self.forgotten = DiscardedSummary { before: instant, first_swap, most_regions };
+        let passes = self.discarded.passes + 1;
+        self.discarded = DiscardedSummary { before: instant, first_swap, most_regions, passes };
     }
 
     /// Returns the swaps of a surface in memory, in the order of time.
@@ -325,7 +328,7 @@ mod tests {
         assert_eq!(of(EYES[0])[..2], [8, 10]);
         assert_eq!(of(EYES[1])[..3], [7, 9, 11]);
         assert_eq!(observation.records(), 100 + 100 + of(EYES[0]).len() + of(EYES[1]).len());
-        assert_eq!(observation.forgotten.before, Time(900));
+        assert_eq!(observation.discarded.before, Time(900));
         assert_eq!(observation.most_regions_of_a_picture(), 2);
         observation.arrivals.clear();
         assert_eq!(observation.most_regions_of_a_picture(), 2, "it stays known");

@@ -5,7 +5,6 @@ use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{HeadSum, Measured, Report};
 use pxpl5_run::{Aim, Experiment, Head, Keep, Outcome, PipelineSettings, Pixels, Raster, Registry};
 use pxpl5_scene::{Scene, builtin};
-use pxpl5_sim::Time;
 use rayon::prelude::*;
 use std::sync::Arc;
 use tracking::motion::{Motion, Pan, Pendulum, Synthetic, Walk};
@@ -88,18 +87,6 @@ fn run(experiment: &Experiment, keep: Keep) -> Outcome {
     experiment.clone().keep(keep).run().expect("it runs")
 }
 
-/// Runs an experiment that keeps statistics, and returns how often the run discarded records.
-fn run_counting_passes(experiment: &Experiment) -> (Outcome, u64) {
-    let (mut discarded_before, mut passes) = (Time::ZERO, 0);
-    let outcome = experiment.clone().keep(Keep::Statistics).run_stopping(&[], |_, machine| {
-        let before = machine.record().observation().forgotten.before;
-        passes += u64::from(before > discarded_before);
-        discarded_before = before;
-        Ok(())
-    });
-    (outcome.expect("it runs"), passes)
-}
-
 /// Returns all values of a report except the time on this computer. Numbers have enough digits to be distinguished.
 fn said(outcome: &Outcome) -> String {
     let report = Report { host_seconds: None, ..outcome.report() };
@@ -114,7 +101,8 @@ fn assert_same(experiment: &Experiment) {
     let head = experiment.tracked_head().expect("tracked");
     let name = format!("{}, {:?}", experiment.pipeline().name(), head);
     let everything = run(experiment, Keep::Everything);
-    let (statistics, passes) = run_counting_passes(experiment);
+    let statistics = run(experiment, Keep::Statistics);
+    let passes = statistics.observation().discarded.passes;
     let [expected, found] = [&everything, &statistics].map(said);
     let other = expected.lines().zip(found.lines()).find(|(expected, found)| expected != found);
     assert_eq!(other, None, "{name}");

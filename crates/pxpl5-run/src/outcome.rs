@@ -72,7 +72,7 @@ impl Outcome {
     /// the last periods.
     #[must_use]
     pub fn has_discarded_records(&self) -> bool {
-        self.observation().forgotten.before > Time::ZERO
+        self.observation().discarded.before > Time::ZERO
     }
 
     /// Returns the statistics that the run has accumulated.

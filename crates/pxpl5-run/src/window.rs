@@ -104,7 +104,7 @@ impl Window {
         // Records are needed from the earliest sample or TRANSFORM of a picture that is not final.
         let needed =
             held.iter().map(|times| times.sampled_at.unwrap_or(times.transform_at).min(times.transform_at)).min()?;
-        let begin = before(record, needed).filter(|begin| *begin > record.observation().forgotten.before)?;
+        let begin = before(record, needed).filter(|begin| *begin > record.observation().discarded.before)?;
         let until = record.display().period_at(begin);
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let (next, samples) = (held.first(), self.samples);

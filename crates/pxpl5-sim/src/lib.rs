@@ -29,7 +29,7 @@
 //! so rounding errors do not accumulate. No computation of time uses floating point.
 //!
 //! Small functions on the path of every event have the attribute `inline`. With incremental compilation, the compiler
-//! inlines no other function of this crate into other crates, and runs take 1.3 times as long.
+//! inlines no other function of this crate into other crates.
 //!
 //! **Not here:** threads and the computing time of the simulation. A simulation runs in one thread, and other crates
 //! compute pixels.

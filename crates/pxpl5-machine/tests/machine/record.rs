@@ -131,7 +131,7 @@ fn records_before_an_instant_can_be_discarded() {
     assert!(ticks(left).eq([3, 5]), "the last before says what is shown");
     assert!(ticks(right).eq([4]));
     assert_eq!(observation.most_regions_of_a_picture(), 2);
-    assert_eq!(observation.forgotten.before, us(350));
+    assert_eq!(observation.discarded.before, us(350));
 }
 
 fn with_traffic() -> Record {
