@@ -40,18 +40,18 @@ impl Scene {
 
 /// Decimation of one scene to several numbers of primitives. Each result equals the result of [`Scene::decimated`].
 ///
-/// Edges collapse in the same order for every number of primitives. Each call therefore stores an intermediate surface,
+/// Edges collapse in the same order for every number of primitives. Each call therefore stores intermediate surfaces,
 /// from which a later call for fewer primitives can start.
 pub struct Decimation {
     scene: Arc<Scene>,
-    passed: Mutex<Option<Arc<FirstPass>>>,
+    passed: Mutex<Vec<Arc<FirstPass>>>,
 }
 
 impl Decimation {
     /// Prepares the decimation of a scene.
     #[must_use]
     pub const fn new(scene: Arc<Scene>) -> Self {
-        Self { scene, passed: Mutex::new(None) }
+        Self { scene, passed: Mutex::new(Vec::new()) }
     }
 
     /// Returns the same scene as [`Scene::decimated`].
@@ -64,19 +64,36 @@ impl Decimation {
     }
 
     fn surface(&self, wanted: usize) -> Surface {
-        let passed = self.passed.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let known = passed.filter(|passed| passed.serves(wanted));
-        // A stored state far from the wanted number saves little work, so a nearer state replaces it.
-        let is_near = known.as_ref().is_some_and(|known| known.left() / 2 <= wanted);
-        let mut first = known.map_or_else(|| FirstPass::new(Surface::new(&self.scene)), Arc::unwrap_or_clone);
-        if !is_near {
-            first.until(wanted + wanted / PASSED_ABOVE, wanted);
-            // A state that was reached only for this number does not help with other numbers, so it is not stored.
-            if first.serves(wanted) {
-                *self.passed.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(first.clone()));
+        let nearest = self.nearest(wanted);
+        let mut first = nearest.map_or_else(|| FirstPass::new(Surface::new(&self.scene)), Arc::unwrap_or_clone);
+        let above = |n: usize| n + n / PASSED_ABOVE;
+        // A bisection continues halfway between two numbers, or below the smaller number.
+        for pause in [above(usize::midpoint(wanted, first.left())), above(wanted)] {
+            if first.left() > above(pause) {
+                first.until(pause, wanted);
+                self.store(&first, wanted);
             }
         }
         first.end(wanted)
+    }
+
+    /// Returns the stored surface with the fewest triangles from which the decimation to `wanted` triangles can start.
+    fn nearest(&self, wanted: usize) -> Option<Arc<FirstPass>> {
+        let passed = self.passed.lock().unwrap_or_else(PoisonError::into_inner);
+        passed.iter().filter(|passed| passed.serves(wanted)).min_by_key(|passed| passed.left()).cloned()
+    }
+
+    /// Stores an intermediate surface of the decimation to `wanted` triangles. A surface that was reached only for this
+    /// number does not help with other numbers, so it is not stored.
+    fn store(&self, first: &FirstPass, wanted: usize) {
+        if !first.serves(wanted) {
+            return;
+        }
+        let mut passed = self.passed.lock().unwrap_or_else(PoisonError::into_inner);
+        passed.push(Arc::new(first.clone()));
+        // A search continues near the last number.
+        passed.sort_by_key(|passed| passed.left().abs_diff(wanted));
+        passed.truncate(MAX_PASSED);
     }
 }
 
@@ -86,9 +103,12 @@ impl fmt::Debug for Decimation {
     }
 }
 
-/// Divisor for the size of the stored intermediate surface: n + n / 8 triangles for n wanted triangles. A search for a
-/// limit can then also start from this surface for numbers slightly above n.
-const PASSED_ABOVE: usize = 8;
+/// Divisor for the distance between a stored surface and the numbers that start from it: a surface of n + n / 32
+/// triangles serves n triangles and slightly more.
+const PASSED_ABOVE: usize = 32;
+
+/// Maximum number of stored surfaces. A surface of the scene `head` takes about 12 MB.
+const MAX_PASSED: usize = 6;
 
 /// Returns a scene with at most `n` primitives. `reduce` receives a number of triangles, and returns the scene's
 /// surface after edges have collapsed to about this number.

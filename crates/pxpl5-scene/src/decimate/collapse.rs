@@ -62,6 +62,8 @@ pub(super) struct Decimator {
     /// Smallest number of triangles that would have remained after any collapse tried so far. A decimation to at most
     /// this number of triangles would have made the same decisions so far.
     least_left: usize,
+    /// True if every edge has two triangles. A collapse keeps this property.
+    is_closed: bool,
 }
 
 /// Rules of the first pass. No collapse may reverse a triangle or leave fewer triangles than wanted.
@@ -119,6 +121,7 @@ impl FirstPass {
 impl Decimator {
     pub(super) fn new(surface: Surface) -> Self {
         let points = surface.places.len();
+        let is_closed = surface.is_closed();
         let mut quadrics = vec![Quadric::default(); points];
         for (_, corners) in surface.all() {
             let normal = surface.normal(corners);
@@ -140,11 +143,11 @@ impl Decimator {
                 }
             }
         }
-        Self { surface, quadrics, changes: vec![0; points], least_left: usize::MAX }
+        Self { surface, quadrics, changes: vec![0; points], least_left: usize::MAX, is_closed }
     }
 
     pub(super) fn until(&mut self, wanted: usize, rules: Rules) {
-        while self.surface.left > wanted {
+        while self.surface.left > wanted && !self.is_stuck(wanted, rules) {
             let before = self.surface.left;
             let mut queue = self.queue();
             self.pass(&mut queue, wanted, wanted, rules);
@@ -163,7 +166,7 @@ impl Decimator {
     }
 
     fn pass(&mut self, queue: &mut BinaryHeap<Candidate>, pause: usize, wanted: usize, rules: Rules) {
-        while self.surface.left > pause {
+        while self.surface.left > pause && !self.is_stuck(wanted, rules) {
             let Some(candidate) = queue.pop() else { return };
             let Candidate { from, onto, changes, .. } = candidate;
             // Drop an outdated cost. A newer candidate for these points is in the queue.
@@ -182,6 +185,12 @@ impl Decimator {
                 queue.push(self.candidate(neighbour, onto));
             }
         }
+    }
+
+    /// Returns true if no collapse is possible any more, because each collapse would leave one triangle too few. A
+    /// collapse inside a surface removes two triangles.
+    const fn is_stuck(&self, wanted: usize, rules: Rules) -> bool {
+        self.is_closed && !rules.may_overshoot && self.surface.left == wanted + 1
     }
 
     fn enter(&self, point: u32, queue: &mut BinaryHeap<Candidate>) {

@@ -98,6 +98,12 @@ impl Surface {
         self.round(a).filter(|(_, points)| points.contains(&b)).count()
     }
 
+    /// Returns true if every edge has two triangles.
+    pub(super) fn is_closed(&self) -> bool {
+        let sides = |[a, b, c]: [u32; 3]| [(a, b), (b, c), (c, a)];
+        self.all().all(|(_, points)| sides(points).into_iter().all(|(a, b)| self.triangles_at(a, b) == 2))
+    }
+
     /// Returns the normal of the triangle with these three points. Its length is twice the triangle's area.
     pub(super) fn normal(&self, points: [u32; 3]) -> DVec3 {
         let [a, b, c] = points.map(|point| self.places[point as usize]);
