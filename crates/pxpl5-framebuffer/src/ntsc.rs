@@ -114,6 +114,14 @@ impl Display for NtscDisplay {
         Some(now.interlaced_with(before.as_ref().unwrap_or(&now)))
     }
 
+    fn seen_pixel(&self, surface: usize, pixel: [u32; 2], period: PeriodNumber) -> Option<[u8; 3]> {
+        let board = self.boards.get(surface)?;
+        let now = board.seen(period)?;
+        let before = || board.seen(period.before(1)?)?.pixel(pixel);
+        let is_inside = pixel[0] < self.video.width() && pixel[1] < self.video.height();
+        is_inside.then(|| now.pixel(pixel).or_else(before).unwrap_or_default())
+    }
+
     fn seen_at(&self, surface: usize, time: Time) -> Option<RgbImage> {
         let board = self.boards.get(surface)?;
         let now = self.video.field_at(time);

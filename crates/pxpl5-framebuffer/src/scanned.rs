@@ -79,6 +79,24 @@ impl ScannedField {
         canvas.into_image()
     }
 
+    /// Returns the colour of the pixel [x, y] of the frame, or `None` if this field does not scan the pixel. A pixel
+    /// that was never written is black. Only the pixels of one region are computed.
+    #[must_use]
+    pub fn pixel(&self, [x, y]: [u32; 2]) -> Option<[u8; 3]> {
+        self.video.when(x, y, self.field)?;
+        let word = self.regions.iter().rev().find_map(|region| {
+            let contains = |segment: &Segment| segment.y == y && (segment.x..segment.x + segment.length).contains(&x);
+            let segment = region.segments(self.word).find(contains)?;
+            let i = x - segment.x;
+            let start = self.video.when(segment.x, y, self.field)?;
+            let is_in_time = segment.message_at <= start || self.in_time(&segment, i);
+            let pixels = is_in_time.then(|| region.image.pixels())?;
+            pixels.get(segment.image_range())?.get(i as usize).copied()
+        });
+        let [_, red, green, blue] = word.unwrap_or_default().to_be_bytes();
+        Some([red, green, blue])
+    }
+
     /// Returns the regions that arrived too late for this field, in the order of their arrival.
     #[must_use]
     pub fn late_regions(&self) -> Vec<ScannedLateRegion> {

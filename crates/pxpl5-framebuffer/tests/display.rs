@@ -215,6 +215,14 @@ fn a_viewer_sees_each_line_as_last_scanned() {
     for field in 1..=3 {
         let expected = screen(field, end_of(field));
         assert_same(rig.display.seen(0, PeriodNumber(field)), &expected, &format!("field {field}"));
+        for [x, y] in [[0, 0], [9, 1], [300, 201], [300, 200], [639, 479]] {
+            let pixel = rig.display.seen_pixel(0, [x, y], PeriodNumber(field));
+            assert_eq!(pixel, Some(expected.get_pixel(x, y).0), "field {field}, ({x}, {y})");
+        }
+    }
+    let no_pixels = [(0, [0, 0], 4), (2, [0, 0], 3), (0, [SIZE[0], 0], 3), (0, [0, SIZE[1]], 3)];
+    for (surface, pixel, field) in no_pixels {
+        assert_eq!(rig.display.seen_pixel(surface, pixel, PeriodNumber(field)), None, "{pixel:?}, field {field}");
     }
     assert!(rig.display.seen(0, PeriodNumber(4)).is_none(), "it is not over");
     assert!(rig.display.seen(2, PeriodNumber(3)).is_none() && rig.display.seen_at(2, end_of(3)).is_none());

@@ -151,6 +151,12 @@ proptest! {
         let picture = seen.picture();
         let words: Vec<_> = picture.pixels().map(|p| u32::from_be_bytes([0, p.0[0], p.0[1], p.0[2]])).collect();
         prop_assert!(words == model_picture(&copies));
+        // Single pixels equal those of the picture. A stride without a common factor with 640 reaches all columns.
+        for place in (0..640 * 480).step_by(2_011) {
+            let [x, y] = [place % 640, place / 640];
+            let expected = (y % 2 == 1).then(|| picture.get_pixel(x, y / 2).0);
+            prop_assert_eq!(seen.pixel([x, y]), expected, "({}, {})", x, y);
+        }
         let late: Vec<_> = copies.iter().filter_map(model_late).collect();
         prop_assert_eq!(seen.late_regions(), late);
     }

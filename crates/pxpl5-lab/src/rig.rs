@@ -17,7 +17,6 @@ use crate::StopFlag;
 use crate::error::StudyError;
 use core::f64::consts::FRAC_PI_2;
 use glam::{DVec3, Vec3};
-use image::RgbImage;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_run::{Coverage, Experiment, ExperimentError, Head, Outcome, PictureTimes, Pipeline, Pixels};
@@ -224,9 +223,8 @@ impl Photodiode {
         SettingError::require(self.line < lines, "line of the photodiode", expected, self.line)
     }
 
-    /// Samples the photodiode in a period that has ended. `screen` caches the picture of the period for all
-    /// photodiodes.
-    fn sample(&mut self, period: PeriodNumber, record: &Record, screen: &mut Option<Option<RgbImage>>) {
+    /// Samples the photodiode in a period that has ended.
+    fn sample(&mut self, period: PeriodNumber, record: &Record) {
         let display = record.display();
         let Some(surface) = display.surfaces().first() else { return };
         let (first_row, row_distance) = display.rows_lit(period);
@@ -235,11 +233,10 @@ impl Photodiode {
         let Some(at) = display.lights(0, x, y, period) else { return };
         self.place_ps = self.place_ps.max(at.since(display.tick(period)).0);
         self.ring.push((record.ring().stats().messages, record.ring().is_idle()));
-        // A picture is read only if it can have changed.
-        let is_light = self.unchanged().unwrap_or_else(|| {
-            let picture = screen.get_or_insert_with(|| display.seen(0, period));
-            picture.as_ref().map_or(0, |picture| brightness(picture, x, y)) >= LIGHT
-        });
+        // A pixel is read only if it can have changed.
+        let is_light = self
+            .unchanged()
+            .unwrap_or_else(|| brightness(display.seen_pixel(0, [x, y], period).unwrap_or_default()) >= LIGHT);
         self.samples.push((at.0, is_light));
     }
 
@@ -253,8 +250,8 @@ impl Photodiode {
     }
 }
 
-fn brightness(picture: &RgbImage, x: u32, y: u32) -> u32 {
-    picture.get_pixel(x, y).0.iter().map(|value| u32::from(*value)).sum::<u32>() / 3
+fn brightness(colour: [u8; 3]) -> u32 {
+    colour.iter().map(|value| u32::from(*value)).sum::<u32>() / 3
 }
 
 /// Runs an experiment and samples the photodiodes. A run that is too short to fill the pipeline is not an error.
@@ -265,8 +262,7 @@ fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outc
     let result = experiment.run_stopping(&every, |period, machine| {
         // The stop comes before the retrace that ends the previous period.
         if let Some(over) = period.before(2) {
-            let mut screen = None;
-            photodiodes.iter_mut().for_each(|photodiode| photodiode.sample(over, machine.record(), &mut screen));
+            photodiodes.iter_mut().for_each(|photodiode| photodiode.sample(over, machine.record()));
         }
         Ok(())
     });

@@ -133,6 +133,14 @@ pub trait Display: Any + Debug + Send + Sync {
     /// display has discarded the data of the period.
     fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage>;
 
+    /// Returns the colour of the pixel [x, y] in the picture that [`seen`](Self::seen) returns. Returns `None` for a
+    /// pixel outside the picture.
+    ///
+    /// The default implementation computes the whole picture. A display can compute fewer pixels.
+    fn seen_pixel(&self, surface: usize, [x, y]: [u32; 2], period: PeriodNumber) -> Option<[u8; 3]> {
+        Some(self.seen(surface, period)?.get_pixel_checked(x, y)?.0)
+    }
+
     /// Returns the picture that a viewer sees at the instant `time`. Returns `None` if the display no longer has the
     /// pictures of the period that contains `time`, or if this period has not ended.
     ///
