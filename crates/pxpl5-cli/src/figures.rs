@@ -8,14 +8,13 @@ use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::Level;
 use pxpl5::figures::{
-    Alternatives, Basis, Bench, FIGURES, FigureRow, Figures, alternatives_with, markdown, mean_error_percent,
-    run_all_with,
+    Alternatives, Basis, Bench, FIGURES, FigureRow, FigureTable, Figures, alternatives_with, markdown,
+    mean_error_percent, run_all_in_order,
 };
 use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 use pxpl5_sim::figures::column::range;
 use pxpl5_sim::figures::significant;
 use serde_json::json;
-use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -66,10 +65,19 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     // The plain table leaves out the intervals, because a reader waits for it.
     let has_intervals = is_document || args.chart.is_some() || args.intervals;
     let bench = if has_intervals { bench } else { bench.without_intervals() };
+    // Rows are printed as they come, unless the output needs their intervals or is JSON.
+    let mut printer = RowPrinter::default();
+    let mut printed = Ok(());
     let bar = progress(0, "figures", false);
-    let figures = run_all_with(&bench, |done, of| advance(&bar, done, of)).map_err(CliError::failure);
+    let print_row = |table, row: &FigureRow| {
+        if !has_intervals && printed.is_ok() {
+            printed = bar.suspend(|| printer.row(table, row));
+        }
+    };
+    let figures = run_all_in_order(&bench, |done, of| advance(&bar, done, of), print_row).map_err(CliError::failure);
     bar.finish_and_clear();
     let figures = figures?;
+    printed?;
     chart_file.map(|file| file.write(chart(&figures.rows).svg().as_bytes())).transpose()?;
     // Only the document and the JSON output have the figures under other assumptions.
     if is_document {
@@ -85,7 +93,10 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
             return print(&json_text(&figures, &alternatives));
         }
     }
-    print(&text(&figures))?;
+    if has_intervals {
+        figures.each_row(|table, row| printer.row(table, row))?;
+    }
+    printer.end_table()?;
     if has_intervals { Ok(()) } else { print(WITHOUT_INTERVALS) }
 }
 
@@ -133,16 +144,44 @@ fn json_text(figures: &Figures, alternatives: &Alternatives) -> String {
     format!("{object:#}\n")
 }
 
-fn text(figures: &Figures) -> String {
-    let mut text = rows_text(&figures.rows);
-    let _ = writeln!(text, "mean absolute error of the free checks: {:.1} %", mean_error_percent(&figures.rows));
-    for group in &figures.groups {
-        let _ = write!(text, "\n{}\n{}", group.title, rows_text(&group.rows));
+/// Printer of the tables of figures, row by row.
+#[derive(Default)]
+struct RowPrinter {
+    table: Option<FigureTable>,
+    /// Printed rows of the current table.
+    rows: Vec<FigureRow>,
+}
+
+impl RowPrinter {
+    /// Prints a row. A row of another table ends the current table and begins the other table.
+    fn row(&mut self, table: FigureTable, row: &FigureRow) -> Result<(), CliError> {
+        if self.table != Some(table) {
+            self.end_table()?;
+            self.table = Some(table);
+            print(&format!("{}{HEADER}", title(table)))?;
+        }
+        self.rows.push(row.clone());
+        print(&row_text(row))
     }
-    for family in &figures.families {
-        let _ = write!(text, "\n{} ({})\n{}", family.title, family.document, rows_text(&family.rows));
+
+    fn end_table(&mut self) -> Result<(), CliError> {
+        let Some(table) = self.table.take() else { return Ok(()) };
+        let rows = std::mem::take(&mut self.rows);
+        print(&count_text(&rows))?;
+        if table != FigureTable::Main {
+            return Ok(());
+        }
+        print(&format!("mean absolute error of the free checks: {:.1} %\n", mean_error_percent(&rows)))
     }
-    text
+}
+
+/// Returns the title of a table, with an empty line before it. The main table comes first and has no title.
+fn title(table: FigureTable) -> String {
+    match table {
+        FigureTable::Main => String::new(),
+        FigureTable::Group { title } => format!("\n{title}\n"),
+        FigureTable::Family { title, document } => format!("\n{title} ({document})\n"),
+    }
 }
 
 const HEADER: &str =
@@ -150,9 +189,13 @@ const HEADER: &str =
 
 /// Formats rows as a table, and counts the rows whose simulated value misses the published value.
 pub(crate) fn rows_text(rows: &[FigureRow]) -> String {
-    let missed = rows.iter().filter(|row| !row.is_met).count();
     let lines: String = rows.iter().map(row_text).collect();
-    format!("{HEADER}{lines}{} rows, {missed} missed\n", rows.len())
+    format!("{HEADER}{lines}{}", count_text(rows))
+}
+
+fn count_text(rows: &[FigureRow]) -> String {
+    let missed = rows.iter().filter(|row| !row.is_met).count();
+    format!("{} rows, {missed} missed\n", rows.len())
 }
 
 /// Formats one row of a table of figures. The cell of a missing published number is "-".

@@ -24,7 +24,7 @@ mod measured;
 mod rates;
 mod row;
 mod table;
-mod topics;
+mod tables;
 mod trackers;
 
 pub use document::markdown;
@@ -37,7 +37,7 @@ pub use measured::FigureValue;
 pub use pxpl5_sim::figures::{Basis, Detail, FigureRow};
 pub use row::{MISS_PERCENT, mean_error_percent};
 pub use table::{FIGURES, Figure, WITHOUT_CLOSED_FORM};
-pub use topics::figure_groups;
+pub use tables::{FigureTable, figure_groups};
 
 use crate::application_time::{ApplicationTime, application_times};
 use crate::error::StudyError;
@@ -46,6 +46,7 @@ use crate::intervals::{Interval, fill, intervals};
 use crate::parallel;
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
+use tables::Tables;
 
 /// All published figures with the model's values and intervals.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -89,25 +90,33 @@ pub fn run_all(bench: &Bench) -> Result<Figures, StudyError> {
 }
 
 /// Measures all figures in parallel, like [`run_all`]. Calls `finished` with the number of finished steps and the
-/// number of all steps. A step is the measurement of one row of the main table, or of another member of [`Figures`].
+/// number of all steps. A step is the measurement of a row, of a family, or of all intervals.
 ///
 /// # Errors
 ///
 /// Fails in the same cases as [`run_all`].
 pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, StudyError> {
-    let steps = FIGURES.len() as u64 + 3;
+    run_all_in_order(bench, finished, |_, _| {})
+}
+
+/// Measures all figures in parallel, like [`run_all_with`]. Calls `row` with each row as soon as the row and all
+/// earlier rows of [`Figures`] are finished. Rows of the main table have no interval yet.
+///
+/// # Errors
+///
+/// Fails in the same cases as [`run_all`].
+pub fn run_all_in_order(
+    bench: &Bench,
+    finished: impl Fn(u64, u64) + Sync,
+    row: impl FnMut(FigureTable, &FigureRow) + Send,
+) -> Result<Figures, StudyError> {
+    let steps = tables::n_tasks() as u64 + 1;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
-    let with_step = |figure: &Figure| stepped(&step, || row_of(bench, figure));
-    // The parts are closures, so that they can run in parallel.
-    let rows = || parallel::map(&FIGURES, with_step).into_iter().collect::<Result<Vec<_>, _>>();
-    let groups = || stepped(&step, || figure_groups(bench));
+    let tables = || Tables::measure(bench, step, row);
     let intervals = || stepped(&step, || if bench.intervals { intervals(bench) } else { Vec::new() });
-    let families = || stepped(&step, || FigureFamily::address_recalculation(bench));
-    let ((rows, groups), (intervals, families)) =
-        parallel::both(|| parallel::both(rows, groups), || parallel::both(intervals, families));
-    // Report the first error in the order of the parts.
-    let (mut rows, groups, families) = (rows?, groups?, vec![families?]);
+    let (tables, intervals) = parallel::both(tables, intervals);
+    let Tables { main: mut rows, groups, families } = tables?;
     // After a stop, intervals are missing or too narrow.
     bench.stop.check().map_err(StudyError::of_figure("intervals"))?;
     fill(&mut rows, &intervals);

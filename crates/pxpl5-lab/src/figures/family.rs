@@ -27,6 +27,10 @@ pub struct FigureFamily {
     pub rows: Vec<FigureRow>,
 }
 
+pub(super) const TITLE: &str = "Address recalculation and priority rendering";
+
+pub(super) const DOCUMENT: &str = "docs/address-recalculation.md";
+
 /// Triangle counts of the spheres in experiment E1 (`turning`). The papers' diagram ends at 1,000 triangles.
 const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 
@@ -51,11 +55,7 @@ impl FigureFamily {
         let mut all = turning(bench).map_err(StudyError::of_figure("E1"))?;
         let experiments = Experiments::run().map_err(StudyError::of_figure("E1"))?;
         all.extend(rows(&experiments));
-        Ok(Self {
-            title: "Address recalculation and priority rendering",
-            document: "docs/address-recalculation.md",
-            rows: all,
-        })
+        Ok(Self { title: TITLE, document: DOCUMENT, rows: all })
     }
 
     /// Returns this family's section of ACCURACY.md.

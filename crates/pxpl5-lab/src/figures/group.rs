@@ -86,7 +86,7 @@ impl Measurement {
         (self.measure)(bench)
     }
 
-    fn row(&self, bench: &Bench) -> std::result::Result<FigureRow, StudyError> {
+    pub(super) fn row(&self, bench: &Bench) -> std::result::Result<FigureRow, StudyError> {
         let measured = self.measured(bench).map_err(StudyError::of_figure(self.figure.id))?;
         let interval = self.interval(bench, measured.value);
         Ok(FigureRow { interval, ..self.figure.row(measured) })
