@@ -103,12 +103,13 @@ impl CellAssignment {
         (memory + 1 < self.memories).then(|| self.inside_block(place, self.last_ring(memory)))
     }
 
-    /// Returns the horizontal distance between a position and a cell in metres. The distance is 0 inside the cell.
-    fn to_cell(self, place: DVec3, cell: Cell) -> f64 {
+    /// Returns the distances of a position from a cell along x and along z in metres. A distance is 0 inside the cell's
+    /// column or row.
+    fn to_columns(self, place: DVec3, cell: Cell) -> [f64; 2] {
         let along = |place: f64, number: i64| {
             (border(number, self.side_m) - place).max(place - border(number.saturating_add(1), self.side_m)).max(0.0)
         };
-        libm::hypot(along(place.x, cell.x), along(place.z, cell.z))
+        [along(place.x, cell.x), along(place.z, cell.z)]
     }
 
     /// Returns the distance, in metres, from a position to the border of a square block: the home cell and `rings`
@@ -188,10 +189,18 @@ impl Cells {
         if !self.to_held_cells {
             return (0..self.assignment.memories).map(|memory| self.assignment.distance(eye, memory)).collect();
         }
-        let mut distances = vec![f64::INFINITY; self.assignment.memories];
+        let CellAssignment { home, memories, .. } = self.assignment;
+        let mut distances = vec![f64::INFINITY; memories];
+        // The outermost rings are computed once for all cells, as in `CellAssignment::memory`.
+        let last_rings: Vec<u64> = (0..memories - 1).map(|memory| self.assignment.last_ring(memory)).collect();
         for cell in &self.occupied {
-            let nearest = &mut distances[self.assignment.memory(*cell)];
-            *nearest = nearest.min(self.assignment.to_cell(eye, *cell));
+            let ring = home.ring(*cell);
+            let nearest = &mut distances[last_rings.partition_point(|last| *last < ring)];
+            let [x, z] = self.assignment.to_columns(eye, *cell);
+            // Most cells are too far in one direction, so the distance need not be computed.
+            if x.max(z) < *nearest {
+                *nearest = nearest.min(libm::hypot(x, z));
+            }
         }
         distances[0] = 0.0;
         distances
