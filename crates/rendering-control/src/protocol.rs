@@ -4,6 +4,7 @@ use crate::drawn::Sent;
 use crate::rules::Drawing;
 use pxpl5_gp::{Fault, Received};
 use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CopyPath, NodeId, PictureNumber, RegionId, Word};
+use std::sync::Arc;
 
 const SEND: Word = 1;
 const EDIT: Word = 2;
@@ -81,21 +82,22 @@ pub(crate) enum StageOrder<S> {
 impl<S: Sent> StageOrder<S> {
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
-        (words.len() as u32, Body::Words(words.into()))
+        (words.len() as u32, Body::Words(words))
     }
 
-    fn words(&self) -> Vec<Word> {
+    fn words(&self) -> Arc<[Word]> {
         match self {
-            Self::Send(sent) => [vec![SEND], sent.to_words()].concat(),
-            Self::Edit(picture) => numbered(EDIT, picture.0),
-            Self::Edited(picture) => numbered(EDITED, picture.0),
-            Self::EditsDone(picture) => numbered(EDITS_DONE, picture.0),
-            Self::Transform(drawing) => numbered(TRANSFORM, drawing.0),
-            Self::Transformed(drawing, entries) => [&numbered(TRANSFORMED, drawing.0)[..], entries].concat(),
-            Self::Token(token) => token.words(TOKEN),
-            Self::Accepted(token) => token.words(ACCEPTED),
+            Self::Send(sent) => [vec![SEND], sent.to_words()].concat().into(),
+            Self::Edit(picture) => numbered(EDIT, picture.0).into(),
+            Self::Edited(picture) => numbered(EDITED, picture.0).into(),
+            Self::EditsDone(picture) => numbered(EDITS_DONE, picture.0).into(),
+            Self::Transform(drawing) => numbered(TRANSFORM, drawing.0).into(),
+            Self::Transformed(drawing, entries) => [&numbered(TRANSFORMED, drawing.0)[..], entries].concat().into(),
+            // Most messages are tokens, so their words need a single allocation.
+            Self::Token(token) => token.words(TOKEN).into(),
+            Self::Accepted(token) => token.words(ACCEPTED).into(),
             Self::Copied { picture, frame_buffer } => {
-                vec![COPY_ACKNOWLEDGEMENT, 0, *picture, Word::from(frame_buffer.0)]
+                [COPY_ACKNOWLEDGEMENT, 0, *picture, Word::from(frame_buffer.0)].into()
             }
         }
     }
@@ -129,8 +131,8 @@ impl<S: Sent> StageOrder<S> {
 }
 
 /// Encodes a message that consists of its kind (`tag`) and the number of a picture or of a drawing.
-fn numbered(tag: Word, number: u64) -> Vec<Word> {
-    vec![tag, number as Word, (number >> 32) as Word]
+const fn numbered(tag: Word, number: u64) -> [Word; 3] {
+    [tag, number as Word, (number >> 32) as Word]
 }
 
 fn number_of(words: &[Word]) -> Option<u64> {
@@ -139,10 +141,11 @@ fn number_of(words: &[Word]) -> Option<u64> {
 }
 
 impl Token {
-    fn words(self, tag: Word) -> Vec<Word> {
+    fn words(self, tag: Word) -> [Word; 6] {
         let places = u32::from(self.region.0) | u32::from(self.renderer) << 16;
         let counts = u32::from(self.slaves_left) | u32::from(self.of) << 16;
-        [numbered(tag, self.drawing.0), vec![places, counts, self.end as Word]].concat()
+        let [tag, low, high] = numbered(tag, self.drawing.0);
+        [tag, low, high, places, counts, self.end as Word]
     }
 
     fn read(words: &[Word]) -> Option<Self> {
