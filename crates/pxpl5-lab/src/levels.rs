@@ -10,7 +10,7 @@ pub use record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
 
 use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Summary};
 
-/// Runs an experiment at its level of detail without pixels, and returns the summary.
+/// Runs an experiment at its level of detail, and returns the summary.
 ///
 /// # Errors
 ///

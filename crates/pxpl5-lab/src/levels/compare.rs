@@ -6,7 +6,7 @@ use super::{deviation_percent, summarise};
 use crate::StopFlag;
 use crate::figures::{Bench, FIGURES, Figure, FigureRow, mean_error_percent};
 use crate::parallel;
-use pxpl5_run::{Experiment, ExperimentError, Level, Pixels};
+use pxpl5_run::{Experiment, ExperimentError, Level, Pixels, Summary};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -57,40 +57,70 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     let steps = VARIANTS.len() as u64 * of_variant;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
-    let numbers: Vec<u64> = (0..query.experiments).collect();
-    let mut of_experiments = Vec::new();
-    // Run the random experiments at every level first. The last level, cycle, is the reference for the deviations.
-    for variant in VARIANTS {
-        let values = parallel::map(&numbers, |number| {
-            let value = value(variant, *number, &query.stop);
-            step();
-            value
-        });
-        of_experiments.push(values.into_iter().collect::<Result<Vec<f64>, _>>()?);
-    }
-    let of_cycle = of_experiments.last().cloned().unwrap_or_default();
-    let mut levels = Vec::new();
-    for (variant, values) in VARIANTS.into_iter().zip(&of_experiments) {
-        let rows = rows_of(variant, &query.stop, &step)?;
-        // Compare each level with the cycle level, experiment by experiment.
-        let deviations = values.iter().zip(&of_cycle).map(|(value, of_cycle)| deviation_percent(*value, *of_cycle));
-        let is_cycle = variant.0 == Level::Cycle;
-        levels.push(LevelReport {
-            level: variant.0,
-            times_of_code: variant.1,
+    // Speeds come first, because they need an idle computer.
+    let timed = VARIANTS.iter().map(|variant| timed(*variant, &query)).collect::<Result<Vec<_>, _>>()?;
+    // The cycle level starts first, because its runs take longest.
+    let variants = || (0..VARIANTS.len()).rev();
+    let experiments: Vec<(usize, u64)> =
+        variants().flat_map(|variant| (0..query.experiments).map(move |number| (variant, number))).collect();
+    let figures: Vec<(usize, &Figure)> =
+        variants().flat_map(|variant| FIGURES.iter().map(move |figure| (variant, figure))).collect();
+    let value = |(variant, number): &(usize, u64)| {
+        // Timed runs have a value already.
+        let value = match timed[*variant].values.get(*number as usize) {
+            Some(value) => Ok(*value),
+            None => value(VARIANTS[*variant], *number, &query.stop),
+        };
+        step();
+        value
+    };
+    let benches = benches(&query.stop);
+    let row = |(variant, figure): &(usize, &Figure)| {
+        let measured = benches[*variant].measure(figure.id)?;
+        step();
+        Ok(figure.row(measured))
+    };
+    let (values, rows) = parallel::both(|| parallel::map(&experiments, value), || parallel::map(&figures, row));
+    let values = values.into_iter().collect::<Result<Vec<f64>, _>>()?;
+    let rows = rows.into_iter().collect::<Result<Vec<FigureRow>, ExperimentError>>()?;
+    let values_of = |variant: usize| {
+        let first = experiments.partition_point(|(other, _)| *other > variant);
+        &values[first..first + query.experiments as usize]
+    };
+    let reports = VARIANTS.into_iter().zip(timed).enumerate().map(|(place, ((level, times_of_code), timed))| {
+        // Compare each level with the cycle level, the last variant, experiment by experiment.
+        let both = values_of(place).iter().zip(values_of(VARIANTS.len() - 1));
+        let deviations = both.map(|(value, of_cycle)| deviation_percent(*value, *of_cycle)).collect();
+        let of_level = rows.iter().zip(&figures).filter(|(_, (variant, _))| *variant == place);
+        let rows: Vec<FigureRow> = of_level.map(|(row, _)| row.clone()).collect();
+        LevelReport {
+            level,
+            times_of_code,
             published_error_percent: Some(mean_error_percent(&rows)),
-            from_cycle_percent: if is_cycle { None } else { Spread::of(deviations.collect()) },
-            speeds: speeds(variant, &query)?,
-        });
-    }
+            from_cycle_percent: if level == Level::Cycle { None } else { Spread::of(deviations) },
+            speeds: timed.speeds,
+        }
+    });
     Ok(LevelRecord {
         schema: SCHEMA.to_owned(),
         experiments: query.experiments,
         note: None,
         date: None,
         host: None,
-        levels,
+        levels: reports.collect(),
     })
+}
+
+/// Returns the settings with which each variant measures figures. All variants share one cache, because some results do
+/// not depend on the level of detail.
+fn benches(stop: &StopFlag) -> Vec<Bench> {
+    let by_table = Bench::new(Level::Transaction).with_mig(MIG.0, MIG.1).with_stop(stop.clone());
+    let by_code = by_table.clone().with_times_of_code();
+    let of = |(level, times_of_code)| {
+        let bench = if times_of_code { &by_code } else { &by_table };
+        Bench { level, ..bench.clone() }
+    };
+    VARIANTS.into_iter().map(of).collect()
 }
 
 fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Experiment, ExperimentError> {
@@ -108,58 +138,54 @@ fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Expe
 fn value(variant: (Level, bool), number: u64, stop: &StopFlag) -> Result<f64, ExperimentError> {
     stop.check()?;
     let experiment = of_variant(variant, number)?.host(stop.clone());
-    match summarise(&crate::registry(), &experiment) {
-        Ok(summary) => Ok(compared_ms(&experiment, &summary)),
+    compared(&experiment, summarise(&crate::registry(), &experiment))
+}
+
+fn compared(experiment: &Experiment, summary: Result<Summary, ExperimentError>) -> Result<f64, ExperimentError> {
+    match summary {
+        Ok(summary) => Ok(compared_ms(experiment, &summary)),
         Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => Ok(f64::NAN),
         Err(error) => Err(error),
     }
 }
 
-fn rows_of(
-    (level, times_of_code): (Level, bool),
-    stop: &StopFlag,
-    step: &(impl Fn() + Sync),
-) -> Result<Vec<FigureRow>, ExperimentError> {
-    let bench = Bench::new(level).with_mig(MIG.0, MIG.1).with_stop(stop.clone());
-    let bench = if times_of_code { bench.with_times_of_code() } else { bench };
-    let row = |figure: &Figure| {
-        let measured = bench.measure(figure.id)?;
-        step();
-        Ok(figure.row(measured))
-    };
-    parallel::map(&FIGURES, row).into_iter().collect()
+/// Measured speeds of a variant, and results of the timed runs.
+struct Timed {
+    speeds: Vec<LevelSpeed>,
+    /// The result of [`value`] for the first random experiments. Empty if no speed is measured.
+    values: Vec<f64>,
 }
 
-fn speeds(variant: (Level, bool), query: &LevelQuery) -> Result<Vec<LevelSpeed>, ExperimentError> {
+fn timed(variant: (Level, bool), query: &LevelQuery) -> Result<Timed, ExperimentError> {
     let choices = if variant.0 == Level::Analytic { &PIXELS[..1] } else { &PIXELS[..] };
-    let speed = |pixels: &Pixels| {
-        let simulated_seconds_per_second =
-            if query.speeds { Some(speed(variant, *pixels, &query.stop)?) } else { None };
-        Ok(LevelSpeed { pixels: *pixels, simulated_seconds_per_second })
-    };
-    choices.iter().map(speed).collect()
+    let mut timed = Timed { speeds: Vec::new(), values: Vec::new() };
+    for pixels in choices.iter().copied() {
+        let mut simulated_seconds_per_second = None;
+        if query.speeds {
+            let (speed, values) = speed(variant, pixels, &query.stop)?;
+            simulated_seconds_per_second = Some(speed);
+            // Pixels change no simulated time, so all choices have the same values.
+            timed.values = values;
+        }
+        timed.speeds.push(LevelSpeed { pixels, simulated_seconds_per_second });
+    }
+    Ok(timed)
 }
 
-/// Runs all timed experiments, and returns the simulated seconds per second of computing time.
-fn speed(variant: (Level, bool), pixels: Pixels, stop: &StopFlag) -> Result<f64, ExperimentError> {
+/// Runs all timed experiments. Returns the simulated seconds per second of computing time, and the result of [`value`]
+/// for each experiment.
+fn speed(variant: (Level, bool), pixels: Pixels, stop: &StopFlag) -> Result<(f64, Vec<f64>), ExperimentError> {
     let registry = crate::registry();
-    let (mut simulated, mut taken) = (0.0, 0.0);
+    let (mut simulated, mut taken, mut values) = (0.0, 0.0, Vec::new());
     for number in 0..TIMED {
         let experiment = of_variant(variant, number)?.pixels(pixels).host(stop.clone());
         simulated += experiment.length() as f64 * experiment.config().period()?.as_ms() * 1e-3;
-        // Only the simulation is timed, not the construction of the scene.
+        // The construction of the scene is not timed.
         let begin = Instant::now();
-        let result = if variant.0 == Level::Analytic {
-            summarise(&registry, &experiment).map(|_| ())
-        } else {
-            experiment.run().map(|_| ())
-        };
-        taken += begin.elapsed().as_secs_f64();
+        let summary = summarise(&registry, &experiment);
         // The time of runs that are too short counts too.
-        match result {
-            Ok(()) | Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => {}
-            Err(error) => return Err(error),
-        }
+        taken += begin.elapsed().as_secs_f64();
+        values.push(compared(&experiment, summary)?);
     }
-    Ok(simulated / taken)
+    Ok((simulated / taken, values))
 }
