@@ -110,7 +110,7 @@ pub fn run_all_in_order(
     finished: impl Fn(u64, u64) + Sync,
     row: impl FnMut(FigureTable, &FigureRow) + Send,
 ) -> Result<Figures, StudyError> {
-    let steps = tables::n_tasks() as u64 + 1;
+    let steps = tables::n_steps() as u64 + 1;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
     let tables = || Tables::measure(bench, step, row);

@@ -2,7 +2,7 @@
 //! their fly-throughs, measurements of the pendulum rig, and results of experiments.
 
 use super::heads::RigLines;
-use super::measured::{Result, scene_named};
+use super::measured::{FigureValue, Result, scene_named};
 use pxpl5_analytic::Load;
 use pxpl5_run::{Experiment, FinishedRegions, Summary};
 use pxpl5_scene::Scene;
@@ -75,6 +75,7 @@ pub(crate) struct Applications {
     rigs: ByCapacity<RigKey, RigLines>,
     summaries: ByCapacity<String, Summary>,
     limits: Places<String, u32>,
+    values: Places<String, FigureValue>,
 }
 
 /// Returns a cache key and the capacity of a backing store in finished regions. These values contain everything that
@@ -98,8 +99,10 @@ pub(super) fn key_of(experiment: &Experiment, scene: &str) -> (String, u64) {
 impl Applications {
     pub(super) fn scene(&self, name: &'static str, culled: bool) -> Result<Arc<Scene>> {
         let make = || {
-            let whole = scene_named(name)?;
-            Ok(if culled { Arc::new(Arc::unwrap_or_clone(whole).culled()) } else { whole })
+            if !culled {
+                return scene_named(name);
+            }
+            Ok(Arc::new(Scene::clone(&*self.scene(name, false)?).culled()))
         };
         find_or_compute(&self.scenes, (name, culled), make)
     }
@@ -135,6 +138,12 @@ impl Applications {
     /// `make`.
     pub(super) fn limit(&self, key: String, make: impl FnOnce() -> Result<u32>) -> Result<u32> {
         find_or_compute(&self.limits, key, || make().map(Arc::new)).map(|limit| *limit)
+    }
+
+    /// Returns the value of a figure that does not depend on the level of detail. The first request measures the figure
+    /// with `make`. `key` contains everything that determines the value.
+    pub(super) fn value(&self, key: String, make: impl FnOnce() -> Result<FigureValue>) -> Result<FigureValue> {
+        find_or_compute(&self.values, key, || make().map(Arc::new)).map(Arc::unwrap_or_clone)
     }
 }
 

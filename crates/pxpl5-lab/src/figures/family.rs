@@ -4,6 +4,7 @@
 use super::Bench;
 use super::measured::{Result, scene_named};
 use crate::error::StudyError;
+use crate::parallel;
 use pxpl5_arp::figures::{Experiments, missed, row, rows, shape, table};
 use pxpl5_run::{
     Experiment, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, RenderingControl, RotationLatency,
@@ -27,10 +28,6 @@ pub struct FigureFamily {
     pub rows: Vec<FigureRow>,
 }
 
-pub(super) const TITLE: &str = "Address recalculation and priority rendering";
-
-pub(super) const DOCUMENT: &str = "docs/address-recalculation.md";
-
 /// Triangle counts of the spheres in experiment E1 (`turning`). The papers' diagram ends at 1,000 triangles.
 const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 
@@ -52,10 +49,15 @@ impl FigureFamily {
     ///
     /// Returns a [`StudyError`] that names the experiment.
     pub fn address_recalculation(bench: &Bench) -> std::result::Result<Self, StudyError> {
-        let mut all = turning(bench).map_err(StudyError::of_figure("E1"))?;
-        let experiments = Experiments::run().map_err(StudyError::of_figure("E1"))?;
+        let (turning, experiments) = parallel::both(|| turning(bench), Experiments::run);
+        let mut all = turning.map_err(StudyError::of_figure("E1"))?;
+        let experiments = experiments.map_err(StudyError::of_figure("E1"))?;
         all.extend(rows(&experiments));
-        Ok(Self { title: TITLE, document: DOCUMENT, rows: all })
+        Ok(Self {
+            title: "Address recalculation and priority rendering",
+            document: "docs/address-recalculation.md",
+            rows: all,
+        })
     }
 
     /// Returns this family's section of ACCURACY.md.
@@ -89,20 +91,20 @@ impl FigureFamily {
 /// rotation with the address recalculation display. The other is the latency of a picture under Rendering Control. For
 /// Rendering Control, the viewer always faces the triangles, because triangles out of sight are not drawn.
 fn turning(bench: &Bench) -> Result<Vec<FigureRow>> {
-    let mut turns = Vec::new();
-    let mut drawn_ms = Vec::new();
     // For each size, run the display with faces under a turning head, then Rendering Control without a tracked head.
-    for triangles in TRIANGLES {
+    let of_size = |triangles: &u32| -> Result<(Vec<u64>, f64)> {
         let faces = FacePipeline::new(FacePolicy::Full);
         let machine = faces.adapt(bench.machine("small-hmd")?);
-        let experiment = Experiment::new(machine, faces, scene_named(&format!("sphere:{triangles}"))?);
-        let latencies = turned(experiment.host(bench.stop.clone()))?;
-        turns.push(totals_ps(&latencies.rotation_latencies()));
         let scene = scene_named(&format!("sphere:{triangles}"))?;
+        let experiment = Experiment::new(machine, faces, Arc::clone(&scene));
+        let latencies = turned(experiment.host(bench.stop.clone()))?;
+        let turn = totals_ps(&latencies.rotation_latencies());
         let drawn = Experiment::new(bench.machine("small-hmd")?, RenderingControl::stereo(), scene);
         let drawn = drawn.fields(FIELDS).pixels(Pixels::Off).host(bench.stop.clone());
-        drawn_ms.push(drawn.run()?.latency_ms().mean);
-    }
+        Ok((turn, drawn.run()?.latency_ms().mean))
+    };
+    let measured = parallel::map(&TRIANGLES, of_size).into_iter().collect::<Result<Vec<_>>>()?;
+    let (turns, drawn_ms): (Vec<_>, Vec<_>) = measured.into_iter().unzip();
     let same =
         "greatest difference between the latencies of a turn with 10, 100, 1,000 and 10,000 triangles, field by field";
     // With address recalculation, the latency of rotation must not depend on the number of triangles at all.

@@ -5,6 +5,7 @@ use super::Bench;
 use super::group::{Measurement, free};
 use super::measured::{FigureValue, Result, detail};
 use crate::compare::{edge_pictures, edge_scene};
+use crate::parallel;
 use image::RgbImage;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::Registration;
@@ -184,7 +185,8 @@ fn transforms(bench: &Bench) -> Result<FigureValue> {
         let before = counted(viewpoint, FIELD.0)?;
         Ok((counted(viewpoint, FIELD.0 + COUNTED)? - before) as f64 / COUNTED as f64)
     };
-    let (line, field) = (a_field(Viewpoint::Strip)?, a_field(Viewpoint::Field)?);
+    let (line, field) = parallel::both(|| a_field(Viewpoint::Strip), || a_field(Viewpoint::Field));
+    let (line, field) = (line?, field?);
     let details = vec![
         detail("line by line", line, "vertices a field"),
         detail("one transform a field", field, "vertices a field"),

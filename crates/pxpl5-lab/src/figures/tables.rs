@@ -1,7 +1,7 @@
 //! The tables of figures, and the measurement of their rows in the order of the tables.
 
 use super::group::Topic;
-use super::{Bench, FIGURES, FigureFamily, FigureGroup, FigureRow, Figures, family, jitp, rates, row_of, trackers};
+use super::{Bench, FIGURES, FigureFamily, FigureGroup, FigureRow, Figures, jitp, rates, row_of, stepped, trackers};
 use crate::error::StudyError;
 use crate::parallel;
 
@@ -25,67 +25,63 @@ pub enum FigureTable {
 }
 
 /// Rows of all tables.
-#[derive(Default)]
 pub(super) struct Tables {
     pub(super) main: Vec<FigureRow>,
     pub(super) groups: Vec<FigureGroup>,
     pub(super) families: Vec<FigureFamily>,
 }
 
-/// A measurement that runs in parallel to others, and the table of its rows.
+/// The measurement of a row, and the table of the row.
 struct Task<'a> {
     table: FigureTable,
-    measure: Box<dyn Fn() -> Result<Vec<FigureRow>, StudyError> + Sync + 'a>,
+    measure: Box<dyn Fn() -> Result<FigureRow, StudyError> + Sync + 'a>,
 }
 
-/// Returns the number of parallel measurements of all tables.
-pub(super) fn n_tasks() -> usize {
+/// Returns the number of steps in which [`Tables::measure`] measures all tables: one for each row, and one for the
+/// family.
+pub(super) fn n_steps() -> usize {
     FIGURES.len() + topics().iter().map(|topic| topic.measurements.len()).sum::<usize>() + 1
 }
 
 impl Tables {
-    /// Measures the rows of all tables in parallel. Calls `finished` after each measurement. Calls `row` with each row
-    /// in the order of the tables, when all earlier rows are finished. Rows after a failed measurement are left out.
+    /// Measures the rows of all tables in parallel. Calls `step` after each row and each family. Calls `row` with each
+    /// row in the order of the tables, when all earlier rows are finished. Rows after a failed measurement are left out.
     pub(super) fn measure(
         bench: &Bench,
-        finished: impl Fn() + Sync,
+        step: impl Fn() + Sync,
         mut row: impl FnMut(FigureTable, &FigureRow) + Send,
     ) -> Result<Self, StudyError> {
         let topics = topics();
         let tasks = tasks(bench, &topics);
         let mut has_failed = false;
-        let run = |task: &Task| {
-            let rows = (task.measure)();
-            finished();
-            rows
+        let rows = || {
+            let run = |task: &Task| stepped(&step, || (task.measure)());
+            parallel::map_in_order(&tasks, run, |task, measured| {
+                has_failed |= measured.is_err();
+                measured.iter().filter(|_| !has_failed).for_each(|one| row(task.table, one));
+            })
         };
-        let done = parallel::map_in_order(&tasks, run, |task, rows| {
-            has_failed |= rows.is_err();
-            if !has_failed {
-                rows.iter().flatten().for_each(|one| row(task.table, one));
-            }
-        });
-        let done = done.into_iter().collect::<Result<Vec<_>, _>>()?;
-        // Rows of the same table are neighbours.
-        let mut tables = Self::default();
-        for (task, rows) in tasks.iter().zip(done) {
-            tables.add(task.table, rows, &topics);
+        // The family takes long and comes last, so its measurement starts first.
+        let family = || stepped(&step, || FigureFamily::address_recalculation(bench));
+        let (rows, family) = parallel::both(rows, family);
+        let mut tables = Self { main: Vec::new(), groups: Vec::new(), families: vec![family?] };
+        for (task, one) in tasks.iter().zip(rows) {
+            tables.add(task.table, one?, &topics);
+        }
+        for FigureFamily { title, document, rows } in &tables.families {
+            rows.iter().for_each(|one| row(FigureTable::Family { title, document }, one));
         }
         Ok(tables)
     }
 
-    fn add(&mut self, table: FigureTable, rows: Vec<FigureRow>, topics: &[Topic]) {
-        match table {
-            FigureTable::Main => self.main.extend(rows),
-            FigureTable::Group { title } => match self.groups.last_mut().filter(|group| group.title == title) {
-                Some(group) => group.rows.extend(rows),
-                None => {
-                    let about = topics.iter().find(|topic| topic.title == title).map_or("", |topic| topic.about);
-                    self.groups.push(FigureGroup { title, about, rows });
-                }
-            },
-            FigureTable::Family { title, document } => self.families.push(FigureFamily { title, document, rows }),
+    fn add(&mut self, table: FigureTable, row: FigureRow, topics: &[Topic]) {
+        let FigureTable::Group { title } = table else { return self.main.push(row) };
+        // Rows of the same group are neighbours.
+        if let Some(group) = self.groups.last_mut().filter(|group| group.title == title) {
+            return group.rows.push(row);
         }
+        let about = topics.iter().find(|topic| topic.title == title).map_or("", |topic| topic.about);
+        self.groups.push(FigureGroup { title, about, rows: vec![row] });
     }
 }
 
@@ -108,21 +104,16 @@ impl Figures {
 }
 
 fn tasks<'a>(bench: &'a Bench, topics: &'a [Topic]) -> Vec<Task<'a>> {
-    let one = |row: Result<FigureRow, StudyError>| row.map(|row| vec![row]);
     let main = FIGURES
         .iter()
-        .map(move |figure| Task { table: FigureTable::Main, measure: Box::new(move || one(row_of(bench, figure))) });
+        .map(move |figure| Task { table: FigureTable::Main, measure: Box::new(move || row_of(bench, figure)) });
     let groups = topics.iter().flat_map(move |topic| {
         topic.measurements.iter().map(move |measurement| Task {
             table: FigureTable::Group { title: topic.title },
-            measure: Box::new(move || one(measurement.row(bench))),
+            measure: Box::new(move || measurement.row(bench)),
         })
     });
-    let family = Task {
-        table: FigureTable::Family { title: family::TITLE, document: family::DOCUMENT },
-        measure: Box::new(move || FigureFamily::address_recalculation(bench).map(|family| family.rows)),
-    };
-    main.chain(groups).chain([family]).collect()
+    main.chain(groups).collect()
 }
 
 /// Measures the figures of all topics.
@@ -140,4 +131,30 @@ fn topics() -> [Topic; 3] {
         Topic { title: jitp::TITLE, about: jitp::ABOUT, measurements: jitp::measurements() },
         Topic { title: trackers::TITLE, about: trackers::ABOUT, measurements: trackers::measurements() },
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::run_all_in_order;
+    use pxpl5_run::Level;
+    use std::convert::Infallible;
+
+    #[test]
+    fn rows_are_reported_once_in_the_order_of_the_tables() {
+        let bench = Bench::new(Level::Analytic).with_mig(1, 12).without_intervals();
+        let mut reported = Vec::new();
+        let figures = run_all_in_order(&bench, |_, _| {}, |table, row| reported.push((table, row.clone())));
+        let figures = figures.expect("every figure has a value");
+        let mut expected = Vec::new();
+        let Ok(()) = figures.each_row(|table, row| {
+            expected.push((table, row.clone()));
+            Ok::<_, Infallible>(())
+        });
+        assert!(format!("{reported:?}") == format!("{expected:?}"));
+        assert_eq!(reported.len(), n_steps() - 1 + figures.families[0].rows.len());
+        let titles: Vec<_> = figures.groups.iter().map(|group| group.title).collect();
+        assert_eq!(titles, topics().map(|topic| topic.title));
+        assert_eq!(figures.rows.len(), FIGURES.len());
+    }
 }
