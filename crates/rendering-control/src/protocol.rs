@@ -81,23 +81,27 @@ pub(crate) enum StageOrder<S> {
 
 impl<S: Sent> StageOrder<S> {
     pub(crate) fn message(&self) -> (u32, Body) {
-        let words = self.words();
+        let words: Arc<[Word]> = match self {
+            // Tokens are the most frequent messages, so they are made without a vector.
+            Self::Token(token) => token.words(TOKEN).into(),
+            Self::Accepted(token) => token.words(ACCEPTED).into(),
+            _ => self.words().into(),
+        };
         (words.len() as u32, Body::Words(words))
     }
 
-    fn words(&self) -> Arc<[Word]> {
+    fn words(&self) -> Vec<Word> {
         match self {
-            Self::Send(sent) => [vec![SEND], sent.to_words()].concat().into(),
-            Self::Edit(picture) => numbered(EDIT, picture.0).into(),
-            Self::Edited(picture) => numbered(EDITED, picture.0).into(),
-            Self::EditsDone(picture) => numbered(EDITS_DONE, picture.0).into(),
-            Self::Transform(drawing) => numbered(TRANSFORM, drawing.0).into(),
-            Self::Transformed(drawing, entries) => [&numbered(TRANSFORMED, drawing.0)[..], entries].concat().into(),
-            // Most messages are tokens, so their words need a single allocation.
+            Self::Send(sent) => [vec![SEND], sent.to_words()].concat(),
+            Self::Edit(picture) => numbered(EDIT, picture.0),
+            Self::Edited(picture) => numbered(EDITED, picture.0),
+            Self::EditsDone(picture) => numbered(EDITS_DONE, picture.0),
+            Self::Transform(drawing) => numbered(TRANSFORM, drawing.0),
+            Self::Transformed(drawing, entries) => [&numbered(TRANSFORMED, drawing.0)[..], entries].concat(),
             Self::Token(token) => token.words(TOKEN).into(),
             Self::Accepted(token) => token.words(ACCEPTED).into(),
             Self::Copied { picture, frame_buffer } => {
-                [COPY_ACKNOWLEDGEMENT, 0, *picture, Word::from(frame_buffer.0)].into()
+                vec![COPY_ACKNOWLEDGEMENT, 0, *picture, Word::from(frame_buffer.0)]
             }
         }
     }
@@ -131,8 +135,8 @@ impl<S: Sent> StageOrder<S> {
 }
 
 /// Encodes a message that consists of its kind (`tag`) and the number of a picture or of a drawing.
-const fn numbered(tag: Word, number: u64) -> [Word; 3] {
-    [tag, number as Word, (number >> 32) as Word]
+fn numbered(tag: Word, number: u64) -> Vec<Word> {
+    vec![tag, number as Word, (number >> 32) as Word]
 }
 
 fn number_of(words: &[Word]) -> Option<u64> {
@@ -142,9 +146,9 @@ fn number_of(words: &[Word]) -> Option<u64> {
 
 impl Token {
     fn words(self, tag: Word) -> [Word; 6] {
+        let [low, high] = [self.drawing.0 as Word, (self.drawing.0 >> 32) as Word];
         let places = u32::from(self.region.0) | u32::from(self.renderer) << 16;
         let counts = u32::from(self.slaves_left) | u32::from(self.of) << 16;
-        let [tag, low, high] = numbered(tag, self.drawing.0);
         [tag, low, high, places, counts, self.end as Word]
     }
 
