@@ -37,16 +37,15 @@ pub use measured::FigureValue;
 pub use pxpl5_sim::figures::{Basis, Detail, FigureRow};
 pub use row::{MISS_PERCENT, mean_error_percent};
 pub use table::{FIGURES, Figure, WITHOUT_CLOSED_FORM};
-pub use tables::{FigureTable, figure_groups};
+pub use tables::{FigureTable, figure_groups, run_all, run_all_in_order, run_all_with};
 
 use crate::application_time::{ApplicationTime, application_times};
 use crate::error::StudyError;
 use crate::interpretations::{self, Interpretations};
-use crate::intervals::{Interval, fill, intervals};
+use crate::intervals::Interval;
 use crate::parallel;
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
-use tables::Tables;
 
 /// All published figures with the model's values and intervals.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -79,49 +78,6 @@ pub struct Alternatives {
 const SEEDS: u64 = 6;
 /// Number of frames for each seed in the ranking of interpretations of the papers.
 const FRAMES: u64 = 150;
-
-/// Measures all figures in parallel, with their intervals if the settings include intervals.
-///
-/// # Errors
-///
-/// Returns the first [`StudyError`].
-pub fn run_all(bench: &Bench) -> Result<Figures, StudyError> {
-    run_all_with(bench, |_, _| {})
-}
-
-/// Measures all figures in parallel, like [`run_all`]. Calls `finished` with the number of finished steps and the
-/// number of all steps. A step is the measurement of a row, of a family, or of all intervals.
-///
-/// # Errors
-///
-/// Fails in the same cases as [`run_all`].
-pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, StudyError> {
-    run_all_in_order(bench, finished, |_, _| {})
-}
-
-/// Measures all figures in parallel, like [`run_all_with`]. Calls `row` with each row as soon as the row and all
-/// earlier rows of [`Figures`] are finished. Rows of the main table have no interval yet.
-///
-/// # Errors
-///
-/// Fails in the same cases as [`run_all`].
-pub fn run_all_in_order(
-    bench: &Bench,
-    finished: impl Fn(u64, u64) + Sync,
-    row: impl FnMut(FigureTable, &FigureRow) + Send,
-) -> Result<Figures, StudyError> {
-    let steps = tables::n_steps() as u64 + 1;
-    let done = AtomicU64::new(0);
-    let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
-    let tables = || Tables::measure(bench, step, row);
-    let intervals = || stepped(&step, || if bench.intervals { intervals(bench) } else { Vec::new() });
-    let (tables, intervals) = parallel::both(tables, intervals);
-    let Tables { main: mut rows, groups, families } = tables?;
-    // After a stop, intervals are missing or too narrow.
-    bench.stop.check().map_err(StudyError::of_figure("intervals"))?;
-    fill(&mut rows, &intervals);
-    Ok(Figures { rows, intervals, families, groups })
-}
 
 /// Measures the members of [`Alternatives`] in parallel. Calls `finished` with the number of finished members and the
 /// number of all members.

@@ -3,7 +3,9 @@
 use super::group::Topic;
 use super::{Bench, FIGURES, FigureFamily, FigureGroup, FigureRow, Figures, jitp, rates, row_of, stepped, trackers};
 use crate::error::StudyError;
+use crate::intervals::{fill, intervals};
 use crate::parallel;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A table of figures. The order of the tables is that of `pxpl5 figures`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,11 +26,54 @@ pub enum FigureTable {
     },
 }
 
+/// Measures all figures in parallel, with their intervals if the settings include intervals.
+///
+/// # Errors
+///
+/// Returns the first [`StudyError`].
+pub fn run_all(bench: &Bench) -> Result<Figures, StudyError> {
+    run_all_with(bench, |_, _| {})
+}
+
+/// Measures all figures in parallel, like [`run_all`]. Calls `finished` with the number of finished steps and the
+/// number of all steps. A step is the measurement of a row, of a family, or of all intervals.
+///
+/// # Errors
+///
+/// Fails in the same cases as [`run_all`].
+pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, StudyError> {
+    run_all_in_order(bench, finished, |_, _| {})
+}
+
+/// Measures all figures in parallel, like [`run_all_with`]. Calls `row` with each row as soon as the row and all
+/// earlier rows of [`Figures`] are finished. Rows of the main table have no interval yet.
+///
+/// # Errors
+///
+/// Fails in the same cases as [`run_all`].
+pub fn run_all_in_order(
+    bench: &Bench,
+    finished: impl Fn(u64, u64) + Sync,
+    row: impl FnMut(FigureTable, &FigureRow) + Send,
+) -> Result<Figures, StudyError> {
+    let steps = n_steps() as u64 + 1;
+    let done = AtomicU64::new(0);
+    let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
+    let tables = || Tables::measure(bench, step, row);
+    let intervals = || stepped(&step, || if bench.intervals { intervals(bench) } else { Vec::new() });
+    let (tables, intervals) = parallel::both(tables, intervals);
+    let Tables { main: mut rows, groups, families } = tables?;
+    // After a stop, intervals are missing or too narrow.
+    bench.stop.check().map_err(StudyError::of_figure("intervals"))?;
+    fill(&mut rows, &intervals);
+    Ok(Figures { rows, intervals, families, groups })
+}
+
 /// Rows of all tables.
-pub(super) struct Tables {
-    pub(super) main: Vec<FigureRow>,
-    pub(super) groups: Vec<FigureGroup>,
-    pub(super) families: Vec<FigureFamily>,
+struct Tables {
+    main: Vec<FigureRow>,
+    groups: Vec<FigureGroup>,
+    families: Vec<FigureFamily>,
 }
 
 /// The measurement of a row, and the table of the row.
@@ -39,14 +84,14 @@ struct Task<'a> {
 
 /// Returns the number of steps in which [`Tables::measure`] measures all tables: one for each row, and one for the
 /// family.
-pub(super) fn n_steps() -> usize {
+fn n_steps() -> usize {
     FIGURES.len() + topics().iter().map(|topic| topic.measurements.len()).sum::<usize>() + 1
 }
 
 impl Tables {
     /// Measures the rows of all tables in parallel. Calls `step` after each row and each family. Calls `row` with each
     /// row in the order of the tables, when all earlier rows are finished. Rows after a failed measurement are left out.
-    pub(super) fn measure(
+    fn measure(
         bench: &Bench,
         step: impl Fn() + Sync,
         mut row: impl FnMut(FigureTable, &FigureRow) + Send,
@@ -136,7 +181,6 @@ fn topics() -> [Topic; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::run_all_in_order;
     use pxpl5_run::Level;
     use std::convert::Infallible;
 
