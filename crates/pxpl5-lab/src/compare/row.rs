@@ -1,7 +1,7 @@
 //! A row of a comparison: the results of one method, combined from the runs of all seeds.
 
 use super::bootstrap::{BlockBootstrap, BootstrapSize};
-use super::contender::ComparedPipeline;
+use super::contender::{ComparedPipeline, DELAYED_VIDEO, IDEAL};
 use super::gallery::LastPicture;
 use super::interval::{IntervalMethod, MeanInterval};
 use super::trial::Trial;
@@ -194,6 +194,14 @@ impl ComparisonRow {
     #[must_use]
     pub fn shows_all(&self) -> bool {
         self.not_shown.unwrap_or(0) == 0
+    }
+
+    /// Returns true if the error of the row can be ranked with the errors of other rows. The rows `delayed-video` and
+    /// `ideal` are references that cannot be ranked. The error of `delayed-video` leaves out the delay of the real
+    /// world, and `ideal` has no pipeline.
+    #[must_use]
+    pub fn is_ranked(&self) -> bool {
+        ![DELAYED_VIDEO, IDEAL].contains(&self.pipeline.as_str())
     }
 
     /// Returns true if the error of at least one pixel was evaluated.
