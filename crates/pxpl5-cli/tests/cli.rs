@@ -89,7 +89,7 @@ fn a_run_that_shows_nothing_fails_with_a_message() {
     let due = &report["due"];
     assert_eq!((&due["due"], &due["shown"], &report["missed_retraces"]), (&52.into(), &0.into(), &52.into()));
     assert_eq!((&due["first_period"], &due["last_period"]), (&8.into(), &59.into()));
-    assert!(report["too_heavy"]["triangles_in_time"].as_u64() > Some(100));
+    assert!(report["too_heavy"]["primitives_in_time"].as_u64() > Some(100));
 }
 
 #[test]

@@ -126,7 +126,7 @@ fn without_a_complete_picture_there_is_no_latency_update_or_error() {
 #[test]
 fn a_pipeline_without_a_closed_form_explains_how_its_limit_is_found() {
     let heavy = run("jitp-field", 3_000, 60).expect("fields are begun").report().too_heavy.expect("far too many");
-    assert_eq!(heavy.triangles_in_time, None);
+    assert_eq!(heavy.primitives_in_time, None);
     assert!(heavy.advice.contains("`limit` finds the number of test triangles that jitp-field draws"), "{heavy}");
 }
 

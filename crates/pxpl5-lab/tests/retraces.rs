@@ -114,7 +114,7 @@ fn if_slats_is_always_late_no_picture_is_shown_and_the_report_names_a_size_that_
     assert!(due.missed > 0 && due.incomplete + due.late > 0, "{due:?}");
     let heavy = report.too_heavy.expect("nothing was shown");
     // TR94: 140 triangles with the COPY optimisation.
-    let would_do = heavy.triangles_in_time.expect("Slats has a closed form");
+    let would_do = heavy.primitives_in_time.expect("Slats has a closed form");
     assert!((136..=150).contains(&would_do), "{heavy}");
     assert!(heavy.to_string().contains(&format!("triangles = {would_do}")), "{heavy}");
 }

@@ -95,7 +95,7 @@ pub struct Estimates {
     pub fields_needed: fn(&Experiment) -> Option<u64>,
     /// Function that estimates how many primitives the scene can have, after decimation, so that all pictures are in
     /// time. Returns `None` if the formulas give no estimate.
-    pub triangles_in_time: fn(&Experiment) -> Option<u64>,
+    pub primitives_in_time: fn(&Experiment) -> Option<u64>,
 }
 
 impl Experiment {
@@ -272,8 +272,8 @@ impl Experiment {
     /// Returns an estimate of how many primitives the scene can have, after decimation, so that all pictures are in
     /// time. Returns `None` if the pipeline has no closed form, or if the formulas give no estimate.
     #[must_use]
-    pub fn triangles_in_time(&self) -> Option<u64> {
-        (self.estimates?.triangles_in_time)(self)
+    pub fn primitives_in_time(&self) -> Option<u64> {
+        (self.estimates?.primitives_in_time)(self)
     }
 
     /// Sets the optics of the head-mounted display and the distance between the eyes. The resolution comes from the

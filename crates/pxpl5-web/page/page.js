@@ -415,7 +415,7 @@ function draw(seen) {
 /** The machine that shows no picture: its number and the answer of the second worker; null without such a machine. */
 let heavy = null;
 
-/** Shows the reason for which a machine shows no picture, and the number of triangles in time. The search for the number runs once. */
+/** Shows the reason for which a machine shows no picture, and the number of primitives in time. The search for the number runs once. */
 async function tellHeavy(seen) {
   const number = seen.findIndex(({ missesAll, state }) => missesAll && !state.failure);
   at("heavy").hidden = number < 0;
@@ -423,8 +423,8 @@ async function tellHeavy(seen) {
   const mine = { number, found: null };
   heavy = mine;
   const name = names()[number];
-  const use = (triangles) => {
-    form.elements.triangles.value = triangles;
+  const use = (primitives) => {
+    form.elements.triangles.value = primitives;
     form.requestSubmit();
   };
   drawHeavy(at("heavy"), name, null, use);
@@ -434,7 +434,7 @@ async function tellHeavy(seen) {
     if (heavy === mine) drawHeavy(at("heavy"), name, mine.found, use);
   } catch {
     // Other machines were built, or the browser has no memory for a second worker. The page then shows only the reason.
-    if (heavy === mine) at("heavy").textContent = `${nameOf(name)} finishes no picture in time. Choose fewer triangles.`;
+    if (heavy === mine) at("heavy").textContent = `${nameOf(name)} finishes no picture in time. Choose fewer primitives.`;
   }
 }
 
@@ -830,7 +830,7 @@ at("copy").addEventListener("click", async () => {
 
 /** Starts the second worker for the volume, and returns a function that sends requests to this worker. */
 async function volumeWorker() {
-  // This ends a search for the number of triangles. The search starts again at the next update.
+  // This ends a search for the number of primitives. The search starts again at the next update.
   if (heavy && !heavy.found) heavy = null;
   return buildAside({ ...source, runs: source.runs.slice(0, 1) });
 }

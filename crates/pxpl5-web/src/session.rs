@@ -125,7 +125,7 @@ impl Session {
         let experiment = self.stepper.experiment();
         let scene = experiment.scene();
         let primitives = scene.primitives() as u64;
-        let in_time = experiment.triangles_in_time().or_else(|| self.fitting_by_runs());
+        let in_time = experiment.primitives_in_time().or_else(|| self.fitting_by_runs());
         json!({"primitives": primitives, "in_time": in_time.filter(|in_time| *in_time < primitives)})
     }
 
