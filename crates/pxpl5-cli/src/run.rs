@@ -12,8 +12,8 @@ use clap::Args;
 use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::views::results::{origin_lines, quantities_csv};
 use pxpl5::{
-    ExperimentFile, HeadReport, Keep, Level, Measured, Optimization, Outcome, Plan, Report, Results, SurfaceId, WhatIf,
-    what_if,
+    ExperimentFile, HeadReport, KeptRecords, Level, Measured, Optimization, Outcome, Plan, Report, Results, SurfaceId,
+    WhatIf, what_if,
 };
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -72,7 +72,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     // Open the output first, so that a bad path fails before the run.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "run")).transpose()?;
     // Files list every picture. The report alone needs only statistics, whose size does not grow with the run.
-    let keep = if folder.is_some() { Keep::Everything } else { Keep::Statistics };
+    let keep = if folder.is_some() { KeptRecords::Everything } else { KeptRecords::Statistics };
     let how = How { threads: args.threads, without: &args.without, keep, budget: args.budget, quiet: args.quiet };
     let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, how)?;
     let results = Results::of_run(outcome);

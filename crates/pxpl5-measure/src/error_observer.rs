@@ -426,7 +426,7 @@ mod tests {
     use super::*;
     use glam::DVec2;
     use pxpl5_machine::MachineConfig;
-    use pxpl5_run::{Experiment, Head, Keep, PipelineSettings, Pixels, Registry, StreamingObserver};
+    use pxpl5_run::{Experiment, Head, KeptRecords, PipelineSettings, Pixels, Registry, StreamingObserver};
     use pxpl5_scene::builtin;
     use std::any::Any;
     use tracking::motion::Synthetic;
@@ -465,7 +465,7 @@ mod tests {
             let head =
                 Head::new(motion, TrackerConfig::fastrak(), PredictorKind::ConstantVelocity, 7).expect("in range");
             let experiment = Experiment::with(config, pipeline, Arc::new(builtin(scene).expect("built in"))).head(head);
-            let experiment = experiment.fields(fields).pixels(Pixels::Off).keep(Keep::Statistics);
+            let experiment = experiment.fields(fields).pixels(Pixels::Off).keep(KeptRecords::Statistics);
             let outcome = experiment.observed_by(Some(|| Box::<Watched>::default())).run().expect("it runs");
             let held: &Vec<usize> = outcome.observed().expect("watched");
             assert!(held.len() > 1 && held.iter().all(|later| *later <= held[0]), "{name}: {held:?}");

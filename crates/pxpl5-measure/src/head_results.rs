@@ -24,7 +24,7 @@ pub(crate) fn missing_results_warning(outcome: &Outcome) -> Option<String> {
 }
 
 const MISSING_RESULTS: &str = "latencies from the head to light and errors in pixels cover only the last pictures: the run discarded its records and had no \
-    streaming observer (Experiment::observed_by; or keep all records with Keep::Everything)";
+    streaming observer (Experiment::observed_by; or keep all records with KeptRecords::Everything)";
 
 impl PixelErrors {
     /// Returns the errors that the pictures of a run have if a display shows the pictures as drawn, without any

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{HeadSum, Measured, Report};
-use pxpl5_run::{Aim, Experiment, Head, Keep, Outcome, PipelineSettings, Pixels, Raster, Registry};
+use pxpl5_run::{Aim, Experiment, Head, KeptRecords, Outcome, PipelineSettings, Pixels, Raster, Registry};
 use pxpl5_scene::{Scene, builtin};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -83,7 +83,7 @@ fn short_experiments() -> Vec<(u64, Experiment)> {
     ]
 }
 
-fn run(experiment: &Experiment, keep: Keep) -> Outcome {
+fn run(experiment: &Experiment, keep: KeptRecords) -> Outcome {
     experiment.clone().keep(keep).run().expect("it runs")
 }
 
@@ -100,8 +100,8 @@ fn said(outcome: &Outcome) -> String {
 fn assert_same(experiment: &Experiment) {
     let head = experiment.tracked_head().expect("tracked");
     let name = format!("{}, {:?}", experiment.pipeline().name(), head);
-    let everything = run(experiment, Keep::Everything);
-    let statistics = run(experiment, Keep::Statistics);
+    let everything = run(experiment, KeptRecords::Everything);
+    let statistics = run(experiment, KeptRecords::Statistics);
     let passes = statistics.observation().discarded.passes;
     let [expected, found] = [&everything, &statistics].map(said);
     let other = expected.lines().zip(found.lines()).find(|(expected, found)| expected != found);
@@ -125,11 +125,11 @@ fn discarding_records_changes_no_result_of_a_head() {
 #[test]
 fn a_report_warns_of_discarded_records_without_a_streaming_observer() {
     let experiment = experiments().swap_remove(0);
-    let silent = run(&experiment.clone().observed_by(None), Keep::Statistics).report();
+    let silent = run(&experiment.clone().observed_by(None), KeptRecords::Statistics).report();
     let said: Vec<&String> =
         silent.warnings.iter().filter(|warning| warning.contains("cover only the last pictures")).collect();
     assert_eq!(said.len(), 1, "{:?}", silent.warnings);
-    for keep in [Keep::Everything, Keep::Statistics] {
+    for keep in [KeptRecords::Everything, KeptRecords::Statistics] {
         assert_eq!(run(&experiment, keep).report().warnings, experiment.warnings(), "{keep:?}");
     }
 }

@@ -243,8 +243,8 @@ impl HeadViews {
         self.head.evaluate_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
     }
 
-    /// Returns the records of the requested poses in memory, sorted by view number. [`Keep`](crate::Keep) decides how
-    /// many records stay in memory.
+    /// Returns the records of the requested poses in memory, sorted by view number. [`KeptRecords`](crate::KeptRecords)
+    /// decides how many records stay in memory.
     #[must_use]
     pub fn sampled(&self) -> Vec<SampledPose> {
         let mut all = self.state().1.clone();

@@ -5,7 +5,7 @@ use crate::dry_run_observer::DryRunObserver;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
 use crate::head::Head;
-use crate::keep::Keep;
+use crate::kept_records::KeptRecords;
 use crate::observers::{ObserverFactory, StreamingObserver};
 use crate::outcome::Outcome;
 use std::sync::Arc;
@@ -80,7 +80,8 @@ impl Experiment {
 
     fn without_prediction(&self, head: &Head, fields: u64) -> Result<DryRun, ExperimentError> {
         let plain = Some(Arc::new(head.without_prediction()));
-        let (keep, sums): (Keep, ObserverFactory) = (Keep::Statistics, || Box::<DryRunObserver>::default());
+        let (keep, sums): (KeptRecords, ObserverFactory) =
+            (KeptRecords::Statistics, || Box::<DryRunObserver>::default());
         let plain =
             Self { head: plain, pixels: Pixels::Off, traffic: false, keep, sums: Some(sums), fields, ..self.clone() };
         // If the run has few pictures, the dry run before it has few pictures too.

@@ -3,7 +3,7 @@
 use crate::assembled::Assembled;
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
-use crate::keep::Keep;
+use crate::kept_records::KeptRecords;
 use crate::observers::{FinalResults, StreamingObserver};
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::result_window::ResultWindow;
@@ -49,14 +49,14 @@ pub(crate) struct Closed {
 impl Window {
     pub(crate) fn new(experiment: &Experiment, record: &Record) -> Self {
         let may_discard = match experiment.keep {
-            Keep::Everything => false,
-            Keep::Statistics => !experiment.traffic,
-            Keep::Recent => true,
+            KeptRecords::Everything => false,
+            KeptRecords::Statistics => !experiment.traffic,
+            KeptRecords::Recent => true,
         };
         let forgets = may_discard && experiment.pipeline.can_discard_records();
         let samples = if forgets { KEPT_SAMPLES } else { usize::MAX };
         let tally = Tally::new(experiment.end(), field_ms(record), samples);
-        let sums = experiment.sums.filter(|_| forgets && experiment.keep == Keep::Statistics);
+        let sums = experiment.sums.filter(|_| forgets && experiment.keep == KeptRecords::Statistics);
         let sum = sums.map(|begin| begin());
         let least_records = experiment.least_records;
         Self {

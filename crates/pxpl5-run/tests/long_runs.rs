@@ -3,7 +3,7 @@
 
 use pxpl5_machine::{LateRegion, MachineConfig};
 use pxpl5_run::{
-    Experiment, FacePipeline, FacePolicy, FaceSource, Frameless, Head, Jitp, Keep, Outcome, Pipeline, Pixels,
+    Experiment, FacePipeline, FacePolicy, FaceSource, Frameless, Head, Jitp, KeptRecords, Outcome, Pipeline, Pixels,
     RenderingControl, Samples, Slats, Viewpoint,
 };
 use pxpl5_scene::Scene;
@@ -57,7 +57,7 @@ fn experiments() -> [(&'static str, Experiment); 9] {
     ]
 }
 
-fn run(experiment: &Experiment, keep: Keep) -> Outcome {
+fn run(experiment: &Experiment, keep: KeptRecords) -> Outcome {
     experiment.clone().keep(keep).run().expect("it runs")
 }
 
@@ -83,8 +83,8 @@ fn said(outcome: &Outcome) -> Vec<String> {
 #[test]
 fn discarding_records_changes_no_result() {
     experiments().par_iter().for_each(|(name, experiment)| {
-        let everything = run(experiment, Keep::Everything);
-        let statistics = run(experiment, Keep::Statistics);
+        let everything = run(experiment, KeptRecords::Everything);
+        let statistics = run(experiment, KeptRecords::Statistics);
         let passes = statistics.observation().discarded.passes;
         assert_eq!(said(&everything), said(&statistics), "{name}");
         let least_passes = if *name == "frameless" { 1 } else { 2 };
@@ -103,7 +103,7 @@ fn discarding_records_changes_no_result() {
 /// records that were read, all events, and the poses in memory at the end.
 fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
     let mut most = [0, 0];
-    let watched = experiment.clone().fields(fields).keep(Keep::Statistics).run_stopping(&[], |_, machine| {
+    let watched = experiment.clone().fields(fields).keep(KeptRecords::Statistics).run_stopping(&[], |_, machine| {
         most[0] = most[0].max(machine.record().observation().records() as u64);
         most[1] = most[1].max(machine.pending_events() as u64);
         Ok(())
@@ -118,7 +118,7 @@ fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
 fn recent_records_of_an_observed_run_do_not_grow_with_its_length() {
     let most = |fields| {
         let experiment = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1).fields(fields);
-        let mut stepper = experiment.keep(Keep::Recent).record_traffic(true).stepper().expect("it can be built");
+        let mut stepper = experiment.keep(KeptRecords::Recent).record_traffic(true).stepper().expect("it can be built");
         let mut most = 0;
         while stepper.now() < stepper.end() {
             stepper.step_period();
@@ -126,7 +126,7 @@ fn recent_records_of_an_observed_run_do_not_grow_with_its_length() {
             let traffic = observation.traffic.as_ref().expect("recorded");
             most = most.max(observation.records() + traffic.records());
         }
-        assert!(!stepper.so_far().last_latencies(8).is_empty(), "the last pictures are known");
+        assert!(!stepper.observed_run().last_latencies(8).is_empty(), "the last pictures are known");
         (most, stepper.record().trace_hash())
     };
     let [(short, _), (long, hash)] = [600, 1_800].map(most);

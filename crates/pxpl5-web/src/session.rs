@@ -7,7 +7,7 @@ use crate::volume::Volume;
 use pxpl5_lab::limit::{LimitQuery, Model, about};
 use pxpl5_lab::{ExperimentFile, Plan};
 use pxpl5_machine::Board;
-use pxpl5_run::{BareHost, Experiment, Keep, Pause, Stepper};
+use pxpl5_run::{BareHost, Experiment, KeptRecords, Pause, Stepper};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Eye, SurfaceId};
 use serde_json::{Value, json};
@@ -39,7 +39,7 @@ impl Session {
         // Resolve all settings together. Then keep only recent records, because the page may run for hours.
         let plan = file.resolve().map_err(|error| error.to_string())?;
         let scene = plan.load_scene().map_err(|error| error.to_string())?;
-        let experiment = plan.experiment(scene).host(BareHost).record_traffic(true).keep(Keep::Recent);
+        let experiment = plan.experiment(scene).host(BareHost).record_traffic(true).keep(KeptRecords::Recent);
         // A motion named `live.csv` grows during the run.
         let live =
             files.0.get(LIVE).filter(|_| settings.lines().any(|line| line.trim() == format!("head.motion={LIVE}")));

@@ -46,7 +46,7 @@ fn back(stepper: &Stepper) -> Option<Time> {
 }
 
 pub(crate) fn misses_all(stepper: &Stepper) -> bool {
-    let run = stepper.so_far();
+    let run = stepper.observed_run();
     run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
 }
 
@@ -54,7 +54,7 @@ pub(crate) fn misses_all(stepper: &Stepper) -> bool {
 /// pictures. Shares are 0 to 1. `utilisation` is null at time zero, and `path` is null before the first complete
 /// picture.
 pub(crate) fn limits(stepper: &Stepper) -> Value {
-    let path = CriticalPath::so_far(&stepper.so_far());
+    let path = CriticalPath::so_far(&stepper.observed_run());
     let path = path.map(|path| {
         let parts = path.parts.iter();
         let parts: Vec<Value> = parts
@@ -137,7 +137,7 @@ pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Optio
 }
 
 pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
-    let run = stepper.so_far();
+    let run = stepper.observed_run();
     let newest = run.pictures().iter().rev().find(|times| times.is_shown() && times.shown_at <= stepper.now());
     let options = TimelineOptions {
         picture: newest.map(|times| times.picture),
@@ -151,7 +151,7 @@ pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
 /// Returns the parts of the latency of the last complete pictures in milliseconds, the newest picture last.
 pub(crate) fn latencies(stepper: &Stepper, most: usize) -> Value {
     let parts = LATENCY_PARTS.iter();
-    let pictures = stepper.so_far().last_latencies(most);
+    let pictures = stepper.observed_run().last_latencies(most);
     let rows = pictures.iter().map(|latency| {
         let spans: Vec<f64> = latency.spans.iter().map(|span| span.as_ms()).collect();
         json!({"picture": latency.picture.0, "ms": spans, "total_ms": latency.end().since(latency.begin).as_ms()})

@@ -6,7 +6,7 @@ use crate::error::StudyError;
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_machine::PRESETS;
 use pxpl5_measure::{CriticalPath, Resource, Shares, Utilisation};
-use pxpl5_run::{Experiment, ExperimentError, Goal, Keep, Level, Outcome, Pixels};
+use pxpl5_run::{Experiment, ExperimentError, Goal, KeptRecords as Keep, Level, Outcome, Pixels};
 use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::{SettingError, Value};
 use serde::Serialize;
