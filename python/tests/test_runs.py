@@ -89,9 +89,9 @@ def test_a_picture_that_nobody_computed_is_none() -> None:
 
 
 def test_progress_is_told_up_to_the_end() -> None:
-    told: list[tuple[int, int]] = []
-    pxpl5.Experiment("slats", "mig", triangles=50, fields=40).run(progress=lambda done, of: told.append((done, of)))
-    assert told[-1] == (40, 40) and told == sorted(told)
+    progress: list[tuple[int, int]] = []
+    pxpl5.Experiment("slats", "mig", triangles=50, fields=40).run(progress=lambda done, of: progress.append((done, of)))
+    assert progress[-1] == (40, 40) and progress == sorted(progress)
 
 
 def test_what_a_callback_raises_ends_the_run() -> None:

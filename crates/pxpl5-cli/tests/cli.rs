@@ -611,7 +611,7 @@ fn the_terminal_and_json_show_the_same_values() {
                 ["run", "--pipeline", pipeline, "--scene", scene, "--gps", gps, "--fields", &fields, "--pixels", "off"];
             let report = json_of(&folder.run(&with(&run, &["--json"])));
             let text = out(&folder.run(&run));
-            let told = format!("{pipeline} {scene}: {text}");
+            let case = format!("{pipeline} {scene}: {text}");
             let number = |path: &str| report.pointer(path).and_then(serde_json::Value::as_f64);
             let whole = |path: &str| report.pointer(path).and_then(serde_json::Value::as_u64);
             let dash = || "-".to_owned();
@@ -619,18 +619,18 @@ fn the_terminal_and_json_show_the_same_values() {
                 let sd = number("/latency_ms/sd").map_or_else(dash, |sd| format!("{sd:.1}"));
                 format!("{mean:.1}, sd {sd}, n {}", report["latency_ms"]["n"])
             });
-            assert_eq!(cell(&text, "latency, ms: mean"), latency, "{told}");
+            assert_eq!(cell(&text, "latency, ms: mean"), latency, "{case}");
             let hz = number("/updates_hz").map_or_else(dash, |hz| format!("{hz:.2}"));
-            assert_eq!(cell(&text, "updates per second"), hz, "{told}");
+            assert_eq!(cell(&text, "updates per second"), hz, "{case}");
             let not_shown = whole("/missed_retraces").zip(whole("/due/due"));
             let not_shown = not_shown.map_or_else(dash, |(missed, due)| format!("{missed} of {due} pictures due"));
-            assert_eq!(cell(&text, "not shown in time"), not_shown, "{told}");
+            assert_eq!(cell(&text, "not shown in time"), not_shown, "{case}");
             let ends = ["late", "incomplete", "missed"].map(|end| whole(&format!("/due/{end}")).map(|n| n.to_string()));
             let ends = ends.into_iter().collect::<Option<Vec<_>>>().map_or_else(dash, |ends| ends.join(", "));
-            assert_eq!(cell(&text, "  late, incompl., missed"), ends, "{told}");
+            assert_eq!(cell(&text, "  late, incompl., missed"), ends, "{case}");
             let window = whole("/window/first_period").zip(whole("/window/last_period"));
             let window = window.map_or_else(dash, |(first, last)| format!("{first} to {last}"));
-            assert_eq!(cell(&text, "all over periods"), window, "{told}");
+            assert_eq!(cell(&text, "all over periods"), window, "{case}");
         }
     }
 }

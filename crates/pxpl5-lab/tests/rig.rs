@@ -68,8 +68,8 @@ fn pipelines_without_frames_are_refused_with_the_reason() {
         let Err(refused) = measure(TrackerConfig::ideal(), named(pipeline), 2) else {
             panic!("{pipeline} is measured")
         };
-        let said = refused.to_string();
-        assert!(matches!(refused, StudyError::Setting(_)) && said.contains(reason), "{said}");
+        let message = refused.to_string();
+        assert!(matches!(refused, StudyError::Setting(_)) && message.contains(reason), "{message}");
     }
 }
 

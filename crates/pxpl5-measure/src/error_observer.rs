@@ -482,15 +482,15 @@ mod tests {
             let of_field = [error, Misregistration { pixels: 0.0, degrees: 0.0, ..error }];
             collected.take(PeriodNumber(field), Time(field), &of_field, Some(error));
         }
-        let (said, eye) = collected.result();
+        let (result, eye) = collected.result();
         assert_eq!(eye, None);
-        let kept: Vec<u64> = said.by_field.iter().map(|error| error.field.0).collect();
+        let kept: Vec<u64> = result.by_field.iter().map(|error| error.field.0).collect();
         assert_eq!(kept, [1, 2, 3]);
         assert_eq!(
-            (said.evaluated, said.pixels.n, said.degrees.n, said.centre_px.n, said.centre_deg.n),
+            (result.evaluated, result.pixels.n, result.degrees.n, result.centre_px.n, result.centre_deg.n),
             (10, 10, 10, 5, 5)
         );
-        assert!((said.centre_px.mean - 3.0).abs() < 1e-12 && (said.centre_deg.mean - 3.0 / 8.0).abs() < 1e-12);
-        assert!((said.degrees.mean - 1.5 / 8.0).abs() < 1e-12, "half of them are 0");
+        assert!((result.centre_px.mean - 3.0).abs() < 1e-12 && (result.centre_deg.mean - 3.0 / 8.0).abs() < 1e-12);
+        assert!((result.degrees.mean - 1.5 / 8.0).abs() < 1e-12, "half of them are 0");
     }
 }

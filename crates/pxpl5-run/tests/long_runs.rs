@@ -62,7 +62,7 @@ fn run(experiment: &Experiment, keep: KeptRecords) -> Outcome {
 }
 
 /// Returns all results of a run that cover the whole run.
-fn said(outcome: &Outcome) -> Vec<String> {
+fn results(outcome: &Outcome) -> Vec<String> {
     let tally = outcome.tally();
     let all: Vec<&Samples> =
         [&tally.latency_ms, &tally.eye_ms, &tally.eye_swap_ms, &tally.eye_retraces, &tally.copy_begins_ms]
@@ -74,10 +74,10 @@ fn said(outcome: &Outcome) -> Vec<String> {
             .collect();
     let late: &[LateRegion] = &tally.first_late_regions;
     let counts = [tally.pictures, tally.shown, tally.complete, tally.shown_in_a_row, tally.late_regions];
-    let mut said: Vec<String> = all.iter().map(|samples| format!("{:?}", samples.statistics())).collect();
-    said.push(format!("{counts:?} {late:?} {:?} {:?}", tally.region_copy_us(), outcome.due()));
-    said.push(format!("{:?} {} {}", outcome.updates_hz(), outcome.ends_complete(), outcome.record().trace_hash()));
-    said
+    let mut results: Vec<String> = all.iter().map(|samples| format!("{:?}", samples.statistics())).collect();
+    results.push(format!("{counts:?} {late:?} {:?} {:?}", tally.region_copy_us(), outcome.due()));
+    results.push(format!("{:?} {} {}", outcome.updates_hz(), outcome.ends_complete(), outcome.record().trace_hash()));
+    results
 }
 
 #[test]
@@ -86,10 +86,10 @@ fn discarding_records_changes_no_result() {
         let everything = run(experiment, KeptRecords::Everything);
         let statistics = run(experiment, KeptRecords::Statistics);
         let passes = statistics.observation().discarded.passes;
-        assert_eq!(said(&everything), said(&statistics), "{name}");
+        assert_eq!(results(&everything), results(&statistics), "{name}");
         let least_passes = if *name == "frameless" { 1 } else { 2 };
         assert!(passes >= least_passes, "{name}: records were discarded {passes} times");
-        assert!(everything.tally().pictures > 100, "{name}: there is something to be said");
+        assert!(everything.tally().pictures > 100, "{name}: the run has results");
         let all = everything.pictures();
         assert_eq!(
             statistics.pictures(),

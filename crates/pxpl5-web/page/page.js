@@ -45,7 +45,7 @@ let of = 0;
 let chosen = null;
 let pixel = null;
 let running = false;
-let looked = { boards: 0, timeline: 0, limits: 0 };
+let updatedAt = { boards: 0, timeline: 0, limits: 0 };
 /** Input from which the machines were built: `runs` and `files`. */
 let source = null;
 /** Mode of the page: `start`, `story` or `lab`. */
@@ -269,8 +269,8 @@ function wanted(now) {
   const stands = !running;
   const inLab = mode === "lab";
   const want = { of, surfaces: eyesShown, wire: shows("wire"), regions: shows("regions"), ideal: at("show-ideal").checked && inLab, error: at("show-error").checked && inLab };
-  if (stands || now - looked.boards > BOARDS_EVERY) {
-    looked.boards = now;
+  if (stands || now - updatedAt.boards > BOARDS_EVERY) {
+    updatedAt.boards = now;
     const open = inLab && at("machine-part").open;
     Object.assign(want, { boards: open || shows("diagram"), renderers: open, board: chosen, pixel, age: true });
     if (want.boards) want.messages = messagesAfter;
@@ -278,13 +278,13 @@ function wanted(now) {
   } else {
     want.ideal = want.error = false;
   }
-  if (stands || now - looked.timeline > TIMELINE_EVERY) {
-    looked.timeline = now;
+  if (stands || now - updatedAt.timeline > TIMELINE_EVERY) {
+    updatedAt.timeline = now;
     if (inLab && at("timeline-part").open) want.timeline = Number(at("span").value);
     if (shows("latency")) want.latencies = inLab ? 8 : 1;
   }
-  if (inLab && at("limits-part").open && (stands || now - looked.limits > LIMITS_EVERY)) {
-    looked.limits = now;
+  if (inLab && at("limits-part").open && (stands || now - updatedAt.limits > LIMITS_EVERY)) {
+    updatedAt.limits = now;
     want.limits = true;
   }
   return want;
@@ -316,7 +316,7 @@ function go(how) {
       // A long run consists of several pieces. The page shows only the state after the last piece.
       while (how.to !== undefined && !how.stop && how.to - reached > WAY) {
         const to = reached + WAY;
-        const { machines: all } = await ask("go", { to, rows: live?.until(to) ?? null, note: live?.told, want: null });
+        const { machines: all } = await ask("go", { to, rows: live?.until(to) ?? null, note: live?.sent, want: null });
         const before = reached;
         reached = Math.max(...all.map(({ state }) => state.now_ps));
         at("failure").hidden = false;
@@ -324,7 +324,7 @@ function go(how) {
         if (reached === before) break;
       }
       const rows = live?.until(how.to ?? reached + (how.by ?? (how.step ? STEP : 0))) ?? null;
-      const seen = await ask("go", { ...how, rows, note: live?.told, want: wanted(performance.now()) });
+      const seen = await ask("go", { ...how, rows, note: live?.sent, want: wanted(performance.now()) });
       draw(seen);
       return seen;
     } catch (error) {
@@ -495,10 +495,10 @@ function choose(name) {
 function drawLink(state) {
   // The motion of a live head is now a recording.
   if (live) motion = live.text();
-  const told = live ? { ...settings, "head.motion": RECORDED, "head.predict": "none" } : settings;
-  const address = addressOf(told);
+  const shared = live ? { ...settings, "head.motion": RECORDED, "head.predict": "none" } : settings;
+  const address = addressOf(shared);
   if (state.now_ps > 0) address.set("at", String(state.now_ps));
-  at("again").hidden = told["head.motion"] === RECORDED && motion === null;
+  at("again").hidden = shared["head.motion"] === RECORDED && motion === null;
   at("link").href = `#${address}`;
   const commands = pipelines().map((name) => {
     const all = live ? { ...settingsOf(name), "head.motion": RECORDED } : settingsOf(name);
@@ -989,8 +989,8 @@ at("to-start").addEventListener("click", () => {
 
 async function open() {
   const given = new URLSearchParams(location.hash.slice(1));
-  const told = storyOf(given);
-  if (told) return tell(told.name, told.step);
+  const story = storyOf(given);
+  if (story) return tell(story.name, story.step);
   if ([...given.keys()].length === 0) {
     fromAddress();
     return toStart();

@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_wrong_setting_is_refused_with_a_message() {
-        for (settings, said) in [
+        for (settings, expected) in [
             ("pipeline=slat", "slats"),
             ("pipeline=slats\nscene=migg", "there is no scene `migg`; did you mean `mig`?"),
             ("pipeline=slats\nscene=mig\nfields=0", "fields"),
@@ -252,7 +252,7 @@ mod tests {
             ("pipeline=slats\ndisplay=arp", "arp"),
         ] {
             let error = new(settings).expect_err(settings);
-            assert!(error.contains(said), "{settings}: {error}");
+            assert!(error.contains(expected), "{settings}: {error}");
         }
     }
 

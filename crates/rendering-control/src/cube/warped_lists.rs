@@ -107,7 +107,7 @@ mod tests {
     fn only_cached_vertices_of_static_objects_are_moved() {
         let list = list();
         let update = update(7);
-        let warp = update.warp.expect("said");
+        let warp = update.warp.expect("a warp");
         let placed = WarpedLists::default().placed(&list, &update);
         for (vertex, (before, found)) in list.positions.iter().zip(&placed.positions).enumerate() {
             let moved = warp.moved(before.as_dvec3(), 0).expect("a length").as_vec3();

@@ -98,9 +98,9 @@ mod tests {
     #[test]
     fn a_record_complete_at_a_poll_is_read_at_this_poll_and_a_later_record_waits_for_the_next_poll() {
         let line = SerialRead::unix();
-        let look = 5 + 30 * PS_PER_MS;
-        assert_eq!(line.seen_ps(look, 5), look);
-        assert_eq!(line.seen_ps(look + 1, 5), look + 30 * PS_PER_MS);
+        let poll_ps = 5 + 30 * PS_PER_MS;
+        assert_eq!(line.seen_ps(poll_ps, 5), poll_ps);
+        assert_eq!(line.seen_ps(poll_ps + 1, 5), poll_ps + 30 * PS_PER_MS);
         assert_eq!(line.seen_ps(0, 5), 5);
     }
 
