@@ -315,7 +315,7 @@ pub use pxpl5_run::PolicyPipeline;
 /// let views: &Arc<HeadViews> = outcome.head().ok_or("a tracked head")?;
 /// let sampled: Vec<SampledPose> = views.sampled();
 /// let last = sampled.last().ok_or("views were requested")?;
-/// let estimate = Estimator::new(views, None).pose(last.known, last.objects_at);
+/// let estimate = Estimator::new(views, None).pose(last.reports_until, last.objects_at);
 /// println!("{estimate:?}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

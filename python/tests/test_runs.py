@@ -35,12 +35,12 @@ def fingerprint(picture: np.ndarray) -> str:
 
 
 def test_pictures_are_the_golden_ones_of_rust(root: Path) -> None:
-    known = dict(line.split()[::-1] for line in (root / "tests/golden/fingerprints.txt").read_text().splitlines())
+    fingerprints = dict(line.split()[::-1] for line in (root / "tests/golden/fingerprints.txt").read_text().splitlines())
     outcome = pxpl5.Experiment("rendering-control", "full-screen:12", machine="small-hmd", fields=60).run()
     for eye in ("left", "right"):
         picture = outcome.picture(eye)
         assert picture is not None
-        assert fingerprint(picture.array) == known[f"rendering-control-full-screen-12-{eye}"]
+        assert fingerprint(picture.array) == fingerprints[f"rendering-control-full-screen-12-{eye}"]
 
 
 def test_slats_shows_every_picture_a_field_after_its_pose(slats: pxpl5.Outcome) -> None:

@@ -453,7 +453,8 @@ impl StereoModel {
         let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
         let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);
         // Frames after the last computed frame are unknown.
-        let known = frames.last().map_or(PeriodNumber::FIRST, |last| field_of(last).next()).min(PeriodNumber(fields));
-        DuePictures::count(frames.iter().map(|frame| (field_of(frame), PictureResult::Shown)), every, known)
+        let computed_to =
+            frames.last().map_or(PeriodNumber::FIRST, |last| field_of(last).next()).min(PeriodNumber(fields));
+        DuePictures::count(frames.iter().map(|frame| (field_of(frame), PictureResult::Shown)), every, computed_to)
     }
 }

@@ -161,11 +161,11 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
         let _ = writeln!(
             text,
             "Head to light: {} ms, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}). Pixel error (display {display}): mean {} px, 99 % {} px, mean {} degrees, n {}.",
-            known(end_to_end.total_ms, 2),
+            number_or_dash(end_to_end.total_ms, 2),
             end_to_end.n,
-            known(error.pixels.mean, 2),
-            known(error.pixels.p99, 2),
-            known(error.degrees.mean, 3),
+            number_or_dash(error.pixels.mean, 2),
+            number_or_dash(error.pixels.p99, 2),
+            number_or_dash(error.degrees.mean, 3),
             error.pixels.n
         );
     }
@@ -191,7 +191,7 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
 }
 
 /// Formats a number. The result for NaN is "-".
-fn known(value: f64, digits: usize) -> String {
+fn number_or_dash(value: f64, digits: usize) -> String {
     if value.is_nan() { "-".to_owned() } else { format!("{value:.digits$}") }
 }
 

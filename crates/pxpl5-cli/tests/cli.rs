@@ -213,10 +213,10 @@ fn run_prints_a_table_to_standard_output_and_with_quiet_prints_nothing() {
 fn lists_name_all_built_in_items() {
     let folder = Folder::new("lists");
     let scenes = json(&folder.run(&["scenes", "--json"]));
-    let known: Vec<_> = scenes["scenes"].as_array().expect("a list").iter().map(|scene| &scene["name"]).collect();
+    let names: Vec<_> = scenes["scenes"].as_array().expect("a list").iter().map(|scene| &scene["name"]).collect();
     let of_one_size = ["aircraft", "mig", "molecules", "head", "room", "gallery", "gallery:full"];
     let expected = [&of_one_size[..], &["full-screen:N", "typical:N", "sphere:N"]].concat();
-    assert_eq!(known, expected);
+    assert_eq!(names, expected);
     let machines = json(&folder.run(&["machines", "--json"]));
     // TR94: 13 GPs and 5 renderers.
     let small =

@@ -272,8 +272,8 @@ fn values_that_were_not_measured_are_null_in_json_and_empty_in_the_table() {
     let place = |name: &str| names.iter().position(|column| *column == name).expect("a column");
     for line in lines {
         let cells: Vec<&str> = line.split(',').collect();
-        let known = row(&json, cells[place("pipeline")])["not_shown"].is_u64();
-        assert_eq!((cells[place("mean")].is_empty(), cells[place("n")] == "0"), (!known, !known), "{line}");
+        let has_count = row(&json, cells[place("pipeline")])["not_shown"].is_u64();
+        assert_eq!((cells[place("mean")].is_empty(), cells[place("n")] == "0"), (!has_count, !has_count), "{line}");
     }
     let _ = std::fs::remove_dir_all(&out);
 }

@@ -191,10 +191,10 @@ fn columns_of_comparisons_have_the_same_names_in_tables_plots_and_json() {
     let header = table.lines().next().expect("a header").to_owned();
     // `plot` lists all columns of comparison.json if a requested column does not exist.
     let unknown = folder.run(&["plot", "c", "--x", "no-column", "--y", "due", "--out", "f.svg"]);
-    let known: Vec<String> =
+    let columns: Vec<String> =
         err(&unknown).trim_end().rsplit_once("There are: ").expect("a list").1.split(", ").map(str::to_owned).collect();
     for column in header.split(',') {
-        assert!(known.iter().any(|name| name == column), "{column} is not in {known:?}");
+        assert!(columns.iter().any(|name| name == column), "{column} is not in {columns:?}");
     }
     let old = ["plot", "c", "--x", "head_to_light_ms_mean", "--y", "error_px_by_latency", "--out", "f.svg"];
     let old = folder.run(&old);

@@ -334,8 +334,8 @@ impl Evaluation {
             let from = match &self.content {
                 Content::ShiftedRaster(_, offset) => {
                     let Some(offset) = offset else { continue };
-                    let known = display.tick(field);
-                    let arrived = self.head.report_by(known);
+                    let reports_until = display.tick(field);
+                    let arrived = self.head.report_by(reports_until);
                     eye.pose(arrived.and_then(|arrived| self.head.measured_at(arrived)), at);
                     Some(place - offset.shift_px(view, at.0))
                 }

@@ -56,9 +56,9 @@ impl Experiment {
 
     pub(crate) fn prepare(&self) -> Result<Preparation, ExperimentError> {
         let Some(head) = self.predicting_head() else { return Ok(Preparation::default()) };
-        let known = self.dry_run.clone().map_or_else(|| self.make_dry_run(head), Ok)?;
-        let tuned = head.is_to_be_tuned().then(|| known.tuned(head)).flatten();
-        let seen_times = (!self.pipeline.knows_when_seen()).then(|| known.seen_times.clone());
+        let dry_run = self.dry_run.clone().map_or_else(|| self.make_dry_run(head), Ok)?;
+        let tuned = head.is_to_be_tuned().then(|| dry_run.tuned(head)).flatten();
+        let seen_times = (!self.pipeline.knows_when_seen()).then(|| dry_run.seen_times.clone());
         Ok(Preparation { seen_times, head: tuned.map(Arc::new) })
     }
 

@@ -97,8 +97,8 @@ impl Window {
         let newest_taken = fresh.len().checked_sub(PICTURES_HELD + 1)?;
         // Only whole periods become final, so that all pictures of each period are known.
         let last = fresh[newest_taken].shown_at.min(before(record, now)?);
-        let known = record.display().period_at(last);
-        let settled_to = Time(record.tick(known).0.checked_sub(1)?);
+        let recorded_to = record.display().period_at(last);
+        let settled_to = Time(record.tick(recorded_to).0.checked_sub(1)?);
         let held = fresh.partition_point(|times| times.shown_at <= settled_to);
         let (pictures, held) = fresh.split_at(held);
         // Records are needed from the earliest sample or TRANSFORM of a picture that is not final.
@@ -112,7 +112,7 @@ impl Window {
         // The counts are updated first, because the window depends on them.
         self.tally.count(record, pictures);
         let every = experiment.pipeline.periods_a_picture(record);
-        let window = ResultWindow::begun(self.tally.ends(), every, known, experiment.end());
+        let window = ResultWindow::begun(self.tally.ends(), every, recorded_to, experiment.end());
         let window = window.not_before(experiment.results_from, every);
         self.take(&FinalResults { arrivals, pictures, next, until, samples, window, ..all });
         self.taken_to = Some(settled_to);

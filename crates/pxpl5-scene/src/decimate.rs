@@ -65,10 +65,10 @@ impl Decimation {
 
     fn surface(&self, wanted: usize) -> Surface {
         let passed = self.passed.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let known = passed.filter(|passed| passed.serves(wanted));
+        let cached = passed.filter(|passed| passed.serves(wanted));
         // A stored state far from the wanted number saves little work, so a nearer state replaces it.
-        let is_near = known.as_ref().is_some_and(|known| known.left() / 2 <= wanted);
-        let mut first = known.map_or_else(|| FirstPass::new(Surface::new(&self.scene)), Arc::unwrap_or_clone);
+        let is_near = cached.as_ref().is_some_and(|cached| cached.left() / 2 <= wanted);
+        let mut first = cached.map_or_else(|| FirstPass::new(Surface::new(&self.scene)), Arc::unwrap_or_clone);
         if !is_near {
             first.until(wanted + wanted / PASSED_ABOVE, wanted);
             // A state that was reached only for this number does not help with other numbers, so it is not stored.

@@ -126,12 +126,12 @@ let unknown = [];
 
 function fromAddress() {
   const given = new URLSearchParams(location.hash.slice(1));
-  const known = KEYS.filter((key) => given.get(key));
+  const keys = KEYS.filter((key) => given.get(key));
   unknown = [...given.keys()].filter((key) => !KEYS.includes(key) && !OTHERS.includes(key));
   if (given.has("story") && !storyOf(given)) unknown.push(`story=${given.get("story")}`);
   beside = given.get("beside") ?? "";
   motion = given.get("motion") ?? "";
-  return { ...FIRST, ...Object.fromEntries(known.map((key) => [key, given.get(key)])) };
+  return { ...FIRST, ...Object.fromEntries(keys.map((key) => [key, given.get(key)])) };
 }
 
 function intoForm() {
@@ -207,7 +207,7 @@ async function build(kept = null) {
   const begun = settings["head.motion"] === LIVE ? kept ?? new Live() : null;
   if (begun) files.push([LIVE, new TextEncoder().encode(csv("0,0"))]);
   const texts = pipelines().map((name) => Object.entries(settingsOf(name)).map(([key, value]) => `${key}=${value}`).join("\n"));
-  say(unknown.length > 0 ? `The link has ${unknown.map((key) => `"${key}"`).join(", ")}, which is unknown: expected ${[...KEYS, ...OTHERS].join(", ")}.` : "");
+  say(unknown.length > 0 ? `The link has ${unkeys.map((key) => `"${key}"`).join(", ")}, which is unknown: expected ${[...KEYS, ...OTHERS].join(", ")}.` : "");
   unknown = [];
   document.body.dataset.busy = "true";
   endAside();

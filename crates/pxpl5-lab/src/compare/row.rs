@@ -221,8 +221,8 @@ pub(super) struct Sampling {
 
 /// Returns the sum of all values except `None`, or `None` if no other value exists.
 fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> {
-    let mut known = values.flatten().peekable();
-    known.peek().is_some().then(|| known.sum())
+    let mut present = values.flatten().peekable();
+    present.peek().is_some().then(|| present.sum())
 }
 
 fn settings_text(contender: &ComparedPipeline) -> String {

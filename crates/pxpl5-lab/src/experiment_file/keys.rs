@@ -251,7 +251,7 @@ fn is_key(registry: &Registry, path: &str) -> bool {
 /// Returns true if the path is a machine parameter with any display of the registry.
 fn is_machine_parameter(registry: &Registry, path: &str) -> bool {
     let Some(path) = path.strip_prefix("machine.") else { return false };
-    parameters(registry).iter().any(|known| known == path)
+    parameters(registry).iter().any(|candidate| candidate == path)
 }
 
 /// Returns the paths of all machine parameters with all displays of the registry.

@@ -388,7 +388,7 @@ fn has_colours(element: &ElementDef) -> bool {
 
 /// Sets one component of a colour from a property, which is an integer from 0 to 255 or a fraction from 0 to 1.
 fn set_colour(colour: &mut [u8; 3], name: &str, property: &Property) -> PropertyAccessResult {
-    let Some(part) = COLOURS.iter().find_map(|names| names.iter().position(|known| *known == name)) else {
+    let Some(part) = COLOURS.iter().find_map(|names| names.iter().position(|candidate| *candidate == name)) else {
         return PropertyAccessResult::Ignored;
     };
     colour[part] = match (property, number(property)) {
@@ -418,20 +418,20 @@ fn row_of(element: &ElementDef) -> String {
 /// Checks two rules that the library does not check. The version must be 1.0, and an element must not have a property
 /// twice.
 fn check_header(source: &Source<'_>, header: &str) -> Result<(), FileError> {
-    let mut known = Vec::new();
+    let mut properties = Vec::new();
     for (number, line) in (1..).zip(header.lines()) {
-        // `known` collects the properties of the current element.
+        // `properties` collects the properties of the current element.
         let words: Vec<&str> = line.split_whitespace().collect();
         match words.as_slice() {
             ["format", _, version, ..] if *version != "1.0" => {
                 return Err(source.syntax(FilePlace::Line(number), "version 1.0", excerpt(version)));
             }
-            ["element", ..] => known.clear(),
-            ["property", .., name] if known.contains(name) => {
+            ["element", ..] => properties.clear(),
+            ["property", .., name] if properties.contains(name) => {
                 let expected = "a property that the element does not have yet";
                 return Err(source.syntax(FilePlace::Line(number), expected, excerpt(line)));
             }
-            ["property", .., name] => known.push(name),
+            ["property", .., name] => properties.push(name),
             _ => {}
         }
     }

@@ -27,7 +27,7 @@ impl WarpedLists {
         let is_still = |place: usize| update.structures.get(place) == Some(&true) && !is_edited(place);
         // Another slave may have computed the list already.
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, warped)) = kept.iter().find(|(known, _)| *known == number) {
+        if let Some((_, warped)) = kept.iter().find(|(cached, _)| *cached == number) {
             return Arc::clone(warped);
         }
         let mut warped = DisplayList::clone(list);
