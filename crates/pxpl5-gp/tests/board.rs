@@ -165,7 +165,7 @@ fn a_chain_is_accepted_when_all_receivers_have_taken_their_messages() {
 
 /// The interrupt program is polled first. It gets the progress of the other program at the same instant.
 #[test]
-fn one_program_sees_the_changes_of_the_other_at_once() {
+fn a_program_reads_changes_of_another_program_at_once() {
     let notes = Notes::default();
     let (program_notes, done) = (Rc::clone(&notes), Rc::new(Cell::new(false)));
     let is_done = Rc::clone(&done);
@@ -230,7 +230,7 @@ fn a_stage_that_ends_with_a_chain_ends_at_its_acceptance() {
 }
 
 #[test]
-fn a_program_sees_retraces_and_status_lines() {
+fn a_program_reads_retraces_and_status_lines() {
     let notes = Notes::default();
     let program_notes = Rc::clone(&notes);
     let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {

@@ -153,7 +153,7 @@ fn a_picture_of_start_up_that_stays_on_the_screen_has_no_error() {
 
 /// Tests a run whose only complete fields are those at its start.
 #[test]
-fn a_run_all_of_whose_due_pictures_failed_has_no_latency() {
+fn a_run_whose_due_pictures_all_failed_has_no_latency() {
     let text =
         "pipeline = \"jitp-dual-screen\"\nscene = \"full-screen:4\"\nfields = 60\npixels = \"off\"\nlevel = \"cycle\"";
     let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("valid");

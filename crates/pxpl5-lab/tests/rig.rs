@@ -154,7 +154,7 @@ impl PictureRules for Faulty {
 }
 
 #[test]
-fn an_error_of_one_measurement_is_found_by_the_other() {
+fn each_measurement_detects_errors_of_the_other_measurement() {
     let with = |fault| {
         let faulty = Faulty { inner: RenderingControl::stereo(), fault };
         measure(TrackerConfig::fastrak(), Arc::new(faulty), 4)

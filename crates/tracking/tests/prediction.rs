@@ -89,7 +89,7 @@ fn before_the_first_report_the_prediction_is_the_identity() {
 }
 
 #[test]
-fn more_than_the_horizon_after_the_newest_report_the_prediction_is_the_last_pose() {
+fn a_prediction_beyond_the_horizon_is_the_last_pose() {
     for kind in PredictorKind::ALL {
         let mut predictor = build(kind, &TrackerConfig::ideal());
         let pan = Pan::at(100.0);
@@ -105,7 +105,7 @@ fn more_than_the_horizon_after_the_newest_report_the_prediction_is_the_last_pose
 
 /// A head pans at 100 degrees per second. The reports cover two seconds, which is more than the horizon of 500 ms.
 #[test]
-fn more_than_the_horizon_before_the_newest_report_the_prediction_is_the_last_pose() {
+fn a_prediction_beyond_the_horizon_in_the_past_is_the_last_pose() {
     for kind in PredictorKind::ALL {
         let mut predictor = build(kind, &TrackerConfig::ideal());
         let pan = Pan::at(100.0);
