@@ -306,6 +306,11 @@ impl Gp {
         self.accepted(Ticket(issued)).await;
     }
 
+    pub(crate) fn is_clump_buffer_free(&self) -> bool {
+        let shared = self.shared.borrow();
+        shared.accepted >= shared.issued
+    }
+
     /// Waits until every receiver of a batch has accepted at least one of its messages. From then on, the DMA empties
     /// the clump buffer (the memory for outgoing messages).
     pub async fn draining(&self, ticket: Ticket) {

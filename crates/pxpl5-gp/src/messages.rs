@@ -42,7 +42,13 @@ impl Gp {
     /// Spends the CPU time of the reception of a message.
     #[inline]
     pub async fn pay_for(&self, received: &Received) {
-        self.software(|processor| processor.receive_message(received.source, &received.body)).await;
+        let span = self.reception_time(received).await;
+        self.spend(span).await;
+    }
+
+    #[inline]
+    async fn reception_time(&self, received: &Received) -> Span {
+        self.software_time(|processor| processor.receive_message(received.source, &received.body)).await
     }
 
     /// Answers a message: spends the CPU time of its reception, does `work`, sends `messages` one by one, and finally
@@ -59,25 +65,39 @@ impl Gp {
         messages: impl Iterator<Item = (NodeId, u32, Body)>,
         last: (NodeId, u32, Body),
     ) -> Result<(), Fault> {
-        // The costs follow in this order: reception, work, messages.
-        self.pay_for(received).await;
+        // Nothing happens between two steps except at a full clump buffer, so the program spends their times together.
+        let mut due = self.reception_time(received).await;
         if let Some(work) = work {
-            self.answer_work(work).await?;
+            due += self.answer_time(work)?;
         }
         // Each message needs the clump buffer. Only `last` is sent without a wait.
         for message in messages {
-            self.clump_buffer_free().await;
-            self.send_batch(vec![message]).await;
+            if !self.is_clump_buffer_free() {
+                self.spend(std::mem::take(&mut due)).await;
+                self.clump_buffer_free().await;
+            }
+            self.send_after(due, message).await;
+            due = Span::ZERO;
         }
-        self.send_batch(vec![last]).await;
+        self.send_after(due, last).await;
         Ok(())
+    }
+
+    /// Sends one message in the background. The program first spends `due` and the CPU time of the message software.
+    #[inline]
+    async fn send_after(&self, due: Span, message: (NodeId, u32, Body)) {
+        let chain = self.unheld([message]);
+        let span = due + self.chain_time(&chain).await;
+        self.spend(span).await;
+        self.start(chain);
     }
 
     /// Sends one message in the background, after all earlier messages. The program spends the CPU time of the message
     /// software.
     #[inline]
     pub async fn send(&self, destination: NodeId, words: u32, body: Body) -> Ticket {
-        self.send_batch(vec![(destination, words, body)]).await
+        let chain = self.pay_for_chain(self.unheld([(destination, words, body)])).await;
+        self.start(chain)
     }
 
     /// Sends several messages as one chain in the background, after the acceptance of the previous chain. The CPU time
@@ -141,32 +161,39 @@ impl Gp {
 
     #[inline]
     async fn pay_for_chain(&self, chain: Chain) -> Chain {
-        self.software(|processor| processor.send_chain(chain.0.iter().map(|link| (&link.message, link.hold)))).await;
+        let span = self.chain_time(&chain).await;
+        self.spend(span).await;
         chain
     }
 
-    /// Spends the CPU time of the message software: `message_ns` of the timing table, or the time of `code` on boards
-    /// that run i860 code.
     #[inline]
-    async fn software(&self, code: impl FnOnce(&mut Processor) -> Result<Span, Fault>) {
+    async fn chain_time(&self, chain: &Chain) -> Span {
+        self.software_time(|processor| processor.send_chain(chain.0.iter().map(|link| (&link.message, link.hold))))
+            .await
+    }
+
+    /// Returns and counts the CPU time of the message software: `message_ns` of the timing table, or the time of `code`
+    /// on boards that run i860 code. The program must spend this time. If the code fails, the board stops and the
+    /// function never returns.
+    #[inline]
+    async fn software_time(&self, code: impl FnOnce(&mut Processor) -> Result<Span, Fault>) -> Span {
         let span = {
             let shared = &mut *self.shared.borrow_mut();
-            match &mut shared.processor {
+            let span = match &mut shared.processor {
                 Some(processor) => code(processor),
                 None => Ok(Span::from_ns(shared.timing.message_ns)),
-            }
+            };
+            shared.message_software += span.as_ref().copied().unwrap_or(Span::ZERO);
+            span
         };
         match span {
-            Ok(span) => {
-                self.shared.borrow_mut().message_software += span;
-                self.spend(span).await;
-            }
+            Ok(span) => span,
             Err(fault) => self.stop(fault).await,
         }
     }
 
     /// Stops the board because of a fault in its message software. This future never completes.
-    async fn stop(&self, fault: Fault) {
+    async fn stop(&self, fault: Fault) -> Span {
         self.shared.borrow_mut().software_fault = Some(fault);
         std::future::pending().await
     }

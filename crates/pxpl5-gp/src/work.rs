@@ -37,12 +37,12 @@ impl Gp {
         Ok(())
     }
 
-    /// Does a unit of work that answers a message. Its CPU time counts in [`GpUse::tokens`](crate::GpUse::tokens).
-    pub(crate) async fn answer_work(&self, work: &impl Work) -> Result<(), Fault> {
+    /// Returns the CPU time of a unit of work that answers a message, and counts it in
+    /// [`GpUse::tokens`](crate::GpUse::tokens). The program must spend this time.
+    pub(crate) fn answer_time(&self, work: &impl Work) -> Result<Span, Fault> {
         let span = self.time_of(work)?;
         self.shared.borrow_mut().answer_work += span;
-        self.spend(span).await;
-        Ok(())
+        Ok(span)
     }
 
     /// Returns the CPU time of a unit of work, and counts the transformed vertices.

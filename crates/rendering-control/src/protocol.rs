@@ -4,6 +4,7 @@ use crate::drawn::Sent;
 use crate::rules::Drawing;
 use pxpl5_gp::{Fault, Received};
 use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CopyPath, NodeId, PictureNumber, RegionId, Word};
+use std::sync::Arc;
 
 const SEND: Word = 1;
 const EDIT: Word = 2;
@@ -80,8 +81,13 @@ pub(crate) enum StageOrder<S> {
 
 impl<S: Sent> StageOrder<S> {
     pub(crate) fn message(&self) -> (u32, Body) {
-        let words = self.words();
-        (words.len() as u32, Body::Words(words.into()))
+        let words: Arc<[Word]> = match self {
+            // Tokens are the most frequent messages, so they are made without a vector.
+            Self::Token(token) => token.words(TOKEN).into(),
+            Self::Accepted(token) => token.words(ACCEPTED).into(),
+            _ => self.words().into(),
+        };
+        (words.len() as u32, Body::Words(words))
     }
 
     fn words(&self) -> Vec<Word> {
@@ -92,8 +98,8 @@ impl<S: Sent> StageOrder<S> {
             Self::EditsDone(picture) => numbered(EDITS_DONE, picture.0),
             Self::Transform(drawing) => numbered(TRANSFORM, drawing.0),
             Self::Transformed(drawing, entries) => [&numbered(TRANSFORMED, drawing.0)[..], entries].concat(),
-            Self::Token(token) => token.words(TOKEN),
-            Self::Accepted(token) => token.words(ACCEPTED),
+            Self::Token(token) => token.words(TOKEN).into(),
+            Self::Accepted(token) => token.words(ACCEPTED).into(),
             Self::Copied { picture, frame_buffer } => {
                 vec![COPY_ACKNOWLEDGEMENT, 0, *picture, Word::from(frame_buffer.0)]
             }
@@ -139,10 +145,11 @@ fn number_of(words: &[Word]) -> Option<u64> {
 }
 
 impl Token {
-    fn words(self, tag: Word) -> Vec<Word> {
+    fn words(self, tag: Word) -> [Word; 6] {
+        let [low, high] = [self.drawing.0 as Word, (self.drawing.0 >> 32) as Word];
         let places = u32::from(self.region.0) | u32::from(self.renderer) << 16;
         let counts = u32::from(self.slaves_left) | u32::from(self.of) << 16;
-        [numbered(tag, self.drawing.0), vec![places, counts, self.end as Word]].concat()
+        [tag, low, high, places, counts, self.end as Word]
     }
 
     fn read(words: &[Word]) -> Option<Self> {
