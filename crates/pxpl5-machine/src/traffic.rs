@@ -176,12 +176,12 @@ mod tests {
     proptest::proptest! {
         #[test]
         fn busy_channels_are_recorded_when_their_number_changes(
-            told in proptest::collection::vec((0u64..3, 0u32..3), 1..20),
+            periods in proptest::collection::vec((0u64..3, 0u32..3), 1..20),
         ) {
             let mut traffic = Traffic::default();
             let mut now = 0;
             let mut all = Vec::new();
-            for (wait, busy) in told {
+            for (wait, busy) in periods {
                 now += wait;
                 all.push((Time(now), busy));
                 traffic.channels(Time(now), busy);

@@ -20,7 +20,7 @@ const WORD: Span = Span::from_ns(50);
 /// Returns all events except polls of programs, ticks and their signals.
 fn seen(machine: &mut Machine, until: Time) -> Vec<(Time, Board, &'static str)> {
     let mut all = happenings(machine, until);
-    all.retain(|(_, _, what)| !["programs look", "tick", "retrace"].contains(what));
+    all.retain(|(_, _, what)| !["programs continue", "tick", "retrace"].contains(what));
     all
 }
 

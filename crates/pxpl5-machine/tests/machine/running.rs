@@ -191,7 +191,7 @@ fn shuffled(seed: Option<u64>) -> (TraceHash, Vec<Board>) {
     }
     machine.switch_on();
     let all = happenings(&mut machine, us(200));
-    let first = all.iter().filter(|(time, _, what)| *time == Time::ZERO && *what == "programs look");
+    let first = all.iter().filter(|(time, _, what)| *time == Time::ZERO && *what == "programs continue");
     let first = first.map(|(_, board, _)| *board).collect();
     (machine.into_record().trace_hash(), first)
 }
