@@ -1,6 +1,6 @@
 //! Compares the host time of a field in short and in long runs, in one process. The goal is a difference of at most 2
-//! %. The throughput counts fields. The runs keep statistics only (`Keep::Statistics`), as `pxpl5 run` without `--out`
-//! does.
+//! %. The throughput counts fields. The runs keep statistics only (`KeptRecords::Statistics`), as `pxpl5 run` without
+//! `--out` does.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
@@ -9,7 +9,8 @@ use pxpl5::tracking::motion::Synthetic;
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
 use pxpl5::{
-    Experiment, Frameless, Head, HeadSum, Keep, MachineConfig, Pixels, RenderingControl, Slats, scene, scene::Scene,
+    Experiment, Frameless, Head, HeadSum, KeptRecords, MachineConfig, Pixels, RenderingControl, Slats, scene,
+    scene::Scene,
 };
 use std::hint::black_box;
 use std::sync::Arc;
@@ -43,7 +44,7 @@ fn experiments() -> [(&'static str, Experiment, u64); 5] {
 
 fn long_runs(criterion: &mut Criterion) {
     for (name, experiment, short) in experiments() {
-        let experiment = experiment.pixels(Pixels::Off).keep(Keep::Statistics);
+        let experiment = experiment.pixels(Pixels::Off).keep(KeptRecords::Statistics);
         let mut group = criterion.benchmark_group(format!("long-runs/{name}"));
         for (length, fields) in [("short", short), ("twenty times as long", 20 * short)] {
             let experiment = experiment.clone().fields(fields);

@@ -216,11 +216,11 @@ pub use pxpl5_run::Slats;
 /// The example parses and prints the names of the choices of an experiment.
 ///
 /// ```
-/// use pxpl5::{Keep, Level, Pixels};
+/// use pxpl5::{KeptRecords, Level, Pixels};
 ///
 /// assert_eq!("cycle".parse(), Ok(Level::Cycle));
 /// assert_eq!(Pixels::Lazy.to_string(), "lazy");
-/// assert_eq!("statistics".parse(), Ok(Keep::Statistics));
+/// assert_eq!("statistics".parse(), Ok(KeptRecords::Statistics));
 /// let error = "cycles".parse::<Level>().expect_err("no level");
 /// assert_eq!(error.to_string(), "expected cycle, analytic or transaction, found `cycles`");
 /// ```
@@ -315,7 +315,7 @@ pub use pxpl5_run::PolicyPipeline;
 /// let views: &Arc<HeadViews> = outcome.head().ok_or("a tracked head")?;
 /// let sampled: Vec<SampledPose> = views.sampled();
 /// let last = sampled.last().ok_or("views were requested")?;
-/// let estimate = Estimator::new(views, None).pose(last.known, last.objects_at);
+/// let estimate = Estimator::new(views, None).pose(last.reports_until, last.objects_at);
 /// println!("{estimate:?}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -324,7 +324,7 @@ pub use pxpl5_run::Estimator;
 pub use pphigs::RegionBinning;
 pub use pxpl5_run::{
     Aim, Cause, Code, DisplayEntry, Every, FIELDS_RANGE, FinishedRegions, Frameless, Goal, HeadPlace, HeadViews, Host,
-    Interpolation, Jitp, Keep, Key, KeyValue, KeyValues, LimitCriterion, Pause, PictureRules, PipelineEntry,
+    Interpolation, Jitp, KeptRecords, Key, KeyValue, KeyValues, LimitCriterion, Pause, PictureRules, PipelineEntry,
     PipelineSettings, Pixels, PolicyFrame, Raster, RegionAssignment, RegionPolicy, SampledPose, Setup, SlatsLighting,
     Source, TestScene, Viewpoint, Warp, out_of_range,
 };

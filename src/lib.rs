@@ -170,9 +170,9 @@ pub use tracking;
 pub mod run {
     pub use pxpl5_run::{
         ClosedForm, Estimates, FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, FrameStarts, KEPT_SAMPLES,
-        LATE_REGIONS_LISTED, OrientationTiming, PixelField, Poses, ReportTimes, RequestedUpdate, RequestedUpdates,
-        RotationLatency, SegmentedScene, ShownUpdate, SoFar, SurfaceLatency, Tally, Views, ViewsWanted, bit_of,
-        check_coverage, display_list, in_ms, in_us, region_at, retraces, views, warning_without_code,
+        LATE_REGIONS_LISTED, ObservedRun, OrientationTiming, PixelField, Poses, ReportTimes, RequestedUpdate,
+        RequestedUpdates, RotationLatency, SegmentedScene, ShownUpdate, SurfaceLatency, Tally, Views, ViewsWanted,
+        bit_of, check_coverage, display_list, in_ms, in_us, region_at, retraces, views, warning_without_code,
     };
 }
 

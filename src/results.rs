@@ -197,13 +197,13 @@ pub use pxpl5_run::PictureTimes;
 /// The memory of the run in the example does not grow with the length of the run.
 ///
 /// ```
-/// use pxpl5::{HeadSum, Keep, prelude::*};
+/// use pxpl5::{HeadSum, KeptRecords, prelude::*};
 /// use std::sync::Arc;
 ///
 /// let head = Head::new(Arc::new(from_fn(|_| Pose::IDENTITY)), TrackerConfig::ideal(), PredictorKind::None, 1)?;
 /// let scene = scene::builtin("full-screen:4")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(90).pixels(Pixels::Off);
-/// let long = experiment.head(head).keep(Keep::Statistics).observed_by(Some(HeadSum::begin));
+/// let long = experiment.head(head).keep(KeptRecords::Statistics).observed_by(Some(HeadSum::begin));
 /// assert!(long.run()?.report().head.is_some());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -215,7 +215,7 @@ pub use pxpl5_measure::HeadSum;
 ///
 /// ```
 /// use pxpl5::prelude::*;
-/// use pxpl5::{FinalResults, Keep, ObserverFactory, StreamingObserver};
+/// use pxpl5::{FinalResults, KeptRecords, ObserverFactory, StreamingObserver};
 /// use std::any::Any;
 ///
 /// #[derive(Debug, Default)]
@@ -233,7 +233,7 @@ pub use pxpl5_measure::HeadSum;
 /// let begin: ObserverFactory = || Box::<Count>::default();
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
-/// let outcome = experiment.keep(Keep::Statistics).observed_by(Some(begin)).run()?;
+/// let outcome = experiment.keep(KeptRecords::Statistics).observed_by(Some(begin)).run()?;
 /// assert!(outcome.observed::<usize>().is_some_and(|pictures| *pictures > 0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

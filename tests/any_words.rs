@@ -71,7 +71,7 @@ fn message() -> impl Strategy<Value = (Body, usize, u64)> {
 }
 
 /// Reads everything that a display shows.
-fn look(display: &dyn Display, now: Time) {
+fn read_display(display: &dyn Display, now: Time) {
     for surface in 0..display.surfaces().len() {
         let of_surface = &display.surfaces()[surface];
         for picture in [display.shown(surface), display.picture_so_far(surface, now)].into_iter().flatten() {
@@ -107,10 +107,10 @@ proptest! {
                 display.handle(event, context);
                 assert!(display.faults().0 <= faults_before + u64::from(message), "{}", entry.name);
             });
-            look(display.as_ref(), end);
+            read_display(display.as_ref(), end);
             let (faults, first) = display.faults();
             prop_assert!(faults <= messages.len() as u64);
-            prop_assert_eq!(faults > 0, first.is_some(), "{}: a first fault is told", entry.name);
+            prop_assert_eq!(faults > 0, first.is_some(), "{}: the first fault is reported", entry.name);
         }
     }
 }

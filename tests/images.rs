@@ -84,7 +84,7 @@ fn triptych(expected: &RgbImage, actual: &RgbImage) -> RgbImage {
 }
 
 /// Compares a picture with the stored one. Returns a description of the difference, if any.
-fn check(name: &str, picture: &RgbImage, subject: &Subject, known: &BTreeMap<String, String>) -> Option<String> {
+fn check(name: &str, picture: &RgbImage, subject: &Subject, fingerprints: &BTreeMap<String, String>) -> Option<String> {
     let actual = piece(picture, subject.piece);
     let Ok(expected) = image::open(golden(&format!("{name}.png"))) else {
         return Some(format!("{name}: there is no golden image; {UPDATE}=1 makes one"));
@@ -95,7 +95,7 @@ fn check(name: &str, picture: &RgbImage, subject: &Subject, known: &BTreeMap<Str
         triptych(&expected, &actual).save(&at).expect("target can be written");
         return Some(format!("{name}: see {} (expected, difference, actual)", at.display()));
     }
-    if known.get(name) != Some(&fingerprint(picture)) {
+    if fingerprints.get(name) != Some(&fingerprint(picture)) {
         let at = scratch(&format!("{name}-whole.png"));
         picture.save(&at).expect("target can be written");
         let [left, top, width, height] = subject.piece;
@@ -138,16 +138,16 @@ fn pictures(pipeline: Arc<dyn Pipeline>, config: &MachineConfig, subject: &Subje
 }
 
 fn compare(pipeline: impl Pipeline + Copy + 'static, config: &MachineConfig) {
-    let known = fingerprints();
+    let expected = fingerprints();
     let mut wrong = String::new();
-    let mut fresh = known.clone();
+    let mut fresh = expected.clone();
     let updating = std::env::var_os(UPDATE).is_some();
     for subject in &SUBJECTS {
         for (name, picture) in pictures(Arc::new(pipeline), config, subject) {
             if updating {
                 update(&name, &picture, subject);
                 fresh.insert(name, fingerprint(&picture));
-            } else if let Some(what) = check(&name, &picture, subject, &known) {
+            } else if let Some(what) = check(&name, &picture, subject, &expected) {
                 let _ = writeln!(wrong, "{what}");
             }
         }

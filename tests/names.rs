@@ -7,8 +7,9 @@ use pxpl5::tracking::motion::{Axes, Columns, End};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::{
     Aim, Board, Cause, Code, CodeVersion, CopySchedule, DisplayEntry, Every, Eye, Fingerprint, FinishedRegions,
-    HeadPlace, Keep, Level, Measure, Optimization, PRESETS, PipelineEntry, Pixels, Preset, Provenance, QUANTITIES,
-    Raster, RegionBinning, Registry, Reprojection, Resource, SettingError, SlatsLighting, TestScene, TraceHash, Warp,
+    HeadPlace, KeptRecords, Level, Measure, Optimization, PRESETS, PipelineEntry, Pixels, Preset, Provenance,
+    QUANTITIES, Raster, RegionBinning, Registry, Reprojection, Resource, SettingError, SlatsLighting, TestScene,
+    TraceHash, Warp,
 };
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -50,7 +51,7 @@ fn every_public_name_is_parsed_as_printed() {
     // Names in settings of experiments.
     round_trip(Level::ALL);
     listed(Pixels::ALL);
-    listed(Keep::ALL);
+    listed(KeptRecords::ALL);
     round_trip(Optimization::ALL);
     round_trip(TestScene::ALL);
     listed(Aim::ALL);

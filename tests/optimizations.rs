@@ -61,7 +61,7 @@ fn assert_same(experiment: &Experiment, saving: Optimization, fields: u64) {
 }
 
 #[test]
-fn not_polling_idle_boards_does_not_change_the_trace() {
+fn the_trace_is_the_same_without_polls_of_idle_boards() {
     for experiment in experiments() {
         assert_same(&experiment.pixels(Pixels::Lazy), Optimization::IdleBoards, 3);
     }

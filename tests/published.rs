@@ -80,7 +80,7 @@ fn the_triangles_of_the_model_scenes_touch_fewer_than_1_3_regions_on_average() {
 }
 
 #[test]
-fn slats_has_a_latency_of_one_field_always() {
+fn slats_always_has_a_latency_of_one_field() {
     within("9", 0.999_999, 1.000_001);
     assert!(row("9").details.iter().all(|d| (d.value - 1.0).abs() < 1e-6), "least and greatest too");
     within("9b", 59.9, 60.0);

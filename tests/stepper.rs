@@ -60,7 +60,7 @@ fn step(stepper: &mut Stepper, dice: &mut Dice) {
 }
 
 /// Reads the state of all boards, and sometimes pictures and pixel memory.
-fn look(stepper: &Stepper, dice: &mut Dice) {
+fn read_snapshots(stepper: &Stepper, dice: &mut Dice) {
     let processors = (0..60).map(Board::Gp).chain([Board::Host]).filter_map(|board| stepper.processor(board));
     assert!(processors.count() > 1);
     let renderers = stepper.record().renderers().len();
@@ -83,7 +83,7 @@ fn in_pieces(experiment: &Experiment, seed: u64) -> Outcome {
     let mut stepper = experiment.stepper().expect("it can be built");
     while stepper.now() < stepper.end() {
         step(&mut stepper, &mut dice);
-        look(&stepper, &mut dice);
+        read_snapshots(&stepper, &mut dice);
     }
     outcome(stepper.finish())
 }
@@ -196,7 +196,8 @@ fn the_contents_of_a_fifo_agree_with_the_record_of_traffic() {
         stepper.run_to(Time::ZERO + Span::from_us(40_000 + step * 37));
         for (renderer, course) in courses.iter().enumerate() {
             let expected = course.iter().take_while(|change| change.0 <= stepper.now()).last().map_or(0, |last| last.1);
-            let found = stepper.renderer(renderer).and_then(|look| look.fifo_words).expect("traffic is recorded");
+            let found =
+                stepper.renderer(renderer).and_then(|snapshot| snapshot.fifo_words).expect("traffic is recorded");
             assert_eq!(i64::from(found), expected, "renderer {renderer} at {}", stepper.now());
             most = most.max(found);
         }
@@ -211,7 +212,7 @@ fn the_array_shows_all_sent_commands_when_the_last_command_has_started() {
     let started = |stepper: &Stepper, at: Time| stepper.record().renderers()[0].snapshot(at).fifo_words == Some(0);
     let end = stepper.end();
     let pause = stepper.run_until(end, |stepper, _| {
-        stepper.renderer(0).is_some_and(|look| look.stands_at_copy) && started(stepper, stepper.now())
+        stepper.renderer(0).is_some_and(|snapshot| snapshot.stands_at_copy) && started(stepper, stepper.now())
     });
     assert_eq!(pause, Pause::Reached);
     let sent = stepper.record().renderers()[0].pixel_memory().expect("pixels are wanted");

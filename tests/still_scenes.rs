@@ -137,8 +137,8 @@ fn ideal(outcome: &Outcome, scene: &Scene, surface: u16) -> Arc<IdealPicture> {
     let drawn =
         format!("{} {} {} {}", scene.name(), pipeline.layout().plan().name, pipeline.shading() as u8, pipeline.eyes());
     let key = (drawn, primitives, surface);
-    let known = IDEALS.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
-    known.unwrap_or_else(|| {
+    let cached = IDEALS.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
+    cached.unwrap_or_else(|| {
         let fresh = Arc::new(outcome.ideal_picture(SurfaceId(surface), Time::ZERO).expect("it has that eye"));
         IDEALS.lock().unwrap_or_else(PoisonError::into_inner).insert(key, Arc::clone(&fresh));
         fresh

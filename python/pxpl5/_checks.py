@@ -37,10 +37,10 @@ def names(name: str, value: str | Iterable[str]) -> list[str]:
 
 def choice(name: str, value: object, expected: Iterable[str]) -> str:
     """Returns an argument if it is one of the expected names; otherwise raises :class:`SettingError` with all names."""
-    known = list(expected)
-    if isinstance(value, str) and value in known:
+    names = list(expected)
+    if isinstance(value, str) and value in names:
         return value
-    raise SettingError(f"{name}: expected {' or '.join(known)}, found {value!r}")
+    raise SettingError(f"{name}: expected {' or '.join(names)}, found {value!r}")
 
 
 class Strict:
@@ -51,8 +51,8 @@ class Strict:
 
     def __setattr__(self, name: str, value: object) -> None:
         if not name.startswith("_") and name not in self._fields and not hasattr(type(self), name):
-            known = [entry for entry in (*dir(type(self)), *self._fields) if not entry.startswith("_")]
-            nearest = get_close_matches(name, known, 1, 0.0)
+            names = [entry for entry in (*dir(type(self)), *self._fields) if not entry.startswith("_")]
+            nearest = get_close_matches(name, names, 1, 0.0)
             advice = f"; did you mean {nearest[0]}?" if nearest else ""
             raise UnknownNameError(f"{type(self).__name__} has no attribute {name}{advice}")
         object.__setattr__(self, name, value)

@@ -80,14 +80,14 @@ def compute(text: str, path: str, points: list[int], topic: str, every_s: float)
 
 
 #: Sweeps that this process has built, by text and path. So a worker builds each sweep and loads each scene only once.
-_KNOWN: dict[tuple[str, str], _native.Sweep] = {}
+_SWEEPS: dict[tuple[str, str], _native.Sweep] = {}
 
 
 def _sweep(text: str, path: str) -> _native.Sweep:
-    known = _KNOWN.get((text, path))
-    if known is None:
-        known = _KNOWN[(text, path)] = sweep_of_text(text, path)
-    return known
+    cached = _SWEEPS.get((text, path))
+    if cached is None:
+        cached = _SWEEPS[(text, path)] = sweep_of_text(text, path)
+    return cached
 
 
 def packed(rows: list[tuple[str, float]]) -> bytes:

@@ -38,5 +38,5 @@ def _misfits_of_keys(value: object, hint: object, place: str, exact: bool) -> li
     found = [f"{place}.{key}: expected a value, found none" for key in sorted(required - value.keys())]
     if exact:
         found += [f"{place}.{key}: expected no such key, found one" for key in sorted(value.keys() - hints.keys())]
-    known = [key for key in hints if key in value]
-    return found + [misfit for key in known for misfit in misfits(value[key], hints[key], f"{place}.{key}", exact=exact)]
+    shared = [key for key in hints if key in value]
+    return found + [misfit for key in shared for misfit in misfits(value[key], hints[key], f"{place}.{key}", exact=exact)]

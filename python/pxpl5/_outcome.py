@@ -182,8 +182,8 @@ class Outcome(Strict):
 
         Raises :class:`SettingError` with the nearest name for an unknown name.
         """
-        for known, value in [] if self._saved is None else self._saved["quantities"].items():
-            if known == name:
+        for key, value in [] if self._saved is None else self._saved["quantities"].items():
+            if key == name:
                 return value
         return self._live.quantity(name)
 
@@ -371,8 +371,8 @@ class Outcome(Strict):
         saved, state = _saved.read(path)
         if state is None:
             return Outcome(None, None, saved)
-        known = state
-        return Outcome(None, _saved.read_with(path, lambda: Outcome._experiment_of_state(known)), saved)
+        checked_state = state
+        return Outcome(None, _saved.read_with(path, lambda: Outcome._experiment_of_state(checked_state)), saved)
 
     def __reduce__(self) -> tuple[type[Outcome], tuple[None, Experiment | None, _saved.Saved]]:
         # A function that is defined within another function cannot be pickled. The outcome is then pickled without its experiment.

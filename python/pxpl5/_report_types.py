@@ -70,8 +70,8 @@ class TooHeavyData(TypedDict):
 
     due: int
     not_shown: int
-    triangles: int
-    triangles_in_time: int | None
+    primitives: int
+    primitives_in_time: int | None
     advice: str
 
 

@@ -18,7 +18,7 @@ def leaves(value: object) -> list[object]:
 
 def test_a_run_that_shows_nothing_warns_and_has_no_nan() -> None:
     """The aircraft has 417 triangles, and the published limit of Slats is 140 (TR94)."""
-    with pytest.warns(RuntimeWarning, match=r"TOO HEAVY: with 417 triangles .* about \d+ triangles would be in time"):
+    with pytest.warns(RuntimeWarning, match=r"TOO HEAVY: with 417 primitives .* about \d+ primitives would be in time"):
         outcome = pxpl5.Experiment("slats", "mig").run(progress=False)
     assert outcome.latency_ms.n == 0 and outcome.latency_ms.mean is None and outcome.latency_fields.sd is None
     assert not any(leaf != leaf for leaf in leaves(outcome.report))

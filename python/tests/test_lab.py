@@ -41,15 +41,15 @@ def test_a_model_is_thinned_out_to_its_limit() -> None:
 
 @pytest.mark.slow
 def test_a_comparison_has_a_row_for_every_pipeline() -> None:
-    told: list[tuple[int, int]] = []
+    progress: list[tuple[int, int]] = []
     comparison = pxpl5.compare("full-screen:2", head=pxpl5.Head("pan:200", predict="none"), fields=40, seeds=2,
-                               progress=lambda *now: told.append(now))
+                               progress=lambda *now: progress.append(now))
     rows = comparison.table.rows()
     names = {row["pipeline"] for row in rows}
     assert {"slats", "rendering-control"} <= names and len(rows) >= 6
     by_name = {row["pipeline"]: row for row in rows}
     assert by_name["slats"]["latency_ms.mean"] < by_name["rendering-control"]["latency_ms.mean"]
-    assert told[-1][0] == told[-1][1] and "slats" in comparison._repr_html_()
+    assert progress[-1][0] == progress[-1][1] and "slats" in comparison._repr_html_()
 
 
 SHORT = {"scene": "full-screen:2", "fields": 24, "seeds": 2, "only": ["slats", "jitp-field", "ideal"], "progress": False}
@@ -76,9 +76,9 @@ def test_an_interrupted_comparison_goes_on_to_the_same_rows(tmp_path: Path) -> N
     rows.write_text(lines[0] + lines[1] + lines[2][:100])
     with pytest.raises(pxpl5.SweepError, match="1 of 3 rows of an interrupted comparison are here"):
         short(out=out)
-    told: list[tuple[int, int]] = []
-    resumed = short(out=out, resume=True, progress=lambda *now: told.append(now))
-    assert without_host(resumed) == without_host(whole) and told[-1] == (4, 4), "two rows of two seeds"
+    progress: list[tuple[int, int]] = []
+    resumed = short(out=out, resume=True, progress=lambda *now: progress.append(now))
+    assert without_host(resumed) == without_host(whole) and progress[-1] == (4, 4), "two rows of two seeds"
     assert rows.read_text().splitlines(keepends=True)[1] == lines[1]
     with pytest.raises(pxpl5.SweepError, match="rows are of another comparison: fields was 24, expected 30"):
         short(out=out, resume=True, fields=30)

@@ -35,12 +35,12 @@ def fingerprint(picture: np.ndarray) -> str:
 
 
 def test_pictures_are_the_golden_ones_of_rust(root: Path) -> None:
-    known = dict(line.split()[::-1] for line in (root / "tests/golden/fingerprints.txt").read_text().splitlines())
+    fingerprints = dict(line.split()[::-1] for line in (root / "tests/golden/fingerprints.txt").read_text().splitlines())
     outcome = pxpl5.Experiment("rendering-control", "full-screen:12", machine="small-hmd", fields=60).run()
     for eye in ("left", "right"):
         picture = outcome.picture(eye)
         assert picture is not None
-        assert fingerprint(picture.array) == known[f"rendering-control-full-screen-12-{eye}"]
+        assert fingerprint(picture.array) == fingerprints[f"rendering-control-full-screen-12-{eye}"]
 
 
 def test_slats_shows_every_picture_a_field_after_its_pose(slats: pxpl5.Outcome) -> None:
@@ -89,9 +89,9 @@ def test_a_picture_that_nobody_computed_is_none() -> None:
 
 
 def test_progress_is_told_up_to_the_end() -> None:
-    told: list[tuple[int, int]] = []
-    pxpl5.Experiment("slats", "mig", triangles=50, fields=40).run(progress=lambda done, of: told.append((done, of)))
-    assert told[-1] == (40, 40) and told == sorted(told)
+    progress: list[tuple[int, int]] = []
+    pxpl5.Experiment("slats", "mig", triangles=50, fields=40).run(progress=lambda done, of: progress.append((done, of)))
+    assert progress[-1] == (40, 40) and progress == sorted(progress)
 
 
 def test_what_a_callback_raises_ends_the_run() -> None:

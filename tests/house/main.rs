@@ -168,7 +168,7 @@ fn only_the_command_prints() {
 
 /// The counts are only hints, because only a person can judge a text.
 #[test]
-fn no_text_is_harder_to_read_than_the_recorded_counts_allow() {
+fn the_counts_of_unclear_texts_stay_within_their_limits() {
     prose::check(&workspace());
 }
 

@@ -311,7 +311,7 @@ fn distances_can_be_limited_to_cells_with_objects() {
 
 /// The only occupied cell is first two rings away, in memory 1, and then one ring away, in memory 0.
 #[test]
-fn memories_whose_cells_are_the_same_need_not_be_shown_together() {
+fn memories_without_changed_cells_are_shown_separately() {
     let mut cells = Cells::new(&EQUAL_RINGS, [Cell { x: 2, z: 0 }], false);
     cells.frame(at(2.5, 2.5));
     let update = cells.frame(at(7.5, 2.5));

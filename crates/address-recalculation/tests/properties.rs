@@ -157,7 +157,12 @@ fn the_nearest_texel_is_at_most_1_087_pixels_away_at_the_centre() {
     assert!(worst <= 1.087 && worst > 1.0, "{worst}");
 }
 
-fn look(config: &ArpConfig, orientation: &Orientation, memories: &[FaceSet], behind: Option<&FaceSet>) -> Vec<u32> {
+fn displayed(
+    config: &ArpConfig,
+    orientation: &Orientation,
+    memories: &[FaceSet],
+    behind: Option<&FaceSet>,
+) -> Vec<u32> {
     let table = config.table().expect("valid");
     let mut pixels = vec![0; (table.width() * table.height()) as usize];
     let mut lookup = Lookup::new(config, &table, memories.iter().collect(), behind);
@@ -191,7 +196,7 @@ fn a_rotated_picture_equals_a_redraw_for_that_orientation() {
         [DQuat::IDENTITY, DQuat::from_rotation_y(3.0), DQuat::from_euler(glam::EulerRot::XYZ, 0.7, 0.8, 2.0)]
     {
         let orientation = turned(quaternion);
-        let pixels = look(&config, &orientation, &faces, None);
+        let pixels = displayed(&config, &orientation, &faces, None);
         for (place, pixel) in (0_u32..).zip(&pixels) {
             let seen = orientation.turn(Lens::Flat.view(&config.picture(), place % 640, place / 640));
             let off = (f64::from(pixel & 0xFF) - soft(seen)).abs();
@@ -209,7 +214,7 @@ fn a_pixel_shows_the_nearest_memory_and_at_equal_depth_the_memory_with_the_lowes
             [([9, 8, 7, 6, 5, 4, 3, 2], n - 1), ([5; 8], 0), ([4, 2, 3, 2, 9, 9, 9, 9], (n - 1).min(1))]
         {
             let faces: Vec<FaceSet> = (0..n).map(|k| painted(&config, depths[k as usize], |_| 10 + k as u32)).collect();
-            let pixels = look(&config, &Orientation::IDENTITY, &faces, None);
+            let pixels = displayed(&config, &Orientation::IDENTITY, &faces, None);
             assert!(pixels.iter().all(|pixel| u64::from(*pixel) == 10 + winner), "{n} memories");
             let table = config.table().expect("valid");
             let mut winners = vec![None; 640];
@@ -218,7 +223,7 @@ fn a_pixel_shows_the_nearest_memory_and_at_equal_depth_the_memory_with_the_lowes
             assert!(winners.iter().all(|memory| *memory == Some(winner as u8)));
         }
         let empty: Vec<FaceSet> = (0..n).map(|k| painted(&config, DEPTH_FARTHEST, |_| k as u32)).collect();
-        assert!(look(&config, &Orientation::IDENTITY, &empty, None).iter().all(|pixel| *pixel == 0x30_20_10));
+        assert!(displayed(&config, &Orientation::IDENTITY, &empty, None).iter().all(|pixel| *pixel == 0x30_20_10));
         let table = config.table().expect("valid");
         let mut winners = vec![Some(0); 640];
         let lookup = Lookup::new(&config, &table, empty.iter().collect(), None);
@@ -231,17 +236,17 @@ fn a_pixel_shows_the_nearest_memory_and_at_equal_depth_the_memory_with_the_lowes
 /// with other contents must leave no traces.
 #[test]
 fn a_snapshot_does_not_depend_on_earlier_snapshots() {
-    let looks = [(128, 1), (256, 2), (128, 3), (128, 1), (256, 2)].map(|(face_texels, seed)| {
+    let drawings = [(128, 1), (256, 2), (128, 3), (128, 1), (256, 2)].map(|(face_texels, seed)| {
         move || {
             let timing = ArpTiming { face_texels, display_memories: 1, ..ArpTiming::PAPERS };
             let config = ArpConfig { timing, ..ArpConfig::MACHINE };
             let faces = [noise(&config, &mut SplitMix64::new(seed))];
-            look(&config, &turned(DQuat::from_rotation_y(0.6)), &faces, None)
+            displayed(&config, &turned(DQuat::from_rotation_y(0.6)), &faces, None)
         }
     });
-    for (number, look) in looks.into_iter().enumerate() {
-        let alone = std::thread::spawn(look).join().expect("it looks");
-        assert!(look() == alone, "look {number}");
+    for (number, draw) in drawings.into_iter().enumerate() {
+        let alone = std::thread::spawn(draw).join().expect("it draws");
+        assert!(draw() == alone, "picture {number}");
     }
 }
 
@@ -253,11 +258,11 @@ fn the_background_memory_shows_only_behind_empty_texels() {
     let mut near: Vec<FaceSet> = (0..4).map(|_| FaceSet::new(128, config.format())).collect();
     near[3] = painted(&config, DEPTH_FARTHEST - 1, |direction| if direction[1] > 0.02 { 0x44 } else { 0x55 });
     let upper_half = |pixels: &[u32]| (pixels[640 * 20 + 300], pixels[640 * 470 + 300]);
-    assert_eq!(upper_half(&look(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x44, 0x55));
+    assert_eq!(upper_half(&displayed(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x44, 0x55));
     near[3] = FaceSet::new(128, config.format());
-    assert_eq!(upper_half(&look(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x0B_0B_0B, 0x0B_0B_0B));
+    assert_eq!(upper_half(&displayed(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x0B_0B_0B, 0x0B_0B_0B));
     behind = FaceSet::new(128, config.format());
-    assert_eq!(upper_half(&look(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x99, 0x99));
+    assert_eq!(upper_half(&displayed(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x99, 0x99));
 }
 
 /// Checks experiment E2. Objects distributed over several memories, all drawn from one position, give the same bits as
@@ -279,7 +284,7 @@ fn several_memories_show_the_same_as_one_memory() {
     }
     for quaternion in [DQuat::IDENTITY, DQuat::from_rotation_y(std::f64::consts::PI), DQuat::from_rotation_x(0.9)] {
         let orientation = turned(quaternion);
-        assert_eq!(look(&four, &orientation, &parts, None), look(&one, &orientation, &[whole.clone()], None));
+        assert_eq!(displayed(&four, &orientation, &parts, None), displayed(&one, &orientation, &[whole.clone()], None));
     }
 }
 

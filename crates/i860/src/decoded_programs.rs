@@ -35,8 +35,8 @@ impl DecodedPrograms {
 
     fn place(&mut self, program: &Arc<Program>) -> &mut Option<Code> {
         // Compare programs by their addresses in the simulator, because all processors share one copy of a program.
-        let known = self.codes.iter().position(|(known, _)| Arc::ptr_eq(known, program));
-        let at = known.unwrap_or_else(|| {
+        let position = self.codes.iter().position(|(code, _)| Arc::ptr_eq(code, program));
+        let at = position.unwrap_or_else(|| {
             self.codes.push((Arc::clone(program), None));
             self.codes.len() - 1
         });

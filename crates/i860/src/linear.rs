@@ -35,6 +35,16 @@
 //! and stores in any order. If a load must wait for a store, the store has a label, `@label st.l ..`, and the load has
 //! `!label` at its end. A stretch begins and ends in dual-instruction mode.
 //!
+//! The base register of a store has a meaning by convention:
+//!
+//! | base register | memory | effect on the schedule |
+//! |---|---|---|
+//! | `r18` | output, such as command words, which the data cache does not hold | the store uses the bus for 3 clocks; at most two of these stores wait for the bus, and no prefetch is placed while one of them uses the bus |
+//! | any other | memory that the data cache holds | none of these limits |
+//!
+//! The convention affects only the order of the pairs. Code that breaks the convention computes the same results, but can
+//! have freezes.
+//!
 //! # Method
 //!
 //! The method is list scheduling, clock by clock. In each clock, the scheduler considers a *window*: a number of lines
@@ -50,7 +60,7 @@
 //! operation that can be a dual operation also pushes the other pipe, if no result is lost.
 //!
 //! The scheduler respects the rules of the freeze table. The scheduled code therefore runs without freezes if all
-//! accesses hit the caches. If the parameter *shake* is not 0, the scheduler changes the priorities at random by small
+//! accesses except the stores with the base `r18` hit the caches. If the parameter *shake* is not 0, the scheduler changes the priorities at random by small
 //! amounts. The length of the schedule then changes by some per cent. A search can try many values of *shake* and keep
 //! the shortest schedule.
 

@@ -217,8 +217,8 @@ impl BlockMemory {
     pub(crate) fn find(&self, run: Run) -> Option<&RememberedClocks> {
         let all = &self.0[..];
         (0..BlockMemory::REACH).find_map(|n| {
-            let known = all.get((run.hash() + n) & all.len().wrapping_sub(1))?;
-            (known.run == run).then_some(known)
+            let entry = all.get((run.hash() + n) & all.len().wrapping_sub(1))?;
+            (entry.run == run).then_some(entry)
         })
     }
 
@@ -249,8 +249,8 @@ impl BlockMemory {
     fn grow(&mut self) {
         let larger = vec![RememberedClocks::NOTHING; (2 * self.0.len()).max(BlockMemory::LEAST)];
         let all = std::mem::replace(&mut self.0, larger.into_boxed_slice());
-        for known in all.iter().filter(|known| known.run != Run::default()) {
-            self.put(*known);
+        for entry in all.iter().filter(|entry| entry.run != Run::default()) {
+            self.put(*entry);
         }
     }
 }

@@ -18,7 +18,7 @@ fn run(source: &str, freezes: FreezeRules) -> (Cpu, i860::Program) {
 const LOOP: &str = "start: mov 3, r5\nloop: adds -1, r5, r5\nbtne r0, r5, loop\nlast: nop\nnop\nend: nop";
 
 #[test]
-fn clocks_by_label_are_those_of_the_code_up_to_the_next_label() {
+fn the_clocks_of_a_label_cover_the_code_up_to_the_next_label() {
     let (cpu, program) = run(LOOP, FreezeRules::none().with(Freeze::CompareBranchTaken));
     let labels: Vec<(&str, u32)> = program.labels.iter().map(|(name, at)| (name.as_str(), *at)).collect();
     let by_label = cpu.watched().expect("watched").by_label(&labels);

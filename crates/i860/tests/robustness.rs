@@ -143,7 +143,7 @@ fn an_interrupt_waits_until_interrupts_are_enabled() {
 }
 
 #[test]
-fn a_store_into_code_is_seen_by_the_next_fetch() {
+fn the_next_fetch_reads_the_words_that_a_store_wrote_into_code() {
     let source = "mov 2, r8
                   loop: mov l%patch, r9
                   patch: adds 1, r10, r10

@@ -122,7 +122,7 @@ pub struct Wanted {
     pub number: ViewNumber,
     /// Instant until which reports count. The view must depend only on reports that the host received before this
     /// instant, because later reports have not reached the master.
-    pub known: Time,
+    pub reports_until: Time,
     /// Instant for which the pose of the view is predicted.
     pub shown_at: Time,
 }

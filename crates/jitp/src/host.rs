@@ -20,6 +20,6 @@ pub async fn host(
     next_report: impl Fn(Time) -> Option<Time>,
 ) -> Result<(), Fault> {
     let first = next_report(Time::ZERO);
-    let words = |_, known| DrawingOrder::Report { known }.words();
+    let words = |_, reports_until| DrawingOrder::Report { reports_until }.words();
     send_as_tracked(gp, config.master, timing, first, next_report, words).await
 }

@@ -14,7 +14,7 @@ use std::rc::Rc;
 
 #[derive(Debug, Default)]
 struct MasterState {
-    known: Cell<Time>,
+    reports_until: Cell<Time>,
     done: RefCell<VecDeque<u32>>,
 }
 
@@ -39,7 +39,7 @@ async fn listen(gp: Gp, state: Rc<MasterState>) -> Result<(), Fault> {
     loop {
         let received = gp.receive().await;
         match DrawingOrder::read(&received, gp.node())? {
-            DrawingOrder::Report { known } => state.known.set(known),
+            DrawingOrder::Report { reports_until } => state.reports_until.set(reports_until),
             DrawingOrder::Done { slave } => state.done.borrow_mut().push_back(slave),
             other => return Err(Fault::Protocol { node: gp.node(), found: format!("at the master: {other:?}") }),
         }
@@ -64,7 +64,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 
     fn view(&mut self, number: ViewNumber, shown_at: Time) -> FrameView {
-        (self.view_of)(Wanted { number, known: self.state.known.get(), shown_at })
+        (self.view_of)(Wanted { number, reports_until: self.state.reports_until.get(), shown_at })
     }
 
     async fn follow_the_beam(&mut self, viewpoint: Viewpoint, racing: bool) -> Result<(), Fault> {

@@ -22,8 +22,8 @@ pub(crate) enum DrawingOrder {
     Strip { field: PeriodNumber, strip: u32, deadline: Time, view: Option<FrameView> },
     /// Order to draw a batch of blocks. The first block is drawn in the step `step` of the random sequence.
     Blocks { update: PictureNumber, step: u64, view: FrameView },
-    /// A tracker report from the host. The master may use all reports that the host received before `known`.
-    Report { known: Time },
+    /// A tracker report from the host. The master may use all reports that the host received before `reports_until`.
+    Report { reports_until: Time },
     /// The slave has finished an order and is ready for the next order.
     Done { slave: u32 },
 }
@@ -55,8 +55,8 @@ impl DrawingOrder {
                 words.extend([BLOCKS, update_low, update_high, low(*step), high(*step)]);
                 push_view(&mut words, view);
             }
-            Self::Report { known } => {
-                words.extend([REPORT, low(known.0), high(known.0)]);
+            Self::Report { reports_until } => {
+                words.extend([REPORT, low(reports_until.0), high(reports_until.0)]);
                 words.resize(REPORT_WORDS as usize, 0);
             }
             Self::Done { slave } => words.extend([DONE, *slave]),
@@ -107,7 +107,7 @@ impl DrawingOrder {
                     view: take_view(&mut rest)?,
                 }
             }
-            [REPORT, a, b, ..] => Self::Report { known: Time(long(*a, *b)) },
+            [REPORT, a, b, ..] => Self::Report { reports_until: Time(long(*a, *b)) },
             [DONE, slave] => Self::Done { slave: *slave },
             _ => return None,
         })
@@ -171,7 +171,7 @@ mod tests {
             DrawingOrder::Strip { field: PeriodNumber(big), strip: 239, deadline: Time(big), view: None },
             DrawingOrder::Strip { field: PeriodNumber(1), strip: 0, deadline: Time(2), view: Some(view(big)) },
             DrawingOrder::Blocks { update: PictureNumber(big), step: big + 1, view: view(3) },
-            DrawingOrder::Report { known: Time(big) },
+            DrawingOrder::Report { reports_until: Time(big) },
             DrawingOrder::Done { slave: 11 },
         ] {
             let (words, body) = order.message();

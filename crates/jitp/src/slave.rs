@@ -58,14 +58,14 @@ impl std::fmt::Debug for Transforms {
 
 impl Transforms {
     fn cached_or_made(&self, field: PeriodNumber, make: impl FnOnce() -> Field) -> Field {
-        let known = &mut *self.0.borrow_mut();
-        if let Some((_, ready)) = known.iter().find(|ready| ready.0 == field) {
+        let cached = &mut *self.0.borrow_mut();
+        if let Some((_, ready)) = cached.iter().find(|ready| ready.0 == field) {
             return ready.clone();
         }
         let fresh = make();
-        known.push_back((field, fresh.clone()));
-        if known.len() > FIELDS_KEPT {
-            known.pop_front();
+        cached.push_back((field, fresh.clone()));
+        if cached.len() > FIELDS_KEPT {
+            cached.pop_front();
         }
         fresh
     }

@@ -44,10 +44,12 @@ impl Work for EditWork<'_> {
 
     fn by_code(&self, _: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         // Edits of unknown structures change nothing.
-        let known: Vec<_> = self.0.edits.iter().filter(|edit| edit.structure < MOST_STRUCTURES).collect();
+        let edits_of_structures: Vec<_> = self.0.edits.iter().filter(|edit| edit.structure < MOST_STRUCTURES).collect();
         let mut span = Span::ZERO;
         // Call the code for each message of edits. A view without edits still takes one call.
-        for edits in known.chunks(MAX_EDITS).chain(known.is_empty().then_some([].as_slice())) {
+        for edits in
+            edits_of_structures.chunks(MAX_EDITS).chain(edits_of_structures.is_empty().then_some([].as_slice()))
+        {
             let words = edits.iter().flat_map(|edit| {
                 let matrix = edit.model.to_cols_array().map(f32::to_bits);
                 std::iter::once(edit.structure).chain(matrix)

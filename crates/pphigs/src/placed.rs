@@ -90,7 +90,7 @@ impl RecentViews {
         place: impl FnOnce() -> Vec<PlacedStructure>,
     ) -> Arc<[PlacedStructure]> {
         let mut recent = self.views.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, placed)) = recent.iter().find(|(known, _)| *known == key) {
+        if let Some((_, placed)) = recent.iter().find(|(cached, _)| *cached == key) {
             return Arc::clone(placed);
         }
         let placed: Arc<[PlacedStructure]> = place().into();

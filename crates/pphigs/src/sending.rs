@@ -28,15 +28,15 @@ pub async fn send_as_tracked(
     let mut number = ViewNumber::FIRST;
     while let Some(at) = due {
         gp.spend(at.since(gp.now())).await;
-        let known = gp.now();
+        let reports_until = gp.now();
         // The pictures that will show this view are not determined yet, so the record of SEND has the number of the
         // message.
         let marked_as = number.picture_taken_for();
         gp.begin(Stage::Send, marked_as, None);
-        let sent = send(&gp, receiver, timing, message(number, known)).await;
+        let sent = send(&gp, receiver, timing, message(number, reports_until)).await;
         gp.accepted(sent).await;
         gp.end(Stage::Send, marked_as, None);
-        due = next_report(known);
+        due = next_report(reports_until);
         number = number.next();
     }
     Ok(())

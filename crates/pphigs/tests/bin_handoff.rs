@@ -102,7 +102,7 @@ fn compare(
 }
 
 #[test]
-fn code_hands_over_the_words_of_the_native_firmwares_messages() {
+fn code_sends_the_same_words_as_the_native_firmware() {
     let layouts = [(Shading::Phong, Layout::rendering_control_phong()), (Shading::Gouraud, Layout::slats())];
     for (triangles, spheres) in [(400, 0), (300, 60), (0, 100), (0, 0)] {
         let share = share(triangles, spheres);

@@ -165,7 +165,7 @@ fn each_view_gets_the_words_and_bins_of_the_native_firmware() {
 /// If a view does not contain a primitive, the primitive must not be transformed for this view. Exceptions are
 /// primitives within the margin, large primitives, and back faces.
 #[test]
-fn few_primitives_are_passed_to_a_view_that_does_not_see_them() {
+fn a_view_receives_few_primitives_outside_the_view() {
     let mut numbers = Numbers(SplitMix64::new(52));
     let mut list = Arc::unwrap_or_clone(list(&mut numbers, 2000, 500));
     list.structures.iter_mut().for_each(|structure| structure.culling = Culling::None);

@@ -80,7 +80,7 @@ const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
 /// The head follows the scene's own motion without a tracker. The search decimates the last scene that was too heavy,
 /// so the result can differ slightly from a decimation of the whole scene. The last step therefore tests the final
 /// number with a decimation of the whole scene.
-fn triangles_in_time(
+fn primitives_in_time(
     experiment: &Experiment,
     summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
 ) -> Option<u64> {

@@ -385,10 +385,10 @@ pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentErro
 }
 
 pub(super) const CLOSED_FORM: ClosedForm =
-    ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
+    ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, primitives_in_time } };
 
-fn triangles_in_time(experiment: &Experiment) -> Option<u64> {
-    crate::triangles_in_time(experiment, closed_form)
+fn primitives_in_time(experiment: &Experiment) -> Option<u64> {
+    crate::primitives_in_time(experiment, closed_form)
 }
 
 fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
@@ -453,7 +453,8 @@ impl StereoModel {
         let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
         let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);
         // Frames after the last computed frame are unknown.
-        let known = frames.last().map_or(PeriodNumber::FIRST, |last| field_of(last).next()).min(PeriodNumber(fields));
-        DuePictures::count(frames.iter().map(|frame| (field_of(frame), PictureResult::Shown)), every, known)
+        let computed_to =
+            frames.last().map_or(PeriodNumber::FIRST, |last| field_of(last).next()).min(PeriodNumber(fields));
+        DuePictures::count(frames.iter().map(|frame| (field_of(frame), PictureResult::Shown)), every, computed_to)
     }
 }

@@ -422,8 +422,8 @@ impl<'a> Ring<'a> {
         let mut arrivals: Vec<f64> = others.iter().map(arrival).collect();
         arrivals.sort_by(f64::total_cmp);
         // The first GP handles the reports one by one.
-        let told = arrivals.into_iter().fold(0.0, |done, arrival| later(done, arrival) + model.message_ns);
-        later(first.cpu_ns, told)
+        let handled_ns = arrivals.into_iter().fold(0.0, |done, arrival| later(done, arrival) + model.message_ns);
+        later(first.cpu_ns, handled_ns)
     }
 }
 

@@ -128,10 +128,10 @@ fn copy<const N: usize>(
 }
 
 pub(super) const CLOSED_FORM: ClosedForm =
-    ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
+    ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, primitives_in_time } };
 
-fn triangles_in_time(experiment: &Experiment) -> Option<u64> {
-    crate::triangles_in_time(experiment, closed_form)
+fn primitives_in_time(experiment: &Experiment) -> Option<u64> {
+    crate::primitives_in_time(experiment, closed_form)
 }
 
 fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {

@@ -93,7 +93,7 @@ pub fn compare(scene: &Scene, plan: &WalkPlan, finished: impl Fn(u64, u64)) -> A
 
 impl ComparedRow {
     fn of(variant: &'static str, outcome: &WalkOutcome) -> Self {
-        let ArpReport { memories, priority, tears_px, .. } = &outcome.report.report;
+        let ArpReport { memories, priority, tears_texels, .. } = &outcome.report.report;
         Self {
             variant,
             rates_hz: memories.iter().map(|memory| memory.updates_hz).collect(),
@@ -101,8 +101,8 @@ impl ComparedRow {
             triangles_per_s: outcome.triangles_per_s(),
             saved_percent: priority.saved_percent,
             eye_age_mm: memories.iter().map(|memory| memory.eye_age_mm).sum::<f64>() / memories.len() as f64,
-            tears: tears_px.after,
-            stretch: tears_px.stretch,
+            tears: tears_texels.after,
+            stretch: tears_texels.stretch,
             changes: priority.redeals.or(priority.moved_objects).unwrap_or(0),
             missed: memories.iter().map(|memory| memory.missed).sum(),
         }

@@ -1,12 +1,12 @@
 //! A complete experiment: a viewer's walk through a scene, and the view at the end of the walk.
 
 use crate::hall::{path_of, scaled};
-use crate::look::WalkFaces;
 use crate::pictures::ahead;
 use crate::plan::WalkPlan;
 use crate::report::ArpReport;
 use crate::settings::WalkSettings;
 use crate::walk::{WalkTally, at_frames, walked};
+use crate::walk_faces::WalkFaces;
 use crate::world::World;
 use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::SettingError;

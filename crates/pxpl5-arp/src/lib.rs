@@ -37,7 +37,6 @@ pub mod cube_faces;
 mod experiment;
 pub mod figures;
 mod hall;
-mod look;
 pub mod pictures;
 mod plan;
 mod report;
@@ -46,6 +45,7 @@ mod simulation;
 mod source;
 mod tears;
 mod walk;
+mod walk_faces;
 mod world;
 
 pub use address_recalculation;
@@ -53,7 +53,6 @@ pub use compare::{ArpComparison, ComparedRow, compare, variant_count};
 pub use content::Content;
 pub use experiment::{WalkOutcome, WalkReport};
 pub use hall::{Route, path_of, scaled};
-pub use look::WalkFaces;
 pub use plan::{WalkNumbers, WalkPlan};
 pub use pxpl5_sim::parameters::PathSettings;
 pub use report::{ArpReport, PriorityReport, SCHEMA, TearsReport, WalkLatency, WalkMemoryReport};
@@ -61,6 +60,7 @@ pub use settings::{PolicyKind, SourceKind, WalkSettings};
 pub use simulation::{FrameOutcome, Simulation};
 pub use tears::{TearWidths, Tears};
 pub use walk::{MemoryTally, WalkTally, at_frames, walk};
+pub use walk_faces::WalkFaces;
 pub use world::{Object, Segment, SharedVertex, Tint, World};
 
 #[cfg(doctest)]

@@ -13,11 +13,11 @@ pub use views::{MemoryViews, difference};
 pub use wires::cuts_svg;
 
 use crate::figures::{Experiments, gallery, looking_at};
-use crate::look::WalkFaces;
 use crate::settings::{PolicyKind, WalkSettings};
 use crate::simulation::Simulation;
 use crate::tears::Tears;
 use crate::walk::{at_frames, walk};
+use crate::walk_faces::WalkFaces;
 use crate::world::{Tint, World};
 use address_recalculation::Lens;
 use address_recalculation::priority::Falloff;

@@ -36,9 +36,9 @@ pub struct ArpReport {
     pub memories: Vec<WalkMemoryReport>,
     /// Results of the policy that decides when each memory is drawn.
     pub priority: PriorityReport,
-    /// Widths of the tears (gaps where different memories meet), in texels (90 degrees divided by the texels of a
-    /// face's edge). Null if no memories meet.
-    pub tears_px: TearsReport,
+    /// Widths of the tears (gaps where different memories meet), in texels of a face. A texel is the angle of 90 degrees
+    /// divided by [`Self::face_texels`].
+    pub tears_texels: TearsReport,
     /// Time from reading the head's orientation to displaying the pixel, in ms, averaged over all pixels. The times of
     /// tracker and host are not included.
     pub rotation_latency_ms: WalkLatency,
@@ -100,14 +100,16 @@ pub struct PriorityReport {
     pub faces_per_primitive: Option<f64>,
 }
 
-/// Widths of the tears: gaps in the view where different memories meet.
+/// Widths of the tears, in texels. A tear is a gap in the view where different memories meet. Its width is the angle
+/// between the two directions in which the memories draw a shared vertex.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TearsReport {
-    /// Widths that the tears would have without warping.
+    /// Widths that the tears would have without warping. Null if no object is cut between two memories.
     pub before: Option<TearWidths>,
-    /// Widths of the tears in the displayed picture.
+    /// Widths of the tears in the displayed picture. Null if no object is cut between two memories.
     pub after: Option<TearWidths>,
-    /// Angle by which warping moves the most displaced vertex of a frame, as percentiles over the frames.
+    /// Angle by which warping moves the most displaced vertex of a frame, in texels, as percentiles over the frames.
+    /// Null without warping.
     pub stretch: Option<TearWidths>,
 }
 
@@ -138,7 +140,7 @@ impl ArpReport {
             bank_conflicts: None,
             memories: memories(settings, tally),
             priority: priority(world, settings, tally),
-            tears_px: TearsReport {
+            tears_texels: TearsReport {
                 before: percentiles(&tally.tears.before),
                 after: percentiles(&tally.tears.after),
                 stretch: percentiles(&tally.tears.stretch),

@@ -306,7 +306,7 @@ fn the_report_has_every_key_of_the_schema_and_null_for_missing_results() {
         "bank_conflicts",
         "memories",
         "priority",
-        "tears_px",
+        "tears_texels",
         "rotation_latency_ms",
         "translation_latency_ms",
         "sampling_error_px",

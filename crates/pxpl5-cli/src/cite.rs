@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_joined_by_commas_and_a_final_and() {
+    fn names_are_joined_by_commas_and_the_word_and() {
         assert_eq!(names(&[("A.", "B")]), "A. B");
         assert_eq!(names(&[("A.", "B"), ("C.", "D")]), "A. B and C. D");
         assert_eq!(names(&[("A.", "B"), ("C.", "D"), ("E.", "F")]), "A. B, C. D and E. F");

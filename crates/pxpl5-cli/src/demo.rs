@@ -104,11 +104,11 @@ fn closing(runs: &[Run], args: &DemoArgs) -> String {
     let seconds: f64 = runs.iter().filter_map(|run| run.report.host_seconds).sum();
     let mut text = String::new();
     // Define the latency of each pipeline once.
-    let mut told = Vec::new();
+    let mut explained = Vec::new();
     for report in runs.iter().map(|run| &run.report) {
-        if !told.contains(&&report.pipeline) {
+        if !explained.contains(&&report.pipeline) {
             let _ = writeln!(text, "Latency of {}: {}.", report.pipeline, report.latency_ms.definition);
-            told.push(&report.pipeline);
+            explained.push(&report.pipeline);
         }
     }
     // A published quantity can differ from the latency above it, which is the latency of the whole picture.

@@ -180,7 +180,7 @@ mod tests {
     /// Tests that estimates of memory are from 0.8 to 5 times the measured memory. An estimate may be too high, because
     /// the process reserves memory for dark slices and does not use it.
     #[test]
-    fn memory_of_volumes_and_walks_is_not_underestimated() {
+    fn estimates_of_memory_are_0_8_to_5_times_the_memory_of_volumes_and_walks() {
         let volumes =
             VOLUMES.iter().map(|(work, megabytes, _)| (format!("{work:?}"), work.estimate().bytes, *megabytes));
         let walks = WALKS.iter().map(|(work, megabytes, _)| (format!("{work:?}"), work.estimate().bytes, *megabytes));

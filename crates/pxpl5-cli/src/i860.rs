@@ -102,9 +102,9 @@ struct Warnings {
 impl Warnings {
     fn print(&self, program: &Program) {
         let is_allowed = |rule: Rule| self.allow.iter().any(|name| name == "all" || name == rule.name());
-        let told: Vec<String> =
+        let warnings: Vec<String> =
             program.warnings.iter().filter(|warning| !is_allowed(warning.rule)).map(ToString::to_string).collect();
-        warn(&told, false);
+        warn(&warnings, false);
     }
 }
 

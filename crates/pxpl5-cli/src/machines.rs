@@ -118,8 +118,8 @@ fn one_text(machine: &MachineConfig) -> String {
         count_of(machine.n_renderers, "renderer")
     );
     for Suitability { pipeline, lacks } in suitability(&registry(), machine) {
-        let said = lacks.map_or_else(|| "runs".to_owned(), |lacks| format!("cannot run: {lacks}"));
-        let _ = writeln!(text, "{pipeline:<42} {said}");
+        let status = lacks.map_or_else(|| "runs".to_owned(), |lacks| format!("cannot run: {lacks}"));
+        let _ = writeln!(text, "{pipeline:<42} {status}");
     }
     text.push('\n');
     // Parameters of the machine come first, parameters of tracking second.

@@ -12,8 +12,8 @@ use clap::Args;
 use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::views::results::{origin_lines, quantities_csv};
 use pxpl5::{
-    ExperimentFile, HeadReport, Keep, Level, Measured, Optimization, Outcome, Plan, Report, Results, SurfaceId, WhatIf,
-    what_if,
+    ExperimentFile, HeadReport, KeptRecords, Level, Measured, Optimization, Outcome, Plan, Report, Results, SurfaceId,
+    WhatIf, what_if,
 };
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -72,7 +72,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     // Open the output first, so that a bad path fails before the run.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "run")).transpose()?;
     // Files list every picture. The report alone needs only statistics, whose size does not grow with the run.
-    let keep = if folder.is_some() { Keep::Everything } else { Keep::Statistics };
+    let keep = if folder.is_some() { KeptRecords::Everything } else { KeptRecords::Statistics };
     let how = How { threads: args.threads, without: &args.without, keep, budget: args.budget, quiet: args.quiet };
     let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, how)?;
     let results = Results::of_run(outcome);
@@ -161,11 +161,11 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
         let _ = writeln!(
             text,
             "Head to light: {} ms, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}). Pixel error (display {display}): mean {} px, 99 % {} px, mean {} degrees, n {}.",
-            known(end_to_end.total_ms, 2),
+            number_or_dash(end_to_end.total_ms, 2),
             end_to_end.n,
-            known(error.pixels.mean, 2),
-            known(error.pixels.p99, 2),
-            known(error.degrees.mean, 3),
+            number_or_dash(error.pixels.mean, 2),
+            number_or_dash(error.pixels.p99, 2),
+            number_or_dash(error.degrees.mean, 3),
             error.pixels.n
         );
     }
@@ -191,7 +191,7 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
 }
 
 /// Formats a number. The result for NaN is "-".
-fn known(value: f64, digits: usize) -> String {
+fn number_or_dash(value: f64, digits: usize) -> String {
     if value.is_nan() { "-".to_owned() } else { format!("{value:.digits$}") }
 }
 

@@ -292,9 +292,9 @@ mod tests {
         // 3) = 3,289 s.
         let four = Resources::of(SAMPLED, None, 4);
         assert_eq!((four.tasks, four.minutes, four.megabytes), (7, 55, 320));
-        let said = Resources::of(SAMPLED, Some(10), 1);
+        let resources = Resources::of(SAMPLED, Some(10), 1);
         // Ten tasks take 60 + 5 (1,800 + 3) = 9,075 s.
-        assert_eq!((said.tasks, said.minutes), (10, 152));
+        assert_eq!((resources.tasks, resources.minutes), (10, 152));
     }
 
     #[test]

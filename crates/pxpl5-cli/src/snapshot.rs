@@ -11,8 +11,8 @@ use crate::terminal::{progress, warn};
 use crate::too_heavy::too_heavy;
 use clap::Args;
 use pxpl5::{
-    ExperimentError, ExperimentFile, Host, Keep, Machine, Optimization, Outcome, PeriodNumber, Pixels, Plan, Snapshot,
-    Workstation,
+    ExperimentError, ExperimentFile, Host, KeptRecords, Machine, Optimization, Outcome, PeriodNumber, Pixels, Plan,
+    Snapshot, Workstation,
 };
 use pxpl5_sim::parameters::text_of;
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ pub(crate) struct SnapshotArgs {
 pub(crate) struct How<'a> {
     pub(crate) threads: Option<u64>,
     pub(crate) without: &'a [Optimization],
-    pub(crate) keep: Keep,
+    pub(crate) keep: KeptRecords,
     pub(crate) budget: BudgetArgs,
     pub(crate) quiet: bool,
 }
@@ -106,7 +106,7 @@ impl SnapshotArgs {
         // The text is written after the run, so that an interrupted run leaves no file.
         let mut saved = None;
         let scene = scenes::load(plan, how.quiet)?;
-        how.budget.admit(&RunWork::of(plan, &scene, how.keep == Keep::Everything))?;
+        how.budget.admit(&RunWork::of(plan, &scene, how.keep == KeptRecords::Everything))?;
         warn(too_heavy(plan, &scene, plan.fields).as_slice(), how.quiet);
         let host = how.threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
         let experiment = plan.experiment(scene.clone()).host(host).keep(how.keep);

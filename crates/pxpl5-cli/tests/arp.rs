@@ -40,7 +40,7 @@ fn run_prints_one_json_object_and_writes_the_same_with_all_pictures() {
     );
     assert_eq!(report["memories"].as_array().map(Vec::len), Some(4));
     assert_eq!(report["memories"][0]["updates_hz"], 60.0);
-    assert!(report["tears_px"]["after"]["max"].as_f64() > Some(0.0), "{report}");
+    assert!(report["tears_texels"]["after"]["max"].as_f64() > Some(0.0), "{report}");
     let written = folder.0.join("a/b");
     assert_eq!(
         names(&written),
@@ -93,8 +93,8 @@ fn run_prints_a_table_and_with_quiet_prints_nothing() {
 fn a_warped_walk_has_no_tear_and_a_slow_renderer_misses_retraces() {
     let folder = Folder::new("arp-warped");
     let warped = json(&folder.run(&arp("run", &["--json"])));
-    assert!(warped["tears_px"]["after"]["max"].as_f64() < Some(1e-6), "{warped}");
-    assert!(warped["tears_px"]["before"]["max"].as_f64() > Some(0.1), "{warped}");
+    assert!(warped["tears_texels"]["after"]["max"].as_f64() < Some(1e-6), "{warped}");
+    assert!(warped["tears_texels"]["before"]["max"].as_f64() > Some(0.1), "{warped}");
     let slow = json(&folder.run(&arp("run", &["--source", "3000", "--json"])));
     assert!(slow["memories"][3]["missed"].as_u64() > Some(10), "{slow}");
 }

@@ -89,7 +89,7 @@ fn a_run_that_shows_nothing_fails_with_a_message() {
     let due = &report["due"];
     assert_eq!((&due["due"], &due["shown"], &report["missed_retraces"]), (&52.into(), &0.into(), &52.into()));
     assert_eq!((&due["first_period"], &due["last_period"]), (&8.into(), &59.into()));
-    assert!(report["too_heavy"]["triangles_in_time"].as_u64() > Some(100));
+    assert!(report["too_heavy"]["primitives_in_time"].as_u64() > Some(100));
 }
 
 #[test]
@@ -213,10 +213,10 @@ fn run_prints_a_table_to_standard_output_and_with_quiet_prints_nothing() {
 fn lists_name_all_built_in_items() {
     let folder = Folder::new("lists");
     let scenes = json(&folder.run(&["scenes", "--json"]));
-    let known: Vec<_> = scenes["scenes"].as_array().expect("a list").iter().map(|scene| &scene["name"]).collect();
+    let names: Vec<_> = scenes["scenes"].as_array().expect("a list").iter().map(|scene| &scene["name"]).collect();
     let of_one_size = ["aircraft", "mig", "molecules", "head", "room", "gallery", "gallery:full"];
     let expected = [&of_one_size[..], &["full-screen:N", "typical:N", "sphere:N"]].concat();
-    assert_eq!(known, expected);
+    assert_eq!(names, expected);
     let machines = json(&folder.run(&["machines", "--json"]));
     // TR94: 13 GPs and 5 renderers.
     let small =
@@ -611,7 +611,7 @@ fn the_terminal_and_json_show_the_same_values() {
                 ["run", "--pipeline", pipeline, "--scene", scene, "--gps", gps, "--fields", &fields, "--pixels", "off"];
             let report = json_of(&folder.run(&with(&run, &["--json"])));
             let text = out(&folder.run(&run));
-            let told = format!("{pipeline} {scene}: {text}");
+            let case = format!("{pipeline} {scene}: {text}");
             let number = |path: &str| report.pointer(path).and_then(serde_json::Value::as_f64);
             let whole = |path: &str| report.pointer(path).and_then(serde_json::Value::as_u64);
             let dash = || "-".to_owned();
@@ -619,18 +619,18 @@ fn the_terminal_and_json_show_the_same_values() {
                 let sd = number("/latency_ms/sd").map_or_else(dash, |sd| format!("{sd:.1}"));
                 format!("{mean:.1}, sd {sd}, n {}", report["latency_ms"]["n"])
             });
-            assert_eq!(cell(&text, "latency, ms: mean"), latency, "{told}");
+            assert_eq!(cell(&text, "latency, ms: mean"), latency, "{case}");
             let hz = number("/updates_hz").map_or_else(dash, |hz| format!("{hz:.2}"));
-            assert_eq!(cell(&text, "updates per second"), hz, "{told}");
+            assert_eq!(cell(&text, "updates per second"), hz, "{case}");
             let not_shown = whole("/missed_retraces").zip(whole("/due/due"));
             let not_shown = not_shown.map_or_else(dash, |(missed, due)| format!("{missed} of {due} pictures due"));
-            assert_eq!(cell(&text, "not shown in time"), not_shown, "{told}");
+            assert_eq!(cell(&text, "not shown in time"), not_shown, "{case}");
             let ends = ["late", "incomplete", "missed"].map(|end| whole(&format!("/due/{end}")).map(|n| n.to_string()));
             let ends = ends.into_iter().collect::<Option<Vec<_>>>().map_or_else(dash, |ends| ends.join(", "));
-            assert_eq!(cell(&text, "  late, incompl., missed"), ends, "{told}");
+            assert_eq!(cell(&text, "  late, incompl., missed"), ends, "{case}");
             let window = whole("/window/first_period").zip(whole("/window/last_period"));
             let window = window.map_or_else(dash, |(first, last)| format!("{first} to {last}"));
-            assert_eq!(cell(&text, "all over periods"), window, "{told}");
+            assert_eq!(cell(&text, "all over periods"), window, "{case}");
         }
     }
 }

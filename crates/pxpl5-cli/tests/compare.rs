@@ -126,6 +126,21 @@ fn a_comparison_uses_the_boards_triangles_seeds_and_settings_of_the_command_line
     assert!(json["triangles"].as_u64().is_some_and(|n| (40..=60).contains(&n)), "{}", json["triangles"]);
 }
 
+/// With an ideal tracker, the row `delayed-video` has no error at all. The error of a pipeline is larger.
+#[test]
+fn the_line_with_the_least_error_names_the_references_that_it_leaves_out() {
+    let shared = ["--scene", "full-screen:2", "--tracker", "ideal", "--head", "pan:200", "--fields", "30"];
+    let footer = |only: &str| {
+        let output = compare(&[shared.as_slice(), &["--seeds", "1", "--no-limits", "--only", only]].concat());
+        let text = String::from_utf8(output.stdout).expect("text");
+        text.lines().find(|line| line.starts_with("Least error")).expect("a row has the least error").to_owned()
+    };
+    let with_references = footer("slats-touched,delayed-video,ideal");
+    assert!(with_references.contains("(not ranked: delayed-video, ideal): slats-touched, "), "{with_references}");
+    let without = footer("slats-touched,vdrt");
+    assert!(without.contains("showed every picture: vdrt, ") && !without.contains("not ranked"), "{without}");
+}
+
 #[test]
 fn a_scene_too_heavy_for_a_pipeline_is_reported_with_the_limit_of_the_pipeline() {
     let settings = ["--machine", "small-hmd", "--set", "fields=24"];
@@ -257,8 +272,8 @@ fn values_that_were_not_measured_are_null_in_json_and_empty_in_the_table() {
     let place = |name: &str| names.iter().position(|column| *column == name).expect("a column");
     for line in lines {
         let cells: Vec<&str> = line.split(',').collect();
-        let known = row(&json, cells[place("pipeline")])["not_shown"].is_u64();
-        assert_eq!((cells[place("mean")].is_empty(), cells[place("n")] == "0"), (!known, !known), "{line}");
+        let has_count = row(&json, cells[place("pipeline")])["not_shown"].is_u64();
+        assert_eq!((cells[place("mean")].is_empty(), cells[place("n")] == "0"), (!has_count, !has_count), "{line}");
     }
     let _ = std::fs::remove_dir_all(&out);
 }

@@ -17,12 +17,12 @@ fn with<'a>(first: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
 fn a_value_outside_its_range_causes_one_warning_with_range_and_source() {
     let folder = Folder::new("warnings");
     let output = folder.run(&with(&RUN, &["--set", "gp.triangle_ns=3", "--json"]));
-    let said = err(&output);
-    assert_eq!(said.matches("warning").count(), 1, "{said}");
-    assert!(said.contains("gp.triangle_ns = 3 ns is outside its range, 18000 to 32000 ns (derived: "), "{said}");
+    let message = err(&output);
+    assert_eq!(message.matches("warning").count(), 1, "{message}");
+    assert!(message.contains("gp.triangle_ns = 3 ns is outside its range, 18000 to 32000 ns (derived: "), "{message}");
     let warnings = json(&output)["warnings"].clone();
     assert_eq!(warnings.as_array().map(Vec::len), Some(1), "{warnings}");
-    assert!(said.contains(warnings[0].as_str().expect("text")));
+    assert!(message.contains(warnings[0].as_str().expect("text")));
     for fine in
         [&["--set", "gp.triangle_ns=20000"][..], &["--code", "optimised"], &["--quiet", "--set", "gp.triangle_ns=3"]]
     {
@@ -68,11 +68,11 @@ fn a_tracker_parameter_outside_its_range_causes_a_warning() {
     let folder = Folder::new("tracker-warnings");
     let noisy = ["--head", "still", "--tracker", "fastrak", "--set", "tracking.fastrak.position_noise=50", "--json"];
     let output = folder.run(&with(&RUN, &noisy));
-    let said = err(&output);
-    assert_eq!(said.matches("warning").count(), 1, "{said}");
+    let message = err(&output);
+    assert_eq!(message.matches("warning").count(), 1, "{message}");
     assert!(
-        said.contains("tracking.fastrak.position_noise = 50 mm is outside its range, 0 to 0.8 mm (assumed: "),
-        "{said}"
+        message.contains("tracking.fastrak.position_noise = 50 mm is outside its range, 0 to 0.8 mm (assumed: "),
+        "{message}"
     );
     assert_eq!(json(&output)["warnings"].as_array().map(Vec::len), Some(1));
     let of_others = ["--head", "still", "--tracker", "fastrak"];
@@ -269,17 +269,20 @@ fn a_scene_too_heavy_to_be_shown_is_reported_before_the_run() {
     let heavy = |pipeline: &str, scene: &str, fields: &str| {
         let args = ["run", "--pipeline", pipeline, "--scene", scene, "--fields", fields, "--pixels", "off"];
         let output = folder.run(&[&args[..], &["--max-seconds", "1000", "--set", "gp.bin_bytes=1000000"]].concat());
-        let said = err(&output);
-        (said.lines().find(|line| line.contains("warning: TOO HEAVY")).map(str::to_owned), output.status.code())
+        let message = err(&output);
+        (message.lines().find(|line| line.contains("warning: TOO HEAVY")).map(str::to_owned), output.status.code())
     };
     // A frame of 20,000 triangles that cover the screen takes at least 70 fields.
-    let (said, code) = heavy("rendering-control", "full-screen:20000", "60");
-    let said = said.expect("it is told");
-    assert!(said.contains("20000 primitives on 13 graphics processors") && said.contains("60 fields"), "{said}");
+    let (message, code) = heavy("rendering-control", "full-screen:20000", "60");
+    let message = message.expect("a warning");
+    assert!(
+        message.contains("20000 primitives on 13 graphics processors") && message.contains("60 fields"),
+        "{message}"
+    );
     assert_eq!(code, Some(1));
     // This pipeline has no closed form. 100,000 triangles of 21.7 us on 13 processors take 10 fields.
-    let (said, _) = heavy("jitp-field", "typical:100000", "5");
-    assert!(said.is_some_and(|said| said.contains("to transform the whole scene once")));
+    let (message, _) = heavy("jitp-field", "typical:100000", "5");
+    assert!(message.is_some_and(|message| message.contains("to transform the whole scene once")));
     for (pipeline, scene, fields) in [("rendering-control", "full-screen:12", "30"), ("slats", "full-screen:12", "30")]
     {
         assert_eq!(heavy(pipeline, scene, fields).0, None, "{pipeline} {scene}");
@@ -290,7 +293,7 @@ fn a_scene_too_heavy_to_be_shown_is_reported_before_the_run() {
 /// its position.
 #[test]
 fn an_invalid_input_is_reported_with_its_limits_and_its_place() {
-    let folder = Folder::new("told");
+    let folder = Folder::new("warnings");
     folder.file("e.toml", b"pipeline = \"slats\"\nscene = \"mig\"\n# caf\xe9\n");
     folder.file("w.toml", b"scene = \"caf\xe9\"\n");
     folder.file("nop.s", "nop\nnop 5\n");

@@ -96,7 +96,7 @@ fn debugger_commands_do_not_change_the_trace_of_the_run() {
 
 #[test]
 fn a_wrong_command_is_reported_with_expected_and_found() {
-    for (commands, said) in [
+    for (commands, expected) in [
         ("jump", "expected a command (run, next, step,"),
         ("run to field 3; run to 10ms", "expected an instant not before now, 50.050000 ms, found 10.000000 ms"),
         ("next renderer 99", "expected renderer 0 to"),
@@ -109,7 +109,7 @@ fn a_wrong_command_is_reported_with_expected_and_found() {
     ] {
         let output = session(commands);
         assert_eq!(output.status.code(), Some(2), "{commands}");
-        assert!(err(&output).contains(said), "{commands}: {}", err(&output));
+        assert!(err(&output).contains(expected), "{commands}: {}", err(&output));
     }
 }
 

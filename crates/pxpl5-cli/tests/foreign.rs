@@ -15,13 +15,13 @@ fn reading_a_model_prints_a_summary() {
     folder.file("model.obj", MODEL);
     let run = folder.run(&["check", "--pipeline", "slats", "--scene", "model.obj"]);
     assert!(run.status.success(), "{}", err(&run));
-    let told = "pxpl5: warning: model.obj: colours of materials (usemtl) are not read: faces have one colour\n";
-    assert_eq!(err(&run), told);
+    let warning = "pxpl5: warning: model.obj: colours of materials (usemtl) are not read: faces have one colour\n";
+    assert_eq!(err(&run), warning);
     let run = ["run", "--pipeline", "slats", "--scene", "model.obj", "--triangles", "3", "--fields", "40", "--json"];
     let run = folder.run(&run);
-    assert_eq!(err(&run), told);
+    assert_eq!(err(&run), warning);
     let report: Value = serde_json::from_slice(&run.stdout).expect("an object");
-    assert_eq!(report["warnings"][0], told.trim_start_matches("pxpl5: warning: ").trim_end());
+    assert_eq!(report["warnings"][0], warning.trim_start_matches("pxpl5: warning: ").trim_end());
 }
 
 #[test]
@@ -30,9 +30,9 @@ fn a_model_in_an_unknown_format_is_refused_with_the_known_formats() {
     for name in ["model.fbx", "./model.fbx", "model.FBX", "model.3ds"] {
         folder.file(name, "solid");
         let run = folder.run(&["run", "--pipeline", "slats", "--scene", name]);
-        let said = err(&run);
+        let message = err(&run);
         let expected = "expected an extension .ply, .obj, .stl, .gltf, .glb or .pdb";
-        assert!(!run.status.success() && said.contains(expected), "{said}");
+        assert!(!run.status.success() && message.contains(expected), "{message}");
     }
     let run = folder.run(&["run", "--pipeline", "slats", "--scene", "there-is-none.fbx"]);
     assert!(
@@ -99,10 +99,13 @@ fn recordings_with_repeated_times_or_gaps_are_reported_and_a_run_in_a_gap_is_ref
     };
     let refused = run(&["--fields", "60"]);
     assert!(!refused.status.success());
-    let said = err(&refused);
-    assert!(said.contains("warning: head.tum: line 2 repeats the time of the line before"), "{said}");
-    assert!(said.contains("warning: head.tum: no pose for 2.210 s from 0.280 s on"), "{said}");
-    assert!(said.contains("no pose from 0.280 s to 2.490 s") && said.contains("head.end = \"hold\""), "{said}");
+    let message = err(&refused);
+    assert!(message.contains("warning: head.tum: line 2 repeats the time of the line before"), "{message}");
+    assert!(message.contains("warning: head.tum: no pose for 2.210 s from 0.280 s on"), "{message}");
+    assert!(
+        message.contains("no pose from 0.280 s to 2.490 s") && message.contains("head.end = \"hold\""),
+        "{message}"
+    );
     let held = run(&["--fields", "60", "--set", "head.end=hold"]);
     assert!(held.status.success(), "{}", err(&held));
     let short = run(&["--fields", "14"]);
@@ -163,9 +166,9 @@ fn assembler_listings_have_source_lines_and_warnings_can_be_turned_off() {
         text.contains("table:\n00001010  00000007  .long 0x7                           4  table:\t.long 7, 8\n"),
         "{text}"
     );
-    let told =
+    let warning =
         "pxpl5: warning: a.s:2: a pipelined multiply must not have its first source as destination [multiply-source]\n";
-    assert_eq!(err(&listed), told);
+    assert_eq!(err(&listed), warning);
     for allow in [&["--allow", "multiply-source"][..], &["--allow", "lost-result,multiply-source"], &["--allow", "all"]]
     {
         assert_eq!(err(&folder.run(&[&["i860", "asm", "a.s"], allow].concat())), "", "{allow:?}");
@@ -188,15 +191,15 @@ fn columns_of_comparisons_have_the_same_names_in_tables_plots_and_json() {
     let header = table.lines().next().expect("a header").to_owned();
     // `plot` lists all columns of comparison.json if a requested column does not exist.
     let unknown = folder.run(&["plot", "c", "--x", "no-column", "--y", "due", "--out", "f.svg"]);
-    let known: Vec<String> =
+    let columns: Vec<String> =
         err(&unknown).trim_end().rsplit_once("There are: ").expect("a list").1.split(", ").map(str::to_owned).collect();
     for column in header.split(',') {
-        assert!(known.iter().any(|name| name == column), "{column} is not in {known:?}");
+        assert!(columns.iter().any(|name| name == column), "{column} is not in {columns:?}");
     }
     let old = ["plot", "c", "--x", "head_to_light_ms_mean", "--y", "error_px_by_latency", "--out", "f.svg"];
     let old = folder.run(&old);
     assert!(old.status.success(), "{}", err(&old));
-    let said = err(&old);
-    assert!(said.contains("the column `head_to_light_ms_mean` is called `head_to_light_ms.mean` now"), "{said}");
-    assert!(said.contains("the column `error_px_by_latency` is called `causes.latency.px.mean` now"), "{said}");
+    let message = err(&old);
+    assert!(message.contains("the column `head_to_light_ms_mean` is called `head_to_light_ms.mean` now"), "{message}");
+    assert!(message.contains("the column `error_px_by_latency` is called `causes.latency.px.mean` now"), "{message}");
 }

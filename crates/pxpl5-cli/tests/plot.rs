@@ -68,7 +68,7 @@ fn a_plot_computes_means_deviations_and_intervals_over_the_seeds() {
 }
 
 #[test]
-fn a_result_that_was_not_evaluated_is_not_zero() {
+fn a_plot_leaves_out_results_that_are_null() {
     let folder = Folder::new("plot-null");
     sweep(&folder, |copy, n, seed| if (copy, n) == ("split", 4) || seed == 3 { Value::Null } else { json!(seed) });
     let run = folder.run(&["plot", "rows.jsonl", "--x", "n", "--y", "latency", "--by", "copy", "--out", "fig.svg"]);
@@ -174,7 +174,7 @@ fn circles(svg: &str, is_hollow: bool) -> usize {
 }
 
 #[test]
-fn a_plotted_point_with_pictures_not_shown_is_hollow_and_the_table_has_its_counts() {
+fn a_plotted_point_with_missed_pictures_is_hollow_and_has_its_counts_in_the_table() {
     let folder = Folder::new("plot-counts");
     let axes = json!([{"paths": ["n"], "steps": [[1], [2]]}, {"paths": ["seed"], "steps": [[1], [2]]}]);
     let mut text = json!({"schema": "pxpl5-sweep/1", "points": 4, "title": "t", "axes": axes}).to_string() + "\n";

@@ -112,7 +112,7 @@ fn try_all(files: &[(String, Vec<u8>)], rounds: u64, mut read: impl FnMut(&str, 
         let (extension, file) = &files[numbers.below(files.len())];
         let bytes = damaged(file, files, &mut numbers);
         // If the reader panics, the drop of this guard prints the input.
-        let _told = Told(round, &bytes);
+        let _printer = PrintedOnPanic(round, &bytes);
         accepted += u64::from(read(extension, &bytes));
     }
     println!("{accepted} of {rounds} were accepted");
@@ -120,9 +120,9 @@ fn try_all(files: &[(String, Vec<u8>)], rounds: u64, mut read: impl FnMut(&str, 
 }
 
 /// A guard that prints the round and its input if a panic drops it.
-struct Told<'a>(u64, &'a [u8]);
+struct PrintedOnPanic<'a>(u64, &'a [u8]);
 
-impl Drop for Told<'_> {
+impl Drop for PrintedOnPanic<'_> {
     fn drop(&mut self) {
         if std::thread::panicking() {
             eprintln!("PXPL5_FUZZ_FROM={}: {:?}", self.0, String::from_utf8_lossy(self.1));
@@ -259,11 +259,11 @@ fn machines_of_any_numbers_run_or_are_refused() {
                 changed.push(format!("{}={value}", parameter.path));
             }
         }
-        let told = changed.join(" ");
-        let _told = Told(round, told.as_bytes());
+        let settings = changed.join(" ");
+        let _printer = PrintedOnPanic(round, settings.as_bytes());
         if first > 0 {
             // Output before the run identifies the input if the run does not end.
-            println!("{round}: {told}");
+            println!("{round}: {settings}");
         }
         if config.check().is_ok() {
             let scene = pxpl5::scene::builtin("full-screen:6").expect("built in");

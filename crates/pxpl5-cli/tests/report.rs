@@ -178,10 +178,10 @@ fn runs_with_few_pictures_write_all_results() {
     let few = ["--pipeline", "rendering-control", "--scene", "full-screen:4", "--fields"];
     let output = folder.run(&[&["run"], &few[..], &["10", "--out", "o"]].concat());
     assert_eq!(output.status.code(), Some(1), "{}", err(&output));
-    let said = err(&output);
-    assert!(said.contains("only ") && said.contains("the next one is shown after about "), "{said}");
+    let message = err(&output);
+    assert!(message.contains("only ") && message.contains("the next one is shown after about "), "{message}");
     let needed: u64 =
-        said.split("about ").nth(1).and_then(|rest| rest.trim().parse().ok()).unwrap_or_else(|| panic!("{said}"));
+        message.split("about ").nth(1).and_then(|rest| rest.trim().parse().ok()).unwrap_or_else(|| panic!("{message}"));
     let read = |name: &str| std::fs::read_to_string(folder.0.join("o").join(name)).expect("written");
     let report: serde_json::Value = serde_json::from_str(&read("report.json")).expect("JSON");
     let shown = report["shown"].as_u64().expect("a number");
@@ -195,7 +195,7 @@ fn runs_with_few_pictures_write_all_results() {
     // The number of fields in the message is sufficient, and not much too large.
     for (fields, is_enough) in [(needed + 1, true), (needed - 4, false)] {
         let output = folder.run(&[&["run"], &few[..], &[&fields.to_string(), "--quiet"]].concat());
-        assert_eq!(output.status.success(), is_enough, "{fields} fields, {needed} were said: {}", err(&output));
+        assert_eq!(output.status.success(), is_enough, "{fields} fields, {needed} were predicted: {}", err(&output));
     }
     for (args, file) in [
         (&["trace", "--out", "t.pftrace"][..], "t.pftrace"),
@@ -218,12 +218,12 @@ fn every_pipeline_reports_how_many_fields_a_run_needs() {
             folder.run(&["run", "--pipeline", pipeline, "--scene", "full-screen:2", "--fields", fields, "--quiet"])
         };
         let output = run("5");
-        let said = err(&output);
+        let message = err(&output);
         if output.status.success() {
             continue;
         }
-        let needed: Option<u64> = said.split("about ").nth(1).and_then(|rest| rest.trim().parse().ok());
-        let needed = needed.unwrap_or_else(|| panic!("{pipeline}: {said}"));
+        let needed: Option<u64> = message.split("about ").nth(1).and_then(|rest| rest.trim().parse().ok());
+        let needed = needed.unwrap_or_else(|| panic!("{pipeline}: {message}"));
         let output = run(&(needed + 1).to_string());
         assert!(output.status.success(), "{pipeline}, {needed}: {}", err(&output));
     }

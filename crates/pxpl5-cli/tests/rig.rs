@@ -28,8 +28,8 @@ fn settings_that_the_rig_defines_are_refused() {
     for option in [["--scene", "mig"], ["--head", "pan:200"], ["--fields", "60"], ["--aim", "retrace"]] {
         let output = folder.run(&["rig", "--pipeline", "slats", option[0], option[1]]);
         assert_eq!(output.status.code(), Some(2), "{option:?}");
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(said.contains("does not apply to the rig"), "{said}");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(message.contains("does not apply to the rig"), "{message}");
     }
 }
 
@@ -38,8 +38,8 @@ fn head_mounted_displays_are_refused_with_the_reason() {
     let folder = Folder::new("rig-turning");
     for pipeline in ["arp-full-line", "frameless"] {
         let output = folder.run(&["rig", "--pipeline", pipeline, "--tracker", "ideal", "--passes", "2"]);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{said}");
-        assert!(said.contains("expected a pipeline whose frames a photodiode can distinguish"), "{said}");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{message}");
+        assert!(message.contains("expected a pipeline whose frames a photodiode can distinguish"), "{message}");
     }
 }

@@ -66,7 +66,7 @@ fn a_swap_requested_at_the_instant_of_a_retrace_waits_for_the_next_retrace() {
 }
 
 #[test]
-fn of_several_swap_requests_the_last_request_takes_effect() {
+fn the_last_of_several_swap_requests_takes_effect() {
     let mut board = Board::new();
     board.retraces(0..=2);
     board.swap(Time(10), 1);

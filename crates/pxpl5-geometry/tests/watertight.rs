@@ -121,7 +121,7 @@ fn a_corner_on_a_pixel_centre_belongs_to_exactly_one_of_its_triangles() {
 }
 
 #[test]
-fn of_a_triangle_that_extends_behind_the_eye_the_part_beyond_the_near_plane_is_drawn() {
+fn only_the_part_of_a_triangle_beyond_the_near_plane_is_drawn() {
     // The floor y = -1 extends from far in front of the eye to far behind the eye. Every pixel below the horizon must
     // be covered.
     let view = pixel_view(0.5, 1e6);

@@ -391,12 +391,14 @@ mod tests {
 
     /// Simulates the board until it sends nothing more. Each message of the board is accepted at once.
     fn run(board: &mut GpBoard, bench: &mut TestBench<GpEvent, GpOutput>) {
-        let mut told = 0;
+        let mut n_before = 0;
         loop {
             bench.run(|event, context| board.handle(event, context));
-            let fresh: Vec<_> =
-                bench.outputs[told..].iter().map(|(time, GpOutput::Send { ticket, .. })| (*time, *ticket)).collect();
-            told = bench.outputs.len();
+            let fresh: Vec<_> = bench.outputs[n_before..]
+                .iter()
+                .map(|(time, GpOutput::Send { ticket, .. })| (*time, *ticket))
+                .collect();
+            n_before = bench.outputs.len();
             if fresh.is_empty() {
                 return;
             }

@@ -87,11 +87,11 @@ impl Rig {
 #[test]
 fn messages_that_arrive_at_one_instant_are_processed_in_one_poll() {
     let notes = Notes::default();
-    let told = Rc::clone(&notes);
+    let program_notes = Rc::clone(&notes);
     let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
         loop {
             let source = gp.next_message().await.source;
-            note(&told, &gp, source.0.into());
+            note(&program_notes, &gp, source.0.into());
         }
     });
     rig = rig.fed(500, message(4)).fed(500, message(2)).fed(500, message(3)).fed(800, message(1));
@@ -135,16 +135,16 @@ fn acceptances_wake_the_board_when_the_next_chain_can_start() {
 /// which `draining`, `accepted` and `clump_buffer_free` end.
 fn waits_of_a_chain(receivers: [u16; 3], order: [u64; 3]) -> Vec<(Time, u64)> {
     let notes = Notes::default();
-    let told = Rc::clone(&notes);
+    let program_notes = Rc::clone(&notes);
     let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
         let of = |value: u16| (NodeId(value), 1, word(0).1);
         let ticket = gp.send_batch(receivers.map(of).into()).await;
         gp.draining(ticket).await;
-        note(&told, &gp, 1);
+        note(&program_notes, &gp, 1);
         gp.accepted(ticket).await;
-        note(&told, &gp, 2);
+        note(&program_notes, &gp, 2);
         gp.clump_buffer_free().await;
-        note(&told, &gp, 3);
+        note(&program_notes, &gp, 3);
         Ok(())
     });
     for (turn, place) in (1..).zip(order) {
@@ -165,9 +165,9 @@ fn a_chain_is_accepted_when_all_receivers_have_taken_their_messages() {
 
 /// The interrupt program is polled first. It gets the progress of the other program at the same instant.
 #[test]
-fn one_program_sees_the_changes_of_the_other_at_once() {
+fn a_program_reads_changes_of_another_program_at_once() {
     let notes = Notes::default();
-    let (told, done) = (Rc::clone(&notes), Rc::new(Cell::new(false)));
+    let (program_notes, done) = (Rc::clone(&notes), Rc::new(Cell::new(false)));
     let is_done = Rc::clone(&done);
     let rig = Rig::new().with(Priority::Foreground, |gp| async move {
         gp.spend(Span::from_ns(700)).await;
@@ -177,7 +177,7 @@ fn one_program_sees_the_changes_of_the_other_at_once() {
     });
     let mut rig = rig.with(Priority::Interrupt, |gp| async move {
         gp.until("the other program", || is_done.get().then_some(())).await;
-        note(&told, &gp, 1);
+        note(&program_notes, &gp, 1);
         Ok(())
     });
     rig.events();
@@ -230,17 +230,17 @@ fn a_stage_that_ends_with_a_chain_ends_at_its_acceptance() {
 }
 
 #[test]
-fn a_program_sees_retraces_and_status_lines() {
+fn a_program_reads_retraces_and_status_lines() {
     let notes = Notes::default();
-    let told = Rc::clone(&notes);
+    let program_notes = Rc::clone(&notes);
     let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
         assert_eq!((gp.node(), gp.field(), gp.status(NodeId(5))), (BOARD, PeriodNumber::FIRST, 0));
         let field = gp.retrace().await;
-        note(&told, &gp, field.0);
+        note(&program_notes, &gp, field.0);
         gp.until("two swaps", || (gp.status(NodeId(5)) == 2).then_some(())).await;
-        note(&told, &gp, gp.status(NodeId(6)));
+        note(&program_notes, &gp, gp.status(NodeId(6)));
         gp.until("three swaps", || (gp.status(NodeId(5)) == 3).then_some(())).await;
-        note(&told, &gp, gp.field().0);
+        note(&program_notes, &gp, gp.field().0);
         Ok(())
     });
     // The current period ends no wait for a retrace.
@@ -283,16 +283,16 @@ fn a_request_for_more_memory_than_available_stops_the_program() {
 #[test]
 fn a_message_can_be_received_without_cpu_time() {
     let notes = Notes::default();
-    let told = Rc::clone(&notes);
+    let program_notes = Rc::clone(&notes);
     let mut rig = Rig::new().with(Priority::Interrupt, |gp| async move {
         assert!(gp.take_message().is_none());
         gp.until("a field", || (gp.field() == PeriodNumber(1)).then_some(())).await;
         let sources = [gp.take_message(), gp.take_message(), gp.take_message()];
         let sources = sources.map(|received| received.map_or(0, |received| u64::from(received.source.0)));
-        sources.iter().for_each(|source| note(&told, &gp, *source));
+        sources.iter().for_each(|source| note(&program_notes, &gp, *source));
         // A chain without messages counts as accepted.
         gp.accepted(gp.send_batch(Vec::new()).await).await;
-        note(&told, &gp, 1);
+        note(&program_notes, &gp, 1);
         Ok(())
     });
     rig = rig.fed(100, message(3)).fed(200, message(8)).fed(300, GpEvent::Retrace(PeriodNumber(1)));
@@ -453,13 +453,14 @@ fn answers(orders: &[Order], foreground: &[u64], delays: &[u64]) -> (Vec<(Time, 
         Ok(())
     });
     rig = orders.iter().fold(rig, |rig, (at, ..)| rig.fed(100 * at, message(7)));
-    let mut told = 0;
+    let mut accepted = 0;
     while let Some(next) = rig.bench.queue().next_time() {
         rig.run_to(next.0 / 1_000);
-        while let Some((time, GpOutput::Send { ticket, .. })) = rig.bench.outputs.get(told) {
-            let (at, event) = (*time + Span::from_ns(100 * delays[told % delays.len()]), GpEvent::Accepted(*ticket));
+        while let Some((time, GpOutput::Send { ticket, .. })) = rig.bench.outputs.get(accepted) {
+            let (at, event) =
+                (*time + Span::from_ns(100 * delays[accepted % delays.len()]), GpEvent::Accepted(*ticket));
             rig.bench.feed(at, Phase::Arrive, event);
-            told += 1;
+            accepted += 1;
         }
     }
     let sent = rig.bench.outputs.iter();

@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_is_out_of_reach_outside_the_interval_widened_by_the_distance_of_the_levels() {
+    fn a_figure_outside_its_widened_interval_is_out_of_reach() {
         // 31.2 ms minus the last printed digit, 0.312, is 8.888 above the upper bound of 22 ms.
         for (distance, out_of_reach) in [(0.0, true), (8.8, true), (-8.8, true), (8.9, false), (-8.9, false)] {
             let row = row_of_figure_2(21.0 + distance);

@@ -2,7 +2,7 @@
 
 use crate::levels::summarise;
 use pxpl5_machine::MachineConfig;
-use pxpl5_run::{Experiment, ExperimentError, Keep, Level, Pixels, Registry, Summary};
+use pxpl5_run::{Experiment, ExperimentError, KeptRecords, Level, Pixels, Registry, Summary};
 use serde::Serialize;
 
 /// Effect of one changed resource of the machine on latency and update rate.
@@ -81,7 +81,7 @@ pub fn what_if(registry: &Registry, experiment: &Experiment) -> Result<Vec<WhatI
     let (base, tried) = match form {
         Some(summary) => (summary, by_form),
         None => {
-            let run = experiment.clone().pixels(Pixels::Off).keep(Keep::Statistics);
+            let run = experiment.clone().pixels(Pixels::Off).keep(KeptRecords::Statistics);
             (summarise(registry, &run)?, run)
         }
     };

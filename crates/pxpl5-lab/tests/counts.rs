@@ -126,7 +126,7 @@ fn without_a_complete_picture_there_is_no_latency_update_or_error() {
 #[test]
 fn a_pipeline_without_a_closed_form_explains_how_its_limit_is_found() {
     let heavy = run("jitp-field", 3_000, 60).expect("fields are begun").report().too_heavy.expect("far too many");
-    assert_eq!(heavy.triangles_in_time, None);
+    assert_eq!(heavy.primitives_in_time, None);
     assert!(heavy.advice.contains("`limit` finds the number of test triangles that jitp-field draws"), "{heavy}");
 }
 
@@ -153,7 +153,7 @@ fn a_picture_of_start_up_that_stays_on_the_screen_has_no_error() {
 
 /// Tests a run whose only complete fields are those at its start.
 #[test]
-fn a_run_all_of_whose_due_pictures_failed_has_no_latency() {
+fn a_run_whose_due_pictures_all_failed_has_no_latency() {
     let text =
         "pipeline = \"jitp-dual-screen\"\nscene = \"full-screen:4\"\nfields = 60\npixels = \"off\"\nlevel = \"cycle\"";
     let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("valid");

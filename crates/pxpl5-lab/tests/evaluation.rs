@@ -120,8 +120,8 @@ fn a_recording_that_is_shorter_than_the_run_is_refused_and_held_on_request() {
     let recording = || Recording::read(text.as_bytes()).expect("valid");
     let room = || pxpl5_scene::builtin("room").expect("built in");
     let error = run(room(), head(recording())).expect_err("42 fields are 0.7 s");
-    let said = error.to_string();
-    assert!(said.starts_with("the recording of the head ends after 0.500 s and the run takes 0.701 s"), "{said}");
+    let message = error.to_string();
+    assert!(message.starts_with("the recording of the head ends after 0.500 s and the run takes 0.701 s"), "{message}");
     let held = run(room(), head(recording().ending(End::Hold))).expect("it runs");
     let looped = run(room(), head(recording().ending(End::Loop))).expect("it runs");
     assert_ne!(

@@ -72,13 +72,13 @@ fn the_analytic_limit_of_slats_is_the_simulated_one_within_its_bound() {
         // `apart_ms` is the difference of the two limits as a time, by which the first copy begins later.
         let [at_found, at_expected] = [found + 1, expected + 1].map(|size| copies_begin_ms(&analytic, size));
         let apart_ms = (at_found - at_expected).abs();
-        let told =
+        let line =
             format!("{round}: {expected} {found} {percent:+.1} % {apart_ms:.3} ms {scene:?} {}", settings.join(" "));
         if setting("PXPL5_SHOW", 0) == 1 {
-            println!("{told}");
+            println!("{line}");
         }
         if percent.abs() > BOUND_PERCENT && found.abs_diff(expected) > BOUND_TRIANGLES && apart_ms > BOUND_MS {
-            Some(told)
+            Some(line)
         } else {
             None
         }

@@ -82,7 +82,7 @@ fn without_a_closed_form_the_message_asks_for_a_longer_run() {
 }
 
 #[test]
-fn if_a_frame_takes_two_hundred_fields_each_frame_counts_as_one_of_a_hundred_due_pictures() {
+fn a_frame_of_two_hundred_fields_counts_as_one_shown_picture() {
     let form = registry().pipeline("rendering-control").expect("known").closed_form.map(|form| form.estimates);
     let short = experiment(slow(), "full-screen:12", 60).with_estimates(form);
     let needed = partial(short.run().expect_err("too short")).0.expect("it has a closed form");
@@ -114,7 +114,7 @@ fn if_slats_is_always_late_no_picture_is_shown_and_the_report_names_a_size_that_
     assert!(due.missed > 0 && due.incomplete + due.late > 0, "{due:?}");
     let heavy = report.too_heavy.expect("nothing was shown");
     // TR94: 140 triangles with the COPY optimisation.
-    let would_do = heavy.triangles_in_time.expect("Slats has a closed form");
+    let would_do = heavy.primitives_in_time.expect("Slats has a closed form");
     assert!((136..=150).contains(&would_do), "{heavy}");
     assert!(heavy.to_string().contains(&format!("triangles = {would_do}")), "{heavy}");
 }

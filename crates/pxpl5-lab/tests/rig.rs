@@ -68,8 +68,8 @@ fn pipelines_without_frames_are_refused_with_the_reason() {
         let Err(refused) = measure(TrackerConfig::ideal(), named(pipeline), 2) else {
             panic!("{pipeline} is measured")
         };
-        let said = refused.to_string();
-        assert!(matches!(refused, StudyError::Setting(_)) && said.contains(reason), "{said}");
+        let message = refused.to_string();
+        assert!(matches!(refused, StudyError::Setting(_)) && message.contains(reason), "{message}");
     }
 }
 
@@ -154,7 +154,7 @@ impl PictureRules for Faulty {
 }
 
 #[test]
-fn an_error_of_one_measurement_is_found_by_the_other() {
+fn each_measurement_detects_errors_of_the_other_measurement() {
     let with = |fault| {
         let faulty = Faulty { inner: RenderingControl::stereo(), fault };
         measure(TrackerConfig::fastrak(), Arc::new(faulty), 4)

@@ -69,7 +69,7 @@ const fn gp_what(event: &GpEvent) -> &'static str {
         GpEvent::Accepted(_) => "message accepted by its receiver",
         GpEvent::Retrace(_) => "retrace",
         GpEvent::Status { .. } => "status line",
-        GpEvent::Poll => "programs look",
+        GpEvent::Poll => "programs continue",
         GpEvent::WorkEnds => "work may end",
     }
 }

@@ -176,12 +176,12 @@ mod tests {
     proptest::proptest! {
         #[test]
         fn busy_channels_are_recorded_when_their_number_changes(
-            told in proptest::collection::vec((0u64..3, 0u32..3), 1..20),
+            periods in proptest::collection::vec((0u64..3, 0u32..3), 1..20),
         ) {
             let mut traffic = Traffic::default();
             let mut now = 0;
             let mut all = Vec::new();
-            for (wait, busy) in told {
+            for (wait, busy) in periods {
                 now += wait;
                 all.push((Time(now), busy));
                 traffic.channels(Time(now), busy);
@@ -193,7 +193,7 @@ mod tests {
         }
 
         #[test]
-        fn no_record_from_an_instant_on_is_discarded(
+        fn discarding_keeps_the_records_from_an_instant_on(
             busy in proptest::collection::btree_map(0u64..40, 0u32..9, 1..20),
             changes in proptest::collection::vec((0usize..2, 0u64..40, -9i64..9), 0..20),
             ends in proptest::collection::vec(0u64..40, 0..9),

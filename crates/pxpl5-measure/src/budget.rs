@@ -48,11 +48,11 @@ impl Budget {
     /// Returns the mean stage times over the pictures of several runs, each run weighted by its number of pictures.
     #[must_use]
     pub fn pooled(budgets: impl Iterator<Item = Self>) -> Self {
-        let known: Vec<Self> = budgets.filter(|budget| budget.n > 0).collect();
-        let n: u64 = known.iter().map(|budget| budget.n).sum();
+        let with_pictures: Vec<Self> = budgets.filter(|budget| budget.n > 0).collect();
+        let n: u64 = with_pictures.iter().map(|budget| budget.n).sum();
         let mean = |of: fn(&Self) -> f64| {
             // Without pictures, 0 / 0 gives NaN.
-            known.iter().map(|budget| of(budget) * budget.n as f64).sum::<f64>() / n as f64
+            with_pictures.iter().map(|budget| of(budget) * budget.n as f64).sum::<f64>() / n as f64
         };
         Self {
             tracking_ms: mean(|budget| budget.tracking_ms),
@@ -151,7 +151,7 @@ pub(crate) fn of_pictures<'a>(
 /// milliseconds.
 fn of_picture(run: &FinalResults<'_>, times: &PictureTimes, sampled: &SampledPose) -> Option<[f64; STAGES]> {
     let light = run.pipeline.light(run.record, times);
-    let taken_at = sampled.known.max(sampled.arrived_at?);
+    let taken_at = sampled.reports_until.max(sampled.arrived_at?);
     // The stages lie between these consecutive instants.
     let path = [
         sampled.measured_at?,

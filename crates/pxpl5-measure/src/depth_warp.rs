@@ -31,8 +31,8 @@ impl DepthPicture {
     pub fn from_fn(width: u32, height: u32, depth: impl Fn(u32, u32) -> f32) -> Self {
         let depth = &depth;
         let depths: Vec<f32> = (0..height).flat_map(|y| (0..width).map(move |x| depth(x, y))).collect();
-        let known = depths.iter().copied().filter(|depth| *depth > 0.0);
-        let range = known.fold((f32::INFINITY, 0.0_f32), |(near, far), z| (near.min(z), far.max(z)));
+        let drawn = depths.iter().copied().filter(|depth| *depth > 0.0);
+        let range = drawn.fold((f32::INFINITY, 0.0_f32), |(near, far), z| (near.min(z), far.max(z)));
         Self { width, height, depths, range }
     }
 

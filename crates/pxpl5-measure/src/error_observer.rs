@@ -334,8 +334,8 @@ impl Evaluation {
             let from = match &self.content {
                 Content::ShiftedRaster(_, offset) => {
                     let Some(offset) = offset else { continue };
-                    let known = display.tick(field);
-                    let arrived = self.head.report_by(known);
+                    let reports_until = display.tick(field);
+                    let arrived = self.head.report_by(reports_until);
                     eye.pose(arrived.and_then(|arrived| self.head.measured_at(arrived)), at);
                     Some(place - offset.shift_px(view, at.0))
                 }
@@ -426,7 +426,7 @@ mod tests {
     use super::*;
     use glam::DVec2;
     use pxpl5_machine::MachineConfig;
-    use pxpl5_run::{Experiment, Head, Keep, PipelineSettings, Pixels, Registry, StreamingObserver};
+    use pxpl5_run::{Experiment, Head, KeptRecords, PipelineSettings, Pixels, Registry, StreamingObserver};
     use pxpl5_scene::builtin;
     use std::any::Any;
     use tracking::motion::Synthetic;
@@ -465,7 +465,7 @@ mod tests {
             let head =
                 Head::new(motion, TrackerConfig::fastrak(), PredictorKind::ConstantVelocity, 7).expect("in range");
             let experiment = Experiment::with(config, pipeline, Arc::new(builtin(scene).expect("built in"))).head(head);
-            let experiment = experiment.fields(fields).pixels(Pixels::Off).keep(Keep::Statistics);
+            let experiment = experiment.fields(fields).pixels(Pixels::Off).keep(KeptRecords::Statistics);
             let outcome = experiment.observed_by(Some(|| Box::<Watched>::default())).run().expect("it runs");
             let held: &Vec<usize> = outcome.observed().expect("watched");
             assert!(held.len() > 1 && held.iter().all(|later| *later <= held[0]), "{name}: {held:?}");
@@ -482,15 +482,15 @@ mod tests {
             let of_field = [error, Misregistration { pixels: 0.0, degrees: 0.0, ..error }];
             collected.take(PeriodNumber(field), Time(field), &of_field, Some(error));
         }
-        let (said, eye) = collected.result();
+        let (result, eye) = collected.result();
         assert_eq!(eye, None);
-        let kept: Vec<u64> = said.by_field.iter().map(|error| error.field.0).collect();
+        let kept: Vec<u64> = result.by_field.iter().map(|error| error.field.0).collect();
         assert_eq!(kept, [1, 2, 3]);
         assert_eq!(
-            (said.evaluated, said.pixels.n, said.degrees.n, said.centre_px.n, said.centre_deg.n),
+            (result.evaluated, result.pixels.n, result.degrees.n, result.centre_px.n, result.centre_deg.n),
             (10, 10, 10, 5, 5)
         );
-        assert!((said.centre_px.mean - 3.0).abs() < 1e-12 && (said.centre_deg.mean - 3.0 / 8.0).abs() < 1e-12);
-        assert!((said.degrees.mean - 1.5 / 8.0).abs() < 1e-12, "half of them are 0");
+        assert!((result.centre_px.mean - 3.0).abs() < 1e-12 && (result.centre_deg.mean - 3.0 / 8.0).abs() < 1e-12);
+        assert!((result.degrees.mean - 1.5 / 8.0).abs() < 1e-12, "half of them are 0");
     }
 }

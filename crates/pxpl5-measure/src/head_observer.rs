@@ -13,7 +13,7 @@ use std::any::Any;
 ///
 /// The observer collects the latency from the head's pose until pixels are lit, rotation latencies of address
 /// recalculation displays, and errors in pixels. A run uses the observer after
-/// `experiment.keep(Keep::Statistics).observed_by(Some(HeadSum::begin))`.
+/// `experiment.keep(KeptRecords::Statistics).observed_by(Some(HeadSum::begin))`.
 #[derive(Debug, Default)]
 pub struct HeadSum {
     budget: BudgetSum,

@@ -24,7 +24,7 @@ pub(crate) fn missing_results_warning(outcome: &Outcome) -> Option<String> {
 }
 
 const MISSING_RESULTS: &str = "latencies from the head to light and errors in pixels cover only the last pictures: the run discarded its records and had no \
-    streaming observer (Experiment::observed_by; or keep all records with Keep::Everything)";
+    streaming observer (Experiment::observed_by; or keep all records with KeptRecords::Everything)";
 
 impl PixelErrors {
     /// Returns the errors that the pictures of a run have if a display shows the pictures as drawn, without any
@@ -42,8 +42,8 @@ impl PixelErrors {
     #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
-        let said = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster().into());
-        said.map_or_else(|| evaluated(outcome, showing, None).0, |said| said.error.clone())
+        let results = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster().into());
+        results.map_or_else(|| evaluated(outcome, showing, None).0, |results| results.error.clone())
     }
 
     /// Returns the errors that the run would have without one cause of error. All times stay the same.
@@ -75,8 +75,8 @@ impl EyeReport {
 /// than an instant or a device moves pictures. Returns `None` for a run without a head.
 pub(crate) fn errors_and_eye(outcome: &Outcome) -> Option<(PixelErrors, Option<EyeReport>)> {
     let showing = outcome.head()?.head().raster().into();
-    let said = HeadResults::from_observer(outcome).map(|said| (said.error.clone(), said.eye.clone()));
-    Some(said.unwrap_or_else(|| evaluated(outcome, showing, None)))
+    let results = HeadResults::from_observer(outcome).map(|results| (results.error.clone(), results.eye.clone()));
+    Some(results.unwrap_or_else(|| evaluated(outcome, showing, None)))
 }
 
 /// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.
@@ -90,8 +90,8 @@ impl Budget {
     /// complete and have a measured pose.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
-        if let Some(said) = HeadResults::from_observer(outcome) {
-            return said.end_to_end;
+        if let Some(results) = HeadResults::from_observer(outcome) {
+            return results.end_to_end;
         }
         let mut sum = BudgetSum::default();
         sum.take(&outcome.final_results());
@@ -110,8 +110,8 @@ impl Budget {
 
 impl Turns {
     pub(crate) fn of(outcome: &Outcome) -> Self {
-        if let Some(said) = HeadResults::from_observer(outcome) {
-            return said.turns.clone();
+        if let Some(results) = HeadResults::from_observer(outcome) {
+            return results.turns.clone();
         }
         let mut sum = RotationLatencySum::default();
         sum.take(&outcome.final_results());
@@ -121,8 +121,8 @@ impl Turns {
 
 impl Steps {
     pub(crate) fn of(outcome: &Outcome) -> Vec<Self> {
-        if let Some(said) = HeadResults::from_observer(outcome) {
-            return said.steps.clone();
+        if let Some(results) = HeadResults::from_observer(outcome) {
+            return results.steps.clone();
         }
         if outcome.has_discarded_records() {
             return Vec::new();

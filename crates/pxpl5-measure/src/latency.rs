@@ -5,7 +5,7 @@ use std::fmt;
 
 /// Returns the latency parts of the complete pictures in the result window.
 ///
-/// Pictures whose records were discarded ([`pxpl5_run::Keep`]) are left out.
+/// Pictures whose records were discarded ([`pxpl5_run::KeptRecords`]) are left out.
 #[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
     outcome.latency_parts()

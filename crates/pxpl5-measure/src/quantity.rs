@@ -62,18 +62,18 @@ const PATH: &str = "share of the latency that waits for this resource, 0 to 1, o
 ///
 /// Quantities that need a simulated run have no value at the analytic level.
 pub static QUANTITIES: [Quantity; 57] = [
-    of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().told().mean),
-    of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().told().sd),
+    of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().rounded().mean),
+    of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().rounded().sd),
     of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
     of_summary("latency_fields.max", LATENCY, |s| s.latency_fields().max),
-    of_summary("latency_ms.mean", LATENCY, |s| s.latency_ms().told().mean),
-    of_summary("latency_ms.sd", LATENCY, |s| s.latency_ms().told().sd),
+    of_summary("latency_ms.mean", LATENCY, |s| s.latency_ms().rounded().mean),
+    of_summary("latency_ms.sd", LATENCY, |s| s.latency_ms().rounded().sd),
     of_summary("latency_ms.min", LATENCY, |s| s.latency_ms().min),
     of_summary("latency_ms.max", LATENCY, |s| s.latency_ms().max),
-    of_summary("eye_latency_ms.mean", EYE_LATENCY, |s| s.eye_latency_ms().told().mean),
-    of_summary("eye_latency_ms.sd", EYE_LATENCY, |s| s.eye_latency_ms().told().sd),
-    of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces().told().mean),
-    of_summary("eye_retraces.sd", EYE_RETRACES, |s| s.eye_retraces().told().sd),
+    of_summary("eye_latency_ms.mean", EYE_LATENCY, |s| s.eye_latency_ms().rounded().mean),
+    of_summary("eye_latency_ms.sd", EYE_LATENCY, |s| s.eye_latency_ms().rounded().sd),
+    of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces().rounded().mean),
+    of_summary("eye_retraces.sd", EYE_RETRACES, |s| s.eye_retraces().rounded().sd),
     // NaN counts as no value: see `Measure::of`.
     of_summary(
         "updates_hz",

@@ -56,11 +56,11 @@ pub(crate) fn offset(
     drawn_for: &Pose,
 ) -> RasterOffset {
     // Only reports known at the retrace count.
-    let known = display.tick(field);
-    let first = display.first_light(0, field).unwrap_or(known);
-    let field_span = display.tick(field.next()).since(known);
+    let reports_until = display.tick(field);
+    let first = display.first_light(0, field).unwrap_or(reports_until);
+    let field_span = display.tick(field.next()).since(reports_until);
     // Predict the pose at the first line and one field later, to get the rates.
-    let [begin, end] = [first, first + field_span].map(|at| estimator.pose(known, at));
+    let [begin, end] = [first, first + field_span].map(|at| estimator.pose(reports_until, at));
     let seconds = field_span.as_ms() * 1e-3;
     let rate = rotation::difference(begin.orientation, end.orientation) / seconds;
     RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)

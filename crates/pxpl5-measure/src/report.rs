@@ -344,10 +344,11 @@ mod tests {
             machine.load(processor, Priority::Foreground, Box::pin(program));
             machine.switch_on();
             machine.run_until(Time(1_000_000_000)).expect("it runs");
-            let said: Vec<String> = faults(machine.record()).collect();
+            let found_faults: Vec<String> = faults(machine.record()).collect();
             let begin = format!("the display ntsc could not use {asks} messages; the first: ");
-            let is_said = |said: &String| said.starts_with(&begin) && said.ends_with("expected buffer 0 or 1, found 2");
-            assert!(said.iter().all(is_said) && said.len() == asks.min(1), "{asks}: {said:?}");
+            let is_fault =
+                |fault: &String| fault.starts_with(&begin) && fault.ends_with("expected buffer 0 or 1, found 2");
+            assert!(found_faults.iter().all(is_fault) && found_faults.len() == asks.min(1), "{asks}: {found_faults:?}");
         }
     }
 

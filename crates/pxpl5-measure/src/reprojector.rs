@@ -51,11 +51,11 @@ impl Reprojector {
         let centre = display.light().centre();
         self.poses.clear();
         for (part, (first, last)) in lit {
-            let known = Time(first.0.saturating_sub(latency.0));
+            let reports_until = Time(first.0.saturating_sub(latency.0));
             let aim = Time(first.0.midpoint(last.0)) + centre;
-            let report = self.head.report_by(known);
+            let report = self.head.report_by(reports_until);
             let measured_at = report.and_then(|arrived| self.head.measured_at(arrived));
-            self.poses.insert(part, NewestPose { pose: self.estimator.pose(known, aim), measured_at });
+            self.poses.insert(part, NewestPose { pose: self.estimator.pose(reports_until, aim), measured_at });
         }
     }
 

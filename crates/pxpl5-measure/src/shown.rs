@@ -41,11 +41,11 @@ pub(crate) struct Shown {
     faces: Option<LatchedFaces>,
 }
 
-/// The pose and time for which a view was drawn. `known` is the arrival time of the last tracker report that the host
-/// had then received.
+/// The pose and time for which a view was drawn. `reports_until` is the arrival time of the last tracker report that
+/// the host had then received.
 #[derive(Clone, Copy, Debug)]
 struct Viewed {
-    known: Time,
+    reports_until: Time,
     moment: Moment,
 }
 
@@ -94,7 +94,7 @@ impl Shown {
         let instant = run.record.tick(run.until);
         self.screen.discard_before(instant);
         let still_seen = self.still_seen(run, instant);
-        self.moments.retain(|number, viewed| viewed.known >= instant || still_seen.contains(number));
+        self.moments.retain(|number, viewed| viewed.reports_until >= instant || still_seen.contains(number));
         let on_screen: BTreeSet<PictureNumber> = self.screen.targets().map(|target| target.picture).collect();
         let moments = &self.moments;
         self.views.retain(|picture, view| moments.contains_key(view) || on_screen.contains(picture));
@@ -119,7 +119,7 @@ impl Shown {
         }
         let is_old = |target: &CopyTarget| {
             let viewed = self.views.get(&target.picture).and_then(|view| self.moments.get(view));
-            viewed.is_some_and(|viewed| viewed.known < instant)
+            viewed.is_some_and(|viewed| viewed.reports_until < instant)
         };
         let sources = self.screen.targets().filter(is_old).filter_map(|target| self.source(run, &target));
         sources.flat_map(views_of).collect()
@@ -144,9 +144,9 @@ impl Shown {
     pub(crate) fn replace_poses(&mut self, head: &Arc<HeadViews>, of: &BTreeSet<ViewNumber>, without: Cause) {
         let mut estimator = Estimator::new(head, Some(without));
         let mut sampled: Vec<SampledPose> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
-        sampled.sort_by_key(|sampled| sampled.known);
+        sampled.sort_by_key(|sampled| sampled.reports_until);
         let moments = sampled.into_iter().map(|sampled| {
-            let pose = estimator.pose(sampled.known, sampled.objects_at);
+            let pose = estimator.pose(sampled.reports_until, sampled.objects_at);
             (sampled.number, viewed(&SampledPose { pose, ..sampled }))
         });
         self.moments = moments.collect();
@@ -206,5 +206,5 @@ fn views_of(source: Source) -> Vec<ViewNumber> {
 
 fn viewed(sampled: &SampledPose) -> Viewed {
     let moment = Moment { pose: sampled.pose, objects_at: sampled.objects_at, measured_at: sampled.measured_at };
-    Viewed { known: sampled.known, moment }
+    Viewed { reports_until: sampled.reports_until, moment }
 }

@@ -25,7 +25,7 @@ struct Turns {
     estimator: Estimator,
     /// Time of the last report passed to the estimator, which accepts reports only in ascending order.
     asked: Time,
-    known: BTreeMap<(Time, Time), DQuat>,
+    cached: BTreeMap<(Time, Time), DQuat>,
 }
 
 impl fmt::Debug for LatchedFaces {
@@ -48,12 +48,12 @@ impl LatchedFaces {
     }
 
     pub(crate) fn discard_before(&mut self, instant: Time) {
-        self.turns.get_mut().known.retain(|(report, _), _| *report >= instant);
+        self.turns.get_mut().cached.retain(|(report, _), _| *report >= instant);
     }
 
     #[cfg(test)]
     pub(crate) fn held(&self) -> usize {
-        self.turns.borrow().known.len()
+        self.turns.borrow().cached.len()
     }
 
     /// Replaces the head's orientations by the orientations that the run would have had without one cause of error.
@@ -90,19 +90,19 @@ impl LatchedFaces {
 
 impl Turns {
     fn new(head: &Arc<HeadViews>, without: Option<Cause>) -> Self {
-        Self { estimator: Estimator::new(head, without), asked: Time::ZERO, known: BTreeMap::new() }
+        Self { estimator: Estimator::new(head, without), asked: Time::ZERO, cached: BTreeMap::new() }
     }
 
     fn at(&mut self, head: &Arc<HeadViews>, without: Option<Cause>, report: Time, aimed_at: Time) -> DQuat {
-        if let Some(known) = self.known.get(&(report, aimed_at)) {
-            return *known;
+        if let Some(cached) = self.cached.get(&(report, aimed_at)) {
+            return *cached;
         }
         if report < self.asked {
             self.estimator = Estimator::new(head, without);
         }
         self.asked = report;
         let orientation = self.estimator.pose(report, aimed_at).orientation;
-        self.known.insert((report, aimed_at), orientation);
+        self.cached.insert((report, aimed_at), orientation);
         orientation
     }
 }

@@ -57,8 +57,8 @@ fn stages_from_head_to_light_add_up() {
             let light = pipeline.light(outcome.record(), times);
             let ms = |time: pxpl5_sim::Time| time.0 as f64 / 1e9;
             stages[0].push(ms(arrived) - ms(measured));
-            stages[1].push((ms(sample.known) - ms(arrived)).max(0.0));
-            stages[2].push(ms(times.transform_at) - ms(sample.known).max(ms(arrived)));
+            stages[1].push((ms(sample.reports_until) - ms(arrived)).max(0.0));
+            stages[2].push(ms(times.transform_at) - ms(sample.reports_until).max(ms(arrived)));
             stages[3].push(ms(copied) - ms(times.transform_at));
             stages[4].push(ms(times.shown_at) - ms(copied));
             stages[5].push(ms(light) - ms(times.shown_at));

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{HeadSum, Measured, Report};
-use pxpl5_run::{Aim, Experiment, Head, Keep, Outcome, PipelineSettings, Pixels, Raster, Registry};
+use pxpl5_run::{Aim, Experiment, Head, KeptRecords, Outcome, PipelineSettings, Pixels, Raster, Registry};
 use pxpl5_scene::{Scene, builtin};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -83,12 +83,12 @@ fn short_experiments() -> Vec<(u64, Experiment)> {
     ]
 }
 
-fn run(experiment: &Experiment, keep: Keep) -> Outcome {
+fn run(experiment: &Experiment, keep: KeptRecords) -> Outcome {
     experiment.clone().keep(keep).run().expect("it runs")
 }
 
 /// Returns all values of a report except the time on this computer. Numbers have enough digits to be distinguished.
-fn said(outcome: &Outcome) -> String {
+fn report_json(outcome: &Outcome) -> String {
     let report = Report { host_seconds: None, ..outcome.report() };
     // A streaming observer reports the latency of translation even if the run has discarded records.
     for memory in report.arp.iter().flat_map(|faces| &faces.memories) {
@@ -100,10 +100,10 @@ fn said(outcome: &Outcome) -> String {
 fn assert_same(experiment: &Experiment) {
     let head = experiment.tracked_head().expect("tracked");
     let name = format!("{}, {:?}", experiment.pipeline().name(), head);
-    let everything = run(experiment, Keep::Everything);
-    let statistics = run(experiment, Keep::Statistics);
+    let everything = run(experiment, KeptRecords::Everything);
+    let statistics = run(experiment, KeptRecords::Statistics);
     let passes = statistics.observation().discarded.passes;
-    let [expected, found] = [&everything, &statistics].map(said);
+    let [expected, found] = [&everything, &statistics].map(report_json);
     let other = expected.lines().zip(found.lines()).find(|(expected, found)| expected != found);
     assert_eq!(other, None, "{name}");
     assert_eq!(expected.len(), found.len(), "{name}");
@@ -111,7 +111,7 @@ fn assert_same(experiment: &Experiment) {
     let least_passes = if experiment.pipeline().name() == "frameless" { 1 } else { 2 };
     assert!(passes >= least_passes, "{name}: records were discarded {passes} times");
     let of_head = everything.report().head.expect("tracked");
-    assert!(of_head.error.evaluated > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
+    assert!(of_head.error.evaluated > 500 && of_head.end_to_end.n > 50, "{name}: the run has results");
     let [all, last] = [&everything, &statistics].map(|outcome| outcome.head().expect("tracked").sampled());
     assert!(4 * last.len() < 3 * all.len(), "{name}: {} poses of {} are held", last.len(), all.len());
     assert_eq!(last, all[all.len() - last.len()..], "{name}: the last ones");
@@ -125,11 +125,11 @@ fn discarding_records_changes_no_result_of_a_head() {
 #[test]
 fn a_report_warns_of_discarded_records_without_a_streaming_observer() {
     let experiment = experiments().swap_remove(0);
-    let silent = run(&experiment.clone().observed_by(None), Keep::Statistics).report();
-    let said: Vec<&String> =
+    let silent = run(&experiment.clone().observed_by(None), KeptRecords::Statistics).report();
+    let warnings: Vec<&String> =
         silent.warnings.iter().filter(|warning| warning.contains("cover only the last pictures")).collect();
-    assert_eq!(said.len(), 1, "{:?}", silent.warnings);
-    for keep in [Keep::Everything, Keep::Statistics] {
+    assert_eq!(warnings.len(), 1, "{:?}", silent.warnings);
+    for keep in [KeptRecords::Everything, KeptRecords::Statistics] {
         assert_eq!(run(&experiment, keep).report().warnings, experiment.warnings(), "{keep:?}");
     }
 }

@@ -46,10 +46,10 @@ fn at_the_end_of_a_run_the_partial_shares_equal_the_shares_in_the_report() {
         let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).fields(60).pixels(Pixels::Off);
         let mut stepper = experiment.stepper().expect("it fits");
         assert_eq!(Utilisation::so_far(&stepper), None, "no time has passed");
-        assert_eq!(CriticalPath::so_far(&stepper.so_far()), None, "no picture was shown");
+        assert_eq!(CriticalPath::so_far(&stepper.observed_run()), None, "no picture was shown");
         stepper.run_to(stepper.end());
         let utilisation = Utilisation::so_far(&stepper).expect("time has passed");
-        let path = CriticalPath::so_far(&stepper.so_far()).expect("pictures were shown");
+        let path = CriticalPath::so_far(&stepper.observed_run()).expect("pictures were shown");
         let report = stepper.finish().expect("it runs").report();
         assert_eq!(Some(utilisation), report.utilisation);
         let of_report = report.critical_path.expect("pictures were shown");
@@ -155,14 +155,15 @@ fn a_load_that_is_too_heavy_is_reported_with_a_size_that_fits() {
     let heavy = report.too_heavy.expect("too many triangles for a line's time");
     let due = report.due.expect("pictures are due");
     assert_eq!((heavy.due, heavy.not_shown), (due.due, due.due - due.shown));
-    assert_eq!(heavy.triangles, (report.triangles + report.spheres) as u64);
-    assert!(heavy.triangles_in_time.is_none_or(|some| some < heavy.triangles));
-    let begin = format!("TOO HEAVY: with {} triangles {} of {} pictures", heavy.triangles, heavy.not_shown, heavy.due);
+    assert_eq!(heavy.primitives, (report.triangles + report.spheres) as u64);
+    assert!(heavy.primitives_in_time.is_none_or(|some| some < heavy.primitives));
+    let begin =
+        format!("TOO HEAVY: with {} primitives {} of {} pictures", heavy.primitives, heavy.not_shown, heavy.due);
     assert!(
         heavy.to_string().starts_with(&begin) && heavy.to_string().ends_with(&format!("{}.", heavy.advice)),
         "{heavy}"
     );
-    let number = heavy.triangles_in_time.filter(|some| *some > 0).map(|some| format!("triangles = {some}"));
+    let number = heavy.primitives_in_time.filter(|some| *some > 0).map(|some| format!("triangles = {some}"));
     assert!(heavy.advice.contains(&number.unwrap_or_else(|| "jitp-scanline".to_owned())), "{heavy}");
     assert_eq!(run("jitp-scanline", "full-screen:2", 40).report().too_heavy, None);
 }
@@ -174,7 +175,7 @@ fn a_size_that_fits_is_named_only_if_it_is_smaller_than_the_scene() {
     fn all(experiment: &Experiment) -> u64 {
         experiment.scene().primitives() as u64
     }
-    let by = |triangles_in_time| Estimates { fields_needed: |_| None, triangles_in_time };
+    let by = |primitives_in_time| Estimates { fields_needed: |_| None, primitives_in_time };
     let scene = Arc::new(builtin("molecules").expect("built in"));
     assert!(!scene.triangles().is_empty() && !scene.spheres().is_empty(), "of both kinds");
     let experiment = Experiment::with(MachineConfig::slats(), Arc::new(Slats::split()), scene);
@@ -202,8 +203,10 @@ fn a_size_that_fits_is_named_only_if_it_is_smaller_than_the_scene() {
     for (estimates, expected, advice) in cases {
         let experiment = experiment.clone().with_estimates(Some(estimates));
         let heavy = TooHeavy::of(&experiment, &due).expect("late ones");
-        assert_eq!((heavy.due, heavy.not_shown, heavy.triangles, heavy.triangles_in_time), (8, 3, n, expected));
+        assert_eq!((heavy.due, heavy.not_shown, heavy.primitives, heavy.primitives_in_time), (8, 3, n, expected));
         assert!(heavy.advice.contains(advice), "{heavy}");
+        let begin = format!("TOO HEAVY: with {n} primitives 3 of 8 pictures due were not shown in time; ");
+        assert!(heavy.to_string().starts_with(&begin), "{heavy}");
         assert_eq!(TooHeavy::of(&experiment, &DuePictures { shown: 8, late: 0, incomplete: 0, ..due }), None);
     }
 }

@@ -35,7 +35,7 @@ impl Progress {
     }
 }
 
-pub(crate) const LOOK: Duration = Duration::from_millis(50);
+pub(crate) const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Runs `work` on a separate thread. `callback` gets the number of finished steps and the number of all steps. The
 /// callback is called at most twenty times a second, and only after a change.
@@ -62,8 +62,8 @@ pub(crate) fn in_background<T: Send + 'static>(
     loop {
         // Wait without the interpreter's lock, then check for Ctrl-C and report progress.
         let result = py.detach(|| wait(&mut results));
-        let looked = py.check_signals().and_then(|()| tell(callback, &progress, &mut watch));
-        if let Err(error) = looked {
+        let checked = py.check_signals().and_then(|()| tell(callback, &progress, &mut watch));
+        if let Err(error) = checked {
             // Ask the work to stop, and raise the exception.
             progress.stop();
             if waits {
@@ -88,7 +88,7 @@ pub(crate) const STACK_BYTES: usize = 8 << 20;
 // The receiver is borrowed mutably. It can be sent to another thread, but threads cannot share it.
 
 fn wait<T>(results: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
-    results.recv_timeout(LOOK)
+    results.recv_timeout(POLL_INTERVAL)
 }
 
 fn end<T>(results: &mut Receiver<T>) -> Option<T> {

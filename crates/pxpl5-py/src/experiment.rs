@@ -14,8 +14,8 @@ use pxpl5::device::PixelWorker;
 use pxpl5::firmware::Shading;
 use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
-    Experiment as Native, ExperimentError, Host, Keep, Level, PeriodNumber, Pixels, Plan, PolicyPipeline, RegionPolicy,
-    Results, SurfaceId, Workstation, levels, registry, what_if,
+    Experiment as Native, ExperimentError, Host, KeptRecords, Level, PeriodNumber, Pixels, Plan, PolicyPipeline,
+    RegionPolicy, Results, SurfaceId, Workstation, levels, registry, what_if,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -105,7 +105,7 @@ impl Experiment {
         threads: Option<usize>,
         keep_everything: bool,
     ) -> PyResult<Outcome> {
-        let keep = if keep_everything { Keep::Everything } else { Keep::Statistics };
+        let keep = if keep_everything { KeptRecords::Everything } else { KeptRecords::Statistics };
         let workstation = threads.map_or_else(Workstation::new, Workstation::with_threads);
         let functions = self.functions.clone();
         let native = self.native.clone().keep(keep);
@@ -121,7 +121,7 @@ impl Experiment {
     /// Raises :class:`pxpl5.SettingError` if the machine cannot be built.
     #[pyo3(signature = (keep_everything = true))]
     fn stepper(&self, py: Python<'_>, keep_everything: bool) -> PyResult<Stepper> {
-        let keep = if keep_everything { Keep::Everything } else { Keep::Statistics };
+        let keep = if keep_everything { KeptRecords::Everything } else { KeptRecords::Statistics };
         let (native, watch) = self.on_host(Workstation::with_threads(0));
         let thread = MachineThread::start(py, native.keep(keep), watch.stop_flag());
         self.functions.check()?;

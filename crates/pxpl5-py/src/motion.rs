@@ -279,7 +279,7 @@ fn numbers(pose: &Pose) -> [f64; 7] {
 
 fn end_named(name: Option<&str>) -> PyResult<End> {
     let Some(name) = name else { return Ok(End::default()) };
-    let found = End::NAMES.iter().find(|(known, _)| *known == name).map(|(_, end)| *end);
+    let found = End::NAMES.iter().find(|(candidate, _)| *candidate == name).map(|(_, end)| *end);
     let names: Vec<&str> = End::NAMES.iter().map(|(name, _)| *name).collect();
     found.ok_or_else(|| wrong_setting(format!("end: expected {}, found {name}", names.join(" or "))))
 }

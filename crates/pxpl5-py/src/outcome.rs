@@ -55,13 +55,13 @@ impl Outcome {
 
     /// Returns a value that `at` reads from the outcome of the run. Unlike `results`, this method does not compute the
     /// report of the run.
-    fn look<T: Send>(&self, py: Python<'_>, at: impl Fn(&pxpl5::Outcome) -> T + Send + Sync) -> PyResult<T> {
-        let looked = py.detach(|| {
+    fn read<T: Send>(&self, py: Python<'_>, at: impl Fn(&pxpl5::Outcome) -> T + Send + Sync) -> PyResult<T> {
+        let result = py.detach(|| {
             let outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
             outcome.as_ref().map(&at)
         });
-        match looked {
-            Some(looked) => Ok(looked),
+        match result {
+            Some(result) => Ok(result),
             None => Ok(at(self.run(py)?.0)),
         }
     }
@@ -125,12 +125,12 @@ impl Outcome {
     /// Returns a hash of all settings and inputs on which the trace depends.
     #[getter]
     fn config_hash(&self, py: Python<'_>) -> PyResult<String> {
-        self.look(py, |outcome| outcome.experiment().config_hash().to_string())
+        self.read(py, |outcome| outcome.experiment().config_hash().to_string())
     }
 
     /// Returns the names of the pipeline, the machine's preset and the scene.
     fn subject(&self, py: Python<'_>) -> PyResult<(String, String, String)> {
-        self.look(py, |outcome| {
+        self.read(py, |outcome| {
             let experiment = outcome.experiment();
             let pipeline = outcome.pipeline().name().to_owned();
             (pipeline, experiment.config().preset.clone(), experiment.scene().name().to_owned())
@@ -155,7 +155,7 @@ impl Outcome {
 
     /// Returns true if old records of the run were discarded, so that tables have only the last pictures.
     fn has_discarded_records(&self, py: Python<'_>) -> PyResult<bool> {
-        self.look(py, |outcome| {
+        self.read(py, |outcome| {
             let kept = outcome.pictures().len() as u64;
             outcome.has_discarded_records() || kept < outcome.tally().pictures
         })

@@ -3,7 +3,7 @@
 //! The machine belongs to a thread of its own, because its programs cannot move to another thread. Python sends jobs to
 //! this thread and waits for the results without the interpreter's lock.
 
-use crate::background::{LOOK, STACK_BYTES};
+use crate::background::{POLL_INTERVAL, STACK_BYTES};
 use crate::catalogue::python;
 use crate::errors::{failed_run, wrong_setting};
 use crate::outcome::outcome_of_run;
@@ -67,7 +67,7 @@ impl MachineThread {
     }
 
     /// Executes a job on the machine, or raises an exception if the run has finished.
-    fn look<T: Send + 'static>(
+    fn execute<T: Send + 'static>(
         &self,
         py: Python<'_>,
         job: impl FnOnce(&mut Native, &StopFlag) -> T + Send + 'static,
@@ -100,7 +100,7 @@ pub(crate) fn wait<T: Send>(py: Python<'_>, mut results: Receiver<T>, stop: &Sto
 
 // The receiver is borrowed mutably. It can be sent to another thread, but threads cannot share it.
 fn recv<T>(results: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
-    results.recv_timeout(LOOK)
+    results.recv_timeout(POLL_INTERVAL)
 }
 
 /// Runs the machine to an instant in steps of one field, so that the flag `stop` takes effect soon.
@@ -153,7 +153,7 @@ impl Stepper {
         py: Python<'_>,
         step: impl FnOnce(&mut Native, &StopFlag) -> Pause + Send + 'static,
     ) -> PyResult<String> {
-        let pause = self.thread.look(py, step);
+        let pause = self.thread.execute(py, step);
         self.checks.check()?;
         Ok(pause_text(&pause?))
     }
@@ -199,25 +199,25 @@ impl Stepper {
     /// Returns the instant at which the last step ended, in picoseconds of simulated time.
     #[getter]
     fn now_ps(&self, py: Python<'_>) -> PyResult<u64> {
-        self.thread.look(py, |stepper, _| stepper.now().0)
+        self.thread.execute(py, |stepper, _| stepper.now().0)
     }
 
     /// Returns the instant at which the run ends, in picoseconds of simulated time.
     #[getter]
     fn end_ps(&self, py: Python<'_>) -> PyResult<u64> {
-        self.thread.look(py, |stepper, _| stepper.end().0)
+        self.thread.execute(py, |stepper, _| stepper.end().0)
     }
 
     /// Returns the number of the current field, counted from 0.
     #[getter]
     fn field(&self, py: Python<'_>) -> PyResult<u64> {
-        self.thread.look(py, |stepper, _| stepper.period().0)
+        self.thread.execute(py, |stepper, _| stepper.period().0)
     }
 
     /// Returns the last event as a dictionary with time_ps, board and what. Returns None if the last step did not end
     /// with an event.
     fn last_event<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let event = self.thread.look(py, |stepper, _| stepper.last())?;
+        let event = self.thread.execute(py, |stepper, _| stepper.last())?;
         python(
             py,
             &event
@@ -231,7 +231,7 @@ impl Stepper {
     /// Raises :class:`pxpl5.SettingError` for an unknown kind of board.
     fn board<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let board = board_named(name)?;
-        let state = self.thread.look(py, move |stepper, _| match board {
+        let state = self.thread.execute(py, move |stepper, _| match board {
             Board::Renderer(number) => stepper.renderer(number).map(renderer_state),
             board => stepper.processor(board).map(|snapshot| processor_state(&snapshot)),
         })?;
@@ -240,7 +240,7 @@ impl Stepper {
 
     /// Returns the messages that occupy channels of the ring now, as dictionaries.
     fn channels<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let channels = self.thread.look(py, |stepper, _| stepper.channels())?;
+        let channels = self.thread.execute(py, |stepper, _| stepper.channels())?;
         let all: Vec<Value> = channels
             .iter()
             .map(|message| {
@@ -261,7 +261,7 @@ impl Stepper {
     /// if no pixels are computed, or if the surface does not exist.
     fn picture(&self, py: Python<'_>, surface: &str) -> PyResult<Option<Picture>> {
         let name = surface.to_owned();
-        let picture = self.thread.look(py, move |stepper, _| {
+        let picture = self.thread.execute(py, move |stepper, _| {
             let all: Vec<(SurfaceId, &str)> =
                 stepper.record().surfaces().map(|(id, surface)| (id, surface.label)).collect();
             let found = all.iter().find(|(id, label)| *label == name || id.0.to_string() == name);
@@ -277,13 +277,14 @@ impl Stepper {
     /// Returns the hash of the trace up to now.
     #[getter]
     fn trace_hash(&self, py: Python<'_>) -> PyResult<String> {
-        self.thread.look(py, |stepper, _| stepper.record().trace_hash().to_string())
+        self.thread.execute(py, |stepper, _| stepper.record().trace_hash().to_string())
     }
 
     /// Returns the number of complete pictures that the machine has shown so far.
     #[getter]
     fn shown(&self, py: Python<'_>) -> PyResult<usize> {
-        self.thread.look(py, |stepper, _| stepper.so_far().pictures().iter().filter(|times| times.is_shown()).count())
+        self.thread
+            .execute(py, |stepper, _| stepper.observed_run().pictures().iter().filter(|times| times.is_shown()).count())
     }
 
     /// Runs to the end of the experiment and returns the outcome, which equals the outcome of a run without steps.

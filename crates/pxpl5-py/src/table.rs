@@ -100,18 +100,18 @@ fn flattened(row: &Map<String, Value>) -> Map<String, Value> {
 /// Returns the column of values for one key. If all values are truth values, integers or numbers, the column has this
 /// type. Otherwise the values become text.
 fn column_of(name: &str, rows: &[Map<String, Value>], about: &str) -> Column {
-    let known: Vec<Option<&Value>> = rows.iter().map(|row| row.get(name).filter(|value| !value.is_null())).collect();
-    let all = |is: fn(&Value) -> bool| known.iter().flatten().all(|value| is(value));
-    let none = known.iter().all(Option::is_none);
+    let values: Vec<Option<&Value>> = rows.iter().map(|row| row.get(name).filter(|value| !value.is_null())).collect();
+    let all = |is: fn(&Value) -> bool| values.iter().flatten().all(|value| is(value));
+    let none = values.iter().all(Option::is_none);
     // A column has float64 if it has no values, or if all values are numbers and at least one is not an integer.
     let values: ArrayRef = if none || (!all(Value::is_i64) && all(Value::is_number)) {
-        Arc::new(known.iter().map(|value| value.and_then(Value::as_f64)).collect::<Float64Array>())
+        Arc::new(values.iter().map(|value| value.and_then(Value::as_f64)).collect::<Float64Array>())
     } else if all(Value::is_i64) {
-        Arc::new(known.iter().map(|value| value.and_then(Value::as_i64)).collect::<Int64Array>())
+        Arc::new(values.iter().map(|value| value.and_then(Value::as_i64)).collect::<Int64Array>())
     } else if all(Value::is_boolean) {
-        Arc::new(known.iter().map(|value| value.and_then(Value::as_bool)).collect::<BooleanArray>())
+        Arc::new(values.iter().map(|value| value.and_then(Value::as_bool)).collect::<BooleanArray>())
     } else {
-        Arc::new(known.iter().map(|value| value.map(plain)).collect::<StringArray>())
+        Arc::new(values.iter().map(|value| value.map(plain)).collect::<StringArray>())
     };
     Column { name: name.to_owned(), about: about.to_owned(), values }
 }

@@ -70,10 +70,10 @@ fn the_board_that_ordered_a_copy_is_notified_when_the_last_pixel_has_arrived() {
     bench.delivered(sent_at);
     bench.run();
     let sent = bench.sent();
-    let told = sent.last().expect("told");
-    assert_eq!((told.at, told.message.source, told.message.destination), (sent_at + CYCLE, NODE, HOST));
-    assert_eq!((told.message.words, told.ticket, told.hold), (4, false, false));
-    let Body::Words(words) = &told.message.body else { panic!("{told:?}") };
+    let last = sent.last().expect("a message");
+    assert_eq!((last.at, last.message.source, last.message.destination), (sent_at + CYCLE, NODE, HOST));
+    assert_eq!((last.message.words, last.ticket, last.hold), (4, false, false));
+    let Body::Words(words) = &last.message.body else { panic!("{last:?}") };
     assert_eq!(**words, [0xC0_11_ED, 1, order.target.picture.0 as u32, u32::from(DISPLAY.0)]);
     assert_eq!(bench.device.stats().regions_copied, 1);
 }

@@ -434,7 +434,7 @@ fn both_arrays_start_with_the_same_noise() {
 #[test]
 fn a_mismatch_names_the_first_wrong_pixel_and_counts_the_wrong_pixels() {
     let layout = Layout::slats();
-    for (places, told) in [
+    for (places, difference) in [
         (vec![(3, 5)], "bit 9 of pixel (69, 1) is not 1; 1 pixels differ"),
         (vec![(3, 6)], "bit 9 of pixel (70, 1) is not 0; 1 pixels differ"),
         (vec![(250, 63), (4, 0), (4, 9)], "bit 9 of pixel (0, 2) is not 1; 3 pixels differ"),
@@ -446,7 +446,7 @@ fn a_mismatch_names_the_first_wrong_pixel_and_counts_the_wrong_pixels() {
         places.iter().for_each(|(word, bit)| plane[*word] ^= 1 << bit);
         b.set_plane(9, &plane);
         let mismatch = conformance::agree(&mut a, &mut b, &[], &"nothing").unwrap_err();
-        assert_eq!(mismatch.difference, told);
+        assert_eq!(mismatch.difference, difference);
     }
 }
 

@@ -345,10 +345,10 @@ impl<A: PixelArray> Followed<A> {
     fn check(&self, instruction: &ArrayInstruction) {
         assert_eq!(self.array.faults(), self.faults);
         for ((memory, enable), pixel) in pixels(&self.array).into_iter().zip(&self.model) {
-            let told = |bit: Option<usize>| format!("{bit:?} of {:?} after {instruction:?}", pixel.place);
-            assert_eq!(enable, pixel.enable, "{}", told(None));
+            let description = |bit: Option<usize>| format!("{bit:?} of {:?} after {instruction:?}", pixel.place);
+            assert_eq!(enable, pixel.enable, "{}", description(None));
             let wrong = (0..208).find(|bit| memory[*bit] != pixel.memory[*bit]);
-            assert_eq!(wrong, None, "{}", told(wrong));
+            assert_eq!(wrong, None, "{}", description(wrong));
         }
     }
 }

@@ -162,11 +162,11 @@ fn a_truncated_instruction_is_detected() {
     for (instruction, words, _) in instructions() {
         for found in 1..words.len() {
             let error = ArrayInstruction::decode(&words[..found], 0).expect_err("a part").kind;
-            let DecodeErrorKind::Truncated { expected, found: told } = error else {
+            let DecodeErrorKind::Truncated { expected, found: available } = error else {
                 panic!("{instruction:?}: {error}")
             };
             assert!(expected > found && expected <= words.len(), "{instruction:?}: {expected} of {}", words.len());
-            assert_eq!(told, found, "{instruction:?}");
+            assert_eq!(available, found, "{instruction:?}");
         }
     }
 }

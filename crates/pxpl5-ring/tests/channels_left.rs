@@ -122,7 +122,7 @@ impl Machine {
 
     /// Returns the number of reachable states, and the reachable deadlocks.
     fn search(&self) -> (usize, Vec<State>) {
-        let mut known = HashSet::from([self.start()]);
+        let mut states = HashSet::from([self.start()]);
         let mut open = vec![self.start()];
         let mut stuck = Vec::new();
         while let Some(state) = open.pop() {
@@ -131,9 +131,9 @@ impl Machine {
                 stuck.push(state.clone());
             }
             assert!(state.to_fifos.len() <= self.fifo_channels, "the invariant's first half");
-            open.extend(next.into_iter().filter(|next| known.insert(next.clone())));
+            open.extend(next.into_iter().filter(|next| states.insert(next.clone())));
         }
-        (known.len(), stuck)
+        (states.len(), stuck)
     }
 }
 
@@ -162,9 +162,9 @@ fn if_fifos_leave_one_channel_free_no_order_of_events_causes_a_deadlock() {
     let mut states = 0;
     let mut searched = 0;
     for machine in machines().filter(|machine| machine.fifo_channels < machine.channels) {
-        let (known, stuck) = machine.search();
+        let (reached, stuck) = machine.search();
         assert!(stuck.is_empty(), "{machine:?}: {:?}", stuck[0]);
-        states += known;
+        states += reached;
         searched += 1;
     }
     println!("{searched} machines, {states} states");

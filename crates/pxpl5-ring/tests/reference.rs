@@ -79,7 +79,7 @@ fn step(case: &RingCase) -> Vec<CarriedMessage> {
 
 /// Returns the time of the answer to the sender. The answer comes with the last word, but at least one word time after
 /// the receiver's answer.
-fn told_at(case: &RingCase, message: usize, message_carried: &CarriedMessage) -> Time {
+fn notified_at(case: &RingCase, message: usize, message_carried: &CarriedMessage) -> Time {
     let t = case.traffic[message];
     match case.receivers[usize::from(t.destination.0)] {
         Receiver::Elastic => message_carried.last_word_at,
@@ -98,7 +98,7 @@ fn compare(case: &RingCase, carried: &[CarriedMessage], ring: &Ring, times: &Tim
     for (message, message_carried) in carried.iter().enumerate() {
         let number = message as u64;
         prop_assert_eq!(times.accepted[&number], message_carried.last_word_at, "message {}", message);
-        prop_assert_eq!(times.sent[&number], told_at(case, message, message_carried), "message {}", message);
+        prop_assert_eq!(times.sent[&number], notified_at(case, message, message_carried), "message {}", message);
     }
     compare_sums(case, carried, ring)
 }

@@ -290,8 +290,8 @@ fn a_message_too_long_for_the_ring_is_refused_and_its_sender_notified() {
         bench.feed(us(number), Phase::Arrive, RingEvent::Request(request(number, source, destination, words)));
     }
     bench.run(|event, context| ring.handle(event, context));
-    let told = bench.outputs.iter().filter(|(_, output)| matches!(output, RingOutput::Refused { .. })).count();
-    assert_eq!((told, bench.outputs.len()), (4, 4));
+    let refused = bench.outputs.iter().filter(|(_, output)| matches!(output, RingOutput::Refused { .. })).count();
+    assert_eq!((refused, bench.outputs.len()), (4, 4));
     assert_eq!(ring.refusals().count, 4);
     let (time, error) = ring.refusals().first.clone().expect("refused");
     assert_eq!(time, us(0));

@@ -33,22 +33,25 @@ impl Stepper {
     /// of other kinds.
     #[must_use]
     pub fn details(&self, board: Board) -> Vec<String> {
-        let Some(look) = self.processor(board) else { return Vec::new() };
+        let Some(snapshot) = self.processor(board) else { return Vec::new() };
         let ports = self.record().ports();
         // Messages that have arrived, that are being sent, and that wait.
         let mut lines: Vec<String> = Vec::new();
         lines.extend(
-            look.inbox
+            snapshot
+                .inbox
                 .iter()
                 .map(|mail| format!("inbox   from {}, arrived {}", ports.board(mail.source), in_ms(mail.arrived))),
         );
-        lines.extend(look.unaccepted.iter().map(|node| format!("sent    to {}, not accepted yet", ports.board(*node))));
-        let chains = look.chains.iter().enumerate();
+        lines.extend(
+            snapshot.unaccepted.iter().map(|node| format!("sent    to {}, not accepted yet", ports.board(*node))),
+        );
+        let chains = snapshot.chains.iter().enumerate();
         lines.extend(chains.map(|(place, messages)| format!("queued  chain {place}: messages {messages}")));
         // Memory use and busy time, then the loaded program.
-        let memory = look.memory.iter().filter(|(_, bytes)| *bytes > 0);
+        let memory = snapshot.memory.iter().filter(|(_, bytes)| *bytes > 0);
         lines.extend(memory.map(|(account, bytes)| format!("memory  {account}: {bytes} bytes")));
-        lines.push(format!("busy    {} of {}", in_us(look.busy), in_us(self.now().since(Time::ZERO))));
+        lines.push(format!("busy    {} of {}", in_us(snapshot.busy), in_us(self.now().since(Time::ZERO))));
         let gp = self.machine().board(board);
         let program = gp.and_then(|gp| gp.with_processor(|processor| processor.program().cloned())).flatten();
         lines.extend(program.map(|code| format!("code    {} bytes at {:#010x}", code.bytes.len(), code.base)));
@@ -83,19 +86,19 @@ impl Stepper {
     }
 
     fn renderer_line(&self, number: usize) -> Option<String> {
-        let look = self.renderer(number)?;
+        let snapshot = self.renderer(number)?;
         // The level of the FIFO comes first, then activities of the renderer.
-        let mut text = format!("fifo {}/{}", look.fifo_words.unwrap_or_default(), look.fifo_depth_words);
-        if let Some(order) = look.copying {
+        let mut text = format!("fifo {}/{}", snapshot.fifo_words.unwrap_or_default(), snapshot.fifo_depth_words);
+        if let Some(order) = snapshot.copying {
             let display = self.record().ports().board(order.target.frame_buffer);
             let (region, picture) = (order.target.region.0, order.target.picture);
             let _ = write!(text, "; sends region {region} of picture {picture} to {display}");
         }
-        if look.stands_at_copy {
+        if snapshot.stands_at_copy {
             text.push_str("; commands wait for a copy");
         }
-        if look.stored_regions > 0 {
-            let _ = write!(text, "; {} in the backing store", look.stored_regions);
+        if snapshot.stored_regions > 0 {
+            let _ = write!(text, "; {} in the backing store", snapshot.stored_regions);
         }
         Some(text)
     }
@@ -129,15 +132,15 @@ pub const fn bit_of(plane: &Plane, x: u32, y: u32) -> bool {
     plane[(2 * y + x / 64) as usize] >> (x % 64) & 1 == 1
 }
 
-fn processor_line(look: &GpSnapshot) -> String {
-    let mut parts: Vec<String> = look.programs.iter().map(program).collect();
+fn processor_line(snapshot: &GpSnapshot) -> String {
+    let mut parts: Vec<String> = snapshot.programs.iter().map(program).collect();
     if parts.is_empty() {
         return "no program".to_owned();
     }
-    if !look.inbox.is_empty() {
-        parts.push(format!("inbox {}", look.inbox.len()));
+    if !snapshot.inbox.is_empty() {
+        parts.push(format!("inbox {}", snapshot.inbox.len()));
     }
-    let sending = look.unaccepted.len() + look.chains.iter().sum::<usize>();
+    let sending = snapshot.unaccepted.len() + snapshot.chains.iter().sum::<usize>();
     if sending > 0 {
         parts.push(format!("sends {sending}"));
     }

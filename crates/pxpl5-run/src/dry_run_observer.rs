@@ -135,7 +135,7 @@ impl DryRunObserver {
         }
         let first = sampled.partition_point(|sampled| sampled.number < view);
         let of_view = sampled[first..].iter().take_while(|sampled| sampled.number == view);
-        of_view.clone().for_each(|sampled| self.leads.add(instant.since(sampled.known)));
+        of_view.clone().for_each(|sampled| self.leads.add(instant.since(sampled.reports_until)));
         let measured_at = of_view.filter_map(|sampled| sampled.measured_at).last();
         if let Some(measured_at) = measured_at.filter(|_| is_complete) {
             self.intervals.add(instant.since(measured_at));

@@ -99,13 +99,14 @@ impl Estimator {
     }
 
     /// Returns the predicted pose of the head at the instant `at`, in the scene's coordinates. The prediction uses only
-    /// the reports that had arrived at the instant `known`. From call to call, `known` must not decrease.
-    pub fn pose(&mut self, known: Time, at: Time) -> Pose {
+    /// the reports that had arrived at the instant `reports_until`. From call to call, `reports_until` must not
+    /// decrease.
+    pub fn pose(&mut self, reports_until: Time, at: Time) -> Pose {
         let start = self.views.start();
         let tracked = match &mut self.way {
-            Way::Following(follower) => follower.pose(known, at, start),
-            Way::AtOnce(follower) => follower.pose(known.max(at), at, start),
-            Way::Fresh(tracker) => fresh(&self.views, tracker, known, at),
+            Way::Following(follower) => follower.pose(reports_until, at, start),
+            Way::AtOnce(follower) => follower.pose(reports_until.max(at), at, start),
+            Way::Fresh(tracker) => fresh(&self.views, tracker, reports_until, at),
         };
         self.views.in_scene(&tracked)
     }
@@ -124,19 +125,20 @@ fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     Follower::new(Box::new(arrivals), Box::new(reports()), head.build_predictor())
 }
 
-/// Returns the pose at `at`, as if a tracker report had arrived exactly at `known`.
+/// Returns the pose at `at`, as if a tracker report had arrived exactly at `reports_until`.
 ///
-/// To make a report arrive at `known`, the function shifts the motion by the age of the newest report at `known`.
-fn fresh(views: &HeadViews, tracker: &TrackerModel, known: Time, at: Time) -> Pose {
+/// To make a report arrive at `reports_until`, the function shifts the motion by the age of the newest report at
+/// `reports_until`.
+fn fresh(views: &HeadViews, tracker: &TrackerModel, reports_until: Time, at: Time) -> Pose {
     let head = views.head();
     // Find the newest report of the run.
-    let from = known.0.saturating_sub(FED_PS);
+    let from = reports_until.0.saturating_sub(FED_PS);
     let arrivals = tracker.reports(head.motion(), head.seed).from(from).map(|report| report.arrives_ps);
-    let Some(newest) = arrivals.take_while(|arrival| *arrival <= known.0).last() else {
+    let Some(newest) = arrivals.take_while(|arrival| *arrival <= reports_until.0).last() else {
         return *views.start();
     };
     // Shift the motion by the age of that report, and feed a new predictor.
-    let ahead_ps = known.0 - newest;
+    let ahead_ps = reports_until.0 - newest;
     let motion = AdvancedMotion { motion: head.motion(), by_ps: ahead_ps };
     let mut predictor = head.build_predictor();
     let reports = tracker.reports(&motion, head.seed).from(from);

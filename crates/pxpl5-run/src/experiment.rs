@@ -3,7 +3,7 @@ use crate::fingerprint::Fingerprint;
 use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::host::{BareHost, Host};
-use crate::keep::{Keep, LEAST_RECORDS};
+use crate::kept_records::{KeptRecords, LEAST_RECORDS};
 use crate::level::Level;
 use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
@@ -73,7 +73,7 @@ pub struct Experiment {
     pub(crate) host: Arc<dyn Host>,
     pub(crate) shuffle: Option<u64>,
     pub(crate) traffic: bool,
-    pub(crate) keep: Keep,
+    pub(crate) keep: KeptRecords,
     pub(crate) least_records: usize,
     pub(crate) disabled: BTreeSet<Optimization>,
     pub(crate) level: Level,
@@ -95,7 +95,7 @@ pub struct Estimates {
     pub fields_needed: fn(&Experiment) -> Option<u64>,
     /// Function that estimates how many primitives the scene can have, after decimation, so that all pictures are in
     /// time. Returns `None` if the formulas give no estimate.
-    pub triangles_in_time: fn(&Experiment) -> Option<u64>,
+    pub primitives_in_time: fn(&Experiment) -> Option<u64>,
 }
 
 impl Experiment {
@@ -119,7 +119,7 @@ impl Experiment {
             host: Arc::new(BareHost),
             shuffle: None,
             traffic: false,
-            keep: Keep::Everything,
+            keep: KeptRecords::Everything,
             least_records: LEAST_RECORDS,
             disabled: BTreeSet::new(),
             level: Level::Transaction,
@@ -176,10 +176,10 @@ impl Experiment {
         self
     }
 
-    /// Sets which observations are kept: [`Keep::Everything`], the default, or [`Keep::Statistics`] for runs of any
-    /// length.
+    /// Sets which observations are kept: [`KeptRecords::Everything`], the default, or [`KeptRecords::Statistics`] for
+    /// runs of any length.
     #[must_use]
-    pub const fn keep(mut self, keep: Keep) -> Self {
+    pub const fn keep(mut self, keep: KeptRecords) -> Self {
         self.keep = keep;
         self
     }
@@ -238,10 +238,10 @@ impl Experiment {
         self
     }
 
-    /// Sets the streaming observer of a run with [`Keep::Statistics`].
+    /// Sets the streaming observer of a run with [`KeptRecords::Statistics`].
     ///
     /// Such a run discards old records. The observer must therefore compute the results for a tracked head during the
-    /// run. A run with [`Keep::Everything`] needs no observer.
+    /// run. A run with [`KeptRecords::Everything`] needs no observer.
     #[must_use]
     pub const fn observed_by(mut self, sums: Option<ObserverFactory>) -> Self {
         self.sums = sums;
@@ -272,8 +272,8 @@ impl Experiment {
     /// Returns an estimate of how many primitives the scene can have, after decimation, so that all pictures are in
     /// time. Returns `None` if the pipeline has no closed form, or if the formulas give no estimate.
     #[must_use]
-    pub fn triangles_in_time(&self) -> Option<u64> {
-        (self.estimates?.triangles_in_time)(self)
+    pub fn primitives_in_time(&self) -> Option<u64> {
+        (self.estimates?.primitives_in_time)(self)
     }
 
     /// Sets the optics of the head-mounted display and the distance between the eyes. The resolution comes from the

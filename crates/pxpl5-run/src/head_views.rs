@@ -23,7 +23,7 @@ pub struct SampledPose {
     /// Number of the view for which the pose was requested, as counted by the pipeline.
     pub number: ViewNumber,
     /// Instant of the request. The pose depends only on reports that had arrived by this instant.
-    pub known: Time,
+    pub reports_until: Time,
     /// Measurement time of the newest report that the pose uses. `None` before the first report.
     pub measured_at: Option<Time>,
     /// Arrival time at the host of the newest report that the pose uses. `None` before the first report.
@@ -63,10 +63,10 @@ impl Follower {
         Self::new(head.arrivals(until), head.contents(), head.build_predictor())
     }
 
-    /// Passes all reports that arrived by `known` to the predictor. A report cannot be taken back, so an earlier
-    /// `known` changes nothing.
-    fn follow(&mut self, known: Time) {
-        while self.arrivals.next_if(|coming| coming.arrives <= known).is_some() {
+    /// Passes all reports that arrived by `reports_until` to the predictor. A report cannot be taken back, so an
+    /// earlier `reports_until` changes nothing.
+    fn follow(&mut self, reports_until: Time) {
+        while self.arrivals.next_if(|coming| coming.arrives <= reports_until).is_some() {
             let Some(report) = self.contents.next() else { return };
             self.take(&report);
         }
@@ -82,8 +82,8 @@ impl Follower {
     }
 
     /// Returns the predicted pose at `at`, in the tracker's coordinates, or `start` before the first report.
-    pub(crate) fn pose(&mut self, known: Time, at: Time, start: &Pose) -> Pose {
-        self.follow(known);
+    pub(crate) fn pose(&mut self, reports_until: Time, at: Time, start: &Pose) -> Pose {
+        self.follow(reports_until);
         if self.newest.measured_at.is_none() { *start } else { self.predictor.predict(at.0) }
     }
 }
@@ -132,7 +132,7 @@ impl HeadViews {
         let [a, b, c] = [(); 3].map(|()| Arc::clone(this));
         (
             Arc::new(move |number, time| a.newest(number, time)),
-            Arc::new(move |number, known, shown_at| b.view(number, known, shown_at)),
+            Arc::new(move |number, reports_until, shown_at| b.view(number, reports_until, shown_at)),
             Arc::new(move |after| c.report_after(after)),
         )
     }
@@ -142,9 +142,9 @@ impl HeadViews {
     pub(crate) fn poses(this: &Arc<Self>) -> Poses {
         let follower = Mutex::new(this.follower());
         let views = Arc::clone(this);
-        Arc::new(move |known, at| {
+        Arc::new(move |reports_until, at| {
             let mut follower = follower.lock().unwrap_or_else(PoisonError::into_inner);
-            views.in_scene(&follower.pose(known, at, &views.start))
+            views.in_scene(&follower.pose(reports_until, at, &views.start))
         })
     }
 
@@ -172,7 +172,7 @@ impl HeadViews {
 
     /// Discards poses that were requested before `instant`, and reports that are no longer the newest at `instant`.
     pub(crate) fn discard_before(&self, instant: Time) {
-        self.state().1.retain(|sampled| sampled.known >= instant);
+        self.state().1.retain(|sampled| sampled.reports_until >= instant);
         self.schedule().discard_before(instant);
     }
 
@@ -189,12 +189,20 @@ impl HeadViews {
         self.view(number, time, shown_at)
     }
 
-    fn view(&self, number: ViewNumber, known: Time, shown_at: Time) -> FrameView {
+    fn view(&self, number: ViewNumber, reports_until: Time, shown_at: Time) -> FrameView {
         let (follower, sampled) = &mut *self.state();
-        let pose = self.in_scene(&follower.pose(known, shown_at, &self.start));
+        let pose = self.in_scene(&follower.pose(reports_until, shown_at, &self.start));
         let Newest { measured_at, arrived_at } = follower.newest;
         let predicted_for = self.head.predicts().then_some(shown_at);
-        sampled.push(SampledPose { number, known, measured_at, arrived_at, predicted_for, objects_at: shown_at, pose });
+        sampled.push(SampledPose {
+            number,
+            reports_until,
+            measured_at,
+            arrived_at,
+            predicted_for,
+            objects_at: shown_at,
+            pose,
+        });
         view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
     }
 
@@ -243,8 +251,8 @@ impl HeadViews {
         self.head.evaluate_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
     }
 
-    /// Returns the records of the requested poses in memory, sorted by view number. [`Keep`](crate::Keep) decides how
-    /// many records stay in memory.
+    /// Returns the records of the requested poses in memory, sorted by view number. [`KeptRecords`](crate::KeptRecords)
+    /// decides how many records stay in memory.
     #[must_use]
     pub fn sampled(&self) -> Vec<SampledPose> {
         let mut all = self.state().1.clone();

@@ -68,8 +68,8 @@ impl Outcome {
         self.closed.observed.as_deref()?.downcast_ref()
     }
 
-    /// Returns true if the run discarded old records ([`Keep`](crate::Keep)). Most results are then available only for
-    /// the last periods.
+    /// Returns true if the run discarded old records ([`KeptRecords`](crate::KeptRecords)). Most results are then
+    /// available only for the last periods.
     #[must_use]
     pub fn has_discarded_records(&self) -> bool {
         self.observation().discarded.before > Time::ZERO
@@ -89,8 +89,8 @@ impl Outcome {
 
     /// Returns all pictures that were begun and evaluated, complete or not.
     ///
-    /// [`Tally::pictures`] counts these pictures. A run that keeps only statistics ([`Keep`](crate::Keep)) returns only
-    /// the last pictures.
+    /// [`Tally::pictures`] counts these pictures. A run that keeps only statistics
+    /// ([`KeptRecords`](crate::KeptRecords)) returns only the last pictures.
     #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.closed.pictures
@@ -201,7 +201,8 @@ impl Outcome {
 
     /// Returns the observed events of the run in the order of time, each with the name of its board.
     ///
-    /// A run that keeps only statistics ([`Keep`](crate::Keep)) returns only the events of its last periods.
+    /// A run that keeps only statistics ([`KeptRecords`](crate::KeptRecords)) returns only the events of its last
+    /// periods.
     pub fn events(&self) -> impl Iterator<Item = ObservedEvent> {
         self.record.observed_events().into_iter()
     }

@@ -5,7 +5,7 @@ use crate::dry_run_observer::DryRunObserver;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
 use crate::head::Head;
-use crate::keep::Keep;
+use crate::kept_records::KeptRecords;
 use crate::observers::{ObserverFactory, StreamingObserver};
 use crate::outcome::Outcome;
 use std::sync::Arc;
@@ -56,9 +56,9 @@ impl Experiment {
 
     pub(crate) fn prepare(&self) -> Result<Preparation, ExperimentError> {
         let Some(head) = self.predicting_head() else { return Ok(Preparation::default()) };
-        let known = self.dry_run.clone().map_or_else(|| self.make_dry_run(head), Ok)?;
-        let tuned = head.is_to_be_tuned().then(|| known.tuned(head)).flatten();
-        let seen_times = (!self.pipeline.knows_when_seen()).then(|| known.seen_times.clone());
+        let dry_run = self.dry_run.clone().map_or_else(|| self.make_dry_run(head), Ok)?;
+        let tuned = head.is_to_be_tuned().then(|| dry_run.tuned(head)).flatten();
+        let seen_times = (!self.pipeline.knows_when_seen()).then(|| dry_run.seen_times.clone());
         Ok(Preparation { seen_times, head: tuned.map(Arc::new) })
     }
 
@@ -80,7 +80,8 @@ impl Experiment {
 
     fn without_prediction(&self, head: &Head, fields: u64) -> Result<DryRun, ExperimentError> {
         let plain = Some(Arc::new(head.without_prediction()));
-        let (keep, sums): (Keep, ObserverFactory) = (Keep::Statistics, || Box::<DryRunObserver>::default());
+        let (keep, sums): (KeptRecords, ObserverFactory) =
+            (KeptRecords::Statistics, || Box::<DryRunObserver>::default());
         let plain =
             Self { head: plain, pixels: Pixels::Off, traffic: false, keep, sums: Some(sums), fields, ..self.clone() };
         // If the run has few pictures, the dry run before it has few pictures too.

@@ -166,16 +166,16 @@ impl Registry {
 
     /// Adds a pipeline. An existing pipeline with the same name is replaced.
     pub fn add(&mut self, entry: PipelineEntry) {
-        match self.pipelines.iter_mut().find(|known| known.name == entry.name) {
-            Some(known) => *known = entry,
+        match self.pipelines.iter_mut().find(|existing| existing.name == entry.name) {
+            Some(existing) => *existing = entry,
             None => self.pipelines.push(entry),
         }
     }
 
     /// Adds a display. An existing display with the same name is replaced.
     pub fn add_display(&mut self, entry: DisplayEntry) {
-        match self.displays.iter_mut().find(|known| known.name == entry.name) {
-            Some(known) => *known = entry,
+        match self.displays.iter_mut().find(|existing| existing.name == entry.name) {
+            Some(existing) => *existing = entry,
             None => self.displays.push(entry),
         }
     }
@@ -223,7 +223,7 @@ impl Registry {
         let mut all: Vec<(Key, Vec<&'static str>)> = Vec::new();
         for entry in &self.pipelines {
             for key in entry.keys {
-                match all.iter_mut().find(|(known, _)| known.name == key.name) {
+                match all.iter_mut().find(|(existing, _)| existing.name == key.name) {
                     Some((_, families)) if families.contains(&entry.family) => {}
                     Some((_, families)) => families.push(entry.family),
                     None => all.push((*key, vec![entry.family])),

@@ -27,18 +27,18 @@ impl Coming {
 /// length of the run.
 pub(crate) struct ReportSchedule {
     arrivals: Arrivals,
-    known: VecDeque<Coming>,
+    queue: VecDeque<Coming>,
 }
 
 impl ReportSchedule {
     pub(crate) const fn new(arrivals: Arrivals) -> Self {
-        Self { arrivals, known: VecDeque::new() }
+        Self { arrivals, queue: VecDeque::new() }
     }
 
     pub(crate) fn from(&mut self, instant: Time) -> Option<Coming> {
         self.read_until_after(instant);
-        let earlier = self.known.partition_point(|coming| coming.arrives < instant);
-        self.known.get(earlier).copied()
+        let earlier = self.queue.partition_point(|coming| coming.arrives < instant);
+        self.queue.get(earlier).copied()
     }
 
     pub(crate) fn after(&mut self, instant: Time) -> Option<Coming> {
@@ -47,24 +47,24 @@ impl ReportSchedule {
 
     pub(crate) fn by(&mut self, instant: Time) -> Option<Coming> {
         self.read_until_after(instant);
-        let there = self.known.partition_point(|coming| coming.arrives <= instant);
-        self.known.get(there.checked_sub(1)?).copied()
+        let there = self.queue.partition_point(|coming| coming.arrives <= instant);
+        self.queue.get(there.checked_sub(1)?).copied()
     }
 
     pub(crate) fn discard_before(&mut self, instant: Time) {
         let Some(last) = self.by(instant) else { return };
-        let earlier = self.known.partition_point(|coming| coming.arrives < last.arrives);
-        self.known.drain(..earlier);
+        let earlier = self.queue.partition_point(|coming| coming.arrives < last.arrives);
+        self.queue.drain(..earlier);
     }
 
     pub(crate) fn held(&self) -> usize {
-        self.known.len()
+        self.queue.len()
     }
 
     fn read_until_after(&mut self, instant: Time) {
-        while self.known.back().is_none_or(|last| last.arrives <= instant) {
+        while self.queue.back().is_none_or(|last| last.arrives <= instant) {
             let Some(coming) = self.arrivals.next() else { return };
-            self.known.push_back(coming);
+            self.queue.push_back(coming);
         }
     }
 }
@@ -104,7 +104,7 @@ mod tests {
                 if i % 5 == 4 {
                     oldest = at;
                     kept.discard_before(Time(at));
-                    let old = kept.known.iter().filter(|coming| coming.arrives.0 <= at);
+                    let old = kept.queue.iter().filter(|coming| coming.arrives.0 <= at);
                     prop_assert!(old.map(|coming| coming.arrives).collect::<std::collections::BTreeSet<_>>().len() <= 1);
                 }
             }

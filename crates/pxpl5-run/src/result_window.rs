@@ -59,8 +59,13 @@ impl ResultWindow {
     }
 
     /// Returns the result window so far, for a run that continues to the period `planned`. All pictures before the
-    /// period `known` must have been recorded.
-    pub(crate) fn begun(ends: &PictureResults, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
+    /// period `recorded_to` must have been recorded.
+    pub(crate) fn begun(
+        ends: &PictureResults,
+        every: Option<u64>,
+        recorded_to: PeriodNumber,
+        planned: PeriodNumber,
+    ) -> Self {
         let steady_from = ends.steady_from();
         // The warm-up may take at most the first half of the requested run.
         let middle = WARM_UP_PERIODS + planned.0.saturating_sub(WARM_UP_PERIODS) / 2;
@@ -70,7 +75,7 @@ impl ResultWindow {
         let first = every.map_or(steady.max(WARM_UP_PERIODS), |every| {
             let every = every.max(1);
             let start = start.max(WARM_UP_PERIODS + every - 1);
-            let of_first_half = known.0.min(middle);
+            let of_first_half = recorded_to.0.min(middle);
             first_due(ends, every, [start, steady], of_first_half) + 1 - every
         });
         let last_period = PeriodNumber(planned.0.saturating_sub(1));

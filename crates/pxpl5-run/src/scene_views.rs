@@ -31,7 +31,7 @@ pub fn hmd_on(display: &dyn Display, hmd: &Hmd) -> Hmd {
 
 pub(crate) fn poses(scene: &Scene, seed: u64) -> Poses {
     let motion: HeadMotion = scene.motion().with_seed(seed);
-    Arc::new(move |known, _| motion.pose(known.0))
+    Arc::new(move |reports_until, _| motion.pose(reports_until.0))
 }
 
 /// Returns two functions that give views of the scene's own head motion.

@@ -14,7 +14,7 @@ type Key = (Fingerprint, u64, u64);
 /// ([`Head::sharing_tunings`](crate::Head::sharing_tunings)).
 #[derive(Debug, Default)]
 pub struct Tunings {
-    known: Mutex<BTreeMap<Key, Arc<OnceLock<Tuned>>>>,
+    cached: Mutex<BTreeMap<Key, Arc<OnceLock<Tuned>>>>,
 }
 
 impl Tunings {
@@ -35,14 +35,14 @@ impl Tunings {
         // The seed of the evaluated run matters only because the training must use another seed.
         let key = (hash, interval_ps, training_seed(evaluated_seed));
         // The map is locked only to find the place. The place itself waits for the result.
-        let place = Arc::clone(self.known.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default());
+        let place = Arc::clone(self.cached.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default());
         *place.get_or_init(|| tuned_once(motion, tracker, interval_ps, base, evaluated_seed))
     }
 
     /// Returns the number of predictors in the cache.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.known.lock().unwrap_or_else(PoisonError::into_inner).len()
+        self.cached.lock().unwrap_or_else(PoisonError::into_inner).len()
     }
 
     /// Returns true if the cache has no predictor.

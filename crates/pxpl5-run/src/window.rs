@@ -3,7 +3,7 @@
 use crate::assembled::Assembled;
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
-use crate::keep::Keep;
+use crate::kept_records::KeptRecords;
 use crate::observers::{FinalResults, StreamingObserver};
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::result_window::ResultWindow;
@@ -49,14 +49,14 @@ pub(crate) struct Closed {
 impl Window {
     pub(crate) fn new(experiment: &Experiment, record: &Record) -> Self {
         let may_discard = match experiment.keep {
-            Keep::Everything => false,
-            Keep::Statistics => !experiment.traffic,
-            Keep::Recent => true,
+            KeptRecords::Everything => false,
+            KeptRecords::Statistics => !experiment.traffic,
+            KeptRecords::Recent => true,
         };
         let forgets = may_discard && experiment.pipeline.can_discard_records();
         let samples = if forgets { KEPT_SAMPLES } else { usize::MAX };
         let tally = Tally::new(experiment.end(), field_ms(record), samples);
-        let sums = experiment.sums.filter(|_| forgets && experiment.keep == Keep::Statistics);
+        let sums = experiment.sums.filter(|_| forgets && experiment.keep == KeptRecords::Statistics);
         let sum = sums.map(|begin| begin());
         let least_records = experiment.least_records;
         Self {
@@ -97,8 +97,8 @@ impl Window {
         let newest_taken = fresh.len().checked_sub(PICTURES_HELD + 1)?;
         // Only whole periods become final, so that all pictures of each period are known.
         let last = fresh[newest_taken].shown_at.min(before(record, now)?);
-        let known = record.display().period_at(last);
-        let settled_to = Time(record.tick(known).0.checked_sub(1)?);
+        let recorded_to = record.display().period_at(last);
+        let settled_to = Time(record.tick(recorded_to).0.checked_sub(1)?);
         let held = fresh.partition_point(|times| times.shown_at <= settled_to);
         let (pictures, held) = fresh.split_at(held);
         // Records are needed from the earliest sample or TRANSFORM of a picture that is not final.
@@ -112,7 +112,7 @@ impl Window {
         // The counts are updated first, because the window depends on them.
         self.tally.count(record, pictures);
         let every = experiment.pipeline.periods_a_picture(record);
-        let window = ResultWindow::begun(self.tally.ends(), every, known, experiment.end());
+        let window = ResultWindow::begun(self.tally.ends(), every, recorded_to, experiment.end());
         let window = window.not_before(experiment.results_from, every);
         self.take(&FinalResults { arrivals, pictures, next, until, samples, window, ..all });
         self.taken_to = Some(settled_to);

@@ -87,8 +87,8 @@ fn a_stepper_stops_at_a_deadlock_and_returns_the_same_error() {
     let mut stepper = experiment.stepper().expect("it can be built");
     let Pause::Failed(error) = stepper.run_to(stepper.end()) else { panic!("it waits for ever") };
     assert_eq!((stepper.now(), stepper.failure()), (error.time(), Some(&error)));
-    let look = stepper.processor(Board::Gp(0)).expect("a graphics processor");
-    assert_eq!(look.programs[0].waits_for, "a message that is never sent");
+    let snapshot = stepper.processor(Board::Gp(0)).expect("a graphics processor");
+    assert_eq!(snapshot.programs[0].waits_for, "a message that is never sent");
     assert_eq!(stepper.step_event(), Pause::Failed(error.clone()));
     let Err(ExperimentError::Run { error: whole, .. }) = experiment.run() else { panic!("it fails") };
     assert_eq!(whole, error);

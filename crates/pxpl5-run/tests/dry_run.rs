@@ -24,10 +24,10 @@ fn a_run_that_continues_with_another_predictor_equals_a_run_with_this_predictor_
         assert!(of_kalman.dry_run().is_some(), "{name}");
         for kind in [PredictorKind::Kalman, PredictorKind::ConstantVelocity] {
             let alone = plain.clone().head(head(kind));
-            let told = alone.clone().with_dry_run(of_kalman.dry_run().cloned());
-            let [alone, told] = [alone, told].map(|experiment| experiment.run().expect("it runs"));
-            assert_eq!(alone.record().trace_hash(), told.record().trace_hash(), "{name}, {kind:?}");
-            let sampled = [&alone, &told].map(|outcome| outcome.head().expect("tracked").sampled());
+            let continued = alone.clone().with_dry_run(of_kalman.dry_run().cloned());
+            let [alone, continued] = [alone, continued].map(|experiment| experiment.run().expect("it runs"));
+            assert_eq!(alone.record().trace_hash(), continued.record().trace_hash(), "{name}, {kind:?}");
+            let sampled = [&alone, &continued].map(|outcome| outcome.head().expect("tracked").sampled());
             assert_eq!(sampled[0], sampled[1], "{name}, {kind:?}");
         }
     }

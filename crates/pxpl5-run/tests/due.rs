@@ -158,7 +158,7 @@ proptest! {
     }
 
     #[test]
-    fn the_share_missed_rises_with_the_time_a_picture_takes(first in 0u64..40, every in 1u64..4, apart in 1u64..20) {
+    fn the_share_of_missed_pictures_rises_with_the_time_of_a_picture(first in 0u64..40, every in 1u64..4, apart in 1u64..20) {
         let share = |apart| count(&regular(first, apart, 2_000, Shown), every, 2_000).not_shown_share();
         prop_assert!(share(apart + 1) + 1e-2 >= share(apart));
     }

@@ -3,7 +3,7 @@
 
 use pxpl5_machine::{LateRegion, MachineConfig};
 use pxpl5_run::{
-    Experiment, FacePipeline, FacePolicy, FaceSource, Frameless, Head, Jitp, Keep, Outcome, Pipeline, Pixels,
+    Experiment, FacePipeline, FacePolicy, FaceSource, Frameless, Head, Jitp, KeptRecords, Outcome, Pipeline, Pixels,
     RenderingControl, Samples, Slats, Viewpoint,
 };
 use pxpl5_scene::Scene;
@@ -57,12 +57,12 @@ fn experiments() -> [(&'static str, Experiment); 9] {
     ]
 }
 
-fn run(experiment: &Experiment, keep: Keep) -> Outcome {
+fn run(experiment: &Experiment, keep: KeptRecords) -> Outcome {
     experiment.clone().keep(keep).run().expect("it runs")
 }
 
 /// Returns all results of a run that cover the whole run.
-fn said(outcome: &Outcome) -> Vec<String> {
+fn results(outcome: &Outcome) -> Vec<String> {
     let tally = outcome.tally();
     let all: Vec<&Samples> =
         [&tally.latency_ms, &tally.eye_ms, &tally.eye_swap_ms, &tally.eye_retraces, &tally.copy_begins_ms]
@@ -74,22 +74,22 @@ fn said(outcome: &Outcome) -> Vec<String> {
             .collect();
     let late: &[LateRegion] = &tally.first_late_regions;
     let counts = [tally.pictures, tally.shown, tally.complete, tally.shown_in_a_row, tally.late_regions];
-    let mut said: Vec<String> = all.iter().map(|samples| format!("{:?}", samples.statistics())).collect();
-    said.push(format!("{counts:?} {late:?} {:?} {:?}", tally.region_copy_us(), outcome.due()));
-    said.push(format!("{:?} {} {}", outcome.updates_hz(), outcome.ends_complete(), outcome.record().trace_hash()));
-    said
+    let mut results: Vec<String> = all.iter().map(|samples| format!("{:?}", samples.statistics())).collect();
+    results.push(format!("{counts:?} {late:?} {:?} {:?}", tally.region_copy_us(), outcome.due()));
+    results.push(format!("{:?} {} {}", outcome.updates_hz(), outcome.ends_complete(), outcome.record().trace_hash()));
+    results
 }
 
 #[test]
 fn discarding_records_changes_no_result() {
     experiments().par_iter().for_each(|(name, experiment)| {
-        let everything = run(experiment, Keep::Everything);
-        let statistics = run(experiment, Keep::Statistics);
+        let everything = run(experiment, KeptRecords::Everything);
+        let statistics = run(experiment, KeptRecords::Statistics);
         let passes = statistics.observation().discarded.passes;
-        assert_eq!(said(&everything), said(&statistics), "{name}");
+        assert_eq!(results(&everything), results(&statistics), "{name}");
         let least_passes = if *name == "frameless" { 1 } else { 2 };
         assert!(passes >= least_passes, "{name}: records were discarded {passes} times");
-        assert!(everything.tally().pictures > 100, "{name}: there is something to be said");
+        assert!(everything.tally().pictures > 100, "{name}: the run has results");
         let all = everything.pictures();
         assert_eq!(
             statistics.pictures(),
@@ -103,7 +103,7 @@ fn discarding_records_changes_no_result() {
 /// records that were read, all events, and the poses in memory at the end.
 fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
     let mut most = [0, 0];
-    let watched = experiment.clone().fields(fields).keep(Keep::Statistics).run_stopping(&[], |_, machine| {
+    let watched = experiment.clone().fields(fields).keep(KeptRecords::Statistics).run_stopping(&[], |_, machine| {
         most[0] = most[0].max(machine.record().observation().records() as u64);
         most[1] = most[1].max(machine.pending_events() as u64);
         Ok(())
@@ -118,7 +118,7 @@ fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
 fn recent_records_of_an_observed_run_do_not_grow_with_its_length() {
     let most = |fields| {
         let experiment = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1).fields(fields);
-        let mut stepper = experiment.keep(Keep::Recent).record_traffic(true).stepper().expect("it can be built");
+        let mut stepper = experiment.keep(KeptRecords::Recent).record_traffic(true).stepper().expect("it can be built");
         let mut most = 0;
         while stepper.now() < stepper.end() {
             stepper.step_period();
@@ -126,7 +126,7 @@ fn recent_records_of_an_observed_run_do_not_grow_with_its_length() {
             let traffic = observation.traffic.as_ref().expect("recorded");
             most = most.max(observation.records() + traffic.records());
         }
-        assert!(!stepper.so_far().last_latencies(8).is_empty(), "the last pictures are known");
+        assert!(!stepper.observed_run().last_latencies(8).is_empty(), "the last pictures are known");
         (most, stepper.record().trace_hash())
     };
     let [(short, _), (long, hash)] = [600, 1_800].map(most);

@@ -468,11 +468,11 @@ fn invalid_normals_are_recomputed_with_one_warning() {
 #[test]
 fn an_invalid_coordinate_is_refused_with_its_place() {
     for nan in ["nan", "-nan(ind)", "1.#IND"] {
-        let said = read(Format::Obj, format!("v 0 {nan} 0\n")).expect_err("no place").to_string();
-        assert!(said.starts_with("test: line 1: expected a coordinate") && said.ends_with("found NaN"), "{said}");
-        let said = read(Format::Ply, ascii_ply(&ELEMENTS).replace("0 1 0", &format!("0 {nan} 0")));
-        let said = said.expect_err("no place").to_string();
-        assert!(said.starts_with("test: line 12: expected a coordinate") && said.ends_with("found NaN"), "{said}");
+        let error = read(Format::Obj, format!("v 0 {nan} 0\n")).expect_err("no place").to_string();
+        assert!(error.starts_with("test: line 1: expected a coordinate") && error.ends_with("found NaN"), "{error}");
+        let error = read(Format::Ply, ascii_ply(&ELEMENTS).replace("0 1 0", &format!("0 {nan} 0")));
+        let error = error.expect_err("no place").to_string();
+        assert!(error.starts_with("test: line 12: expected a coordinate") && error.ends_with("found NaN"), "{error}");
     }
 }
 

@@ -363,9 +363,9 @@ fn errors_name_the_part_of_the_file() {
     let refused = |change: &dyn Fn(&mut Value), parts: &[&str]| {
         let mut document = good.clone();
         change(&mut document);
-        let said = message(&writer.binary(&document));
+        let error = message(&writer.binary(&document));
         for part in parts {
-            assert!(said.contains(part), "{said:?} has no {part:?}");
+            assert!(error.contains(part), "{error:?} has no {part:?}");
         }
     };
     refused(&|d| d["meshes"] = json!([{"primitives": []}]), &["at least one triangle"]);
@@ -426,9 +426,10 @@ fn errors_name_the_part_of_the_file() {
     );
     let mut writer = Writer::default();
     let positions = writer.vectors(&[[0.0; 3], [f32::NAN, 0.0, 0.0], [0.0; 3]]);
-    let said = message(&writer.binary(&writer.one_mesh(json!({"attributes": {"POSITION": positions}}))));
+    let error = message(&writer.binary(&writer.one_mesh(json!({"attributes": {"POSITION": positions}}))));
     assert!(
-        said.contains("meshes[0].primitives[0].attributes.POSITION: expected coordinates") && said.contains("vertex 1")
+        error.contains("meshes[0].primitives[0].attributes.POSITION: expected coordinates")
+            && error.contains("vertex 1")
     );
 }
 
@@ -456,16 +457,16 @@ fn errors_of_the_gltf_container_name_the_byte_or_line() {
     {
         let mut file = good.clone();
         change(&mut file);
-        let said = message(&file);
-        assert!(said.contains(expected), "{said:?} has no {expected:?}");
+        let error = message(&file);
+        assert!(error.contains(expected), "{error:?} has no {expected:?}");
     }
-    let said = message(b"{\n\"asset\": {\"version\": \"2.0\"},\n\"nodes\": 7}");
-    assert!(said.contains("line 3: expected the JSON of glTF 2.0, found invalid type"), "{said}");
+    let error = message(b"{\n\"asset\": {\"version\": \"2.0\"},\n\"nodes\": 7}");
+    assert!(error.contains("line 3: expected the JSON of glTF 2.0, found invalid type"), "{error}");
     // Without the binary chunk, no buffer has bytes.
-    let said = message(document.to_string().as_bytes());
+    let error = message(document.to_string().as_bytes());
     assert!(
-        said.contains("buffers[0]: expected a uri, or the binary chunk for the first buffer, found neither"),
-        "{said}"
+        error.contains("buffers[0]: expected a uri, or the binary chunk for the first buffer, found neither"),
+        "{error}"
     );
 }
 

@@ -103,8 +103,8 @@ fn errors_state_the_position_and_the_expected_value() {
         (b"hello".to_vec(), "byte 0: expected text that begins with \"solid\", or a binary header of 84 bytes"),
         (nan, "byte 96: expected a coordinate between -1e15 and 1e15, found NaN"),
     ] {
-        let said = read(file).err().map(|error| error.to_string()).expect("refused");
-        assert!(said.contains(expected), "{said:?} has no {expected:?}");
+        let error = read(file).err().map(|error| error.to_string()).expect("refused");
+        assert!(error.contains(expected), "{error:?} has no {expected:?}");
     }
     let cut = good.split_inclusive('\n').take(4).collect::<String>();
     assert!(matches!(read(cut), Err(ref error) if error.kind == FileErrorKind::Truncated));

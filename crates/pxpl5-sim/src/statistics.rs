@@ -33,10 +33,10 @@ pub fn number_or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, 
 /// equal times therefore differ by less than this value.
 const PICOSECOND_MS: f64 = 1.001e-9;
 
-/// Serializes the rounded form that [`Statistics::told`] returns.
+/// Serializes the rounded form that [`Statistics::rounded`] returns.
 impl Serialize for Statistics {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Self { n, mean, sd, min, max } = self.told();
+        let Self { n, mean, sd, min, max } = self.rounded();
         let mut fields = serializer.serialize_struct("Statistics", 5)?;
         fields.serialize_field("n", &n)?;
         fields.serialize_field("mean", &mean)?;
@@ -53,7 +53,7 @@ impl Statistics {
     /// If the numbers differ by at most a picosecond, the deviation becomes 0. The mean is limited to the range from
     /// the minimum to the maximum.
     #[must_use]
-    pub fn told(self) -> Self {
+    pub fn rounded(self) -> Self {
         if self.n == 0 {
             return self;
         }
@@ -122,13 +122,13 @@ mod tests {
     fn a_constant_is_printed_without_deviation() {
         for values in [[0.1; 3], [30.949_033_339, 30.949_033_340, 30.949_033_340]] {
             let all = Statistics::of(values.into_iter());
-            let told = all.told();
-            assert_eq!((told.sd, told.n, told.min, told.max), (0.0, 3, all.min, all.max));
-            assert!(told.min <= told.mean && told.mean <= told.max, "{told:?}");
+            let rounded = all.rounded();
+            assert_eq!((rounded.sd, rounded.n, rounded.min, rounded.max), (0.0, 3, all.min, all.max));
+            assert!(rounded.min <= rounded.mean && rounded.mean <= rounded.max, "{rounded:?}");
         }
         let varies = Statistics::of([1.0, 1.000_001].into_iter());
-        assert_eq!(varies.told(), varies);
-        assert!(Statistics::of(std::iter::once(1.0)).told().sd.is_nan());
+        assert_eq!(varies.rounded(), varies);
+        assert!(Statistics::of(std::iter::once(1.0)).rounded().sd.is_nan());
     }
 
     #[test]

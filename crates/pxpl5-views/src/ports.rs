@@ -2,7 +2,7 @@
 //! finds the pictures that the port showed.
 
 use pxpl5_machine::Record;
-use pxpl5_run::SoFar;
+use pxpl5_run::ObservedRun;
 use pxpl5_sim::Time;
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId};
@@ -50,7 +50,7 @@ fn has_more_ports(display: &dyn Display) -> bool {
 
 /// Returns the pictures that a port has shown, in the order in which the pictures were begun. A port shows each picture
 /// from one swap to the port's next swap.
-pub(crate) fn shown(run: &SoFar<'_>, node: NodeId) -> Vec<ShownPicture> {
+pub(crate) fn shown(run: &ObservedRun<'_>, node: NodeId) -> Vec<ShownPicture> {
     let shown = run.record().shown_by(node);
     let ends = shown.iter().skip(1).map(|next| next.at).chain([run.end()]);
     let all = shown.iter().zip(ends);

@@ -2,7 +2,7 @@
 
 use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;
-use pxpl5_run::{PictureTimes, SoFar};
+use pxpl5_run::{ObservedRun, PictureTimes};
 use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 
@@ -23,7 +23,7 @@ struct Received {
 }
 
 impl Updates {
-    pub(crate) fn of(run: &SoFar<'_>, stages: &[StageSpan]) -> Self {
+    pub(crate) fn of(run: &ObservedRun<'_>, stages: &[StageSpan]) -> Self {
         let sends = stages.iter().filter(|span| span.stage == Stage::Send);
         let receive_span = run.receive_span();
         let mut received: Vec<Received> =
@@ -47,7 +47,7 @@ impl Updates {
 }
 
 /// Returns true if the host samples the poses of pictures. Otherwise a graphics processor samples them.
-fn host_samples(run: &SoFar<'_>) -> bool {
+fn host_samples(run: &ObservedRun<'_>) -> bool {
     let host = run.record().ports().host;
     run.observation().marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host)
 }

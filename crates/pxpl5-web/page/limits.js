@@ -1,4 +1,4 @@
-// The limits of a run: the waits of the last pictures, the use of the boards, and the number of triangles that the machine can show.
+// The limits of a run: the waits of the last pictures, the use of the boards, and the number of primitives that the machine can show.
 import { inMs, nameOf } from "./draw.js";
 
 const make = (name, given = {}, ...inner) => {
@@ -63,15 +63,15 @@ function deadlineOf(name) {
   return name.startsWith("jitp") ? " (before the beam reaches its lines)" : "";
 }
 
-/** Shows the reason for which a machine shows no picture, and the number of triangles that it could show. `found` is the answer of the
- *  worker, or null before the answer. `use` is called with a number of triangles to build. */
+/** Shows the reason for which a machine shows no picture, and the number of primitives that it could show. `found` is the answer of the
+ *  worker, or null before the answer. `use` is called with the number of primitives of the scene to build. */
 export function drawHeavy(place, name, found, use) {
   const why = `${nameOf(name)} finishes no picture in time${deadlineOf(name)}, so its screen is empty, incomplete or too old. `;
-  if (found === null) return place.replaceChildren(why, "Searching for the number of triangles that would be in time ...");
+  if (found === null) return place.replaceChildren(why, "Searching for the number of primitives (triangles and spheres) that would be in time ...");
   const { primitives, in_time: fits } = found;
-  const has = `The scene has ${primitives.toLocaleString("en")} ${primitives === 1 ? "triangle" : "triangles"}. `;
-  if (!fits) return place.replaceChildren(why, has, "Not even one triangle of this scene would be in time: choose another scene or pipeline.");
-  const button = make("button", { type: "button", textContent: `Use ${fits.toLocaleString("en")} triangles` });
+  const has = `The scene has ${primitives.toLocaleString("en")} ${primitives === 1 ? "primitive" : "primitives"}. `;
+  if (!fits) return place.replaceChildren(why, has, "Not even one primitive of this scene would be in time: choose another scene or pipeline.");
+  const button = make("button", { type: "button", textContent: `Use ${fits.toLocaleString("en")} primitives` });
   button.addEventListener("click", () => use(fits));
   return place.replaceChildren(why, has, `About ${fits.toLocaleString("en")} would do. `, button);
 }

@@ -45,7 +45,7 @@ let of = 0;
 let chosen = null;
 let pixel = null;
 let running = false;
-let looked = { boards: 0, timeline: 0, limits: 0 };
+let updatedAt = { boards: 0, timeline: 0, limits: 0 };
 /** Input from which the machines were built: `runs` and `files`. */
 let source = null;
 /** Mode of the page: `start`, `story` or `lab`. */
@@ -126,12 +126,12 @@ let unknown = [];
 
 function fromAddress() {
   const given = new URLSearchParams(location.hash.slice(1));
-  const known = KEYS.filter((key) => given.get(key));
+  const keys = KEYS.filter((key) => given.get(key));
   unknown = [...given.keys()].filter((key) => !KEYS.includes(key) && !OTHERS.includes(key));
   if (given.has("story") && !storyOf(given)) unknown.push(`story=${given.get("story")}`);
   beside = given.get("beside") ?? "";
   motion = given.get("motion") ?? "";
-  return { ...FIRST, ...Object.fromEntries(known.map((key) => [key, given.get(key)])) };
+  return { ...FIRST, ...Object.fromEntries(keys.map((key) => [key, given.get(key)])) };
 }
 
 function intoForm() {
@@ -207,7 +207,7 @@ async function build(kept = null) {
   const begun = settings["head.motion"] === LIVE ? kept ?? new Live() : null;
   if (begun) files.push([LIVE, new TextEncoder().encode(csv("0,0"))]);
   const texts = pipelines().map((name) => Object.entries(settingsOf(name)).map(([key, value]) => `${key}=${value}`).join("\n"));
-  say(unknown.length > 0 ? `The link has ${unknown.map((key) => `"${key}"`).join(", ")}, which is unknown: expected ${[...KEYS, ...OTHERS].join(", ")}.` : "");
+  say(unknown.length > 0 ? `The link has ${unkeys.map((key) => `"${key}"`).join(", ")}, which is unknown: expected ${[...KEYS, ...OTHERS].join(", ")}.` : "");
   unknown = [];
   document.body.dataset.busy = "true";
   endAside();
@@ -269,8 +269,8 @@ function wanted(now) {
   const stands = !running;
   const inLab = mode === "lab";
   const want = { of, surfaces: eyesShown, wire: shows("wire"), regions: shows("regions"), ideal: at("show-ideal").checked && inLab, error: at("show-error").checked && inLab };
-  if (stands || now - looked.boards > BOARDS_EVERY) {
-    looked.boards = now;
+  if (stands || now - updatedAt.boards > BOARDS_EVERY) {
+    updatedAt.boards = now;
     const open = inLab && at("machine-part").open;
     Object.assign(want, { boards: open || shows("diagram"), renderers: open, board: chosen, pixel, age: true });
     if (want.boards) want.messages = messagesAfter;
@@ -278,13 +278,13 @@ function wanted(now) {
   } else {
     want.ideal = want.error = false;
   }
-  if (stands || now - looked.timeline > TIMELINE_EVERY) {
-    looked.timeline = now;
+  if (stands || now - updatedAt.timeline > TIMELINE_EVERY) {
+    updatedAt.timeline = now;
     if (inLab && at("timeline-part").open) want.timeline = Number(at("span").value);
     if (shows("latency")) want.latencies = inLab ? 8 : 1;
   }
-  if (inLab && at("limits-part").open && (stands || now - looked.limits > LIMITS_EVERY)) {
-    looked.limits = now;
+  if (inLab && at("limits-part").open && (stands || now - updatedAt.limits > LIMITS_EVERY)) {
+    updatedAt.limits = now;
     want.limits = true;
   }
   return want;
@@ -316,7 +316,7 @@ function go(how) {
       // A long run consists of several pieces. The page shows only the state after the last piece.
       while (how.to !== undefined && !how.stop && how.to - reached > WAY) {
         const to = reached + WAY;
-        const { machines: all } = await ask("go", { to, rows: live?.until(to) ?? null, note: live?.told, want: null });
+        const { machines: all } = await ask("go", { to, rows: live?.until(to) ?? null, note: live?.sent, want: null });
         const before = reached;
         reached = Math.max(...all.map(({ state }) => state.now_ps));
         at("failure").hidden = false;
@@ -324,7 +324,7 @@ function go(how) {
         if (reached === before) break;
       }
       const rows = live?.until(how.to ?? reached + (how.by ?? (how.step ? STEP : 0))) ?? null;
-      const seen = await ask("go", { ...how, rows, note: live?.told, want: wanted(performance.now()) });
+      const seen = await ask("go", { ...how, rows, note: live?.sent, want: wanted(performance.now()) });
       draw(seen);
       return seen;
     } catch (error) {
@@ -415,7 +415,7 @@ function draw(seen) {
 /** The machine that shows no picture: its number and the answer of the second worker; null without such a machine. */
 let heavy = null;
 
-/** Shows the reason for which a machine shows no picture, and the number of triangles in time. The search for the number runs once. */
+/** Shows the reason for which a machine shows no picture, and the number of primitives in time. The search for the number runs once. */
 async function tellHeavy(seen) {
   const number = seen.findIndex(({ missesAll, state }) => missesAll && !state.failure);
   at("heavy").hidden = number < 0;
@@ -423,8 +423,8 @@ async function tellHeavy(seen) {
   const mine = { number, found: null };
   heavy = mine;
   const name = names()[number];
-  const use = (triangles) => {
-    form.elements.triangles.value = triangles;
+  const use = (primitives) => {
+    form.elements.triangles.value = primitives;
     form.requestSubmit();
   };
   drawHeavy(at("heavy"), name, null, use);
@@ -434,7 +434,7 @@ async function tellHeavy(seen) {
     if (heavy === mine) drawHeavy(at("heavy"), name, mine.found, use);
   } catch {
     // Other machines were built, or the browser has no memory for a second worker. The page then shows only the reason.
-    if (heavy === mine) at("heavy").textContent = `${nameOf(name)} finishes no picture in time. Choose fewer triangles.`;
+    if (heavy === mine) at("heavy").textContent = `${nameOf(name)} finishes no picture in time. Choose fewer primitives.`;
   }
 }
 
@@ -495,10 +495,10 @@ function choose(name) {
 function drawLink(state) {
   // The motion of a live head is now a recording.
   if (live) motion = live.text();
-  const told = live ? { ...settings, "head.motion": RECORDED, "head.predict": "none" } : settings;
-  const address = addressOf(told);
+  const shared = live ? { ...settings, "head.motion": RECORDED, "head.predict": "none" } : settings;
+  const address = addressOf(shared);
   if (state.now_ps > 0) address.set("at", String(state.now_ps));
-  at("again").hidden = told["head.motion"] === RECORDED && motion === null;
+  at("again").hidden = shared["head.motion"] === RECORDED && motion === null;
   at("link").href = `#${address}`;
   const commands = pipelines().map((name) => {
     const all = live ? { ...settingsOf(name), "head.motion": RECORDED } : settingsOf(name);
@@ -830,7 +830,7 @@ at("copy").addEventListener("click", async () => {
 
 /** Starts the second worker for the volume, and returns a function that sends requests to this worker. */
 async function volumeWorker() {
-  // This ends a search for the number of triangles. The search starts again at the next update.
+  // This ends a search for the number of primitives. The search starts again at the next update.
   if (heavy && !heavy.found) heavy = null;
   return buildAside({ ...source, runs: source.runs.slice(0, 1) });
 }
@@ -989,8 +989,8 @@ at("to-start").addEventListener("click", () => {
 
 async function open() {
   const given = new URLSearchParams(location.hash.slice(1));
-  const told = storyOf(given);
-  if (told) return tell(told.name, told.step);
+  const story = storyOf(given);
+  if (story) return tell(story.name, story.step);
   if ([...given.keys()].length === 0) {
     fromAddress();
     return toStart();

@@ -121,7 +121,7 @@ export class Live {
     this.samples = [[0, 0]];
     this.now = [0, 0];
     /** Number of samples that the machines have received. */
-    this.told = 1;
+    this.sent = 1;
   }
 
   /** Turns the head to angles in degrees, to the left and upwards. */
@@ -132,23 +132,23 @@ export class Live {
 
   /** Returns the rows that the machines need for a run to an instant in picoseconds, or null if they have all rows. */
   until(ps) {
-    const first = this.told;
+    const first = this.sent;
     const last = Math.ceil((ps * RATE) / 1e12) + 1;
     while (this.samples.length <= last) {
       if (this.path) this.now = this.path(this.samples.length / RATE).map((angle) => Math.round(angle * 10));
       this.samples.push(this.now);
     }
     if (last < first) return null;
-    this.told = last + 1;
+    this.sent = last + 1;
     return rows(this.samples.slice(first, last + 1), first);
   }
 
-  /** Prepares a return of the machines to an instant at which they have the first `told` samples. Up to this instant, the machines get
+  /** Prepares a return of the machines to an instant at which they have the first `sent` samples. Up to this instant, the machines get
    *  the same samples again. */
-  again(ps, told = 1) {
-    this.samples.length = Math.min(this.samples.length, Math.max(told, Math.ceil((ps * RATE) / 1e12) + 2));
+  again(ps, sent = 1) {
+    this.samples.length = Math.min(this.samples.length, Math.max(sent, Math.ceil((ps * RATE) / 1e12) + 2));
     this.now = this.samples.at(-1);
-    this.told = told;
+    this.sent = sent;
   }
 
   /** Returns the motion as text for the address, or null if the motion is too long for the address. */

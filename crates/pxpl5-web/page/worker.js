@@ -60,7 +60,7 @@ const OPERATIONS = {
     if (stop) {
       const end = to ?? machines[0].now() + by;
       const stopped = seek(stop, end);
-      return { ...look(want), stopped };
+      return { ...snapshot(want), stopped };
     }
     if (step) machines.forEach((machine) => machine.step(step));
     const goal = to ?? (by ? Math.min(...machines.map((machine) => machine.now())) + by : 0);
@@ -73,7 +73,7 @@ const OPERATIONS = {
       worked += performance.now() - before;
       checkpoint(note);
     }
-    return look(want);
+    return snapshot(want);
   },
   /** Returns the number of primitives in a machine's scene, and the number that the machine could show in time. */
   fitting: ({ of }) => JSON.parse(machines[of].fitting()),
@@ -160,7 +160,7 @@ function seek({ what, value, key, piece }, end) {
 }
 
 /** Returns the requested data of all machines, and boards and timeline of one machine. */
-function look(want) {
+function snapshot(want) {
   // On the way to an instant, the page needs only the states.
   if (!want) return { machines: machines.map((machine) => ({ state: JSON.parse(machine.state()) })), blind: true };
   const seen = machines.map((machine, n) => {

@@ -72,10 +72,11 @@ pub(crate) fn regions(stepper: &Stepper) -> Value {
             "rectangle": place.grid.rectangle(place.region), "lines": lines,
         })
     };
-    let looks = || (0..record.renderers().len()).filter_map(|number| Some((number, stepper.renderer(number)?)));
-    let drawn = looks().filter_map(|(number, look)| Some(region("render", number, look.works(), look.drawing?)));
-    let copied = looks().filter_map(|(number, look)| {
-        let CopyTarget { frame_buffer, lines, grid, region: id, .. } = look.copying?.target;
+    let snapshots = || (0..record.renderers().len()).filter_map(|number| Some((number, stepper.renderer(number)?)));
+    let drawn = snapshots()
+        .filter_map(|(number, snapshot)| Some(region("render", number, snapshot.works(), snapshot.drawing?)));
+    let copied = snapshots().filter_map(|(number, snapshot)| {
+        let CopyTarget { frame_buffer, lines, grid, region: id, .. } = snapshot.copying?.target;
         Some(region("copy", number, true, RegionPlace { frame_buffer: Some(frame_buffer), lines, grid, region: id }))
     });
     drawn.chain(copied).collect()

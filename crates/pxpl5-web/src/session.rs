@@ -7,7 +7,7 @@ use crate::volume::Volume;
 use pxpl5_lab::limit::{LimitQuery, Model, about};
 use pxpl5_lab::{ExperimentFile, Plan};
 use pxpl5_machine::Board;
-use pxpl5_run::{BareHost, Experiment, Keep, Pause, Stepper};
+use pxpl5_run::{BareHost, Experiment, KeptRecords, Pause, Stepper};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Eye, SurfaceId};
 use serde_json::{Value, json};
@@ -39,7 +39,7 @@ impl Session {
         // Resolve all settings together. Then keep only recent records, because the page may run for hours.
         let plan = file.resolve().map_err(|error| error.to_string())?;
         let scene = plan.load_scene().map_err(|error| error.to_string())?;
-        let experiment = plan.experiment(scene).host(BareHost).record_traffic(true).keep(Keep::Recent);
+        let experiment = plan.experiment(scene).host(BareHost).record_traffic(true).keep(KeptRecords::Recent);
         // A motion named `live.csv` grows during the run.
         let live =
             files.0.get(LIVE).filter(|_| settings.lines().any(|line| line.trim() == format!("head.motion={LIVE}")));
@@ -125,7 +125,7 @@ impl Session {
         let experiment = self.stepper.experiment();
         let scene = experiment.scene();
         let primitives = scene.primitives() as u64;
-        let in_time = experiment.triangles_in_time().or_else(|| self.fitting_by_runs());
+        let in_time = experiment.primitives_in_time().or_else(|| self.fitting_by_runs());
         json!({"primitives": primitives, "in_time": in_time.filter(|in_time| *in_time < primitives)})
     }
 
@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_wrong_setting_is_refused_with_a_message() {
-        for (settings, said) in [
+        for (settings, expected) in [
             ("pipeline=slat", "slats"),
             ("pipeline=slats\nscene=migg", "there is no scene `migg`; did you mean `mig`?"),
             ("pipeline=slats\nscene=mig\nfields=0", "fields"),
@@ -252,7 +252,7 @@ mod tests {
             ("pipeline=slats\ndisplay=arp", "arp"),
         ] {
             let error = new(settings).expect_err(settings);
-            assert!(error.contains(said), "{settings}: {error}");
+            assert!(error.contains(expected), "{settings}: {error}");
         }
     }
 

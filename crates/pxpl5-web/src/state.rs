@@ -46,7 +46,7 @@ fn back(stepper: &Stepper) -> Option<Time> {
 }
 
 pub(crate) fn misses_all(stepper: &Stepper) -> bool {
-    let run = stepper.so_far();
+    let run = stepper.observed_run();
     run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
 }
 
@@ -54,7 +54,7 @@ pub(crate) fn misses_all(stepper: &Stepper) -> bool {
 /// pictures. Shares are 0 to 1. `utilisation` is null at time zero, and `path` is null before the first complete
 /// picture.
 pub(crate) fn limits(stepper: &Stepper) -> Value {
-    let path = CriticalPath::so_far(&stepper.so_far());
+    let path = CriticalPath::so_far(&stepper.observed_run());
     let path = path.map(|path| {
         let parts = path.parts.iter();
         let parts: Vec<Value> = parts
@@ -89,19 +89,20 @@ fn line(stepper: &Stepper, board: Board, says: &str) -> Value {
     match board {
         // A renderer is busy while it executes commands, or while a region is being copied.
         Board::Renderer(number) => {
-            let look = stepper.renderer(number);
-            let fifo = look.and_then(|look| look.fifo_words).unwrap_or_default();
-            let copies = look.is_some_and(|look| look.copying.is_some());
-            let executes = look.is_some_and(|look| look.works());
+            let snapshot = stepper.renderer(number);
+            let fifo = snapshot.and_then(|snapshot| snapshot.fifo_words).unwrap_or_default();
+            let copies = snapshot.is_some_and(|snapshot| snapshot.copying.is_some());
+            let executes = snapshot.is_some_and(|snapshot| snapshot.works());
             let stage = if copies { Some("copy") } else { executes.then_some("render") };
             let works = stage.is_some();
-            let depth = look.map_or(0, |look| look.fifo_depth_words);
+            let depth = snapshot.map_or(0, |snapshot| snapshot.fifo_depth_words);
             json!({"name": name, "kind": "renderer", "does": says, "works": works, "stage": stage, "fifo": fifo, "depth": depth})
         }
         Board::Display(_) | Board::Ring => json!({"name": name, "kind": "display", "does": says, "works": true}),
         Board::Host | Board::Gp(_) => {
-            let look = stepper.processor(board);
-            let works = look.is_some_and(|look| look.programs.iter().any(|program| program.work_left.is_some()));
+            let snapshot = stepper.processor(board);
+            let works =
+                snapshot.is_some_and(|snapshot| snapshot.programs.iter().any(|program| program.work_left.is_some()));
             let stage = diagram::stage(stepper, board);
             json!({"name": name, "kind": "processor", "does": says, "works": works, "stage": stage})
         }
@@ -117,8 +118,8 @@ pub(crate) fn board(stepper: &Stepper, board: Board) -> Option<Vec<String>> {
     let mut lines = vec![stepper.description(board)?];
     lines.extend(stepper.details(board));
     if let Board::Renderer(number) = board {
-        let look = stepper.renderer(number)?;
-        lines.push(format!("executing commands so far: {}", pxpl5_run::in_us(look.busy)));
+        let snapshot = stepper.renderer(number)?;
+        lines.push(format!("executing commands so far: {}", pxpl5_run::in_us(snapshot.busy)));
     }
     lines.extend(code::lines(stepper, board));
     Some(lines)
@@ -137,7 +138,7 @@ pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Optio
 }
 
 pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
-    let run = stepper.so_far();
+    let run = stepper.observed_run();
     let newest = run.pictures().iter().rev().find(|times| times.is_shown() && times.shown_at <= stepper.now());
     let options = TimelineOptions {
         picture: newest.map(|times| times.picture),
@@ -151,7 +152,7 @@ pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
 /// Returns the parts of the latency of the last complete pictures in milliseconds, the newest picture last.
 pub(crate) fn latencies(stepper: &Stepper, most: usize) -> Value {
     let parts = LATENCY_PARTS.iter();
-    let pictures = stepper.so_far().last_latencies(most);
+    let pictures = stepper.observed_run().last_latencies(most);
     let rows = pictures.iter().map(|latency| {
         let spans: Vec<f64> = latency.spans.iter().map(|span| span.as_ms()).collect();
         json!({"picture": latency.picture.0, "ms": spans, "total_ms": latency.end().since(latency.begin).as_ms()})

@@ -23,6 +23,6 @@ pub async fn host(
     next_report: impl Fn(Time) -> Option<Time>,
     mut view_of: impl FnMut(ViewNumber, Time) -> FrameView,
 ) -> Result<(), Fault> {
-    let words = |view, known| view_of(view, known).to_words();
+    let words = |view, reports_until| view_of(view, reports_until).to_words();
     send_as_tracked(gp, config.processors[0], timing, Some(Time::ZERO), next_report, words).await
 }

@@ -97,7 +97,7 @@ fn small_displays_of_unusual_size_are_drawn_as_in_the_reference_model() {
 }
 
 #[test]
-fn any_phase_and_either_direction_partition_space() {
+fn the_slices_of_any_phase_and_direction_cover_each_point_once() {
     for rotation in [Rotation::XToZ, Rotation::ZToX] {
         for phase in [0.0, 0.3, -2.0, 5.0] {
             let config = SweptConfig { phase, rotation, ..config(36, 96, 64, SliceClip::ShaderPlanes, ORTHOGRAPHIC) };

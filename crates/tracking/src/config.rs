@@ -303,8 +303,8 @@ parameter_table! {
         /// Number of reports from the older to the newer of the two poses whose difference gives a velocity. With 1,
         /// the two poses are from successive reports.
         baseline: 4, "reports", Assumed, 1..=16, "noise of the velocity falls with it, delay rises";
-        /// Longest time ahead for which a predictor extrapolates. For later instants the predictor returns the last
-        /// reported pose.
+        /// Longest time for which a predictor extrapolates, forwards or backwards from the newest measurement. For other
+        /// instants the predictor returns its estimate for the instant of the newest measurement.
         horizon: f64 = 500.0, "ms", Assumed, 1.0..=10000.0, "2.5 times the longest measured prediction";
     }
 }

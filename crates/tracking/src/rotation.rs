@@ -126,7 +126,7 @@ mod tests {
         }
 
         #[test]
-        fn both_signs_of_a_quaternion_have_one_log(r in vector(3.0)) {
+        fn both_signs_of_a_quaternion_have_the_same_log(r in vector(3.0)) {
             prop_assert_eq!(log(exp(r)), log(-exp(r)));
         }
 

@@ -169,7 +169,7 @@ fn a_frame_that_never_lights_is_an_error() {
 /// Each measurement detects errors of the other. They disagree if they differ by more than the limits, 8.3 and 7.6 ms
 /// here.
 #[test]
-fn an_error_of_one_measurement_is_found_by_the_other() {
+fn each_measurement_detects_errors_of_the_other_measurement() {
     let rig = PendulumRig::assumed();
     let tracker = TrackerModel::new(noiseless(TrackerConfig::fastrak())).unwrap();
     let truth = inside(&rig, &tracker, 50);

@@ -89,7 +89,7 @@ fn before_the_first_report_the_prediction_is_the_identity() {
 }
 
 #[test]
-fn beyond_the_horizon_the_prediction_is_the_last_pose() {
+fn a_prediction_beyond_the_horizon_is_the_last_pose() {
     for kind in PredictorKind::ALL {
         let mut predictor = build(kind, &TrackerConfig::ideal());
         let pan = Pan::at(100.0);
@@ -101,6 +101,41 @@ fn beyond_the_horizon_the_prediction_is_the_last_pose() {
         assert_eq!(beyond, predictor.predict(u64::MAX));
         assert_eq!(at_horizon.angle_deg(&beyond) < 1.0, kind == PredictorKind::None);
     }
+}
+
+/// A head pans at 100 degrees per second. The reports cover two seconds, which is more than the horizon of 500 ms.
+#[test]
+fn a_prediction_beyond_the_horizon_in_the_past_is_the_last_pose() {
+    for kind in PredictorKind::ALL {
+        let mut predictor = build(kind, &TrackerConfig::ideal());
+        let pan = Pan::at(100.0);
+        (0..2_000).for_each(|i| predictor.observe(&report(i * PS_PER_MS, pan.pose(i * PS_PER_MS))));
+        let newest_ps = 1_999 * PS_PER_MS;
+        let horizon_ps = 500 * PS_PER_MS;
+        let at_newest = predictor.predict(newest_ps);
+        for before in [newest_ps - horizon_ps - 1, newest_ps - 2 * horizon_ps, 0] {
+            assert_eq!(predictor.predict(before), at_newest, "{kind:?} {before}");
+        }
+        let at_horizon = predictor.predict(newest_ps - horizon_ps);
+        let turned_deg = if kind == PredictorKind::None { 0.0 } else { 50.0 };
+        assert!((at_horizon.angle_deg(&at_newest) - turned_deg).abs() < 1.0, "{kind:?}");
+    }
+}
+
+/// Position and orientation of a report can be measured at different instants. The limit applies to each of the two.
+#[test]
+fn the_horizon_counts_from_the_measurement_of_position_and_orientation_separately() {
+    let mut predictor = build(PredictorKind::ConstantVelocity, &TrackerConfig::ideal());
+    let pose = |i: u64| Pose { position: DVec3::X * (i as f64 / 1e3), ..Pan::at(100.0).pose(i * PS_PER_MS) };
+    let earlier_ps = 100 * PS_PER_MS;
+    for i in 0..50 {
+        let measured_ps = earlier_ps + i * PS_PER_MS;
+        predictor.observe(&TrackerReport { position_measured_ps: i * PS_PER_MS, ..report(measured_ps, pose(i)) });
+    }
+    // The instant is 500 ms after the measurement of the orientation and 600 ms after that of the position.
+    let predicted = predictor.predict(earlier_ps + 49 * PS_PER_MS + 500 * PS_PER_MS);
+    assert!((predicted.position - pose(49).position).length() < 1e-9, "{:?}", predicted.position);
+    assert!((predicted.angle_deg(&pose(49)) - 50.0).abs() < 1.0);
 }
 
 #[test]

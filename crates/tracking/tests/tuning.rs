@@ -34,7 +34,7 @@ fn error(
 }
 
 #[test]
-fn on_a_still_head_a_tuned_filter_has_no_greater_error_than_no_prediction() {
+fn a_tuned_filter_is_at_least_as_accurate_as_no_prediction_on_a_still_head() {
     let still = Still(Pose::IDENTITY);
     for tracker in [model(TrackerConfig::optical_ceiling()), model(TrackerConfig::fastrak())] {
         for interval_ps in [50, 100, 145, 250].map(|ms| ms * PS_PER_MS) {

@@ -107,6 +107,6 @@ pub(super) fn named(text: &str) -> Option<Name> {
 fn integer(text: &str) -> Option<Name> {
     const NAMES: [&str; 12] =
         ["adds", "subs", "addu", "subu", "and", "andnot", "or", "xor", "shl", "shr", "shra", "orh"];
-    let mnemonic = NAMES.into_iter().find(|known| *known == text)?;
+    let mnemonic = NAMES.into_iter().find(|candidate| *candidate == text)?;
     Some(name(Unit::Integer, mnemonic, Width::Integer, 2, 1))
 }

@@ -1,5 +1,7 @@
 //! Instruction scheduler: combines floating-point and core operations into pairs, one pair per clock.
 
+mod floating;
+
 use super::machine::{Unit, Width};
 use super::parse::{Operation, Source};
 use super::settings::Settings;
@@ -11,8 +13,12 @@ const DOUBLE_STAGES: usize = 2;
 /// Number of clocks after a prefetch in which the scheduler places no memory access, because a cache-line fill takes
 /// this time.
 const PREFETCH: u32 = 18;
-/// Greatest number of stores that can wait for the bus.
+/// Base register of stores that the scheduler expects to miss the data cache. By convention, a kernel writes its output,
+/// the command words, with this base.
+const OUTPUT_BASE: &str = "r18";
+/// Greatest number of stores with the base [`OUTPUT_BASE`] that can wait for the bus.
 const STORES: u32 = 2;
+/// Number of clocks for which a store with the base [`OUTPUT_BASE`] uses the bus.
 const STORE: u32 = 3;
 /// The scheduler fails with an error if it issues no operation for this number of successive clocks.
 const PATIENCE: u32 = 80;
@@ -214,7 +220,6 @@ impl<'a> Placer<'a> {
 
     fn unit_accepts(&self, n: usize) -> bool {
         let operation = &self.operations[n];
-        let base_is_command = matches!(&operation.address, Some((_, Source::Text(base))) if base == "r18");
         // A load directly after a store would freeze (row 17).
         let follows_store = self.last_store.is_some_and(|at| at + 1 == self.now);
         match operation.name.unit {
@@ -225,7 +230,7 @@ impl<'a> Placer<'a> {
             Unit::Load => self.memory_free <= self.now && !follows_store,
             Unit::Prefetch => self.memory_free <= self.now && !follows_store && self.bus_free <= self.now,
             Unit::Store => {
-                let room = !base_is_command || self.bus_free < self.now + STORES * STORE;
+                let room = !stores_output(operation) || self.bus_free < self.now + STORES * STORE;
                 self.memory_free <= self.now && room
             }
         }
@@ -308,173 +313,6 @@ impl<'a> Placer<'a> {
         if behind == 0 { 0 } else { self.settings.reserve + behind * self.settings.slope / 64 }
     }
 
-    // ---- floating-point half
-
-    fn floating_half(&mut self) -> String {
-        let best = self.candidates(true).into_iter().next();
-        let drain = self.most_urgent_drain();
-        match (best, drain) {
-            (Some(n), Some((height, unit))) if height > self.heights[n] + self.settings.eagerness => self.drain(unit),
-            (Some(n), _) => self.issue_floating(n),
-            (None, Some((_, unit))) => self.drain(unit),
-            (None, None) => "fnop".to_owned(),
-        }
-    }
-
-    /// Returns the unit (adder or multiplier) whose pipe contains the most urgent value, and the urgency of this value
-    /// in clocks. Returns `None` if no pipe with values can be pushed.
-    fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
-        let double = self.multiplies_double;
-        let stages = if double { DOUBLE_STAGES } else { STAGES };
-        // Compare both pipes. A pipe without values is not drained.
-        let adder = (self.urgency(&self.adder), Unit::Adder, self.can_push(&self.adder, STAGES, None));
-        let free = self.multiplier_free <= self.now;
-        let multiplier = (
-            self.urgency(&self.multiplier),
-            Unit::Multiplier { double },
-            free && self.can_push(&self.multiplier, stages, None),
-        );
-        [adder, multiplier]
-            .into_iter()
-            .filter(|(_, _, possible)| *possible)
-            .filter_map(|(height, unit, _)| Some((height?, unit)))
-            .max_by_key(|(height, _)| *height)
-    }
-
-    /// Returns the urgency of a pipe in clocks: the longest path from one of its values to the end of the linear
-    /// stretch.
-    fn urgency(&self, pipe: &[Option<usize>]) -> Option<u32> {
-        pipe.iter().flatten().map(|n| self.heights[*n].saturating_sub(self.operations[*n].name.latency)).max()
-    }
-
-    fn drain(&mut self, unit: Unit) -> String {
-        let (mnemonic, dest) = match unit {
-            Unit::Adder => {
-                let dest = self.push_adder(None);
-                (self.with_multiplier("pfadd.ss"), dest)
-            }
-            _ => {
-                let double = self.multiplies_double;
-                let dest = self.push_multiplier(None, double, None);
-                (self.with_adder(if double { "pfmul.dd" } else { "pfmul.ss" }), dest)
-            }
-        };
-        format!("{mnemonic} f0, f0, {dest}")
-    }
-
-    fn issue_floating(&mut self, n: usize) -> String {
-        let operation = &self.operations[n];
-        let mnemonic = operation.name.mnemonic;
-        // Row 9 would delay the latest result as first source. Multiplication is commutative, so the sources can be
-        // swapped.
-        let swapped =
-            matches!(operation.name.unit, Unit::Multiplier { .. }) && self.is_last_result(&operation.sources[0]);
-        let mut texts: Vec<String> = operation.sources.iter().map(|source| self.floating_text(source)).collect();
-        if swapped {
-            texts.swap(0, 1);
-        }
-        let (mnemonic, dest) = match operation.name.unit {
-            Unit::Adder => {
-                let dest = self.push_adder(Some(n));
-                (self.with_multiplier(mnemonic), dest)
-            }
-            Unit::Multiplier { double } => {
-                let first = self.first_source_register(n);
-                let dest = self.push_multiplier(Some(n), double, first);
-                (self.with_adder(mnemonic), dest)
-            }
-            unit => {
-                let dest = self.place(n, self.now + 2);
-                self.last_result = None;
-                if unit == Unit::Seed {
-                    self.after_seed = STAGES;
-                }
-                (mnemonic, dest)
-            }
-        };
-        self.finish_issue(n);
-        format!("{mnemonic} {}, {dest}", texts.join(", "))
-    }
-
-    /// Turns a single-precision addition into a dual operation, which also pushes the multiplier's pipe. Returns
-    /// `mnemonic` unchanged for all other operations, and if the push would move no value or lose a result.
-    fn with_multiplier(&mut self, mnemonic: &'static str) -> &'static str {
-        let dual = match mnemonic {
-            "pfadd.ss" => "ra1p2.ss",
-            "pfsub.ss" => "ra1s2.ss",
-            _ => return mnemonic,
-        };
-        // The push must move values and must not lose a result.
-        let waits = self.multiplier.iter().any(Option::is_some) && self.multiplier[0].is_none();
-        if self.multiplies_double || !waits || self.multiplier_free > self.now {
-            return mnemonic;
-        }
-        self.multiplier.rotate_left(1);
-        dual
-    }
-
-    /// Turns a multiplication into a dual operation, which also pushes the adder's pipe. Returns `mnemonic` unchanged
-    /// for all other operations, and if the push would move no value or lose a result.
-    fn with_adder(&mut self, mnemonic: &'static str) -> &'static str {
-        let dual = match mnemonic {
-            "pfmul.ss" => "mm12mpm.ss",
-            "pfmul.sd" => "mm12mpm.sd",
-            "pfmul.dd" => "mm12mpm.dd",
-            _ => return mnemonic,
-        };
-        if self.after_seed > 0 {
-            self.after_seed -= 1;
-            return mnemonic;
-        }
-        if self.adder[0].is_some() || self.adder.iter().all(Option::is_none) {
-            return mnemonic;
-        }
-        self.adder.rotate_left(1);
-        dual
-    }
-
-    fn floating_text(&self, source: &Source) -> String {
-        match source {
-            Source::Text(text) => text.clone(),
-            value => format!("f{}", self.register(value).unwrap_or(0)),
-        }
-    }
-
-    fn push_adder(&mut self, n: Option<usize>) -> String {
-        let leaving = self.adder.remove(0);
-        self.adder.push(n);
-        self.leave(leaving, None)
-    }
-
-    /// Pushes an operation into the multiplier's pipe. A double-precision operation skips the first of the three
-    /// stages.
-    fn push_multiplier(&mut self, n: Option<usize>, double: bool, first_source: Option<u8>) -> String {
-        let at = if double { STAGES - DOUBLE_STAGES } else { 0 };
-        self.multiplies_double = double;
-        // The oldest value leaves the pipe, and the new value enters at the end.
-        let leaving = self.multiplier.remove(at);
-        self.multiplier.push(n);
-        if double {
-            self.multiplier_free = self.now + 2;
-        }
-        self.leave(leaving, first_source)
-    }
-
-    /// Moves a value from a pipe to registers other than `but`. Returns the text of the destination register.
-    fn leave(&mut self, value: Option<usize>, but: Option<u8>) -> String {
-        self.last_result = None;
-        let Some(value) = value else { return "f0".to_owned() };
-        let count = self.width(value).registers();
-        let Some(register) = self.floats.find(count, self.now, but) else { return "f0".to_owned() };
-        self.floats.take(register, count);
-        self.places[value] = Place::Ready { at: self.now + 1, register };
-        self.last_result = Some((register, count));
-        self.last_result_at = self.now;
-        format!("f{register}")
-    }
-
-    // ---- core half
-
     fn core_half(&mut self) -> String {
         // The candidates are sorted by urgency. Without a candidate, the core half is empty.
         let Some(n) = self.candidates(false).into_iter().next() else { return "nop".to_owned() };
@@ -518,6 +356,13 @@ impl<'a> Placer<'a> {
         }
     }
 
+    fn floating_text(&self, source: &Source) -> String {
+        match source {
+            Source::Text(text) => text.clone(),
+            value => format!("f{}", self.register(value).unwrap_or(0)),
+        }
+    }
+
     fn core_text(&self, source: &Source) -> String {
         let Source::Value(value, _) = source else { return self.floating_text(source) };
         let file = if self.width(*value) == Width::Integer { 'r' } else { 'f' };
@@ -529,7 +374,7 @@ impl<'a> Placer<'a> {
         match operation.name.unit {
             Unit::Store => {
                 self.last_store = Some(self.now);
-                if matches!(&operation.address, Some((_, Source::Text(base))) if base == "r18") {
+                if stores_output(operation) {
                     self.bus_free = self.bus_free.max(self.now) + STORE;
                 }
             }
@@ -581,6 +426,10 @@ impl<'a> Placer<'a> {
         }
         self.places[value] = Place::Gone;
     }
+}
+
+fn stores_output(operation: &Operation) -> bool {
+    matches!(&operation.address, Some((_, Source::Text(base))) if base == OUTPUT_BASE)
 }
 
 /// Returns the longest path from each operation to the end of the linear stretch, in clocks. If `shake` is not 0, the

@@ -1,8 +1,8 @@
 //! Comparisons of pictures that must be bit-identical.
 
-use crate::look::WalkFaces;
 use crate::settings::{SourceKind, WalkSettings};
 use crate::simulation::Simulation;
+use crate::walk_faces::WalkFaces;
 use crate::world::World;
 use address_recalculation::{CubeFace, FaceSet, TexelAddress};
 use glam::{DQuat, DVec3};

@@ -357,11 +357,11 @@ fn walk_line(text: &mut String, walked: &NamedWalk) {
     let joined = |numbers: Vec<String>| numbers.join(", ");
     let rates = joined(report.memories.iter().map(|memory| format!("{:.2}", memory.updates_hz)).collect());
     let segments = joined(report.memories.iter().map(|memory| format!("{:.1}", memory.segments)).collect());
-    let tears = report.tears_px.after.map_or_else(
+    let tears = report.tears_texels.after.map_or_else(
         || "none".to_owned(),
         |tears| format!("{}, {}, {}", texels(tears.p50), texels(tears.p95), texels(tears.max)),
     );
-    let stretch = report.tears_px.stretch.map_or_else(|| "-".to_owned(), |stretch| texels(stretch.max));
+    let stretch = report.tears_texels.stretch.map_or_else(|| "-".to_owned(), |stretch| texels(stretch.max));
     let _ = writeln!(
         text,
         "| {} | {rates} | {segments} | {:.0} | {:.1} % | {} | {tears} | {stretch} |",

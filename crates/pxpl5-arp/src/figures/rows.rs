@@ -113,7 +113,7 @@ fn table_2(all: &Experiments) -> Vec<FigureRow> {
 
 fn tears(all: &Experiments) -> Vec<FigureRow> {
     // Walk 0 has tears, walk 1 has warped segments, and walk 2 has uncut objects.
-    let widest = |walk: usize| all.walks[walk].report.tears_px.after.map_or(0.0, |tears| tears.max);
+    let widest = |walk: usize| all.walks[walk].report.tears_texels.after.map_or(0.0, |tears| tears.max);
     let [warped, uncut] = [1, 2].map(widest);
     let pixels = widest(0) * all.walks[0].settings.texel_deg() / PIXEL_DEG;
     let before =

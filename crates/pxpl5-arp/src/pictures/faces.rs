@@ -1,6 +1,6 @@
 //! Picture of the six faces as an unfolded cube.
 
-use crate::look::rgb;
+use crate::walk_faces::rgb;
 use address_recalculation::{CubeFace, FaceSet, TexelAddress};
 use image::RgbImage;
 

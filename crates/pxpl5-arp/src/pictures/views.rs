@@ -3,8 +3,8 @@
 use super::plan::MEMORY_COLOURS;
 use crate::content::angle;
 use crate::cube_faces::CubeView;
-use crate::look::{WalkFaces, picture, rgb};
 use crate::simulation::Simulation;
+use crate::walk_faces::{WalkFaces, picture, rgb};
 use address_recalculation::{ArpConfig, Lens, LensPicture};
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};

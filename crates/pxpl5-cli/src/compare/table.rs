@@ -135,8 +135,13 @@ fn best(comparison: &Comparison) -> String {
     let Some(best) = comparison.best() else {
         return "\nNo row showed every picture that was due.\n".to_owned();
     };
+    // References are never the best, even if their error is smaller.
+    let references: Vec<&str> =
+        comparison.pipelines.iter().filter(|row| !row.is_ranked()).map(|row| row.pipeline.as_str()).collect();
+    let without =
+        if references.is_empty() { String::new() } else { format!(" (not ranked: {})", references.join(", ")) };
     format!(
-        "\nLeast error of the pipelines that showed every picture: {}, {} px ({} % interval {}); all over the fields from {} on.\n",
+        "\nLeast error of the pipelines that showed every picture{without}: {}, {} px ({} % interval {}); all over the fields from {} on.\n",
         best.pipeline,
         number(best.error.mean_px.mean, 2),
         percent(comparison.confidence),

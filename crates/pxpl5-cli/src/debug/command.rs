@@ -156,7 +156,7 @@ fn whole((board, rest): (Board, &[&str])) -> Result<Board, String> {
 
 fn pane_of(name: &str) -> Option<Pane> {
     // The pane shows all that a board named "ring" could show, so "show ring" names the pane.
-    Pane::ALL.iter().find(|(known, _)| *known == name).map(|(_, pane)| *pane)
+    Pane::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, pane)| *pane)
 }
 
 fn show(words: &[&str]) -> Result<Command, String> {

@@ -96,16 +96,16 @@ impl Condition {
             Self::Swap => observation.swaps.len() > before.swaps,
             Self::Region => observation.arrivals.len() > before.arrivals,
             Self::Fifo(renderer, comparison) => {
-                let words = stepper.renderer(*renderer).and_then(|look| look.fifo_words);
+                let words = stepper.renderer(*renderer).and_then(|snapshot| snapshot.fifo_words);
                 words.is_some_and(|words| comparison.holds(u64::from(words)))
             }
             Self::Inbox(board, comparison) => {
-                stepper.processor(*board).is_some_and(|look| comparison.holds(look.inbox.len() as u64))
+                stepper.processor(*board).is_some_and(|snapshot| comparison.holds(snapshot.inbox.len() as u64))
             }
             Self::Channels(comparison) => comparison.holds(stepper.channels().len() as u64),
-            Self::Waits(board, what) => stepper
-                .processor(*board)
-                .is_some_and(|look| look.programs.iter().any(|program| program.waits_for.starts_with(what.as_str()))),
+            Self::Waits(board, what) => stepper.processor(*board).is_some_and(|snapshot| {
+                snapshot.programs.iter().any(|program| program.waits_for.starts_with(what.as_str()))
+            }),
         }
     }
 }

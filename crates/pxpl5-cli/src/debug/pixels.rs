@@ -59,10 +59,10 @@ pub(super) fn enabled(stepper: &Stepper, renderer: u64) -> Result<String, String
 fn surface(stepper: &Stepper, label: &str) -> Result<SurfaceId, String> {
     let surfaces: Vec<(SurfaceId, &str)> =
         stepper.record().surfaces().map(|(id, surface)| (id, surface.label)).collect();
-    let found = surfaces.iter().find(|(_, known)| *known == label).map(|(id, _)| *id);
+    let found = surfaces.iter().find(|(_, candidate)| *candidate == label).map(|(id, _)| *id);
     found.ok_or_else(|| {
-        let known: Vec<&str> = surfaces.iter().map(|(_, label)| *label).collect();
-        format!("surface: expected {}, found `{label}`", known.join(" or "))
+        let labels: Vec<&str> = surfaces.iter().map(|(_, label)| *label).collect();
+        format!("surface: expected {}, found `{label}`", labels.join(" or "))
     })
 }
 

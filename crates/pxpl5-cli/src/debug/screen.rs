@@ -89,8 +89,8 @@ fn recall(talk: &mut ScreenState, back: usize) {
 
 fn say(session: &mut Session, talk: &mut ScreenState, line: &str) {
     talk.log.push(format!("> {line}"));
-    let said = session.execute_line(line).unwrap_or_else(|error| error);
-    talk.log.extend(said.lines().map(str::to_owned));
+    let answer = session.execute_line(line).unwrap_or_else(|error| error);
+    talk.log.extend(answer.lines().map(str::to_owned));
     // Keep the log bounded by dropping its oldest lines.
     let gone = talk.log.len().saturating_sub(LOG);
     talk.log.drain(..gone);

@@ -63,12 +63,12 @@ pub(super) fn execute(program: &Program, options: &RunOptions) -> Result<(String
 fn place(program: &Program, option: Option<&str>, label: &str, otherwise: u32) -> Result<u32, String> {
     match option {
         None => Ok(program.symbol(label).unwrap_or(otherwise)),
-        Some(text) => known(program, text),
+        Some(text) => parse_address(program, text),
     }
 }
 
 /// Parses a label, an address, or a label with an offset in bytes, such as `table+8`.
-fn known(program: &Program, text: &str) -> Result<u32, String> {
+fn parse_address(program: &Program, text: &str) -> Result<u32, String> {
     if let Some(at) = program.symbol(text) {
         return Ok(at);
     }
@@ -86,10 +86,10 @@ fn known(program: &Program, text: &str) -> Result<u32, String> {
 
 /// Parses a memory range: `PLACE` or `PLACE:WORDS`. Returns the address of the range and the number of words.
 fn span(program: &Program, text: &str) -> Result<(u32, usize), String> {
-    let Some((at, words)) = text.rsplit_once(':') else { return Ok((known(program, text)?, 1)) };
+    let Some((at, words)) = text.rsplit_once(':') else { return Ok((parse_address(program, text)?, 1)) };
     let count = words.parse().ok().filter(|count| (1..=65_536).contains(count));
     let count = count.ok_or_else(|| format!("--show: expected 1 to 65536 words after the colon, found `{words}`"))?;
-    Ok((known(program, at)?, count))
+    Ok((parse_address(program, at)?, count))
 }
 
 fn read(ram: &Ram, (address, count): (u32, usize)) -> Result<Span, String> {

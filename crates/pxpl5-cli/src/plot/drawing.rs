@@ -45,7 +45,7 @@ fn series_of(by: &[String], groups: &[Group], names: Option<&[String]>) -> Chart
     let across = |group: &Group| match names {
         Some(names) => {
             let name = text(&group.x);
-            names.iter().position(|known| *known == name).map_or(f64::NAN, |place| place as f64)
+            names.iter().position(|candidate| *candidate == name).map_or(f64::NAN, |place| place as f64)
         }
         None => group.x.as_f64().unwrap_or(f64::NAN),
     };

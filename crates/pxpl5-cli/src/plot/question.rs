@@ -55,8 +55,8 @@ impl Counts {
             RowsKind::Comparison => ["due", "not_shown", "error.n"],
         };
         let [due, not_shown, samples] = names.map(|name| {
-            let mut known = rows.iter().filter_map(|row| value(row, name)?.as_f64()).peekable();
-            known.peek().is_some().then(|| known.sum::<f64>() as u64)
+            let mut values = rows.iter().filter_map(|row| value(row, name)?.as_f64()).peekable();
+            values.peek().is_some().then(|| values.sum::<f64>() as u64)
         });
         Self { due, not_shown, samples }
     }
@@ -95,13 +95,13 @@ impl Question {
     }
 
     fn check_names(&self, results: &ResultRows) -> Result<(), CliError> {
-        let known: BTreeSet<&str> = results.rows.iter().flatten().map(|(key, _)| key.as_str()).collect();
+        let columns: BTreeSet<&str> = results.rows.iter().flatten().map(|(key, _)| key.as_str()).collect();
         let only = self.only.iter().map(|(name, _)| name);
         for name in [&self.x, &self.y].into_iter().chain(&self.by).chain(only) {
             // A misspelled column gets the most similar name as advice.
-            if !known.contains(name.as_str()) {
-                let near = nearest(name, known.iter().copied()).unwrap_or("nothing");
-                let all = known.iter().copied().collect::<Vec<_>>().join(", ");
+            if !columns.contains(name.as_str()) {
+                let near = nearest(name, columns.iter().copied()).unwrap_or("nothing");
+                let all = columns.iter().copied().collect::<Vec<_>>().join(", ");
                 return Err(CliError::usage(format!("no row has `{name}`; did you mean `{near}`? There are: {all}")));
             }
         }

@@ -20,12 +20,12 @@ pub(super) fn of(files: &Files<'_>) -> Result<Option<Vec<PageTable>>, CliError> 
 }
 
 fn sweep(results: &ResultRows) -> PageTable {
-    let told = results.rows.len().min(MOST_ROWS);
-    let flat: Vec<Vec<(String, String)>> = results.rows[..told].iter().map(cells).collect();
+    let shown = results.rows.len().min(MOST_ROWS);
+    let flat: Vec<Vec<(String, String)>> = results.rows[..shown].iter().map(cells).collect();
     let points = results.about.get("points").and_then(Value::as_u64).unwrap_or_default();
     let mut about = vec![format!("{} of {points} points.", results.rows.len())];
-    if told < results.rows.len() {
-        about.push(format!("The first {told} are shown; {ROWS_FILE} and results.csv hold all."));
+    if shown < results.rows.len() {
+        about.push(format!("The first {shown} are shown; {ROWS_FILE} and results.csv hold all."));
     }
     about.extend(results.about.get("settings").map(|settings| format!("All points: {}", pairs(settings))));
     let title = results.about.get("title").and_then(Value::as_str).unwrap_or("Sweep");

@@ -99,8 +99,8 @@ const COLUMNS: [Column; 16] = [
 /// around the axis. Rings in which exact clipping lights no pixel are left out.
 fn over_exact(row: &VariantRow, rings: std::ops::Range<usize>) -> String {
     let rings = row.brightness_over_exact.get(rings).unwrap_or_default();
-    let known: Vec<f64> = rings.iter().flatten().copied().collect();
-    if known.is_empty() { "-".to_owned() } else { format!("{:.2}", known.iter().sum::<f64>() / known.len() as f64) }
+    let all: Vec<f64> = rings.iter().flatten().copied().collect();
+    if all.is_empty() { "-".to_owned() } else { format!("{:.2}", all.iter().sum::<f64>() / all.len() as f64) }
 }
 
 fn rows_csv(comparison: &VolumeComparison) -> String {

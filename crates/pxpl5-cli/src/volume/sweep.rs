@@ -134,14 +134,14 @@ impl VolumeSweep {
         }
         let dark = Volume::draw_commands(&settings, "dark", CommandBuffer::default(), &OneThread)?;
         let report = serde_json::to_value(dark.report()).map_err(CliError::failure)?;
-        let known = |name: &str| {
+        let is_measured = |name: &str| {
             let top = name.split('.').next().unwrap_or_default();
             let is_number = value_of(&report, name).is_some_and(|value| value.is_number() || value.is_null());
             // Quantities that only some volumes have are null in the report of an empty volume.
             let is_of_some = report.get(top).is_some_and(Value::is_null);
             name != "host_seconds" && (is_number || is_of_some)
         };
-        if let Some(name) = self.measure.iter().find(|name| !known(name)) {
+        if let Some(name) = self.measure.iter().find(|name| !is_measured(name)) {
             let numbers = report.as_object().into_iter().flatten().filter(|(_, value)| value.is_number());
             let names: Vec<&str> =
                 numbers.map(|(name, _)| name.as_str()).filter(|name| *name != "host_seconds").collect();

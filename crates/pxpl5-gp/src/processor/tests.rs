@@ -172,8 +172,8 @@ fn programs_are_listed_by_address_with_summed_clocks() {
         clocks += span.0 / Processor::CLOCK.0;
         assert_eq!(processor.clocks(), clocks);
         assert!(processor.program().is_some_and(|last| Arc::ptr_eq(last, program)));
-        let told: Vec<_> = processor.programs().map(Arc::as_ptr).collect();
-        assert_eq!(told, expected.iter().map(|program| Arc::as_ptr(program)).collect::<Vec<_>>());
+        let found: Vec<_> = processor.programs().map(Arc::as_ptr).collect();
+        assert_eq!(found, expected.iter().map(|program| Arc::as_ptr(program)).collect::<Vec<_>>());
     };
     called(&first, &[&first]);
     called(&second, &[&second, &first]);

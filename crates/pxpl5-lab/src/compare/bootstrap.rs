@@ -233,7 +233,7 @@ mod tests {
     /// Tests the 95 % intervals of 200 correlated series (phi = 0.8). Intervals for independent values would be 3 times
     /// too narrow.
     #[test]
-    fn intervals_of_correlated_series_cover_the_true_mean_at_their_confidence() {
+    fn the_95_percent_intervals_of_correlated_series_cover_the_true_mean_in_87_to_98_percent() {
         const SERIES: u64 = 200;
         let true_mean = 20.0;
         // The result is `None` for a series that seems to have fewer than ten blocks.

@@ -45,6 +45,9 @@ impl ComparedPipeline {
 /// so that it cannot be ranked with the errors of other rows.
 pub(super) const DELAYED_VIDEO: &str = "delayed-video";
 
+/// Name of the row with ideal pictures. The row has no pipeline, so that it cannot be ranked with other rows.
+pub(super) const IDEAL: &str = "ideal";
+
 /// Choice of the rows of a comparison. A row is a pipeline with settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum RowChoice {
@@ -94,7 +97,7 @@ fn compared_pipelines(registry: &Registry) -> Vec<ComparedPipeline> {
             all.push(ComparedPipeline::of_slats("slats-touched", Showing::Plain));
             all.push(ComparedPipeline::of_slats("vdrt", Showing::RasterOffset));
             all.push(ComparedPipeline::of_slats(DELAYED_VIDEO, Showing::DelayedVideo));
-            all.push(ComparedPipeline::of_slats("ideal", Showing::Ideal));
+            all.push(ComparedPipeline::of_slats(IDEAL, Showing::Ideal));
         }
     }
     all

@@ -1,6 +1,6 @@
 //! Definition and execution of a comparison of pipelines.
 
-use super::contender::{ComparedPipeline, DELAYED_VIDEO, RowChoice};
+use super::contender::{ComparedPipeline, RowChoice};
 use super::interval::CONFIDENCE;
 use super::precision::UntilPrecise;
 use super::predictors::predictor_means;
@@ -436,8 +436,8 @@ impl Comparison {
     pub fn best(&self) -> Option<&ComparisonRow> {
         let evaluated =
             self.pipelines.iter().filter(|row| row.was_evaluated() && row.failure.is_none() && row.shows_all());
-        let rivals = evaluated.filter(|row| row.pipeline != DELAYED_VIDEO);
-        let timed = rivals.filter(|row| row.head_to_light_ms.mean.is_finite() && !self.starts_late(row));
+        let ranked = evaluated.filter(|row| row.is_ranked());
+        let timed = ranked.filter(|row| row.head_to_light_ms.mean.is_finite() && !self.starts_late(row));
         timed.min_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean))
     }
 

@@ -1,7 +1,7 @@
 //! A row of a comparison: the results of one method, combined from the runs of all seeds.
 
 use super::bootstrap::{BlockBootstrap, BootstrapSize};
-use super::contender::ComparedPipeline;
+use super::contender::{ComparedPipeline, DELAYED_VIDEO, IDEAL};
 use super::gallery::LastPicture;
 use super::interval::{IntervalMethod, MeanInterval};
 use super::trial::Trial;
@@ -196,6 +196,14 @@ impl ComparisonRow {
         self.not_shown.unwrap_or(0) == 0
     }
 
+    /// Returns true if the error of the row can be ranked with the errors of other rows. The rows `delayed-video` and
+    /// `ideal` are references that cannot be ranked. The error of `delayed-video` leaves out the delay of the real
+    /// world, and `ideal` has no pipeline.
+    #[must_use]
+    pub fn is_ranked(&self) -> bool {
+        ![DELAYED_VIDEO, IDEAL].contains(&self.pipeline.as_str())
+    }
+
     /// Returns true if the error of at least one pixel was evaluated.
     #[must_use]
     pub const fn was_evaluated(&self) -> bool {
@@ -213,8 +221,8 @@ pub(super) struct Sampling {
 
 /// Returns the sum of all values except `None`, or `None` if no other value exists.
 fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> {
-    let mut known = values.flatten().peekable();
-    known.peek().is_some().then(|| known.sum())
+    let mut present = values.flatten().peekable();
+    present.peek().is_some().then(|| present.sum())
 }
 
 fn settings_text(contender: &ComparedPipeline) -> String {

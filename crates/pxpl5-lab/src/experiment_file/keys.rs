@@ -50,7 +50,7 @@ const COMMON: &[Key] = &[
         .with_default("false"),
     Key::new(
         "head.path",
-        "motion in front of the scene, where scene is the scene's own",
+        "motion in front of the scene, where scene is the scene's own; with head.motion, only its start pose",
         KeyValues::Names(&const { names(&PathChoice::ALL) }),
     )
     .with_default("scene"),
@@ -68,9 +68,9 @@ const COMMON: &[Key] = &[
         .with_default("the mean of recorded head motion"),
     Key::new(
         "head.motion",
-        "scene (the motion of head.path), still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, \
-         walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, or a recording (.csv, .txt, .tum, .jsonl), relative to \
-         the experiment file, seen through a tracker",
+        "motion of a tracked head from the start pose of head.path on: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, \
+         pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, or a recording (.csv, .txt, \
+         .tum, .jsonl), relative to the experiment file",
         KeyValues::ANY,
     ),
     Key::new(
@@ -251,7 +251,7 @@ fn is_key(registry: &Registry, path: &str) -> bool {
 /// Returns true if the path is a machine parameter with any display of the registry.
 fn is_machine_parameter(registry: &Registry, path: &str) -> bool {
     let Some(path) = path.strip_prefix("machine.") else { return false };
-    parameters(registry).iter().any(|known| known == path)
+    parameters(registry).iter().any(|candidate| candidate == path)
 }
 
 /// Returns the paths of all machine parameters with all displays of the registry.

@@ -69,8 +69,8 @@ pub(super) fn settings(raster: Raster) -> Vec<(String, Value)> {
         return vec![(RASTER.to_owned(), Value::from(raster.to_string()))];
     };
     let name = |(name, _): &(&'static str, _)| *name;
-    let by = Warp::ALL.iter().find(|(_, known)| *known == by).map_or("", name);
-    let every = Every::ALL.iter().find(|(_, known)| *known == every).map_or("", |(name, _)| name);
+    let by = Warp::ALL.iter().find(|(_, candidate)| *candidate == by).map_or("", name);
+    let every = Every::ALL.iter().find(|(_, candidate)| *candidate == every).map_or("", |(name, _)| name);
     vec![
         (RASTER.to_owned(), Value::from(by)),
         (EVERY.to_owned(), Value::from(every)),

@@ -59,8 +59,8 @@ pub(super) fn is_tracking_parameter(path: &str) -> bool {
 pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, SettingError> {
     let mut tables = Tables::PAPERS;
     // The function that builds the tracker refuses an unknown name.
-    let known = tracker_by(&tables, tracker).ok();
-    let own = known.as_ref().map_or("", |(_, own)| *own);
+    let found = tracker_by(&tables, tracker).ok();
+    let own = found.as_ref().map_or("", |(_, own)| *own);
     for (path, setting) in &file.settings {
         let Some((table, name)) = path.strip_prefix(PREFIX).and_then(|path| path.split_once('.')) else { continue };
         // Facts of the papers cannot be changed.
@@ -69,7 +69,7 @@ pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, Setti
             let reason = format!("{path} does not apply to head.tracker = {tracker}; leave it out");
             return Err(SettingError::combination(reason).at(&setting.place));
         }
-        if let Some(why) = known.as_ref().and_then(|(tracker, _)| without_effect(path, tracker)) {
+        if let Some(why) = found.as_ref().and_then(|(tracker, _)| without_effect(path, tracker)) {
             let reason = format!("{path} does not apply to head.tracker = {tracker}, {why}");
             return Err(SettingError::combination(reason).at(&setting.place));
         }

@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_result_is_reused_only_for_larger_stores_and_if_no_store_was_full() {
+    fn a_result_is_reused_for_larger_stores_if_no_store_was_full() {
         let cache = ByCapacity::<&str, u64>::default();
         let get = |capacity, met_full_store| {
             *cache.get("key", capacity, || Ok((capacity, met_full_store))).expect("no run fails")

@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_is_missed_where_no_value_of_an_unprinted_condition_gives_it() {
+    fn a_figure_is_missed_if_no_value_of_an_unprinted_condition_gives_it() {
         assert!(!row_of_figure_17(49.0, None).is_met && row_of_figure_17(54.1, None).is_met);
         for (interval, misses) in
             [([40.0, 53.9], true), ([40.0, 54.1], false), ([56.9, 60.0], false), ([57.1, 60.0], true)]

@@ -6,7 +6,7 @@ use crate::error::StudyError;
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_machine::PRESETS;
 use pxpl5_measure::{CriticalPath, Resource, Shares, Utilisation};
-use pxpl5_run::{Experiment, ExperimentError, Goal, Keep, Level, Outcome, Pixels};
+use pxpl5_run::{Experiment, ExperimentError, Goal, KeptRecords, Level, Outcome, Pixels};
 use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::{SettingError, Value};
 use serde::Serialize;
@@ -260,7 +260,7 @@ impl Search<'_> {
             return Ok(Trial { reached: is_reached(goal, &summary), score, because: None });
         }
         let experiment: Experiment =
-            plan.experiment(scene).pixels(Pixels::Off).keep(Keep::Statistics).host(self.query.stop.clone());
+            plan.experiment(scene).pixels(Pixels::Off).keep(KeptRecords::Statistics).host(self.query.stop.clone());
         // A run that ended early misses the goal, but its records still show the limiting resource.
         let (outcome, is_whole) = match experiment.run() {
             Ok(outcome) => (outcome, true),

@@ -28,13 +28,13 @@ impl Sweep {
     /// until the results of the point are measured.
     #[must_use]
     pub fn estimates(&self, points: &[u64]) -> Vec<Estimate> {
-        let mut known: BTreeMap<String, Estimate> = BTreeMap::new();
+        let mut cached: BTreeMap<String, Estimate> = BTreeMap::new();
         let mut estimates = Vec::with_capacity(points.len());
         for point in points {
             let mut settings = self.space().settings(*point);
             // Points that differ only in their seed share one estimate.
             settings.remove("seed");
-            estimates.push(*known.entry(format!("{settings:?}")).or_insert_with(|| self.estimate(*point)));
+            estimates.push(*cached.entry(format!("{settings:?}")).or_insert_with(|| self.estimate(*point)));
         }
         estimates
     }

@@ -266,8 +266,8 @@ fn from_step_last(range: &Table) -> Option<[i64; 3]> {
     let from = range.get("from")?.as_integer()?;
     let to = range.get("to")?.as_integer()?;
     let step = range.get("step").map_or(Some(1), Value::as_integer)?;
-    let known = range.keys().all(|key| ["from", "to", "step"].contains(&key.as_str()));
-    let length = to.checked_sub(from).filter(|_| known && from <= to && step > 0)?;
+    let is_range = range.keys().all(|key| ["from", "to", "step"].contains(&key.as_str()));
+    let length = to.checked_sub(from).filter(|_| is_range && from <= to && step > 0)?;
     Some([from, step, length / step])
 }
 

@@ -66,8 +66,8 @@ fn every_listed_parameter_can_be_set_or_is_refused_with_the_reason() {
         assert_eq!(set.is_ok(), !read_only, "{path}");
         assert_eq!(read_only, path.starts_with(i860::CHIP_PATH), "{path}");
         if let Err(error) = set {
-            let told = format!("{path} is {value} in every machine (");
-            assert!(error.kind == SettingErrorKind::ReadOnly && error.to_string().starts_with(&told), "{error}");
+            let expected = format!("{path} is {value} in every machine (");
+            assert!(error.kind == SettingErrorKind::ReadOnly && error.to_string().starts_with(&expected), "{error}");
         }
     }
     assert_eq!(config.parameters().len(), config.settings().len() - 2);
@@ -183,8 +183,8 @@ fn changed_values_outside_their_range_cause_warnings() {
     config.set("gp.triangle_ns", 33_000).expect("known");
     let [found] = &config.out_of_range()[..] else { panic!("one") };
     assert_eq!((&found.path[..], found.is_in_range()), ("gp.triangle_ns", false));
-    let told = "gp.triangle_ns = 33000 ns is outside its range, 18000 to 32000 ns (derived: 870 clocks at 40 MHz";
-    assert!(found.warning().starts_with(told), "{}", found.warning());
+    let expected = "gp.triangle_ns = 33000 ns is outside its range, 18000 to 32000 ns (derived: 870 clocks at 40 MHz";
+    assert!(found.warning().starts_with(expected), "{}", found.warning());
 }
 
 #[test]

@@ -20,7 +20,7 @@ const WORD: Span = Span::from_ns(50);
 /// Returns all events except polls of programs, ticks and their signals.
 fn seen(machine: &mut Machine, until: Time) -> Vec<(Time, Board, &'static str)> {
     let mut all = happenings(machine, until);
-    all.retain(|(_, _, what)| !["programs look", "tick", "retrace"].contains(what));
+    all.retain(|(_, _, what)| !["programs continue", "tick", "retrace"].contains(what));
     all
 }
 
@@ -142,8 +142,8 @@ fn a_message_for_a_later_display_reaches_its_port() {
         vec![Box::new(ScreenConfig::new(2)), Box::new(ScreenConfig::new(1))];
     let mut machine = build(&config(displays));
     let second = machine.ports().displays[1][0];
-    let said = Say::Arrived { surface: 0, port: 0, picture: 9, first_us_ago: 0 };
-    load_sender(&mut machine, FIRST_GP, vec![(second, 5, said.body())]);
+    let message = Say::Arrived { surface: 0, port: 0, picture: 9, first_us_ago: 0 };
+    load_sender(&mut machine, FIRST_GP, vec![(second, 5, message.body())]);
     machine.switch_on();
     assert!(whats(&mut machine, Board::Display(1)).contains(&"message delivered"));
     let [arrival] = &machine.record().observation().arrivals[..] else { panic!("one region") };
@@ -153,8 +153,8 @@ fn a_message_for_a_later_display_reaches_its_port() {
 #[test]
 fn a_host_line_bypasses_the_ring_and_delivers_all_its_words() {
     let mut machine = machine();
-    let said = |picture| Say::Arrived { surface: 0, port: 0, picture, first_us_ago: 0 };
-    say(&mut machine, &[(10, said(1)), (20, said(2)), (20, said(3)), (30, Say::Later { us: 5, picture: 4 })]);
+    let message = |picture| Say::Arrived { surface: 0, port: 0, picture, first_us_ago: 0 };
+    say(&mut machine, &[(10, message(1)), (20, message(2)), (20, message(3)), (30, Say::Later { us: 5, picture: 4 })]);
     machine.switch_on();
     let lines = whats(&mut machine, Board::Display(0));
     assert_eq!(lines.iter().filter(|what| what.contains("line past the ring")).count(), 3, "instants");

@@ -43,7 +43,7 @@ fn the_longest_message_takes_a_fifteenth_of_a_published_region() {
 }
 
 /// Returns a machine with a display of two ports, one millisecond after the start of the script.
-fn told(script: &[(u64, Say)]) -> (Machine, [NodeId; 2]) {
+fn run_script(script: &[(u64, Say)]) -> (Machine, [NodeId; 2]) {
     let config = config(vec![Box::new(ScreenConfig::new(2))]);
     let mut machine = Machine::new(&config, 2, pxpl5_renderer::Layout::slats()).expect("valid");
     let ports = machine.ports().display().try_into().expect("two ports");
@@ -63,7 +63,7 @@ fn swapped(at: u64, surface: u32, tick: u32) -> (u64, Say) {
 
 #[test]
 fn a_port_shows_the_newest_picture_before_each_swap() {
-    let (machine, [left, right]) = told(&[
+    let (machine, [left, right]) = run_script(&[
         arrived(10, 0, 1),
         arrived(20, 0, 1),
         arrived(30, 1, 7),
@@ -92,14 +92,14 @@ fn a_port_shows_the_newest_picture_before_each_swap() {
 /// The first swap shows an empty buffer, which yields no picture.
 #[test]
 fn a_swap_before_any_region_shows_no_picture() {
-    let (machine, [left, _]) = told(&[swapped(100, 0, 1), arrived(110, 0, 2), swapped(200, 0, 2)]);
+    let (machine, [left, _]) = run_script(&[swapped(100, 0, 1), arrived(110, 0, 2), swapped(200, 0, 2)]);
     let pictures: Vec<u64> = machine.record().shown_by(left).iter().map(|shown| shown.picture.0).collect();
     assert_eq!(pictures, [2]);
 }
 
 #[test]
 fn copying_is_a_stage_from_the_first_message_on() {
-    let (machine, _) = told(&[arrived(300, 1, 4), arrived(400, 1, 4)]);
+    let (machine, _) = run_script(&[arrived(300, 1, 4), arrived(400, 1, 4)]);
     let message = Span::from_us(780) / 15;
     let span = StageSpan {
         picture: PictureNumber(4),
@@ -115,7 +115,7 @@ fn copying_is_a_stage_from_the_first_message_on() {
 /// Records are discarded before an instant, which is given as a number of periods of the first display.
 #[test]
 fn records_before_an_instant_can_be_discarded() {
-    let (mut machine, [left, right]) = told(&[
+    let (mut machine, [left, right]) = run_script(&[
         arrived(150, 0, 1),
         arrived(160, 0, 1),
         arrived(250, 0, 2),

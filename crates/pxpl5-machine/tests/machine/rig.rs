@@ -294,7 +294,7 @@ pub(crate) fn happenings(machine: &mut Machine, until: Time) -> Vec<(Time, Board
         let next = machine.next_event_description();
         let Some(time) = machine.step_before(until).expect("it goes on") else { return all };
         let next = next.expect("something happened");
-        assert_eq!(next.time, time, "what was told to come next came");
+        assert_eq!(next.time, time, "the predicted event is the next event");
         all.push((next.time, next.board, next.what));
     }
 }

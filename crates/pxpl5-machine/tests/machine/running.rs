@@ -138,11 +138,11 @@ fn the_master_is_notified_of_each_swap_with_its_number() {
 fn surfaces_of_all_displays_are_numbered_consecutively() {
     let mut machine = build(&config(vec![Box::new(ScreenConfig::new(3)), Box::new(ScreenConfig::new(2))]));
     let second = machine.ports().displays[1][0];
-    let told = [
+    let script = [
         Say::Arrived { surface: 1, port: 0, picture: 1, first_us_ago: 0 },
         Say::Updated { surface: 1, port: 0, tick: 1 },
     ];
-    load_sender(&mut machine, FIRST_GP, told.map(|say| (second, 5, say.body())).into());
+    load_sender(&mut machine, FIRST_GP, script.map(|say| (second, 5, say.body())).into());
     // `Swapped` identifies the port by the number of the surface. The second display has one port.
     load_sender(&mut machine, SECOND_GP, vec![(second, 5, Say::Swapped { surface: 0, tick: 2 }.body())]);
     machine.switch_on();
@@ -186,12 +186,12 @@ fn shuffled(seed: Option<u64>) -> (TraceHash, Vec<Board>) {
     }
     let nodes = [NodeId(0), FIRST_GP, SECOND_GP];
     for (i, node) in nodes.into_iter().enumerate() {
-        let said = vec![(nodes[(i + 1) % 3], 2, words(&[1, 2])); 4];
-        load_sender(&mut machine, node, said);
+        let sent = vec![(nodes[(i + 1) % 3], 2, words(&[1, 2])); 4];
+        load_sender(&mut machine, node, sent);
     }
     machine.switch_on();
     let all = happenings(&mut machine, us(200));
-    let first = all.iter().filter(|(time, _, what)| *time == Time::ZERO && *what == "programs look");
+    let first = all.iter().filter(|(time, _, what)| *time == Time::ZERO && *what == "programs continue");
     let first = first.map(|(_, board, _)| *board).collect();
     (machine.into_record().trace_hash(), first)
 }

@@ -28,8 +28,8 @@ fn programs_that_wait_for_ever_are_a_deadlock_after_the_stated_periods() {
     let time = us(100 * (1 + DEADLOCK_TICKS));
     let blocked = vec![Blocked { board: Board::Gp(0), waits_on: None, waits_for: "Godot".to_owned() }];
     assert_eq!(error, RunError::Deadlock { time, blocked });
-    let told = format!("nothing can happen any more at {time}: GP 0 waits for Godot;");
-    assert_eq!(error.to_string(), told);
+    let expected = format!("nothing can happen any more at {time}: GP 0 waits for Godot;");
+    assert_eq!(error.to_string(), expected);
     assert_eq!(error.time(), time);
     assert_eq!(machine.failure(), Some(&error));
     assert_eq!(machine.step_before(LONG), Err(error), "it goes on no more");
@@ -67,8 +67,8 @@ fn a_board_that_receives_messages_is_not_deadlocked() {
                 }
             });
         }
-        let said = Say::Arrived { surface: 0, port: 0, picture: 1, first_us_ago: 0 };
-        say(&mut machine, &[1, 2, 3, 4].map(|n| (100 * 50 * n + 7, said)));
+        let message = Say::Arrived { surface: 0, port: 0, picture: 1, first_us_ago: 0 };
+        say(&mut machine, &[1, 2, 3, 4].map(|n| (100 * 50 * n + 7, message)));
         machine.switch_on();
         machine.run_until(us(100 * 500))
     };
@@ -132,10 +132,10 @@ fn each_waiting_board_is_listed_with_the_cause_of_its_wait() {
 fn a_fault_of_a_program_stops_the_machine_with_its_board_and_time() {
     let mut machine = machine();
     let fault = Fault::Protocol { node: SECOND_GP, found: "nonsense".to_owned() };
-    let told = fault.clone();
+    let raised = fault.clone();
     load(&mut machine, SECOND_GP, |gp| async move {
         gp.spend(Span::from_us(7)).await;
-        Err(told)
+        Err(raised)
     });
     machine.switch_on();
     let error = machine.run_until(LONG).expect_err("a fault");

@@ -37,7 +37,7 @@ impl Lanes {
     /// holds one region. The result is cached until another context is selected.
     #[inline]
     fn context_columns(&mut self) -> Option<ContextColumns> {
-        if self.selected.is_none_or(|known| known.base != self.controller.base) {
+        if self.selected.is_none_or(|selected| selected.base != self.controller.base) {
             self.selected = self.find_columns();
         }
         self.selected

@@ -115,7 +115,7 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let views = Arc::clone(&setup.wanted);
     let pass = whole_pass(setup);
     // The master requests views for the instants at which its strips are visible.
-    let view_of = move |wanted: Wanted| views(wanted.number, wanted.known, wanted.shown_at);
+    let view_of = move |wanted: Wanted| views(wanted.number, wanted.reports_until, wanted.shown_at);
     for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);
     }

@@ -83,12 +83,12 @@ impl PolicyFrame {
         let mut seen = vec![false; regions];
         for &(RegionId(region), renderer) in assignments {
             // An unknown region, a repeated region and an unknown renderer are errors.
-            let known = seen.get_mut(usize::from(region)).filter(|seen| !**seen && renderer < renderers);
-            let Some(known) = known else {
+            let is_seen = seen.get_mut(usize::from(region)).filter(|seen| !**seen && renderer < renderers);
+            let Some(is_seen) = is_seen else {
                 let expected = format!("each of {regions} regions once, for one of {renderers} renderers");
                 return Err(SettingError::value("a policy", expected, format_args!("({region}, {renderer})")));
             };
-            *known = true;
+            *is_seen = true;
         }
         match seen.iter().position(|seen| !seen) {
             Some(missing) => {

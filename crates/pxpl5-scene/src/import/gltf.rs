@@ -114,8 +114,8 @@ impl<'a> Reader<'a> {
             None => roots_of(&root.nodes),
         };
         // Each node waits at most once, so the list of waiting nodes is not longer than the list of nodes.
-        let mut is_known = vec![false; root.nodes.len()];
-        let mut known = |number: usize| match is_known.get_mut(number).map(|known| std::mem::replace(known, true)) {
+        let mut visited = vec![false; root.nodes.len()];
+        let mut visit = |number: usize| match visited.get_mut(number).map(|node| std::mem::replace(node, true)) {
             Some(false) => Ok(number),
             // Nodes form trees. A node with two parents could otherwise multiply the model, and a circle of nodes would
             // have no end.
@@ -131,13 +131,13 @@ impl<'a> Reader<'a> {
         // Nodes that wait, with the transform of their parent. A list instead of recursion allows any depth.
         let mut waiting: Vec<(usize, DMat4)> = Vec::new();
         for root in roots.into_iter().rev() {
-            waiting.push((known(root)?, DMat4::IDENTITY));
+            waiting.push((visit(root)?, DMat4::IDENTITY));
         }
         while let Some((number, parent)) = waiting.pop() {
             let node = &root.nodes[number];
             let to_world = parent * transform(source, number, node)?;
             for child in node.children.iter().flatten().rev() {
-                waiting.push((known(child.value())?, to_world));
+                waiting.push((visit(child.value())?, to_world));
             }
             self.node(node, to_world)?;
         }

@@ -99,8 +99,8 @@ pub(super) struct Vertices {
 impl Vertices {
     pub(super) fn of(&mut self, corners: &mut Vec<Corner>, corner: Corner) -> u32 {
         let hash = self.hasher.hash_one(corner);
-        if let Some(&known) = self.table.find(hash, |&vertex| corners[vertex as usize] == corner) {
-            return known;
+        if let Some(&existing) = self.table.find(hash, |&vertex| corners[vertex as usize] == corner) {
+            return existing;
         }
         let next = corners.len() as u32;
         push_with_slow_growth(corners, corner);

@@ -180,7 +180,7 @@ impl<'a> Reader<'a> {
         // The normal of a flat face is computed after its corners are read. The normal will then get this index.
         let flat = self.model.normals.len() as u32 + 1;
         let mut needs_normal = false;
-        let mut known = [0; 2];
+        let mut corners = [0; 2];
         let mut count = 0;
         // Add triangles that all share the first corner.
         for word in words {
@@ -189,10 +189,10 @@ impl<'a> Reader<'a> {
             let detail = normal.or(self.smoothing).unwrap_or(flat);
             let vertex = self.vertices.of(&mut self.model.corners, (point, detail));
             match count {
-                0 | 1 => known[count] = vertex,
+                0 | 1 => corners[count] = vertex,
                 _ => {
-                    self.model.triangles.push([known[0], known[1], vertex]);
-                    known[1] = vertex;
+                    self.model.triangles.push([corners[0], corners[1], vertex]);
+                    corners[1] = vertex;
                 }
             }
             count += 1;

@@ -157,16 +157,16 @@ const RESIDUES: [&str; 38] = [
 fn element_of(line: &[u8]) -> Element {
     let symbol = text(columns(line, 77, 78));
     if !symbol.is_empty() && symbol.bytes().all(|byte| byte.is_ascii_alphabetic()) {
-        return known(symbol);
+        return listed_element(symbol);
     }
     let name: Vec<u8> = line.iter().skip(12).take(4).map(u8::to_ascii_uppercase).collect();
     let residue = text(columns(line, 18, 20)).to_ascii_uppercase();
-    known(symbol_of_name(text(&name), &residue))
+    listed_element(symbol_of_name(text(&name), &residue))
 }
 
-fn known(symbol: &str) -> Element {
-    let known = ELEMENTS.iter().find(|e| e.symbol.eq_ignore_ascii_case(symbol));
-    known.copied().unwrap_or(OTHER)
+fn listed_element(symbol: &str) -> Element {
+    let element = ELEMENTS.iter().find(|e| e.symbol.eq_ignore_ascii_case(symbol));
+    element.copied().unwrap_or(OTHER)
 }
 
 /// Returns the symbol of the element in an atom's name of four columns. The symbol is right-aligned in the first two

@@ -1,6 +1,8 @@
 //! Reader of PLY files. A library parses the header and binary rows. This module interprets the rows, parses ASCII rows
 //! and finds the positions of errors.
 
+mod row;
+
 use pxpl5_sim::parameters::FileError;
 use std::io::{Cursor, ErrorKind};
 use std::str::FromStr;
@@ -11,10 +13,10 @@ use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
+use self::row::{FaceRow, Skipped, VertexRow, has_colours};
 use super::Source;
 use super::model::{Detail, Model, Places, Vertices, counted, direction, push_with_slow_growth};
 use super::source::{MARK, excerpt, is_not_a_number, text};
-use crate::config::DEFAULT_COLOUR;
 use crate::error::FilePlace;
 
 pub(super) fn read(source: &Source<'_>) -> Result<Model, FileError> {
@@ -378,27 +380,6 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Names that files use for red, green and blue. Each entry is one convention.
-const COLOURS: [[&str; 3]; 3] =
-    [["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
-
-fn has_colours(element: &ElementDef) -> bool {
-    COLOURS.as_flattened().iter().any(|name| element.properties.contains_key(*name))
-}
-
-/// Sets one component of a colour from a property, which is an integer from 0 to 255 or a fraction from 0 to 1.
-fn set_colour(colour: &mut [u8; 3], name: &str, property: &Property) -> PropertyAccessResult {
-    let Some(part) = COLOURS.iter().find_map(|names| names.iter().position(|known| *known == name)) else {
-        return PropertyAccessResult::Ignored;
-    };
-    colour[part] = match (property, number(property)) {
-        (Property::Float(_) | Property::Double(_), Some(value)) => (value * 255.0 + 0.5) as u8,
-        (_, Some(value)) => value as u8,
-        (_, None) => return PropertyAccessResult::UnsupportedType,
-    };
-    PropertyAccessResult::Set
-}
-
 /// Returns true if all coordinates of an element have types that single precision represents exactly.
 fn has_single_places(element: &ElementDef) -> bool {
     let is_double = |axis: &str| {
@@ -418,20 +399,20 @@ fn row_of(element: &ElementDef) -> String {
 /// Checks two rules that the library does not check. The version must be 1.0, and an element must not have a property
 /// twice.
 fn check_header(source: &Source<'_>, header: &str) -> Result<(), FileError> {
-    let mut known = Vec::new();
+    let mut properties = Vec::new();
     for (number, line) in (1..).zip(header.lines()) {
-        // `known` collects the properties of the current element.
+        // `properties` collects the properties of the current element.
         let words: Vec<&str> = line.split_whitespace().collect();
         match words.as_slice() {
             ["format", _, version, ..] if *version != "1.0" => {
                 return Err(source.syntax(FilePlace::Line(number), "version 1.0", excerpt(version)));
             }
-            ["element", ..] => known.clear(),
-            ["property", .., name] if known.contains(name) => {
+            ["element", ..] => properties.clear(),
+            ["property", .., name] if properties.contains(name) => {
                 let expected = "a property that the element does not have yet";
                 return Err(source.syntax(FilePlace::Line(number), expected, excerpt(line)));
             }
-            ["property", .., name] => known.push(name),
+            ["property", .., name] => properties.push(name),
             _ => {}
         }
     }
@@ -507,111 +488,5 @@ fn scalar_bytes(scalar: &ScalarType) -> u64 {
         ScalarType::Short | ScalarType::UShort => 2,
         ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
         ScalarType::Double => 8,
-    }
-}
-
-struct VertexRow {
-    position: [f64; 3],
-    normal: [f64; 3],
-    colour: [u8; 3],
-}
-
-impl PropertyAccess for VertexRow {
-    fn new() -> Self {
-        Self { position: [0.0; 3], normal: [0.0; 3], colour: DEFAULT_COLOUR }
-    }
-
-    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let slot = match name {
-            "x" => &mut self.position[0],
-            "y" => &mut self.position[1],
-            "z" => &mut self.position[2],
-            "nx" => &mut self.normal[0],
-            "ny" => &mut self.normal[1],
-            "nz" => &mut self.normal[2],
-            _ => return set_colour(&mut self.colour, name, &property),
-        };
-        let Some(value) = number(&property) else {
-            return PropertyAccessResult::UnsupportedType;
-        };
-        *slot = value;
-        PropertyAccessResult::Set
-    }
-}
-
-fn number(property: &Property) -> Option<f64> {
-    Some(match *property {
-        Property::Char(x) => f64::from(x),
-        Property::UChar(x) => f64::from(x),
-        Property::Short(x) => f64::from(x),
-        Property::UShort(x) => f64::from(x),
-        Property::Int(x) => f64::from(x),
-        Property::UInt(x) => f64::from(x),
-        Property::Float(x) => f64::from(x),
-        Property::Double(x) => x,
-        _ => return None,
-    })
-}
-
-/// The corners of a face in the integer type of the file. A conversion of one-byte indices to a type with more bytes
-/// would multiply the memory.
-struct FaceRow {
-    corners: Property,
-    colour: [u8; 3],
-}
-
-impl PropertyAccess for FaceRow {
-    fn new() -> Self {
-        Self { corners: Property::ListUChar(Vec::new()), colour: DEFAULT_COLOUR }
-    }
-
-    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        if !matches!(name, "vertex_indices" | "vertex_index") {
-            return set_colour(&mut self.colour, name, &property);
-        }
-        match property {
-            Property::ListChar(_)
-            | Property::ListUChar(_)
-            | Property::ListShort(_)
-            | Property::ListUShort(_)
-            | Property::ListInt(_)
-            | Property::ListUInt(_) => self.corners = property,
-            _ => return PropertyAccessResult::UnsupportedType,
-        }
-        PropertyAccessResult::Set
-    }
-}
-
-impl FaceRow {
-    fn len(&self) -> usize {
-        match &self.corners {
-            Property::ListChar(list) => list.len(),
-            Property::ListUChar(list) => list.len(),
-            Property::ListShort(list) => list.len(),
-            Property::ListUShort(list) => list.len(),
-            Property::ListInt(list) => list.len(),
-            Property::ListUInt(list) => list.len(),
-            _ => 0,
-        }
-    }
-
-    fn corner(&self, n: usize) -> i64 {
-        match &self.corners {
-            Property::ListChar(list) => list[n].into(),
-            Property::ListUChar(list) => list[n].into(),
-            Property::ListShort(list) => list[n].into(),
-            Property::ListUShort(list) => list[n].into(),
-            Property::ListInt(list) => list[n].into(),
-            Property::ListUInt(list) => list[n].into(),
-            _ => -1,
-        }
-    }
-}
-
-struct Skipped;
-
-impl PropertyAccess for Skipped {
-    fn new() -> Self {
-        Self
     }
 }

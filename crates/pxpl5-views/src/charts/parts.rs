@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn no_parts_give_no_chart() {
+    fn a_chart_without_parts_is_empty() {
         assert_eq!(part_bar(&[]), "");
         assert_eq!(part_bar(&[part("send", f64::NAN, false)]), "");
     }

@@ -1,6 +1,6 @@
 //! Page section about latency: distribution, parts, and the time from the head's pose until the picture is lit.
 
-use super::values::{cell, decimal, heading, known, list, number, number_cell, paragraph, plain, row, table};
+use super::values::{cell, decimal, heading, list, number, number_cell, paragraph, plain, row, table, text_or_dash};
 use crate::charts::{MeanPart, colour_of_part, histogram_element, part_bar_element};
 use crate::markup::Element;
 use serde_json::Value;
@@ -36,7 +36,7 @@ fn of_how_many(n: &Value) -> Option<Element> {
 /// the pipeline, the result also has a prominent warning.
 pub(super) fn due(report: &Value) -> Vec<Element> {
     let heavy = report["too_heavy"]["advice"].as_str().map(|advice| {
-        let [missed, due] = ["not_shown", "due"].map(|key| known(&report["too_heavy"][key]));
+        let [missed, due] = ["not_shown", "due"].map(|key| text_or_dash(&report["too_heavy"][key]));
         let text = format!("Too heavy: {missed} of {due} pictures due were not shown in time; {advice}.");
         Element::new("p").with("class", "loud").text(text)
     });
@@ -47,7 +47,7 @@ pub(super) fn due(report: &Value) -> Vec<Element> {
     }
     // Pipelines without due pictures have no table.
     if report["due"].is_object() {
-        let cells = DUE.map(|key| number_cell(known(&report["due"][key])));
+        let cells = DUE.map(|key| number_cell(text_or_dash(&report["due"][key])));
         all.push(table(&DUE.map(|key| key.replace('_', " ")).each_ref().map(String::as_str), [row(cells)]));
     }
     all
@@ -67,7 +67,7 @@ fn part_row(part: &Value) -> Element {
         Element::new("td").child(&swatch(&name)).text(name.replace('_', " ")),
         number_cell(decimal(&part["mean"], 3)),
         number_cell(decimal(&part["sd"], 3)),
-        number_cell(known(&part["n"])),
+        number_cell(text_or_dash(&part["n"])),
         cell(plain(&part["definition"])),
     ])
 }
@@ -96,7 +96,7 @@ pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
     vec![
         heading("From the head to light"),
         paragraph(format_args!("{tracker}, prediction {predictor}{aim}, display {display}.")),
-        paragraph(format_args!("Mean over {} complete pictures.", known(&head["end_to_end"]["n"]))),
+        paragraph(format_args!("Mean over {} complete pictures.", text_or_dash(&head["end_to_end"]["n"]))),
         table(&["stage", "mean, ms"], stages),
         table(&["error", "mean", "50 %", "90 %", "99 %", "greatest", "n"], errors),
     ]
@@ -108,5 +108,5 @@ fn stage_row(stage: &str, end_to_end: &Value) -> Element {
 
 fn error_row(unit: &str, error: &Value) -> Element {
     let values = PERCENTILES.iter().map(|key| number_cell(decimal(&error[*key], 3)));
-    row([cell(unit)].into_iter().chain(values).chain([number_cell(known(&error["n"]))]))
+    row([cell(unit)].into_iter().chain(values).chain([number_cell(text_or_dash(&error["n"]))]))
 }

@@ -10,10 +10,10 @@ use base64::engine::general_purpose::STANDARD;
 /// Returns the three sections of an experiment: pictures, latencies, and all other values of the report. In print, each
 /// section stays together.
 pub(super) fn sections(run: &PageRun) -> [Element; 3] {
-    [seen(run), timed(run), told(run)]
+    [pictures(run), latencies(run), details(run)]
 }
 
-fn seen(run: &PageRun) -> Element {
+fn pictures(run: &PageRun) -> Element {
     let mut section = Element::new("section").child(&Element::new("h2").text(&run.name));
     section.end_line();
     if let Some(svg) = &run.timeline {
@@ -28,12 +28,12 @@ fn seen(run: &PageRun) -> Element {
     section.child(&heading("Last displayed pictures")).child(&pair)
 }
 
-fn timed(run: &PageRun) -> Element {
+fn latencies(run: &PageRun) -> Element {
     let section = Element::new("section").children(due(&run.report)).children(latency(&run.report, &run.latencies_ms));
     section.children(utilisation(&run.report)).children(head_to_light(&run.report["head"]))
 }
 
-fn told(run: &PageRun) -> Element {
+fn details(run: &PageRun) -> Element {
     Element::new("section").children(speed(&run.report)).children(configuration(&run.report))
 }
 

@@ -1,7 +1,7 @@
 //! The table at the top of the page, with a row for each experiment.
 
 use super::run::PageRun;
-use super::values::{cell, decimal, known, number, number_cell, plain, row, table};
+use super::values::{cell, decimal, number, number_cell, plain, row, table, text_or_dash};
 use crate::markup::Element;
 use serde_json::Value;
 
@@ -27,7 +27,7 @@ fn summary_row(run: &PageRun) -> Element {
         number_cell(number(&report["triangles"]) + number(&report["spheres"])),
         number_cell(spread(&report["latency_fields"])),
         number_cell(spread(&report["latency_ms"])),
-        number_cell(known(&report["latency_ms"]["n"])),
+        number_cell(text_or_dash(&report["latency_ms"]["n"])),
         number_cell(decimal(&report["updates_hz"], 2)),
         number_cell(not_shown(report)),
         cell(published(&run.published)),
@@ -36,7 +36,7 @@ fn summary_row(run: &PageRun) -> Element {
 
 fn not_shown(report: &Value) -> String {
     match report["missed_retraces"].as_u64() {
-        Some(missed) => format!("{missed} of {}", known(&report["due"]["due"])),
+        Some(missed) => format!("{missed} of {}", text_or_dash(&report["due"]["due"])),
         None => "-".to_owned(),
     }
 }

@@ -1,6 +1,6 @@
 //! Page section about the fraction of time for which each board was busy, and about the waits in the latency.
 
-use super::values::{cell, decimal, heading, known, list, number, number_cell, paragraph, plain, row, table};
+use super::values::{cell, decimal, heading, list, number, number_cell, paragraph, plain, row, table, text_or_dash};
 use crate::markup::Element;
 use serde_json::Value;
 
@@ -35,8 +35,8 @@ fn boards(utilisation: &Value) -> Vec<Element> {
             cell(name),
             number_cell(percent(&shares["mean"])),
             number_cell(percent(&shares["max"])),
-            number_cell(known(&shares["busiest"])),
-            number_cell(known(&shares["idle"])),
+            number_cell(text_or_dash(&shares["busiest"])),
+            number_cell(text_or_dash(&shares["idle"])),
             cell(others.collect::<Vec<_>>().join(", ")),
         ])
     });
@@ -65,7 +65,7 @@ fn path(path: &Value) -> Vec<Element> {
     vec![
         heading("What limits the latency"),
         paragraph(format_args!("Limited by {}.", plain(&path["limited_by"]))),
-        paragraph(format_args!("Over the last {} complete pictures.", known(&path["pictures"]))),
+        paragraph(format_args!("Over the last {} complete pictures.", text_or_dash(&path["pictures"]))),
         table(&["waits for", "share", "mean, ms", "mostly"], rows),
         paragraph(format_args!("The last picture: {chain}.")),
     ]

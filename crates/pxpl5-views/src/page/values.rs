@@ -12,7 +12,7 @@ pub(super) fn decimal(value: &Value, digits: usize) -> String {
 }
 
 /// Returns a value as text, or `-` for null.
-pub(super) fn known(value: &Value) -> String {
+pub(super) fn text_or_dash(value: &Value) -> String {
     if value.is_null() { "-".to_owned() } else { plain(value) }
 }
 

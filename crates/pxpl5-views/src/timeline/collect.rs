@@ -3,7 +3,7 @@ use super::model::{MAX_FIELDS, Timeline, TimelineOptions, TimelineRow, TimelineS
 use super::rows::{rows, set_lanes};
 use crate::updates::Updates;
 use pxpl5_gp::{Stage, StageEdge};
-use pxpl5_run::{Outcome, PictureTimes, SoFar, WARM_UP_PICTURES};
+use pxpl5_run::{ObservedRun, Outcome, PictureTimes, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
@@ -20,12 +20,12 @@ impl Timeline {
     /// Returns a timeline of the part of a run that the options select.
     #[must_use]
     pub fn of(outcome: &Outcome, options: &TimelineOptions) -> Self {
-        Self::so_far(&outcome.so_far(), options)
+        Self::so_far(&outcome.observed_run(), options)
     }
 
     /// Returns a timeline of the selected part of a run that has ended or is in progress.
     #[must_use]
-    pub fn so_far(run: &SoFar<'_>, options: &TimelineOptions) -> Self {
+    pub fn so_far(run: &ObservedRun<'_>, options: &TimelineOptions) -> Self {
         let record = run.record();
         let display = record.display();
         // The chosen picture decides which periods are drawn, unless the options do.
@@ -77,7 +77,7 @@ fn sent_at(rows: &[TimelineRow], update: Option<PictureNumber>) -> Option<Time> 
 }
 
 fn periods(
-    run: &SoFar<'_>,
+    run: &ObservedRun<'_>,
     options: &TimelineOptions,
     chosen: Option<&PictureTimes>,
     sent_at: Option<Time>,
@@ -91,7 +91,7 @@ fn periods(
     first..first.after(count.clamp(1, MAX_FIELDS))
 }
 
-fn samples(run: &SoFar<'_>, within: Range<Time>) -> Vec<(PictureNumber, Time)> {
+fn samples(run: &ObservedRun<'_>, within: Range<Time>) -> Vec<(PictureNumber, Time)> {
     let marks = run.observation().marks.iter();
     let begun = marks.filter(|mark| mark.stage == Stage::Send && mark.edge == StageEdge::Begin);
     begun.filter(|mark| within.contains(&mark.time)).map(|mark| (mark.picture, mark.time)).collect()

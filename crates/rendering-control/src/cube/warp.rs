@@ -107,7 +107,7 @@ pub(crate) mod tests {
     #[test]
     fn a_warp_is_decoded_from_its_words() {
         let warp = warp();
-        let words: [Word; WARP_WORDS] = warp.to_words().try_into().expect("as many as are said");
+        let words: [Word; WARP_WORDS] = warp.to_words().try_into().expect("WARP_WORDS words");
         assert_eq!(FaceWarp::from_words(&words), Some(warp));
     }
 }

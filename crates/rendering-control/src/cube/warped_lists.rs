@@ -27,7 +27,7 @@ impl WarpedLists {
         let is_still = |place: usize| update.structures.get(place) == Some(&true) && !is_edited(place);
         // Another slave may have computed the list already.
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, warped)) = kept.iter().find(|(known, _)| *known == number) {
+        if let Some((_, warped)) = kept.iter().find(|(cached, _)| *cached == number) {
             return Arc::clone(warped);
         }
         let mut warped = DisplayList::clone(list);
@@ -107,7 +107,7 @@ mod tests {
     fn only_cached_vertices_of_static_objects_are_moved() {
         let list = list();
         let update = update(7);
-        let warp = update.warp.expect("said");
+        let warp = update.warp.expect("a warp");
         let placed = WarpedLists::default().placed(&list, &update);
         for (vertex, (before, found)) in list.positions.iter().zip(&placed.positions).enumerate() {
             let moved = warp.moved(before.as_dvec3(), 0).expect("a length").as_vec3();

@@ -220,7 +220,7 @@ fn the_code_of_a_triangle_takes_the_published_time() {
 }
 
 #[test]
-fn a_context_can_be_reused_after_all_tokens_of_its_update() {
+fn a_context_counts_the_tokens_of_the_next_update_from_zero() {
     let mut state = SlaveState::<FaceUpdate>::new();
     let tokens = [(0, 3, false), (1, 2, false), (0, 3, false), (0, 3, true), (1, 2, true)];
     for (context, of, is_last) in tokens.into_iter().chain(tokens) {

@@ -29,42 +29,42 @@ impl GrowingRecording {
     /// Returns a [`SettingError`] unless the first new sample is later than the last existing sample. Nothing is
     /// appended in this case.
     pub fn extend(&self, more: &Recording) -> Result<(), SettingError> {
-        let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
-        let (last_ps, found_ps) = (known.span_ps().1, more.span_ps().0);
+        let mut recording = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        let (last_ps, found_ps) = (recording.span_ps().1, more.span_ps().0);
         if found_ps <= last_ps {
             let found = format_args!("one at {found_ps} ps");
             return Err(SettingError::value("", format_args!("samples after {last_ps} ps"), found));
         }
-        known.append(more);
+        recording.append(more);
         Ok(())
     }
 
     /// Returns a copy of the samples received so far.
     #[must_use]
     pub fn recorded(&self) -> Recording {
-        self.known().clone()
+        self.recording().clone()
     }
 
-    fn known(&self) -> RwLockReadGuard<'_, Recording> {
+    fn recording(&self) -> RwLockReadGuard<'_, Recording> {
         self.0.read().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Motion for GrowingRecording {
     fn pose(&self, t_ps: u64) -> Pose {
-        self.known().pose(t_ps)
+        self.recording().pose(t_ps)
     }
     fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"growing");
-        self.known().identify(settings);
+        self.recording().identify(settings);
     }
     fn grows(&self) -> bool {
         true
     }
     fn velocity(&self, t_ps: u64) -> DVec3 {
-        self.known().velocity(t_ps)
+        self.recording().velocity(t_ps)
     }
     fn angular_velocity(&self, t_ps: u64) -> DVec3 {
-        self.known().angular_velocity(t_ps)
+        self.recording().angular_velocity(t_ps)
     }
 }

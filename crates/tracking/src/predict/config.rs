@@ -70,8 +70,8 @@ pub struct PredictorConfig {
     /// Strength of random changes of the head's angular acceleration (angular jerk), as a Kalman filter assumes it,
     /// rad/s^3/sqrt(Hz). The angular jerk is white noise, and the value is the root of its spectral density.
     pub orientation_jerk: f64,
-    /// Longest time ahead for which the predictor extrapolates, ps. For later instants the predictor returns the last
-    /// reported pose.
+    /// Longest time, ps, for which the predictor extrapolates, forwards or backwards from the newest measurement. For
+    /// other instants the predictor returns its estimate for the instant of the newest measurement.
     pub horizon_ps: u64,
     /// Assumptions of Kalman filters about the head's motion before the first report.
     #[serde(default)]

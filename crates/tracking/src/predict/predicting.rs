@@ -25,8 +25,9 @@ impl<P, O> GatedFilterPair<P, O> {
         Self { gate: Gate::new(limits), position, orientation, newest_ps: None, horizon_s }
     }
 
-    /// Returns the time for which a filter extrapolates, in seconds. If this time is longer than the longest allowed
-    /// prediction, the result is 0, because the last pose is then the best estimate.
+    /// Returns the time for which a filter extrapolates, in seconds. The time is negative if `at_ps` is before the newest
+    /// measurement. If the absolute time is longer than the horizon, the result is 0, because the newest estimate is
+    /// then the best.
     fn ahead(&self, newest_ps: u64, at_ps: u64) -> f64 {
         let dt_s = span_s(newest_ps, at_ps);
         if dt_s.abs() <= self.horizon_s { dt_s } else { 0.0 }

@@ -98,14 +98,14 @@ mod tests {
     #[test]
     fn a_record_complete_at_a_poll_is_read_at_this_poll_and_a_later_record_waits_for_the_next_poll() {
         let line = SerialRead::unix();
-        let look = 5 + 30 * PS_PER_MS;
-        assert_eq!(line.seen_ps(look, 5), look);
-        assert_eq!(line.seen_ps(look + 1, 5), look + 30 * PS_PER_MS);
+        let poll_ps = 5 + 30 * PS_PER_MS;
+        assert_eq!(line.seen_ps(poll_ps, 5), poll_ps);
+        assert_eq!(line.seen_ps(poll_ps + 1, 5), poll_ps + 30 * PS_PER_MS);
         assert_eq!(line.seen_ps(0, 5), 5);
     }
 
     #[test]
-    fn unchecked_lines_are_slow_or_late_but_never_a_panic() {
+    fn serial_lines_with_extreme_settings_cause_no_panic() {
         assert!(SerialLine { record_bytes: u32::MAX, baud: 0, byte_bits: u32::MAX }.transfer_ps(u32::MAX) > 0);
         assert_eq!(SerialRead::Polled { period_ps: 0 }.seen_ps(9, 5), 9);
         assert_eq!(SerialRead::Polled { period_ps: u64::MAX }.seen_ps(9, 5), u64::MAX);

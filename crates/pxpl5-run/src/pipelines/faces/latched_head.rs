@@ -118,9 +118,9 @@ impl OrientationTiming {
     #[must_use]
     pub fn latency(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<RotationLatency> {
         let latched = self.latches(x, y, field)?;
-        let (known, _) = self.orientation_of_pixel(head, x, y, field)?;
+        let (reports_until, _) = self.orientation_of_pixel(head, x, y, field)?;
         // The orientation comes from the newest report that the host knew.
-        let report = head.report_by(known)?;
+        let report = head.report_by(reports_until)?;
         let measured = head.measured_at(report)?;
         let scanned = self.scan.when(x, y, field)?;
         let loaded = self.loaded(report);

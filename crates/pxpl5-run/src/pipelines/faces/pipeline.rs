@@ -256,8 +256,8 @@ impl HostLine for OrientationLine {
     }
 
     fn messages(&mut self, now: Time) -> Vec<(usize, Body)> {
-        let (known, aimed) = self.latched.predicted(now);
-        let turned = (self.poses)(known, aimed).orientation;
+        let (reports_until, aimed) = self.latched.predicted(now);
+        let turned = (self.poses)(reports_until, aimed).orientation;
         let rows = Orientation::from_quaternion(turned.to_array()).map_or([[f64::NAN; 3]; 3], |turned| turned.rows());
         vec![(ORIENTATION_PORT, Body::Words(orientation_message(rows)))]
     }
@@ -424,8 +424,8 @@ impl PictureRules for FacePipeline {
 
     fn turn_interval(&self, record: &Record, head: &HeadViews, aim: Aim, period: PeriodNumber) -> Option<Span> {
         let (timing, [x, y]) = (OrientationTiming::of_record(record, aim)?, middle_pixel(record, period)?);
-        let (known, aimed) = timing.orientation_of_pixel(head, x, y, period)?;
-        let measured = head.measured_at(head.report_by(known)?)?;
+        let (reports_until, aimed) = timing.orientation_of_pixel(head, x, y, period)?;
+        let measured = head.measured_at(head.report_by(reports_until)?)?;
         Some(aimed.since(measured))
     }
 

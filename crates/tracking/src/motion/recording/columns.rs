@@ -68,12 +68,12 @@ impl Columns {
     /// Returns a [`SettingError`] if the quantity is unknown or already has a column.
     pub fn map(&mut self, field: &str, column: &str) -> Result<(), SettingError> {
         let mapping = |found: String| SettingError::value("columns", EXPECTED, found);
-        let known = FIELDS.iter().find(|known| known.name == field);
-        let known = known.ok_or_else(|| mapping(format!("`{field}`")))?;
-        if let Some((other, _)) = self.given.iter().find(|(other, _)| other.slot == known.slot) {
+        let entry = FIELDS.iter().find(|entry| entry.name == field);
+        let entry = entry.ok_or_else(|| mapping(format!("`{field}`")))?;
+        if let Some((other, _)) = self.given.iter().find(|(other, _)| other.slot == entry.slot) {
             return Err(mapping(format!("{} and {field}", other.name)));
         }
-        self.given.push((known, column.trim().to_owned()));
+        self.given.push((entry, column.trim().to_owned()));
         Ok(())
     }
 

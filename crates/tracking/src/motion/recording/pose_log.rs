@@ -44,7 +44,7 @@ fn normal(name: &str) -> String {
 /// `None` for an unknown name.
 fn slot(name: &str) -> Option<(usize, i32)> {
     let normal = normal(name);
-    if let Some(slot) = NAMES.iter().position(|known| *known == normal) {
+    if let Some(slot) = NAMES.iter().position(|candidate| *candidate == normal) {
         return Some((slot, if slot == 0 { NANOSECONDS } else { 0 }));
     }
     let unit = UNITS.iter().find(|(unit, _)| normal.strip_suffix(unit) == Some(NAMES[0]));

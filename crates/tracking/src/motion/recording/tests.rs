@@ -102,9 +102,9 @@ fn an_empty_recording_is_an_error() {
 #[test]
 fn unknown_columns_are_an_error_that_lists_the_known_columns() {
     let error = Recording::read(&b"t,x,y,z\n0,0,0,0\n"[..]).unwrap_err();
-    let said = error.to_string();
-    assert!(said.starts_with("line 1: expected the columns time_s,x,y,z,qw,qx,qy,qz, a EuRoC file"), "{said}");
-    assert!(said.ends_with("found t,x,y,z"), "{said}");
+    let message = error.to_string();
+    assert!(message.starts_with("line 1: expected the columns time_s,x,y,z,qw,qx,qy,qz, a EuRoC file"), "{message}");
+    assert!(message.ends_with("found t,x,y,z"), "{message}");
 }
 
 #[test]
@@ -155,11 +155,11 @@ fn the_same_motion_in_three_formats_gives_the_same_poses() {
 #[test]
 fn errors_of_other_formats_name_their_own_columns() {
     let tum = TUM.replace("0.25 0.5 1.7 -0.5 -0.5", "0.25 0.5 up -0.5 -0.5");
-    let said = Recording::read(tum.as_bytes()).unwrap_err().to_string();
-    assert_eq!(said, "line 4, tz: expected a finite number, found \"up\"");
+    let message = Recording::read(tum.as_bytes()).unwrap_err().to_string();
+    assert_eq!(message, "line 4, tz: expected a finite number, found \"up\"");
     let euroc = EUROC.replace("1403636581338555648", "1403636580338555648");
-    let said = Recording::read(euroc.as_bytes()).unwrap_err().to_string();
-    assert_eq!(said, "line 3, timestamp [ns]: expected 0 s or more, the time of the line before, found -0.5 s");
+    let message = Recording::read(euroc.as_bytes()).unwrap_err().to_string();
+    assert_eq!(message, "line 3, timestamp [ns]: expected 0 s or more, the time of the line before, found -0.5 s");
     let short = EUROC.replace(",-0.70710678,0,0.2", "");
     assert_eq!(Recording::read(short.as_bytes()).unwrap_err().to_string(), "line 3: expected 8 fields, found 6");
 }
@@ -190,11 +190,14 @@ fn an_incomplete_mapping_is_an_error() {
         ("u=1", "found `u`"),
         ("t", "found `t`"),
     ] {
-        let said = Columns::parse(mapping).and_then(|columns| {
+        let message = Columns::parse(mapping).and_then(|columns| {
             Ok(Recording::read_as(&b"1,2,3\n"[..], &RecordingFormat { columns, axes: None }).map(|_| ())?)
         });
-        let said = said.unwrap_err().to_string();
-        assert!(said.starts_with("columns: expected t (or t_ms") && said.ends_with(found), "{mapping}: {said}");
+        let message = message.unwrap_err().to_string();
+        assert!(
+            message.starts_with("columns: expected t (or t_ms") && message.ends_with(found),
+            "{mapping}: {message}"
+        );
     }
     let columns = Columns::parse("t=stamp,x=x,y=y,z=z,qw=w,qx=i,qy=j,qz=k").unwrap();
     let error = Recording::read_as(&b"time,x,y,z,w,i,j,k\n"[..], &RecordingFormat { columns, axes: None }).unwrap_err();
@@ -222,15 +225,15 @@ fn the_first_of_simultaneous_samples_is_kept_and_the_others_are_reported() {
         "\u{feff}# caf\u{e9}\r\n\r\n5\t0 0 0 0 0 0 1\r\n5.0 1 0 0 0 0 0 1\r\n5e0 2 0 0 0 0 0 1\r\n6 3 0 0 0 0 0 1\r\n";
     let recording = Recording::read(thrice.as_bytes()).unwrap();
     assert_eq!(recording.n_samples(), 2);
-    let told = ["2 lines repeat the time of the line before, first line 4: their poses are left out"];
-    assert_eq!(recording.warnings(), told);
+    let expected = ["2 lines repeat the time of the line before, first line 4: their poses are left out"];
+    assert_eq!(recording.warnings(), expected);
     let own = load("1,5,0,0,1,0,0,0\n1,6,0,0,1,0,0,0\n2,7,0,0,1,0,0,0\n").unwrap();
     assert_eq!((own.n_samples(), own.warnings().len()), (2, 1));
     let euroc = EUROC.replace("1403636581338555648", "1403636580838555648");
     assert_eq!(Recording::read(euroc.as_bytes()).unwrap().n_samples(), 2);
     let back = "0 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n";
-    let said = Recording::read(back.as_bytes()).unwrap_err().to_string();
-    assert_eq!(said, "line 3, timestamp: expected 2 s or more, the time of the line before, found 1 s");
+    let message = Recording::read(back.as_bytes()).unwrap_err().to_string();
+    assert_eq!(message, "line 3, timestamp: expected 2 s or more, the time of the line before, found 1 s");
 }
 
 /// Returns a recording of three seconds with 100 samples per second, without the samples from `from_ms` to `to_ms`.

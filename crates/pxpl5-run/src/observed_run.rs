@@ -10,9 +10,9 @@ use pxpl5_machine::{Observation, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use std::borrow::Cow;
 
-/// Observations of a run up to an instant: all of an [`Outcome`], or the simulated part of a [`Stepper`].
+/// A run as observed up to an instant: all of an [`Outcome`], or the simulated part of a [`Stepper`].
 #[derive(Clone, Debug)]
-pub struct SoFar<'a> {
+pub struct ObservedRun<'a> {
     experiment: &'a Experiment,
     record: &'a Record,
     pictures: Cow<'a, [PictureTimes]>,
@@ -22,22 +22,27 @@ pub struct SoFar<'a> {
 impl Outcome {
     /// Returns the observations of the whole run.
     #[must_use]
-    pub fn so_far(&self) -> SoFar<'_> {
+    pub fn observed_run(&self) -> ObservedRun<'_> {
         let pictures = Cow::Borrowed(self.pictures());
-        SoFar { experiment: self.experiment(), record: self.record(), pictures, end: self.end() }
+        ObservedRun { experiment: self.experiment(), record: self.record(), pictures, end: self.end() }
     }
 }
 
 impl Stepper {
     /// Returns the observations up to now, including the shown pictures in memory.
     #[must_use]
-    pub fn so_far(&self) -> SoFar<'_> {
+    pub fn observed_run(&self) -> ObservedRun<'_> {
         let pictures = self.experiment().pipeline().pictures(self.record(), self.now());
-        SoFar { experiment: self.experiment(), record: self.record(), pictures: Cow::Owned(pictures), end: self.now() }
+        ObservedRun {
+            experiment: self.experiment(),
+            record: self.record(),
+            pictures: Cow::Owned(pictures),
+            end: self.now(),
+        }
     }
 }
 
-impl SoFar<'_> {
+impl ObservedRun<'_> {
     /// Returns the machine's boards and all observations.
     #[must_use]
     pub const fn record(&self) -> &Record {
