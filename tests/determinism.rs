@@ -89,7 +89,7 @@ fn machines_of_many_ties() -> [Experiment; 2] {
 fn no_number_of_a_report_depends_on_the_order_of_simultaneous_events() {
     for experiment in machines_of_many_ties().into_iter().chain(pipelines().map(|e| e.pixels(Pixels::Off))) {
         let unshuffled = report(&experiment);
-        (0..6).into_par_iter().for_each(|seed| {
+        (0..support::sample_or_all(3, 6)).into_par_iter().for_each(|seed| {
             assert_eq!(report(&experiment.clone().shuffle_ties(seed)), unshuffled, "{seed}");
         });
     }

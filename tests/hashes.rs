@@ -1,4 +1,4 @@
-//! Hashes of traces and pictures of 42 experiments. They detect every change of a simulated value, on any host and with
+//! Hashes of traces and pictures of 48 experiments. They detect every change of a simulated value, on any host and with
 //! any vector unit.
 //!
 //! `tests/golden/hashes.txt` changes only by `PXPL5_UPDATE_HASHES=1 cargo test --test hashes`. CHANGELOG.md then states
@@ -12,7 +12,7 @@ use std::path::Path;
 const UPDATE: &str = "PXPL5_UPDATE_HASHES";
 
 /// Pipelines, each with a number of fields that is large enough to show a picture.
-const PIPELINES: [(&str, &str, u64); 14] = [
+const PIPELINES: [(&str, &str, u64); 16] = [
     ("rendering-control", "mono = false", 14),
     ("rendering-control", "mono = true", 12),
     ("slats", "copy = \"whole\"", 12),
@@ -27,6 +27,8 @@ const PIPELINES: [(&str, &str, u64); 14] = [
     ("arp-priority-line", "display = \"arp\"", 9),
     ("arp-cells-warp", "display = \"arp\"", 9),
     ("arp-ideal-pixel", "display = \"arp\"", 9),
+    ("rendering-control", "level = \"cycle\"", 14),
+    ("slats", "level = \"cycle\"", 12),
 ];
 
 const SCENES: [(&str, u64); 3] = [("full-screen:8", 8), ("mig", 24), ("molecules", 30)];
@@ -60,13 +62,13 @@ fn all_hashed() -> String {
 }
 
 #[test]
-fn traces_and_pictures_of_forty_two_experiments_are_unchanged_on_every_vector_unit() {
+fn traces_and_pictures_of_forty_eight_experiments_are_unchanged_on_every_vector_unit() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/hashes.txt");
     if std::env::var_os(UPDATE).is_some() {
         std::fs::write(&path, all_hashed()).expect("tests/golden can be written");
     }
     let expected = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    assert_eq!(expected.lines().count(), 42);
+    assert_eq!(expected.lines().count(), 48);
     for vectors in Vectors::available() {
         vectors.at_most();
         let text = all_hashed();

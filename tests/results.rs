@@ -381,7 +381,7 @@ fn has_messages(outcome: &Outcome) -> bool {
 #[test]
 fn chrome_json_has_the_same_slices_to_the_picosecond() {
     // Each picture has slices of all kinds.
-    let outcome = run(RenderingControl::mono(), "molecules", 20);
+    let outcome = run(RenderingControl::mono(), "molecules", support::sample_or_all(20, 60));
     let trace = Trace::of(&outcome);
     let mut bytes = Vec::new();
     chrome(&trace, &mut bytes).expect("memory can be written");

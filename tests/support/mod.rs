@@ -9,6 +9,11 @@ pub(crate) fn runs_all_cases() -> bool {
     std::env::var_os("PXPL5_ALL_CASES").is_some()
 }
 
+/// Returns the first value in a sample, and the second value if all cases run.
+pub(crate) fn sample_or_all<T>(sample: T, all: T) -> T {
+    if runs_all_cases() { all } else { sample }
+}
+
 /// Returns the NTSC display of a run.
 pub(crate) fn ntsc(record: &Record) -> &NtscDisplay {
     record.display_of_kind().expect("the papers' machines have one")

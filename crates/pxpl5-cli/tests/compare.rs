@@ -36,7 +36,7 @@ fn folder(name: &str) -> PathBuf {
 
 #[test]
 fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up() {
-    let arguments = ["--head", "pan:200", "--scene", "full-screen:2", "--fields", "30", "--seeds", "2", "--no-limits"];
+    let arguments = ["--head", "pan:200", "--scene", "full-screen:2", "--fields", "24", "--seeds", "2", "--no-limits"];
     let json = json(&compare(&[arguments.as_slice(), &["--causes", "--predictors", "--json"]].concat()));
     assert_eq!(json["seeds"].as_array().map(Vec::len), Some(2));
     let names: Vec<_> = rows(&json).iter().filter_map(|row| row["pipeline"].as_str()).collect();
@@ -63,7 +63,7 @@ fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up
 #[test]
 fn computing_causes_and_predictors_changes_no_other_number_of_a_comparison() {
     let shared =
-        ["--scene", "full-screen:2", "--fields", "30", "--seeds", "2", "--only", "slats,vdrt,jitp-field,ideal"];
+        ["--scene", "full-screen:2", "--fields", "24", "--seeds", "2", "--only", "slats,vdrt,jitp-field,ideal"];
     let given = |more: &[&str]| {
         let mut all = json(&compare(&[shared.as_slice(), more, &["--json"]].concat()));
         let rows = all["pipelines"].as_array_mut().expect("a list");

@@ -65,19 +65,26 @@ impl Gp {
         messages: impl Iterator<Item = (NodeId, u32, Body)>,
         last: (NodeId, u32, Body),
     ) -> Result<(), Fault> {
-        // Nothing happens between two steps except at a full clump buffer, so the program spends their times together.
+        // Nothing happens between two steps except at a full clump buffer, so one event can end them together. Only i860
+        // code needs the instant of each step, because the board's other program changes the caches too.
+        let spends_steps = self.runs_code();
         let mut due = self.reception_time(received).await;
         if let Some(work) = work {
+            if spends_steps {
+                self.spend(std::mem::take(&mut due)).await;
+            }
             due += self.answer_time(work)?;
         }
         // Each message needs the clump buffer. Only `last` is sent without a wait.
         for message in messages {
-            if !self.is_clump_buffer_free() {
+            if spends_steps || !self.is_clump_buffer_free() {
                 self.spend(std::mem::take(&mut due)).await;
                 self.clump_buffer_free().await;
             }
-            self.send_after(due, message).await;
-            due = Span::ZERO;
+            self.send_after(std::mem::take(&mut due), message).await;
+        }
+        if spends_steps {
+            self.spend(std::mem::take(&mut due)).await;
         }
         self.send_after(due, last).await;
         Ok(())

@@ -246,13 +246,15 @@ fn pipelines() -> Vec<&'static str> {
     Registry::of_papers().pipelines().iter().map(|entry| entry.name).collect()
 }
 
+/// Runs every pipeline with two of the four aims. `PXPL5_ALL_CASES=1` runs every pipeline with all aims.
 #[test]
 fn with_ideal_prediction_a_pan_leaves_only_the_scan_out_error_in_every_pipeline() {
     // At this low speed, the error of interpolation on the screen is negligible relative to the scan-out of a line. The
     // interpolation error grows with the square of the speed and is 0.34 px at 200 deg/s.
     const DEG_PER_S: f64 = 0.02;
-    pipelines().par_iter().for_each(|pipeline| {
-        for (_, aim) in Aim::ALL {
+    let all = std::env::var_os("PXPL5_ALL_CASES").is_some();
+    pipelines().par_iter().enumerate().for_each(|(number, pipeline)| {
+        for (_, (_, aim)) in Aim::ALL.into_iter().enumerate().filter(|(of_aim, _)| all || of_aim % 2 == number % 2) {
             let run = Run::new(pipeline, aim, Pan::at(DEG_PER_S));
             let turned = |content: &Content, at: f64| DEG_PER_S.to_radians() * (at - content.drawn_for);
             run.check(run.expected(turned), 1e-3);
@@ -263,11 +265,11 @@ fn with_ideal_prediction_a_pan_leaves_only_the_scan_out_error_in_every_pipeline(
 #[test]
 fn a_fast_pan_leaves_only_the_scan_out_error_of_pictures_drawn_for_one_instant() {
     const DEG_PER_S: f64 = 200.0;
-    for pipeline in pipelines().into_iter().filter(|name| !name.contains("dual")) {
+    pipelines().par_iter().filter(|name| !name.contains("dual")).for_each(|pipeline| {
         let run = Run::new(pipeline, Aim::Middle, Pan::at(DEG_PER_S));
         let turned = |content: &Content, at: f64| DEG_PER_S.to_radians() * (at - content.drawn_for);
         run.check(run.expected(turned), 1e-3);
-    }
+    });
 }
 
 /// A head that oscillates about the vertical.

@@ -16,6 +16,11 @@ use tracking::tracker::TrackerConfig;
 /// Number of records below which a run discards nothing. By default, runs discard records eight times less often.
 const LEAST_RECORDS: usize = 4_096;
 
+/// Returns the first value in a sample, and the second value with `PXPL5_ALL_CASES=1`, as in scripts/nightly.
+fn sample_or_all<T>(sample: T, all: T) -> T {
+    if std::env::var_os("PXPL5_ALL_CASES").is_some() { all } else { sample }
+}
+
 fn scene(name: &str, triangles: usize) -> Scene {
     let scene = pxpl5_scene::builtin(name).expect("built in");
     if triangles > 0 { scene.decimated(triangles).expect("it has so many") } else { scene }
@@ -40,20 +45,25 @@ fn tracked() -> Head {
 }
 
 /// Returns experiments of every kind, each with so many fields that records are discarded several times.
-/// tests/long_runs.rs of pxpl5-measure covers the results for heads.
+/// tests/long_runs.rs of pxpl5-measure covers the results for heads. `PXPL5_ALL_CASES=1` makes the runs longer.
 fn experiments() -> [(&'static str, Experiment); 9] {
     let small = MachineConfig::small_hmd;
     let slats = MachineConfig::slats;
+    let long = sample_or_all(500, 2_500);
+    let of_faces = sample_or_all(400, 1_600);
     [
-        ("rendering control", experiment(small(), RenderingControl::stereo(), scene("mig", 0), 500)),
-        ("one eye", experiment(small(), RenderingControl::mono(), scene("mig", 60), 800)),
-        ("slats", experiment(slats(), Slats::split(), scene("mig", 60), 500)),
-        ("slats with too much", experiment(slats(), Slats::split(), scene("mig", 250), 500)),
+        ("rendering control", experiment(small(), RenderingControl::stereo(), scene("mig", 0), long)),
+        ("one eye", experiment(small(), RenderingControl::mono(), scene("mig", 60), sample_or_all(800, 4_000))),
+        ("slats", experiment(slats(), Slats::split(), scene("mig", 60), long)),
+        ("slats with too much", experiment(slats(), Slats::split(), scene("mig", 250), long)),
         ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 150)),
-        ("jitp", experiment(small(), Jitp::new(Viewpoint::Strip, true), scene("full-screen:4", 0), 200)),
-        faces("all faces", FacePolicy::Full, FaceSource::PixelPlanes, 400),
-        faces("faces by priority", FacePolicy::Objects, FaceSource::PixelPlanes, 400),
-        faces("faces by priority, drawn at once", FacePolicy::Objects, FaceSource::Ideal, 400),
+        (
+            "jitp",
+            experiment(small(), Jitp::new(Viewpoint::Strip, true), scene("full-screen:4", 0), sample_or_all(200, 400)),
+        ),
+        faces("all faces", FacePolicy::Full, FaceSource::PixelPlanes, of_faces),
+        faces("faces by priority", FacePolicy::Objects, FaceSource::PixelPlanes, of_faces),
+        faces("faces by priority, drawn at once", FacePolicy::Objects, FaceSource::Ideal, of_faces),
     ]
 }
 
@@ -143,13 +153,17 @@ fn twenty_times_the_fields_need_no_more_memory_and_twenty_times_the_events() {
     let small = MachineConfig::small_hmd;
     let slats = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1);
     for (name, experiment, fields) in [
-        ("slats behind a tracker", slats.clone().head(tracked()), 100),
-        ("slats", slats, 100),
-        ("rendering control", experiment(small(), RenderingControl::mono(), scene("mig", 12), 1), 250),
+        ("slats behind a tracker", slats.clone().head(tracked()), sample_or_all(100, 300)),
+        ("slats", slats, sample_or_all(100, 300)),
+        (
+            "rendering control",
+            experiment(small(), RenderingControl::mono(), scene("mig", 12), 1),
+            sample_or_all(250, 800),
+        ),
         (
             "frameless",
             experiment(small(), Frameless { block: 64, ..Frameless::new() }, scene("full-screen:4", 0), 1),
-            60,
+            sample_or_all(60, 150),
         ),
     ] {
         let [_, _, _, events, _] = work(&experiment, fields);

@@ -97,7 +97,7 @@ fn case_16_a_triangle_with_an_edge_on_the_axis_has_the_computed_fragments() {
 fn case_17_a_triangle_over_the_rim_has_256_fragments_for_every_clip() {
     let triangle = [[380.2, -30.2, 1.0], [400.7, -30.2, 1.0], [380.2, 40.3, 1.0]];
     for clip in SliceClip::ALL {
-        let frame = volume(&swept(clip, ORTHOGRAPHIC), &recording(&[triangle]), &half(VolumeConfig::plain()));
+        let frame = volume(&swept(clip, ORTHOGRAPHIC), &recording(&[triangle]), &counting());
         same(frame.stats.fragments_accepted, 256, &format!("{clip:?}"));
         assert_eq!(frame.stats.slices[0].accepted, frame.stats.fragments_accepted);
         assert_eq!(frame.stats.outside_volume, 1);
@@ -147,7 +147,7 @@ fn case_25_a_wall_occupies_the_computed_number_of_tiles() {
 #[test]
 fn the_number_of_passes_is_as_published() {
     let passes = |clip| {
-        let stats = volume(&swept(clip, ORTHOGRAPHIC), &recording(&[T5]), &half(VolumeConfig::plain())).stats;
+        let stats = volume(&swept(clip, ORTHOGRAPHIC), &recording(&[T5]), &counting()).stats;
         assert_eq!(stats.draws, 198 * stats.passes);
         stats.passes
     };
@@ -158,11 +158,11 @@ fn the_number_of_passes_is_as_published() {
 /// far planes. Clip planes generate only accepted fragments.
 #[test]
 fn plane_clips_accept_all_generated_fragments() {
-    let stats = |clip| volume(&swept(clip, ORTHOGRAPHIC), &recording(&[T1]), &half(VolumeConfig::plain())).stats;
+    let stats = |clip| volume(&swept(clip, ORTHOGRAPHIC), &recording(&[T1]), &counting()).stats;
     let prism = stats(SliceClip::Prism);
     assert_eq!(prism.fragments_generated, prism.fragments_accepted);
     assert_eq!(stats(EXACT).fragments_generated, prism.fragments_accepted);
-    for clip in [SliceClip::UserPlanes, SliceClip::Tapered(0.5)] {
-        assert_eq!(stats(clip).fragments_generated, stats(clip).fragments_accepted);
+    for clip in [SliceClip::UserPlanes, SliceClip::Tapered(0.5)].map(stats) {
+        assert_eq!(clip.fragments_generated, clip.fragments_accepted);
     }
 }

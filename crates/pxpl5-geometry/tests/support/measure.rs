@@ -172,7 +172,8 @@ impl Row {
             for y in top..=bottom {
                 let [first, last] = spans[y as usize];
                 let range = if first > last { left..=right } else { left.min(first)..=right.max(last) };
-                self.grids[i] += range.filter(|x| snapped.covers([*x, y]) != (first..=last).contains(x)).count() as u64;
+                let covered = snapped.covered_from(*range.start(), y);
+                self.grids[i] += range.zip(covered).filter(|(x, is)| *is != (first..=last).contains(x)).count() as u64;
             }
         }
         self.grid_exact += spans.iter().map(|[first, last]| (last - first + 1).max(0) as u64).sum::<u64>();

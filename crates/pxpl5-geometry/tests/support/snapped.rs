@@ -37,14 +37,15 @@ impl Snapped {
         Some(corners)
     }
 
-    /// Returns the area of (from, to, pixel centre), which is positive inside. For edges whose ties are outside, the
-    /// result is the area minus 1.
-    fn edge(&self, from: usize, to: usize, turn: i128, [x, y]: [i32; 2]) -> i128 {
+    /// Returns the area of (from, to, centre of pixel [x, y]), and the change of this area from pixel to pixel. The area
+    /// is positive inside. For edges whose ties are outside, the result is the area minus 1.
+    fn edge(&self, from: usize, to: usize, turn: i128, [x, y]: [i32; 2]) -> [i128; 2] {
         let dx = (self.x[to] - self.x[from]) * turn;
         let dy = (self.y[to] - self.y[from]) * turn;
         let [centre_x, centre_y] = [x, y].map(|pixel| (2 * i128::from(pixel) + 1) << self.bits >> 1);
         let top_left = dy < 0 || (dy == 0 && dx > 0);
-        dx * (centre_y - self.y[from]) - dy * (centre_x - self.x[from]) - i128::from(!top_left)
+        let area = dx * (centre_y - self.y[from]) - dy * (centre_x - self.x[from]) - i128::from(!top_left);
+        [area, -(dy << self.bits)]
     }
 
     fn turn(&self) -> i128 {
@@ -53,10 +54,16 @@ impl Snapped {
         ((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0])).signum()
     }
 
-    pub fn covers(&self, pixel: [i32; 2]) -> bool {
+    /// Returns for each pixel of a row, beginning with the column `left`, whether it is covered. Areas are integers, so
+    /// sums of changes are exact.
+    pub fn covered_from(&self, left: i32, y: i32) -> impl Iterator<Item = bool> {
         let turn = self.turn();
-        let edges = [(0, 1), (1, 2), (2, 0)];
-        turn != 0 && edges.iter().all(|&(from, to)| self.edge(from, to, turn, pixel) >= 0)
+        let mut edges = [(0, 1), (1, 2), (2, 0)].map(|(from, to)| self.edge(from, to, turn, [left, y]));
+        std::iter::repeat_with(move || {
+            let is_inside = turn != 0 && edges.iter().all(|[area, _]| *area >= 0);
+            edges.iter_mut().for_each(|[area, change]| *area += *change);
+            is_inside
+        })
     }
 
     /// Returns the first and last row that can be covered.

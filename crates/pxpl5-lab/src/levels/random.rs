@@ -93,12 +93,13 @@ mod tests {
         }
     }
 
-    /// Tests the analytic level on 40 random experiments. The deviation from the transaction level must be below 10 %
-    /// for 36 of them.
+    /// Tests the analytic level on 20 random experiments, or on 40 with `PXPL5_ALL_CASES=1`. The deviation from the
+    /// transaction level must be below 10 % for nine tenths of them.
     #[test]
     fn the_analytic_level_is_near_the_transaction_level() {
         let registry = crate::registry();
-        let mut deviations: Vec<f64> = (0..40)
+        let n = if std::env::var_os("PXPL5_ALL_CASES").is_some() { 40 } else { 20 };
+        let mut deviations: Vec<f64> = (0..n as u64)
             .map(|number| {
                 let experiment = experiment(number).expect("in range");
                 let of = |level| match summarise(&registry, &experiment.clone().level(level)) {
@@ -109,6 +110,6 @@ mod tests {
             })
             .collect();
         deviations.sort_by(f64::total_cmp);
-        assert!(deviations[20] < 2.0 && deviations[36] < 10.0, "{deviations:?}");
+        assert!(deviations[n / 2] < 2.0 && deviations[n * 9 / 10] < 10.0, "{deviations:?}");
     }
 }

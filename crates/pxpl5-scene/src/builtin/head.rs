@@ -9,6 +9,7 @@ use crate::import::Mesh;
 use crate::motion::HeadMotion;
 use crate::scene::{Scene, SceneParts, bounding_sphere};
 use crate::trig;
+use std::sync::OnceLock;
 
 /// Number of vertices on each parallel. The head has 2 x 156 x 191 = 59,592 triangles, including 156 at each pole.
 const MERIDIANS: usize = 156;
@@ -22,7 +23,13 @@ const WHITE: Colour = [240, 238, 232];
 const IRIS: Colour = [64, 110, 140];
 const PUPIL: Colour = [18, 16, 20];
 
+/// Returns the head. Only the first call of a process generates the head, because this takes some tenths of a second.
 pub(super) fn scene() -> Scene {
+    static HEAD: OnceLock<Scene> = OnceLock::new();
+    HEAD.get_or_init(generate).clone()
+}
+
+fn generate() -> Scene {
     let mut mesh = grid();
     // Scale the head to the radius of the built-in models about the origin.
     let (centre, radius) = bounding_sphere(mesh.positions.iter().map(|&p| (p, 0.0)));

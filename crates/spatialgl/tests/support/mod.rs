@@ -36,6 +36,12 @@ pub(crate) fn half(config: VolumeConfig) -> VolumeConfig {
     VolumeConfig { strobes: Strobes::Mirror, ..config }
 }
 
+/// Returns the configuration for tests that count fragments only. It has no bins. It has tiles, so that dark pixels are
+/// not packed into words that no test reads.
+pub(crate) fn counting() -> VolumeConfig {
+    half(VolumeConfig { tiling: Tiling { tile: Some(32), batch: 1 }, ..VolumeConfig::plain() })
+}
+
 pub(crate) fn volume(display: &dyn SpatialDisplay, commands: &CommandBuffer, config: &VolumeConfig) -> VolumeFrame {
     render_volume(display, commands, config, &HostRenderer, &OneThread).expect("valid")
 }
@@ -53,6 +59,6 @@ pub(crate) fn both(display: &dyn SpatialDisplay, commands: &CommandBuffer, confi
 /// Returns the number of fragments in slices 0 to 197 without bins, and the number of slices that are not empty. Only
 /// the fast rasterizer is used. Tests that compare with the reference model at full size call [`both`].
 pub(crate) fn fragments(triangles: &[Triangle], clip: SliceClip, projection: Projection) -> (u64, u64) {
-    let frame = volume(&swept(clip, projection), &recording(triangles), &half(VolumeConfig::plain()));
+    let frame = volume(&swept(clip, projection), &recording(triangles), &counting());
     (frame.stats.fragments_accepted, frame.stats.slices_rendered - frame.stats.slices_empty)
 }

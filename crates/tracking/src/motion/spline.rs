@@ -31,8 +31,9 @@ impl Activity {
         calm * calm + 2.0 * calm * lively / (power + 1.0) + lively * lively / (2.0 * power + 1.0)
     }
 
-    fn gain(self, u: f64) -> f64 {
-        (self.calm + (1.0 - self.calm) * u.powi(self.power as i32)) / self.mean_square().sqrt()
+    /// Returns the activity level for a number from 0 to 1, before it is scaled to a mean square of 1.
+    fn unscaled(self, u: f64) -> f64 {
+        self.calm + (1.0 - self.calm) * u.powi(self.power as i32)
     }
 }
 
@@ -42,6 +43,8 @@ pub(super) struct Spline {
     spacing_ps: u64,
     scale: DVec3,
     activity: Activity,
+    /// Root of the mean square of the unscaled activity levels.
+    root_mean_square: f64,
     seeds: [u64; 3],
     spells: u64,
 }
@@ -51,11 +54,12 @@ impl Spline {
     /// their periods of strong motion at the same times.
     pub(super) fn new(spacing_ps: u64, deviation: DVec3, activity: Activity, seed: u64, spells: u64) -> Self {
         let seeds = core::array::from_fn(|axis| stream(seed, axis as u64));
-        Self { spacing_ps, scale: deviation / VARIANCE.sqrt(), activity, seeds, spells }
+        let root_mean_square = activity.mean_square().sqrt();
+        Self { spacing_ps, scale: deviation / VARIANCE.sqrt(), activity, root_mean_square, seeds, spells }
     }
 
     pub(super) fn identify(&self, key: &str, settings: &mut SettingSink) {
-        let Self { spacing_ps, scale, activity, seeds, spells } = self;
+        let Self { spacing_ps, scale, activity, seeds, spells, .. } = self;
         let Activity { calm, power } = activity;
         let [x, y, z] = scale.to_array();
         let [a, b, c] = seeds;
@@ -68,18 +72,27 @@ impl Spline {
         let knot = t_ps / self.spacing_ps;
         let u = (t_ps % self.spacing_ps) as f64 / self.spacing_ps as f64;
         let (weights, slopes) = basis(u);
+        // The knots of six B-splines lie in at most two spells.
+        let spell = |knot: u64| knot / KNOTS_PER_SPELL;
+        let [first_gain, last_gain] = [knot, knot + 5].map(|knot| self.gain(spell(knot)));
         let mut value = DVec3::ZERO;
         let mut rate = DVec3::ZERO;
         for i in 0..6 {
-            let coefficient = self.coefficient(knot + i as u64);
+            let own = knot + i as u64;
+            let gain = if spell(own) == spell(knot) { first_gain } else { last_gain };
+            let coefficient = self.coefficient(own, gain);
             value += coefficient * weights[i];
             rate += coefficient * slopes[i];
         }
         (value, rate / seconds(self.spacing_ps))
     }
 
-    fn coefficient(&self, knot: u64) -> DVec3 {
-        let gain = self.activity.gain(unit(bits(self.spells, knot / KNOTS_PER_SPELL)));
+    /// Returns the activity level of a spell.
+    fn gain(&self, spell: u64) -> f64 {
+        self.activity.unscaled(unit(bits(self.spells, spell))) / self.root_mean_square
+    }
+
+    fn coefficient(&self, knot: u64, gain: f64) -> DVec3 {
         let [x, y, z] = self.seeds.map(|seed| bell(bits(seed, knot)));
         DVec3::new(x, y, z) * self.scale * gain
     }
