@@ -33,14 +33,7 @@ impl Canvas {
     pub(crate) fn into_image(self) -> RgbImage {
         let height = self.words.len() as u32 / self.width;
         let mut bytes = vec![0; 3 * self.words.len()];
-        // Four pixels fill three words of bytes. This takes a third of the time of single bytes.
-        let (quads, rest) = self.words.as_chunks::<4>();
-        let (bytes_of_quads, bytes_of_rest) = bytes.split_at_mut(12 * quads.len());
-        for (bytes, [a, b, c, d]) in bytes_of_quads.as_chunks_mut::<12>().0.iter_mut().zip(quads) {
-            let words = [a << 8 | (b >> 16 & 0xff), b << 16 | (c >> 8 & 0xffff), c << 24 | (d & 0xff_ffff)];
-            bytes.as_chunks_mut::<4>().0.iter_mut().zip(words).for_each(|(bytes, word)| *bytes = word.to_be_bytes());
-        }
-        for (pixel, word) in bytes_of_rest.chunks_exact_mut(3).zip(rest) {
+        for (pixel, word) in bytes.chunks_exact_mut(3).zip(&self.words) {
             let [_, red, green, blue] = word.to_be_bytes();
             pixel.copy_from_slice(&[red, green, blue]);
         }
