@@ -2,11 +2,47 @@
 //! (FIXME(accuracy)). ACCURACY.md, which explains the causes, must contain the results of these runs.
 
 use pxpl5::Level;
-use pxpl5::figures::{Bench, FigureRow, Figures, WITHOUT_CLOSED_FORM, alternatives_with, markdown, run_all};
+use pxpl5::figures::{
+    Bench, FigureRow, FigureTable, Figures, WITHOUT_CLOSED_FORM, alternatives_with, markdown, run_all_in_order,
+};
+use std::convert::Infallible;
+use std::ops::Deref;
 use std::sync::LazyLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 static BENCH: LazyLock<Bench> = LazyLock::new(|| Bench::new(Level::Transaction));
-static FIGURES: LazyLock<Figures> = LazyLock::new(|| run_all(&BENCH).expect("every experiment runs on its preset"));
+static FIGURES: LazyLock<Measured> = LazyLock::new(Measured::all);
+
+/// All figures, and what was reported while they were measured.
+struct Measured {
+    figures: Figures,
+    /// Reported rows in the order of the reports.
+    reported: Vec<(FigureTable, FigureRow)>,
+    /// Number of reports of progress, and the number of all steps in the last report.
+    steps: [u64; 2],
+}
+
+impl Measured {
+    fn all() -> Self {
+        let (reports, of) = (AtomicU64::new(0), AtomicU64::new(0));
+        let finished = |_, all| {
+            reports.fetch_add(1, Ordering::Relaxed);
+            of.store(all, Ordering::Relaxed);
+        };
+        let mut reported = Vec::new();
+        let figures = run_all_in_order(&BENCH, finished, |table, row| reported.push((table, row.clone())));
+        let figures = figures.expect("every experiment runs on its preset");
+        Self { figures, reported, steps: [reports, of].map(AtomicU64::into_inner) }
+    }
+}
+
+impl Deref for Measured {
+    type Target = Figures;
+
+    fn deref(&self) -> &Figures {
+        &self.figures
+    }
+}
 
 fn row(id: &str) -> &'static FigureRow {
     FIGURES.rows.iter().find(|row| row.id == id).expect("listed")
@@ -21,6 +57,25 @@ fn varied() -> impl Iterator<Item = &'static FigureRow> {
 fn within(id: &str, low: f64, high: f64) {
     let simulated = row(id).simulated;
     assert!((low..=high).contains(&simulated), "figure {id}: {simulated} is not in {low} to {high}");
+}
+
+#[test]
+fn rows_are_reported_once_in_the_order_of_the_tables() {
+    let mut expected = Vec::new();
+    let Ok(()) = FIGURES.each_row(|table, row| {
+        // Rows of the main table are reported before the closed forms are computed.
+        let row = match table {
+            FigureTable::Main => FigureRow { interval: None, analytic: None, ..row.clone() },
+            _ => row.clone(),
+        };
+        expected.push((table, row));
+        Ok::<_, Infallible>(())
+    });
+    for (reported, expected) in FIGURES.reported.iter().zip(&expected) {
+        assert_eq!(format!("{reported:?}"), format!("{expected:?}"));
+    }
+    assert_eq!(FIGURES.reported.len(), expected.len());
+    assert_eq!(FIGURES.steps[0], FIGURES.steps[1], "each step is reported once");
 }
 
 #[test]

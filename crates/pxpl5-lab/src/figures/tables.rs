@@ -177,28 +177,3 @@ fn topics() -> [Topic; 3] {
         Topic { title: trackers::TITLE, about: trackers::ABOUT, measurements: trackers::measurements() },
     ]
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use pxpl5_run::Level;
-    use std::convert::Infallible;
-
-    #[test]
-    fn rows_are_reported_once_in_the_order_of_the_tables() {
-        let bench = Bench::new(Level::Analytic).with_mig(1, 12).without_intervals();
-        let mut reported = Vec::new();
-        let figures = run_all_in_order(&bench, |_, _| {}, |table, row| reported.push((table, row.clone())));
-        let figures = figures.expect("every figure has a value");
-        let mut expected = Vec::new();
-        let Ok(()) = figures.each_row(|table, row| {
-            expected.push((table, row.clone()));
-            Ok::<_, Infallible>(())
-        });
-        assert!(format!("{reported:?}") == format!("{expected:?}"));
-        assert_eq!(reported.len(), n_steps() - 1 + figures.families[0].rows.len());
-        let titles: Vec<_> = figures.groups.iter().map(|group| group.title).collect();
-        assert_eq!(titles, topics().map(|topic| topic.title));
-        assert_eq!(figures.rows.len(), FIGURES.len());
-    }
-}
