@@ -48,9 +48,9 @@ fn silent(from_s: f64, to_s: f64) -> TrackerConfig {
 
 /// Returns experiments of every family of pipelines, with different trackers, predictors, rasters and aims.
 ///
-/// They are long enough that records are discarded several times. `PXPL5_ALL_CASES=1` makes each run longer, except
-/// frameless rendering with its 300 pictures in each field: beyond 65,536 samples (`KEPT_SAMPLES`), statistics differ in the
-/// last digits.
+/// They are long enough that records are discarded several times. `PXPL5_ALL_CASES=1` makes each run longer, except the
+/// run of frameless rendering with its 300 pictures in each field: beyond 65,536 samples (`KEPT_SAMPLES`), the
+/// statistics differ in the last digits.
 fn experiments() -> Vec<Experiment> {
     let longer = if std::env::var_os("PXPL5_ALL_CASES").is_some() { 3 } else { 1 };
     let run = |(fields, experiment): (u64, Experiment)| {
