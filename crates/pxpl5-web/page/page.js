@@ -207,7 +207,7 @@ async function build(kept = null) {
   const begun = settings["head.motion"] === LIVE ? kept ?? new Live() : null;
   if (begun) files.push([LIVE, new TextEncoder().encode(csv("0,0"))]);
   const texts = pipelines().map((name) => Object.entries(settingsOf(name)).map(([key, value]) => `${key}=${value}`).join("\n"));
-  say(unknown.length > 0 ? `The link has ${unkeys.map((key) => `"${key}"`).join(", ")}, which is unknown: expected ${[...KEYS, ...OTHERS].join(", ")}.` : "");
+  say(unknown.length > 0 ? `The link has ${unknown.map((key) => `"${key}"`).join(", ")}, which is unknown: expected ${[...KEYS, ...OTHERS].join(", ")}.` : "");
   unknown = [];
   document.body.dataset.busy = "true";
   endAside();
