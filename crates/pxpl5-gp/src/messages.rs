@@ -65,34 +65,38 @@ impl Gp {
         messages: impl Iterator<Item = (NodeId, u32, Body)>,
         last: (NodeId, u32, Body),
     ) -> Result<(), Fault> {
-        // Nothing happens between two steps except at a full clump buffer, so one event can end them together. Only i860
-        // code needs the instant of each step, because the board's other program changes the caches too.
-        let spends_steps = self.runs_code();
+        // Nothing happens between two steps except at a full clump buffer, so one event ends them together.
         let mut due = self.reception_time(received).await;
         if let Some(work) = work {
-            if spends_steps {
-                self.spend(std::mem::take(&mut due)).await;
-            }
-            due += self.answer_time(work)?;
+            due = self.spend_before_code(due).await + self.answer_time(work)?;
         }
         // Each message needs the clump buffer. Only `last` is sent without a wait.
         for message in messages {
-            if spends_steps || !self.is_clump_buffer_free() {
+            if !self.is_clump_buffer_free() {
                 self.spend(std::mem::take(&mut due)).await;
                 self.clump_buffer_free().await;
             }
             self.send_after(std::mem::take(&mut due), message).await;
         }
-        if spends_steps {
-            self.spend(std::mem::take(&mut due)).await;
-        }
         self.send_after(due, last).await;
         Ok(())
+    }
+
+    /// Spends `due` if the board runs i860 code, and returns the time that the program must still spend. The code of the
+    /// next step must begin at its own instant, because the code of the board's other program changes the caches too.
+    #[inline]
+    async fn spend_before_code(&self, due: Span) -> Span {
+        if !self.runs_code() {
+            return due;
+        }
+        self.spend(due).await;
+        Span::ZERO
     }
 
     /// Sends one message in the background. The program first spends `due` and the CPU time of the message software.
     #[inline]
     async fn send_after(&self, due: Span, message: (NodeId, u32, Body)) {
+        let due = self.spend_before_code(due).await;
         let chain = self.unheld([message]);
         let span = due + self.chain_time(&chain).await;
         self.spend(span).await;

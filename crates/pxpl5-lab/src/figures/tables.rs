@@ -46,7 +46,8 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
 }
 
 /// Measures all figures in parallel, like [`run_all_with`]. Calls `row` with each row as soon as the row and all
-/// earlier rows of [`Figures`] are finished. Rows of the main table have no interval yet.
+/// earlier rows of [`Figures`] are finished. Rows of the main table then have neither an interval nor an analytic
+/// value.
 ///
 /// # Errors
 ///
@@ -90,7 +91,8 @@ fn n_steps() -> usize {
 
 impl Tables {
     /// Measures the rows of all tables in parallel. Calls `step` after each row and each family. Calls `row` with each
-    /// row in the order of the tables, when all earlier rows are finished. Rows after a failed measurement are left out.
+    /// row in the order of the tables, when all earlier rows are finished. Rows after a failed measurement are left
+    /// out.
     fn measure(
         bench: &Bench,
         step: impl Fn() + Sync,
@@ -109,10 +111,11 @@ impl Tables {
         // The family takes long and comes last, so its measurement starts first.
         let family = || stepped(&step, || FigureFamily::address_recalculation(bench));
         let (rows, family) = parallel::both(rows, family);
-        let mut tables = Self { main: Vec::new(), groups: Vec::new(), families: vec![family?] };
+        let mut tables = Self { main: Vec::new(), groups: Vec::new(), families: Vec::new() };
         for (task, one) in tasks.iter().zip(rows) {
             tables.add(task.table, one?, &topics);
         }
+        tables.families.push(family?);
         for FigureFamily { title, document, rows } in &tables.families {
             rows.iter().for_each(|one| row(FigureTable::Family { title, document }, one));
         }
