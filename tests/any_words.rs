@@ -92,7 +92,7 @@ proptest! {
         registry().displays().par_iter().for_each(|entry| {
             let config = (entry.config)();
             let nodes: Vec<NodeId> = (FIRST_PORT..).take(config.ports(2)).map(NodeId).collect();
-            let mut display = config.build(&nodes).expect("the numbers of its papers");
+            let mut display = config.build(&nodes, pxpl5_sim::Span::from_ns(50)).expect("the numbers of its papers");
             let mut bench: TestBench<DisplayEvent, _> = TestBench::new();
             let end = display.tick(PeriodNumber(PERIODS));
             for period in 0..PERIODS {

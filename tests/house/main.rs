@@ -1,9 +1,10 @@
 //! Rules for the structure of the workspace, and the part of ARCHITECTURE.md that is generated from the crates.
 //!
-//! `PXPL5_UPDATE_HOUSE=1 cargo test --test house` updates that part.
+//! `PXPL5_UPDATE_HOUSE=1 cargo test --test house` updates that part, and the table of code lines (lines.rs).
 
 mod crates;
 mod document;
+mod lines;
 mod modules;
 mod packages;
 mod prose;
@@ -175,6 +176,11 @@ fn the_counts_of_unclear_texts_stay_within_their_limits() {
 #[test]
 fn architecture_describes_the_current_crates() {
     document::check(&workspace());
+}
+
+#[test]
+fn no_crate_has_more_code_lines_than_the_lock_allows() {
+    lines::check();
 }
 
 #[test]

@@ -52,6 +52,8 @@ impl EyeBoards {
 pub struct AddressRecalculationPipeline {
     optics: Optics,
     nodes: Vec<NodeId>,
+    /// Time in which a port receives one word.
+    word: Span,
     surfaces: Vec<Surface>,
     eyes: Vec<EyeBoards>,
     fields: u64,
@@ -117,7 +119,7 @@ impl AddressRecalculationPipeline {
 
     fn retrace(&mut self, tick: PeriodNumber, context: &mut DisplayContext) {
         let now = context.now();
-        let at = now + Span::from_ns(self.optics.config.timing.word_ns);
+        let at = now + self.word;
         let kept = self.optics.config.fields_kept;
         let oldest = self.optics.scan.retrace(tick.before(kept).unwrap_or(PeriodNumber::FIRST));
         // Remember the buffers that the past field showed.
@@ -161,7 +163,7 @@ impl AddressRecalculationPipeline {
         let receipt = self.eyes[surface].memories[memory].receive(pixels, last_part_at)?;
         // Report a complete region one word time after its last message.
         if let PixelReceipt::Region(first_part_at) = receipt {
-            let at = last_part_at + Span::from_ns(self.optics.config.timing.word_ns);
+            let at = last_part_at + self.word;
             context.output(at, DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at });
         }
         Ok(())
@@ -301,7 +303,7 @@ impl DisplayConfig for ArpConfig {
         Self::check(self)
     }
 
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
+    fn build(&self, nodes: &[NodeId], word: Span) -> Result<Box<dyn Display>, SettingError> {
         Self::check(self)?;
         let scan = self.scan()?;
         // The number of ports determines the number of eyes.
@@ -314,6 +316,7 @@ impl DisplayConfig for ArpConfig {
             surfaces: Surface::of_frame_buffers(eyes, scan.width(), scan.height()),
             optics: Optics { config: self.clone(), table: OnceLock::new(), scan },
             nodes: nodes.to_vec(),
+            word,
             eyes: (0..eyes).map(|_| boards(self)).collect(),
             fields: 0,
             faults: 0,

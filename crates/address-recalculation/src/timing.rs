@@ -31,8 +31,6 @@ pxpl5_sim::parameters::parameter_table! {
         stage_ps: 25_000, "ps", Assumed, 1_000..=38_461 in 1..=1_000_000, "RP94: orientation less than 1 us before the first pixel, so below 38.46 ns in 26 stages";
         /// Horizontal viewing angle of the picture.
         horizontal_deg: f64 = 60.0, "deg", Published, 1.0..=360.0, "JITP; above 170 only with the equidistant lens or a table";
-        /// Time to receive one word at a ring port.
-        word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
     }
 }
 

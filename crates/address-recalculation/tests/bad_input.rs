@@ -39,7 +39,7 @@ fn invalid_numbers_are_refused_with_their_name() {
         assert_eq!(error, expected);
     }
     let scan = ScanTiming { pixel_ps: u64::MAX, ..ScanTiming::PAPERS };
-    ArpConfig { scan, ..ArpConfig::IDEAL }.build(&[]).expect_err("refused");
+    ArpConfig { scan, ..ArpConfig::IDEAL }.build(&[], pxpl5_sim::Span::from_ns(50)).expect_err("refused");
 }
 
 const TINY: LensPicture = LensPicture { width: 2, height: 1, horizontal_deg: 60.0 };

@@ -374,7 +374,7 @@ fn the_last_orientation_stays_if_the_tracker_stops_reporting() {
 #[test]
 fn each_eye_has_its_own_memories_and_orientation() {
     let nodes: Vec<NodeId> = (1..=4).map(NodeId).collect();
-    let display = CONFIG.build(&nodes).expect("valid");
+    let display = CONFIG.build(&nodes, pxpl5_sim::Span::from_ns(50)).expect("valid");
     assert_eq!((display.surfaces().len(), CONFIG.ports(2), display.nodes().len()), (2, 4, 4));
     let mut bench = Bench { display, outputs: Vec::new(), texels: 128 };
     bench.tick(0);
@@ -388,7 +388,7 @@ fn each_eye_has_its_own_memories_and_orientation() {
         _ => None,
     });
     assert_eq!(updated.collect::<Vec<_>>(), [(0, nodes[0]), (1, nodes[3])]);
-    let error = CONFIG.build(&nodes[..3]).expect_err("three ports").to_string();
+    let error = CONFIG.build(&nodes[..3], pxpl5_sim::Span::from_ns(50)).expect_err("three ports").to_string();
     assert_eq!(error, "arp: expected 2 ports for one eye, 4 for two, found 3");
 }
 

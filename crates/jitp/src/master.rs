@@ -77,12 +77,12 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
                 // Send the orders for the fields whose preparation must begin before this strip.
                 let order_at = before(self.config.deadline(field, strip), ahead);
                 while viewpoint != Viewpoint::Strip && self.preparation_at(prepared, viewpoint, ahead) <= order_at {
-                    self.wait_until(self.preparation_at(prepared, viewpoint, ahead)).await;
+                    self.gp.sleep_until(self.preparation_at(prepared, viewpoint, ahead)).await;
                     self.order_field(prepared, viewpoint).await?;
                     prepared = prepared.next();
                 }
                 // The master sends no order for a strip whose deadline has passed.
-                self.wait_until(order_at).await;
+                self.gp.sleep_until(order_at).await;
                 if self.gp.now() < self.config.deadline(field, strip) {
                     self.order_strip(field, strip, viewpoint).await?;
                 }
@@ -105,12 +105,6 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         let views = if viewpoint == Viewpoint::Field { 1 } else { 2 };
         let span = self.pass.span(&self.gp.timing()) * views;
         before(first_strip, ahead + span + span / 2)
-    }
-
-    async fn wait_until(&self, time: Time) {
-        while self.gp.now() < time {
-            self.gp.spend(time.since(self.gp.now())).await;
-        }
     }
 
     async fn order_field(&mut self, field: PeriodNumber, viewpoint: Viewpoint) -> Result<(), Fault> {

@@ -27,7 +27,7 @@ pub async fn send_as_tracked(
     let mut due = first;
     let mut number = ViewNumber::FIRST;
     while let Some(at) = due {
-        gp.spend(at.since(gp.now())).await;
+        gp.sleep_until(at).await;
         let reports_until = gp.now();
         // The pictures that will show this view are not determined yet, so the record of SEND has the number of the
         // message.

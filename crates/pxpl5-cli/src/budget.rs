@@ -97,11 +97,11 @@ impl BudgetArgs {
 
 impl Watch {
     /// Returns an error if the whole run would exceed the budget. The cost of the run is extrapolated from the first
-    /// `done` fields.
-    pub(crate) fn check(&self, done: u64) -> Result<(), String> {
+    /// `done` fields. `planned` is the memory in bytes that the output will take after the run, for these fields.
+    pub(crate) fn check(&self, done: u64, planned: f64) -> Result<(), String> {
         // The cost until the first check is a constant; the cost since then is extrapolated over the rest of the
         // fields.
-        let taken = self.taken();
+        let taken = self.taken(planned);
         let (first, before) = *self.first.get_or_init(|| (done, taken));
         let part = (done.min(self.fields) - first.min(done)) as f64 / self.fields as f64;
         match self.budget.refusal(before, taken.since(before), part) {
@@ -112,9 +112,9 @@ impl Watch {
         }
     }
 
-    fn taken(&self) -> Taken {
+    fn taken(&self, planned: f64) -> Taken {
         let bytes = resident_bytes().zip(self.bytes_before).map_or(0.0, |(now, before)| (now - before).max(0.0));
-        Taken { seconds: self.begun.elapsed().as_secs_f64(), bytes }
+        Taken { seconds: self.begun.elapsed().as_secs_f64(), bytes: bytes + planned }
     }
 }
 
@@ -196,7 +196,7 @@ mod tests {
         assert!(refusal(101.0, 0.0).is_some(), "too much already");
         let watch = BUDGET.watch(1_000_000);
         std::thread::sleep(std::time::Duration::from_secs_f64(1.5 * MIN_EXTRAPOLATED_SECONDS));
-        assert_eq!(watch.check(1), Ok(()), "what the first field needed took no 750,000 s");
+        assert_eq!(watch.check(1, 0.0), Ok(()), "what the first field needed took no 750,000 s");
     }
 
     #[cfg(target_os = "linux")]

@@ -29,7 +29,10 @@ pub(crate) fn run(args: CheckArgs) -> Result<(), CliError> {
     let (plan, about) = if file.is_sweep() { of_sweep(file)? } else { (file.resolve()?, String::new()) };
     warn(&plan.warnings(), false);
     let scene = scenes::load(&plan, false)?;
-    let hash = plan.experiment(scene).config_hash();
+    let experiment = plan.experiment(scene);
+    // A machine that cannot be built is refused here too.
+    experiment.check()?;
+    let hash = experiment.config_hash();
     print(&format!(
         "{about}# machine: {}\n# config_hash: {hash}\n# version: {VERSION}\n# commit: {}\n# level: {}\n# seed: {}\n{}",
         plan.machine.preset,

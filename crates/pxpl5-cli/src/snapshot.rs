@@ -128,7 +128,7 @@ impl SnapshotArgs {
         let outcome = experiment.run_stopping(&stops, |field, machine| {
             let done = field.since(PeriodNumber::FIRST);
             bar.set_position(done);
-            watch.check(done).map_err(ExperimentError::Stopped)?;
+            watch.check(done, 0.0).map_err(ExperimentError::Stopped)?;
             // The repeated part must match the checkpoint before the run continues.
             if let Some((snapshot, name)) = restored.as_ref().filter(|(snapshot, _)| snapshot.field == field) {
                 snapshot.check_machine(machine, name).map_err(|error| ExperimentError::Stopped(error.to_string()))?;

@@ -13,6 +13,7 @@ use crate::too_heavy::too_heavy;
 use clap::{Args, ValueEnum};
 use pxpl5::views::trace_export::{Trace, chrome, perfetto};
 use pxpl5::{ExperimentError, PeriodNumber};
+use pxpl5::{Observation, Traffic};
 use std::path::{Path, PathBuf};
 
 /// Run one experiment and write a trace of its events for ui.perfetto.dev.
@@ -62,6 +63,16 @@ impl Format {
     }
 }
 
+/// Bytes in memory for each event of the trace while the file is made (measured, rounded up).
+const EVENT_BYTES: f64 = 400.0;
+
+/// Returns the memory that the trace of the records so far will take, in bytes. A message is an event of two ports.
+fn trace_bytes(observation: &Observation) -> f64 {
+    let of_traffic =
+        |traffic: &Traffic| 2 * traffic.transfers.len() + traffic.busy_channels.len() + traffic.fifo_changes.len();
+    EVENT_BYTES * (observation.records() + observation.traffic.as_deref().map_or(0, of_traffic)) as f64
+}
+
 pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     let format = args.format.map_or_else(|| Format::of(&args.out), Ok)?;
     let plan = args.settings.gather()?.resolve()?;
@@ -75,11 +86,12 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     // A trace needs every message, which a run does not record by default.
     let experiment = plan.experiment(scene).record_traffic(true);
     let watch = args.budget.watch(plan.fields);
-    let run = experiment.run_stopping(&EARLY_CHECK_FIELDS.map(|field| PeriodNumber::FIRST.after(field)), |field, _| {
-        let done = field.since(PeriodNumber::FIRST);
-        bar.set_position(done);
-        watch.check(done).map_err(ExperimentError::Stopped)
-    });
+    let run =
+        experiment.run_stopping(&EARLY_CHECK_FIELDS.map(|field| PeriodNumber::FIRST.after(field)), |field, machine| {
+            let done = field.since(PeriodNumber::FIRST);
+            bar.set_position(done);
+            watch.check(done, trace_bytes(machine.record().observation())).map_err(ExperimentError::Stopped)
+        });
     bar.finish_and_clear();
     // A run that is too short for statistics still has a trace.
     let Simulated { outcome, too_short } = Simulated::of(run)?;

@@ -65,8 +65,13 @@ fn fields(criterion: &mut Criterion) {
     let image: Arc<dyn PixelSource> = Arc::new(Flat(vec![0x123456; 128 * 120].into()));
     let mut group = criterion.benchmark_group("fields");
     group.throughput(Throughput::Elements(1));
-    let new =
-        || (FrameBuffer::new(FrameBufferConfig::NTSC, NODE).expect("valid"), Context::default(), PeriodNumber::FIRST);
+    let new = || {
+        (
+            FrameBuffer::new(FrameBufferConfig::NTSC, NODE, Span::from_ns(50)).expect("valid"),
+            Context::default(),
+            PeriodNumber::FIRST,
+        )
+    };
     let (mut board, mut context, mut field) = new();
     group.bench_function("ten-regions", |bencher| {
         bencher.iter(|| {

@@ -47,17 +47,18 @@ pub struct FrameBuffer {
 }
 
 impl FrameBuffer {
-    /// Makes a board at ring port `node`. Both buffers are black, and buffer 0 is displayed.
+    /// Makes a board at ring port `node`, which receives a word in the time `word`. Both buffers are black, and buffer 0
+    /// is displayed.
     ///
     /// # Errors
     ///
     /// Returns a [`SettingError`] with the name of the parameter that is out of range.
-    pub fn new(config: FrameBufferConfig, node: NodeId) -> Result<Self, SettingError> {
+    pub fn new(config: FrameBufferConfig, node: NodeId, word: Span) -> Result<Self, SettingError> {
         config.check()?;
         Ok(Self {
             node,
             video: config.video.video()?,
-            word: Span::from_ns(config.port.word_ns),
+            word,
             fields_kept: config.fields_kept as usize,
             buffers: [Buffer::new(), Buffer::new()],
             displayed: 0,

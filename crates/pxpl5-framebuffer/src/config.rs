@@ -1,7 +1,7 @@
 //! Configuration of one frame buffer board.
 
-use crate::timing::{PortTiming, VideoTiming};
-use pxpl5_sim::parameters::{ParameterTable, SettingError, check};
+use crate::timing::VideoTiming;
+use pxpl5_sim::parameters::{SettingError, check};
 
 /// Parameters of one frame buffer board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -9,15 +9,13 @@ use pxpl5_sim::parameters::{ParameterTable, SettingError, check};
 pub struct FrameBufferConfig {
     /// Timing of lines and pixels of the scan.
     pub video: VideoTiming,
-    /// Timing of the board's port on the ring.
-    pub port: PortTiming,
     /// Number of scanned fields that the board keeps, 1 to 1,000. An interlaced picture needs at least two.
     pub fields_kept: u64,
 }
 
 impl FrameBufferConfig {
     /// The NTSC frame buffer of TR94. The board keeps the last two fields.
-    pub const NTSC: Self = Self { video: VideoTiming::PAPERS, port: PortTiming::PAPERS, fields_kept: 2 };
+    pub const NTSC: Self = Self { video: VideoTiming::PAPERS, fields_kept: 2 };
 
     /// Checks that a board can be built from these parameters.
     ///
@@ -27,7 +25,6 @@ impl FrameBufferConfig {
     /// value.
     pub fn check(&self) -> Result<(), SettingError> {
         self.video.check()?;
-        let others = self.port.check().and_then(|()| check("fields_kept", self.fields_kept, (1, 1_000)));
-        others.map_err(|error| error.at("frame buffer"))
+        check("fields_kept", self.fields_kept, (1, 1_000)).map_err(|error| error.at("frame buffer"))
     }
 }

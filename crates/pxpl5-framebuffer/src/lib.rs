@@ -34,7 +34,7 @@
 //!
 //! # Timing
 //!
-//! [`VideoTiming`] and [`PortTiming`] list all timing parameters. [`Video`] computes the exact instants, from time
+//! [`VideoTiming`] lists all timing parameters. [`Video`] computes the exact instants, from time
 //! zero:
 //!
 //! | instant | time |
@@ -83,7 +83,7 @@ pub use panel::{HiResConfig, LcdConfig, OledConfig, Panel, PanelConfig, PanelNum
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
 pub use pxpl5_wire::Video;
 pub use scanned::{BufferContents, ScannedField, ScannedLateRegion};
-pub use timing::{PortTiming, VideoTiming};
+pub use timing::VideoTiming;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

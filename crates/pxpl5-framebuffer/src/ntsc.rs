@@ -3,7 +3,7 @@
 use crate::{FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput, ScannedField, Video};
 use image::RgbImage;
 use pxpl5_sim::parameters::{ParameterTable, SettingError};
-use pxpl5_sim::{Context, Time};
+use pxpl5_sim::{Context, Span, Time};
 use pxpl5_wire::display::{Counter, Display, DisplayConfig, DisplayContext, DisplayEvent, DisplayOutput, Surface};
 use pxpl5_wire::{Body, Eye, FieldParity, NodeId, PeriodNumber, read_swap_request};
 use std::ops::Range;
@@ -229,11 +229,11 @@ impl DisplayConfig for FrameBufferConfig {
     }
 
     fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)> {
-        vec![("video", &self.video), ("frame_buffer", &self.port)]
+        vec![("video", &self.video)]
     }
 
     fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)> {
-        vec![("video", &mut self.video), ("frame_buffer", &mut self.port)]
+        vec![("video", &mut self.video)]
     }
 
     fn ports(&self, pictures: usize) -> usize {
@@ -244,9 +244,9 @@ impl DisplayConfig for FrameBufferConfig {
         Self::check(self)
     }
 
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
+    fn build(&self, nodes: &[NodeId], word: Span) -> Result<Box<dyn Display>, SettingError> {
         let video = self.video.video()?;
-        let boards = nodes.iter().map(|node| FrameBuffer::new(*self, *node)).collect::<Result<Vec<_>, _>>();
+        let boards = nodes.iter().map(|node| FrameBuffer::new(*self, *node, word)).collect::<Result<Vec<_>, _>>();
         let surfaces = Surface::of_frame_buffers(nodes.len(), video.width(), video.height());
         let context = Context::default();
         Ok(Box::new(NtscDisplay { video, boards: boards?, nodes: nodes.to_vec(), surfaces, context }))

@@ -28,15 +28,6 @@ pxpl5_sim::parameters::parameter_table! {
     }
 }
 
-pxpl5_sim::parameters::parameter_table! {
-    /// Timing of the board's port on the ring.
-    pub struct PortTiming {
-        /// Time in which a ring port receives one word. The last word of a message arrives at the time of the message's
-        /// event.
-        word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94, F89: 20 Mwords/s per channel";
-    }
-}
-
 impl VideoTiming {
     /// Checks that a picture can be scanned with these parameters. Each parameter must be in its range. The visible
     /// pixels and their blanking must fit in a line. The visible lines and their blanking must fit in a field.

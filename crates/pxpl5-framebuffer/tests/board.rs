@@ -343,7 +343,7 @@ fn a_region_whose_source_has_too_few_pixels_stays_black() {
 #[test]
 fn a_board_that_cannot_be_built_is_refused_with_the_reason() {
     let config = FrameBufferConfig { fields_kept: 0, ..FrameBufferConfig::NTSC };
-    let error = FrameBuffer::new(config, NODE).expect_err("nothing kept");
+    let error = FrameBuffer::new(config, NODE, WORD).expect_err("nothing kept");
     assert_eq!(error.to_string(), "frame buffer: fields_kept must be 1 to 1000, found 0");
     assert_eq!(error.to_string(), "frame buffer: fields_kept must be 1 to 1000, found 0");
 }
@@ -392,7 +392,8 @@ fn lines_overwritten_before_their_scan_are_counted() {
 fn a_buffer_that_is_not_displayed_shows_nothing() {
     let mut board = Board::new();
     board.retraces(0..=8);
-    let retrace = |n| FrameBuffer::new(FrameBufferConfig::NTSC, NODE).expect("valid").video().retrace(PeriodNumber(n));
+    let retrace =
+        |n| FrameBuffer::new(FrameBufferConfig::NTSC, NODE, WORD).expect("valid").video().retrace(PeriodNumber(n));
     for (picture, field) in [(0, 1), (1, 3), (2, 7)] {
         board.region(
             retrace(field) + MESSAGE * 16,

@@ -57,7 +57,10 @@ impl Rig {
     fn new() -> Self {
         let mut config = FrameBufferConfig::NTSC;
         config.remember(4);
-        Self { display: config.build(&NODES).expect("it can be built"), bench: TestBench::new() }
+        Self {
+            display: config.build(&NODES, pxpl5_sim::Span::from_ns(50)).expect("it can be built"),
+            bench: TestBench::new(),
+        }
     }
 
     fn tick(&mut self, field: u64) {
@@ -264,5 +267,5 @@ fn the_display_has_one_port_for_each_eye() {
     config.remember(0);
     let refused = DisplayConfig::check(&config).expect_err("nothing would be remembered");
     assert!(refused.to_string().contains("fields_kept"), "{refused}");
-    assert!(config.boxed().build(&NODES).is_err());
+    assert!(config.boxed().build(&NODES, pxpl5_sim::Span::from_ns(50)).is_err());
 }

@@ -40,7 +40,10 @@ struct Rig {
 
 impl Rig {
     fn new() -> Self {
-        Self { display: HiResConfig::PAPERS.build(&NODES).expect("it can be built"), bench: TestBench::new() }
+        Self {
+            display: HiResConfig::PAPERS.build(&NODES, pxpl5_sim::Span::from_ns(50)).expect("it can be built"),
+            bench: TestBench::new(),
+        }
     }
 
     fn tick(&mut self, scan: u64) -> Time {
@@ -117,7 +120,11 @@ fn the_description_of_the_panel_has_its_size_name_and_surfaces() {
     changed.refresh_hz = 60;
     assert!(!config.equals(&changed));
     changed.width = 0;
-    assert!(changed.build(&NODES).is_err_and(|error| error.to_string().contains("hires.width")));
+    assert!(
+        changed
+            .build(&NODES, pxpl5_sim::Span::from_ns(50))
+            .is_err_and(|error| error.to_string().contains("hires.width"))
+    );
 }
 
 #[test]
@@ -166,9 +173,9 @@ fn a_board_with_two_ports_takes_regions_at_both() {
     let config = HiResConfig { ports: 2, ..HiResConfig::PAPERS };
     assert_eq!((config.ports(1), config.ports(2)), (2, 4));
     let nodes = [5, 6, 7, 8].map(NodeId);
-    let display = config.build(&nodes).expect("two boards of two ports");
+    let display = config.build(&nodes, pxpl5_sim::Span::from_ns(50)).expect("two boards of two ports");
     assert_eq!((display.surfaces().len(), display.nodes().len()), (2, 4));
-    let error = config.build(&nodes[..3]).expect_err("three ports").to_string();
+    let error = config.build(&nodes[..3], pxpl5_sim::Span::from_ns(50)).expect_err("three ports").to_string();
     assert_eq!(error, "hires.ports: expected a multiple of 2 nodes, found 3");
 }
 
@@ -178,7 +185,7 @@ fn small() -> PanelConfig {
 }
 
 fn built(config: PanelConfig) -> Box<dyn Display> {
-    config.build(&[NodeId(1)]).expect("it can be built")
+    config.build(&[NodeId(1)], pxpl5_sim::Span::from_ns(50)).expect("it can be built")
 }
 
 /// Returns the times at which some pixels light in the second period, in microseconds from the start of the period.
@@ -311,9 +318,15 @@ fn invalid_panel_numbers_are_refused_with_the_expected_range() {
 /// The centre of a light of 2 ms with a time constant of 0.1 ms is 1.1 ms after its start.
 #[test]
 fn the_panels_of_the_presets_have_the_published_scan_and_light_times() {
-    let light = OledConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();
+    let light = OledConfig::PAPERS
+        .build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId), pxpl5_sim::Span::from_ns(50))
+        .expect("eight ports")
+        .light();
     assert_eq!((light.scan, light.centre()), (ScanOrder::Down, Span::from_us(1_100)));
-    let light = LcdConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();
+    let light = LcdConfig::PAPERS
+        .build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId), pxpl5_sim::Span::from_ns(50))
+        .expect("eight ports")
+        .light();
     assert_eq!(
         (light.scan, light.persistence, light.centre()),
         (ScanOrder::Global, Span::from_us(330), Span::from_us(165))

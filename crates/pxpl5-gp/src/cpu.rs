@@ -20,6 +20,8 @@ impl Priority {
 pub(crate) struct Cpu {
     remaining: [Option<Span>; 2],
     running: Option<(Priority, Time)>,
+    /// Programs whose present span is a wait for an instant, which is no work.
+    is_waiting: [bool; 2],
     busy: Span,
 }
 
@@ -27,7 +29,14 @@ impl Cpu {
     pub(crate) fn begin(&mut self, priority: Priority, span: Span, now: Time) {
         self.settle(now);
         self.remaining[priority as usize] = Some(span);
+        self.is_waiting[priority as usize] = false;
         self.dispatch(now);
+    }
+
+    /// Begins a wait. It ends as work of the same span does, and counts as none.
+    pub(crate) fn begin_wait(&mut self, priority: Priority, span: Span, now: Time) {
+        self.begin(priority, span, now);
+        self.is_waiting[priority as usize] = true;
     }
 
     /// Subtracts the CPU time up to `now` from the remaining time of the running program. Work that ends exactly at
@@ -38,7 +47,9 @@ impl Cpu {
         };
         // Charge the time since the last change to the running program.
         let elapsed = now - since;
-        self.busy += elapsed;
+        if !self.is_waiting[priority as usize] {
+            self.busy += elapsed;
+        }
         let left = self.remaining[priority as usize].map_or(Span::ZERO, |left| left - elapsed);
         self.remaining[priority as usize] = (left > Span::ZERO).then_some(left);
         self.dispatch(now);
@@ -76,7 +87,9 @@ impl Cpu {
     /// Returns the CPU time of all programs up to `now`. `now` must not be earlier than the last call of
     /// [`Cpu::settle`].
     pub(crate) fn busy_at(&self, now: Time) -> Span {
-        let Some((priority, since)) = self.running else { return self.busy };
+        let Some((priority, since)) = self.running.filter(|running| !self.is_waiting[running.0 as usize]) else {
+            return self.busy;
+        };
         let left = self.remaining[priority as usize].unwrap_or(Span::ZERO);
         self.busy + left.min(Span(now.0.saturating_sub(since.0)))
     }
@@ -100,6 +113,18 @@ mod tests {
         cpu.settle(Time(130));
         assert!(cpu.is_done(Priority::Foreground));
         assert_eq!(cpu.busy(), Span(130));
+    }
+
+    #[test]
+    fn a_wait_counts_as_no_work() {
+        let mut cpu = Cpu::default();
+        cpu.begin_wait(Priority::Foreground, Span(100), Time(0));
+        cpu.begin(Priority::Interrupt, Span(30), Time(40));
+        assert_eq!([cpu.busy_at(Time(40)), cpu.busy_at(Time(60))], [Span(0), Span(20)]);
+        cpu.settle(Time(70));
+        cpu.settle(Time(130));
+        assert!(cpu.is_done(Priority::Foreground));
+        assert_eq!(cpu.busy(), Span(30));
     }
 
     #[test]

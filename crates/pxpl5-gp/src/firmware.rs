@@ -287,6 +287,18 @@ impl Gp {
         self.wait(wait, || self.shared.borrow().cpu.is_done(self.priority).then_some(())).await;
     }
 
+    /// Waits until the instant `time`, if it is later than now. The wait counts as no work of the CPU.
+    pub async fn sleep_until(&self, time: Time) {
+        while self.now() < time {
+            {
+                let shared = &mut *self.shared.borrow_mut();
+                shared.cpu.begin_wait(self.priority, time.since(shared.now), shared.now);
+            }
+            let wait = Wait { what: "an instant", ended_by: Cause::Work };
+            self.wait(wait, || self.shared.borrow().cpu.is_done(self.priority).then_some(())).await;
+        }
+    }
+
     /// Waits for the next retrace, and returns the number of the field that begins then.
     pub async fn retrace(&self) -> PeriodNumber {
         self.field_from(self.field().next()).await

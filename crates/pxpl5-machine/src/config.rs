@@ -221,7 +221,7 @@ impl MachineConfig {
     pub fn period(&self) -> Result<Span, SettingError> {
         let display = self.displays.first().ok_or_else(no_display)?;
         let nodes: Vec<NodeId> = (0..display.ports(1) as u16).map(NodeId).collect();
-        Ok(display.build(&nodes)?.tick(PeriodNumber(1)).since(Time::ZERO))
+        Ok(display.build(&nodes, self.ring.word())?.tick(PeriodNumber(1)).since(Time::ZERO))
     }
 
     /// Checks all numbers of boards, parameter tables and displays before a machine is built.

@@ -93,7 +93,11 @@ impl Machine {
         // All renderers share one pool for their pixel arrays.
         let pool = ArrayPool::new(layout);
         let renderer = |node: &NodeId| Renderer::new(*node, config.renderer, config.ring.word(), signal, pool.clone());
-        let displays = config.displays.iter().zip(&ports.displays).map(|(display, nodes)| display.build(nodes));
+        let displays = config
+            .displays
+            .iter()
+            .zip(&ports.displays)
+            .map(|(display, nodes)| display.build(nodes, config.ring.word()));
         let displays = displays.collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             processors: [host].into_iter().chain(gps).collect(),

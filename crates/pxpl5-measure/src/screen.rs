@@ -9,9 +9,9 @@ use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, Reg
 #[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
-    /// The swaps of the two buffers. Each entry has the period from which the newly swapped buffer is shown, and the
-    /// number of earlier swaps.
-    swaps: Vec<(PeriodNumber, u64)>,
+    /// The swaps of the two buffers: the period from which a buffer is shown, and the buffer. A program may ask for the
+    /// same buffer twice, so the buffers need not alternate.
+    swaps: Vec<(PeriodNumber, u8)>,
 }
 
 /// Arrivals of regions in one buffer, for one division of the screen into regions, sorted by region and time.
@@ -49,7 +49,7 @@ impl Screen {
         let arrived = run.arrivals.iter().filter(|arrival| arrival.surface == SurfaceId(0));
         arrived.for_each(|arrival| self.arrive(arrival));
         let swaps = run.record.observation().swaps_of(SurfaceId(0));
-        self.swaps = swaps.map(|swap| (swap.tick, swap.number)).collect();
+        self.swaps = swaps.map(|swap| (swap.tick, swap.buffer)).collect();
     }
 
     fn arrive(&mut self, arrival: &Arrival) {
@@ -84,9 +84,9 @@ impl Screen {
     }
 
     pub(crate) fn shown(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<CopyTarget> {
-        // Buffer 0 is shown first, and every swap shows the other buffer.
+        // Buffer 0 is shown first.
         let before = self.swaps.partition_point(|swap| swap.0 <= field);
-        let buffer = self.swaps[..before].last().map_or(0, |swap| ((swap.1 + 1) % 2) as u8);
+        let buffer = self.swaps[..before].last().map_or(0, |swap| swap.1);
         let newest = self.cuts.iter().filter(|cut| cut.of.buffer == buffer).filter_map(|cut| cut.newest(x, y, at));
         newest.max_by_key(|newest| newest.0).map(|newest| newest.1)
     }
@@ -135,11 +135,11 @@ mod tests {
     }
 
     #[test]
-    fn every_swap_shows_the_other_buffer_starting_with_the_second_buffer() {
+    fn a_swap_shows_the_buffer_that_the_program_asked_for() {
         let [first, second] = [0, 1].map(|buffer| CopyTarget { buffer, ..target(Lines::Frame, buffer.into()) });
         let mut screen = screen([(10, first), (10, second)]);
-        screen.swaps = vec![(PeriodNumber(3), 0), (PeriodNumber(5), 1), (PeriodNumber(6), 2)];
-        for (field, expected) in [(2, first), (3, second), (4, second), (5, first), (6, second), (9, second)] {
+        screen.swaps = vec![(PeriodNumber(3), 1), (PeriodNumber(5), 1), (PeriodNumber(6), 0)];
+        for (field, expected) in [(2, first), (3, second), (4, second), (5, second), (6, first), (9, first)] {
             assert_eq!(screen.shown(200, 200, PeriodNumber(field), Time(10)), Some(expected), "{field}");
         }
     }

@@ -331,7 +331,7 @@ fn reprojection_with_depth_at_every_line_has_errors_only_at_hidden_parts() {
 #[test]
 fn a_global_panel_takes_one_pose_for_each_period() {
     let config = PanelConfig { scan: 1, ..PanelConfig::PAPERS };
-    let display = config.build(&[pxpl5_wire::NodeId(1)]).expect("it can be built");
+    let display = config.build(&[pxpl5_wire::NodeId(1)], pxpl5_sim::Span::from_ns(50)).expect("it can be built");
     assert_eq!(display.light().scan, pxpl5_wire::display::ScanOrder::Global);
     let outcome = on_panel(config, 1.0);
     for every in [Every::Field, Every::Strip, Every::Line] {

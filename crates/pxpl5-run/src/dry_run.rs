@@ -1,18 +1,18 @@
 use crate::head::Head;
-use crate::instants::Instants;
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
+use std::collections::BTreeMap;
 
 /// The instants for which a predictor must predict the views of a run, found by a dry run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeenTimes {
-    aimed_at: Instants,
+    aimed_at: BTreeMap<ViewNumber, Time>,
     /// Mean time from the request of a pose to the instant for which its picture is drawn, in picoseconds.
     mean_lead_ps: u64,
 }
 
 impl SeenTimes {
-    pub(crate) const fn new(aimed_at: Instants, mean_lead_ps: u64) -> Self {
+    pub(crate) const fn new(aimed_at: BTreeMap<ViewNumber, Time>, mean_lead_ps: u64) -> Self {
         Self { aimed_at, mean_lead_ps }
     }
 
@@ -20,7 +20,7 @@ impl SeenTimes {
     /// is `sampled_at` plus the mean time over all views.
     pub(crate) fn aimed_at(&self, number: ViewNumber, sampled_at: Time) -> Time {
         let expected = Time(sampled_at.0 + self.mean_lead_ps);
-        self.aimed_at.of(number.0).filter(|at| *at >= sampled_at).unwrap_or(expected)
+        self.aimed_at.get(&number).copied().filter(|at| *at >= sampled_at).unwrap_or(expected)
     }
 }
 

@@ -1,10 +1,9 @@
 use crate::dry_run::{DryRun, SeenTimes};
-use crate::head_views::{HeadViews, SampledPose};
-use crate::instants::Instants;
+use crate::head_views::HeadViews;
 use crate::observers::{FinalResults, StreamingObserver};
 use crate::picture_ends::WARM_UP_PICTURES;
 use crate::pipeline::PictureTimes;
-use pxpl5_sim::Span;
+use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::LightTimes;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::any::Any;
@@ -18,9 +17,9 @@ const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 #[derive(Debug, Default)]
 pub(crate) struct DryRunObserver {
     pictures: usize,
-    /// Views that a later picture may show again.
+    /// The newest views. A later picture may show one of them again, also after a picture of a newer view.
     going_on: BTreeMap<ViewNumber, ShownView>,
-    aimed_at: Instants,
+    aimed_at: BTreeMap<ViewNumber, Time>,
     leads: Mean,
     intervals: Mean,
     turns: Mean,
@@ -29,11 +28,17 @@ pub(crate) struct DryRunObserver {
     waiting: Option<PictureTimes>,
 }
 
-/// The times at which the pictures of one view are lit, from the first to the last light.
-#[derive(Clone, Copy, Debug)]
+/// Number of views after which a view is final. A pose is sampled at most a few pictures ahead, and no pipeline shows a
+/// picture later than that, so this number is far more than any run needs.
+const VIEWS_HELD: usize = 64;
+
+/// The times at which the pictures of one view are lit, from the first to the last light, and the requests of its poses.
+#[derive(Clone, Debug)]
 struct ShownView {
     shown: LightTimes,
     is_complete: bool,
+    requested_at: Vec<Time>,
+    measured_at: Option<Time>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,12 +67,12 @@ impl Mean {
 impl StreamingObserver for DryRunObserver {
     fn take(&mut self, results: &FinalResults<'_>) {
         let Some(head) = results.head else { return };
-        let sampled = head.sampled();
         for (times, next) in self.timed(results) {
             let shown = results.pipeline.shown(results.record, &times, next.as_ref());
             self.take_picture(&times, shown);
         }
-        self.end_views(results, &sampled);
+        self.note_requests(head);
+        self.end_views(results);
         self.take_turns(results, head);
     }
 
@@ -106,38 +111,49 @@ impl DryRunObserver {
     fn take_picture(&mut self, times: &PictureTimes, shown: LightTimes) {
         self.pictures += 1;
         let is_complete = times.is_shown() && self.pictures > WARM_UP_PICTURES;
-        let view = self.going_on.entry(times.view).or_insert(ShownView { shown, is_complete });
+        let view = self.going_on.entry(times.view).or_insert_with(|| ShownView {
+            shown,
+            is_complete,
+            requested_at: Vec::new(),
+            measured_at: None,
+        });
         view.shown.last = view.shown.last.max(shown.last);
         view.is_complete |= is_complete;
     }
 
-    /// Adds all views but the newest to the results, because the next picture may show the newest view again. At the
-    /// end of the run, adds the newest view too.
-    fn end_views(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose]) {
-        let newest = self.going_on.pop_last();
-        let ended = std::mem::take(&mut self.going_on);
-        ended.iter().for_each(|(view, shown)| self.end_view(results, sampled, *view, *shown));
-        match newest {
-            Some((view, shown)) if results.next.is_none() => self.end_view(results, sampled, view, shown),
-            newest => self.going_on.extend(newest),
+    /// Copies the requests of the poses of all views that may still be shown, before the run discards their records.
+    fn note_requests(&mut self, head: &HeadViews) {
+        let sampled = head.sampled();
+        for (view, shown) in &mut self.going_on {
+            let first = sampled.partition_point(|sampled| sampled.number < *view);
+            let of_view = sampled[first..].iter().take_while(|sampled| sampled.number == *view);
+            let requested_at: Vec<Time> = of_view.clone().map(|sampled| sampled.reports_until).collect();
+            if !requested_at.is_empty() {
+                shown.requested_at = requested_at;
+                shown.measured_at = of_view.filter_map(|sampled| sampled.measured_at).last();
+            }
         }
     }
 
-    /// Adds the prediction interval of a view that no later picture shows.
-    ///
-    /// The instant of the view is stored too, unless the firmware computes display times itself. Such firmware may show
-    /// views in an order that differs from the order of their numbers.
-    fn end_view(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
-        let ShownView { shown, is_complete } = shown;
-        let instant = results.aim.instant(&shown);
-        if !results.pipeline.knows_when_seen() {
-            self.aimed_at.push(view.0, instant);
+    /// Adds all views but the newest [`VIEWS_HELD`] to the results, and all views at the end of the run.
+    fn end_views(&mut self, results: &FinalResults<'_>) {
+        let held = if results.next.is_some() { VIEWS_HELD } else { 0 };
+        while self.going_on.len() > held
+            && let Some((view, shown)) = self.going_on.pop_first()
+        {
+            self.end_view(results, view, &shown);
         }
-        let first = sampled.partition_point(|sampled| sampled.number < view);
-        let of_view = sampled[first..].iter().take_while(|sampled| sampled.number == view);
-        of_view.clone().for_each(|sampled| self.leads.add(instant.since(sampled.reports_until)));
-        let measured_at = of_view.filter_map(|sampled| sampled.measured_at).last();
-        if let Some(measured_at) = measured_at.filter(|_| is_complete) {
+    }
+
+    /// Adds the prediction interval of a view, and the instant of the view unless the firmware computes display times
+    /// itself.
+    fn end_view(&mut self, results: &FinalResults<'_>, view: ViewNumber, ended: &ShownView) {
+        let instant = results.aim.instant(&ended.shown);
+        if !results.pipeline.knows_when_seen() {
+            self.aimed_at.insert(view, instant);
+        }
+        ended.requested_at.iter().for_each(|at| self.leads.add(instant.since(*at)));
+        if let Some(measured_at) = ended.measured_at.filter(|_| ended.is_complete) {
             self.intervals.add(instant.since(measured_at));
         }
     }

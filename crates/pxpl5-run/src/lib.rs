@@ -31,7 +31,6 @@ mod head;
 mod head_views;
 mod host;
 mod ideal;
-mod instants;
 mod kept_records;
 mod keys;
 mod latency;

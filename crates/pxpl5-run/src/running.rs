@@ -1,5 +1,6 @@
 use crate::error::ExperimentError;
 use crate::experiment::Experiment;
+use crate::level::Level;
 use crate::outcome::Outcome;
 use crate::preparation::Preparation;
 use crate::stepper::Stepper;
@@ -15,6 +16,16 @@ impl Experiment {
     /// Returns [`ExperimentError`] for a machine, scene or number of fields that cannot be simulated.
     pub fn build(&self) -> Result<Machine, ExperimentError> {
         Ok(self.assemble(self.prepare()?)?.machine)
+    }
+
+    /// Checks that the machine can be built and that the programs can be loaded, without a dry run. At the analytic
+    /// level, nothing is built.
+    ///
+    /// # Errors
+    ///
+    /// Returns the error with which a run would be refused.
+    pub fn check(&self) -> Result<(), ExperimentError> {
+        if self.level == Level::Analytic { Ok(()) } else { self.assemble(Preparation::default()).map(drop) }
     }
 
     /// Runs the experiment and returns the outcome.

@@ -210,7 +210,7 @@ fn full_screen_triangles_are_never_clipped_by_the_near_plane() {
         let machine = MachineConfig::preset(preset.name).expect("a preset");
         let display = machine.displays.first().expect("a display");
         let nodes: Vec<NodeId> = (0..display.ports(1) as u16).map(NodeId).collect();
-        display.build(&nodes).expect("a display").surfaces()[0].grid()
+        display.build(&nodes, pxpl5_sim::Span::from_ns(50)).expect("a display").surfaces()[0].grid()
     };
     let frames = PRESETS.iter().map(of_preset).chain([cut(1280, 1024), cut(1500, 1000), cut(240, 320)]);
     let frames = frames.map(|grid| (grid, Lines::Frame));

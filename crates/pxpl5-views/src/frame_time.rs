@@ -81,7 +81,7 @@ mod tests {
     use pxpl5_wire::display::DisplayConfig;
 
     fn seconds(config: &dyn DisplayConfig) -> (u16, u16) {
-        frame_seconds(config.build(&[NodeId(1)]).expect("can be built").as_ref())
+        frame_seconds(config.build(&[NodeId(1)], pxpl5_sim::Span::from_ns(50)).expect("can be built").as_ref())
     }
 
     #[test]

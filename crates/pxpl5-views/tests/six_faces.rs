@@ -129,7 +129,7 @@ impl DisplayConfig for CubeConfig {
         Ok(())
     }
 
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
+    fn build(&self, nodes: &[NodeId], _word: Span) -> Result<Box<dyn Display>, SettingError> {
         let surfaces = FACES.map(|(label, title)| Surface { label, title, width: 256, height: 256 }).to_vec();
         Ok(Box::new(Cube { nodes: nodes.to_vec(), surfaces, board: DoubleBuffer::new(256, 256) }))
     }

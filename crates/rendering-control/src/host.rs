@@ -37,7 +37,7 @@ pub async fn host<D: Drawn>(
         let sent = match plan(next, gp.now()) {
             HostAction::Send(sent) => sent,
             HostAction::Wait(until) => {
-                gp.spend(until.since(gp.now())).await;
+                gp.sleep_until(until).await;
                 continue;
             }
             HostAction::Nothing => return Ok(()),

@@ -11,7 +11,7 @@ use std::sync::Arc;
 const CONFIG: PerspectaConfig = PerspectaConfig { slices: 12, width: 64, height: 48, ..PerspectaConfig::PAPERS };
 
 fn build(config: &PerspectaConfig) -> Box<dyn Display> {
-    config.build(&[NodeId(7)]).expect("valid")
+    config.build(&[NodeId(7)], pxpl5_sim::Span::from_ns(50)).expect("valid")
 }
 
 /// Returns a volume in which a few pixels of some slices are lit.
@@ -203,7 +203,7 @@ fn impossible_numbers_of_a_display_are_refused_by_name() {
         (PerspectaConfig { spin_rpm: 0, ..CONFIG }, "perspecta.spin_rpm must be 1 to 1000000, found 0"),
     ];
     for (config, expected) in cases {
-        assert_eq!(config.build(&[NodeId(0)]).expect_err(expected).to_string(), expected);
+        assert_eq!(config.build(&[NodeId(0)], pxpl5_sim::Span::from_ns(50)).expect_err(expected).to_string(), expected);
     }
     assert_eq!(DisplayConfig::ports(&CONFIG, 2), 1);
 }

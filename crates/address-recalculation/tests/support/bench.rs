@@ -47,7 +47,7 @@ pub(crate) const CONFIG: ArpConfig = ArpConfig {
 impl Bench {
     pub(crate) fn new(config: &ArpConfig) -> Self {
         let nodes: Vec<NodeId> = (40..40 + config.ports(1) as u16).map(NodeId).collect();
-        let display = config.build(&nodes).expect("valid");
+        let display = config.build(&nodes, pxpl5_sim::Span::from_ns(50)).expect("valid");
         let mut bench = Self { display, outputs: Vec::new(), texels: config.timing.face_texels as u32 };
         bench.tick(0);
         bench

@@ -20,6 +20,8 @@ use pxpl5_wire::{NodeId, PeriodNumber};
 pub struct Panel {
     name: &'static str,
     numbers: PanelNumbers,
+    /// Time in which a port receives one word.
+    word: Span,
     frame: Clock,
     nodes: Vec<NodeId>,
     surfaces: Vec<Surface>,
@@ -41,6 +43,7 @@ pub(super) fn build(
     name: &'static str,
     numbers: PanelNumbers,
     nodes: &[NodeId],
+    word: Span,
 ) -> Result<Box<dyn Display>, SettingError> {
     let boards = nodes.len() / numbers.ports as usize;
     // Every board needs the same number of ports.
@@ -53,7 +56,17 @@ pub(super) fn build(
     let [width, height] = [numbers.width as u32, numbers.height as u32];
     let surfaces = Surface::of_frame_buffers(boards, width, height);
     let boards = vec![DoubleBuffer::new(width, height); boards];
-    Ok(Box::new(Panel { name, numbers, frame, nodes: nodes.to_vec(), surfaces, boards, older: Vec::new(), scans: 0 }))
+    Ok(Box::new(Panel {
+        name,
+        numbers,
+        word,
+        frame,
+        nodes: nodes.to_vec(),
+        surfaces,
+        boards,
+        older: Vec::new(),
+        scans: 0,
+    }))
 }
 
 impl Panel {
@@ -129,7 +142,7 @@ impl Display for Panel {
     }
 
     fn handle(&mut self, event: DisplayEvent, context: &mut DisplayContext) {
-        let at = context.now() + Span::from_ns(self.numbers.word_ns);
+        let at = context.now() + self.word;
         match event {
             DisplayEvent::Tick(tick) => {
                 self.scans += 1;

@@ -35,8 +35,6 @@ pub struct PanelNumbers {
     pub response_us: u64,
     /// Number of ring ports of one board.
     pub ports: u64,
-    /// Time in which a ring port receives one word, in nanoseconds.
-    pub word_ns: u64,
     /// Number of bits of a pixel's colour. Each of the three primary colours has a third of the bits.
     pub bits: u64,
 }
@@ -45,8 +43,7 @@ impl PanelNumbers {
     /// Reads the parameters of a panel from a table.
     ///
     /// A missing parameter has its default. By default, the scan is rolling, runs from the top, shows every line and
-    /// fills the period. A pixel has 24 bits and shines for an instant. A board has one port, which receives 20 million
-    /// words per second.
+    /// fills the period. A pixel has 24 bits and shines for an instant. A board has one port.
     #[must_use]
     pub fn of(table: &dyn ParameterTable) -> Self {
         let number = |name: &str, default: u64| match table.get(name) {
@@ -64,7 +61,6 @@ impl PanelNumbers {
             persistence_us: number("persistence_us", 0),
             response_us: number("response_us", 0),
             ports: number("ports", 1),
-            word_ns: number("word_ns", 50),
             bits: number("bits", 24),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::PanelNumbers;
 use super::board::build;
+use pxpl5_sim::Span;
 use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_wire::NodeId;
 use pxpl5_wire::display::{Display, DisplayConfig};
@@ -19,8 +20,6 @@ pxpl5_sim::parameters::parameter_table! {
         refresh_hz: 72, "Hz", Assumed, 60..=76 in 1..=1000, "monitors of this size at the time";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
         ports: 1, "ports", Assumed, 1..=8 in 1..=8, "no source gives the number. 1 is the number of an NTSC frame buffer (TR94). With 1 port, the 80 regions of a picture take 66.6 ms or five scans, so at most 14.4 pictures per second reach the display. 8 is the number of channels of the ring";
-        /// Time in which a ring port receives one word.
-        word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
     }
 }
 
@@ -48,8 +47,6 @@ pxpl5_sim::parameters::parameter_table! {
         response_us: 100, "us", Assumed, 10..=100 in 0..=1_000_000, "OLED switches in less than 0.1 ms";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
         ports: 8, "ports", Assumed, 1..=8 in 1..=8, "the number of channels of the ring. With 1 port, at most 13 pictures of 90 regions per second reach the display";
-        /// Time in which a ring port receives one word.
-        word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
         /// Number of bits of a pixel's colour. Each of the three primary colours has a third of the bits.
         bits: 24, "bits", Assumed, 24..=24 in 3..=24, "8 bits for each primary";
     }
@@ -84,8 +81,6 @@ pxpl5_sim::parameters::parameter_table! {
         response_us: 0, "us", Assumed, 0..=0 in 0..=1_000_000, "the backlight switches at once; crystals settle before it";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
         ports: 8, "ports", Assumed, 1..=8 in 1..=8, "the number of channels of the ring";
-        /// Time in which a ring port receives one word.
-        word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
         /// Number of bits of a pixel's colour. Each of the three primary colours has a third of the bits.
         bits: 24, "bits", Assumed, 24..=24 in 3..=24, "8 bits for each primary";
     }
@@ -116,8 +111,6 @@ pxpl5_sim::parameters::parameter_table! {
         response_us: 0, "us", Assumed, 0..=1_000_000, "an experiment's own";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
         ports: 1, "ports", Assumed, 1..=8, "an experiment's own; the ring has 8 channels";
-        /// Time in which a ring port receives one word.
-        word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
         /// Number of bits of a pixel's colour. Each of the three primary colours has a third of the bits.
         bits: 24, "bits", Assumed, 3..=24, "an experiment's own";
     }
@@ -152,9 +145,9 @@ macro_rules! panel {
                 PanelNumbers::of(self).check($name)
             }
 
-            fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
+            fn build(&self, nodes: &[NodeId], word: Span) -> Result<Box<dyn Display>, SettingError> {
                 DisplayConfig::check(self)?;
-                build($name, PanelNumbers::of(self), nodes)
+                build($name, PanelNumbers::of(self), nodes, word)
             }
 
             fn boxed(&self) -> Box<dyn DisplayConfig> {

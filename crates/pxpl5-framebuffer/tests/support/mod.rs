@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test binary uses a part")]
 
-use pxpl5_framebuffer::{FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput, PortTiming};
+use pxpl5_framebuffer::{FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
 use pxpl5_wire::{
     CopyTarget, FieldParity, Lines, MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, PixelSource, RegionGrid,
@@ -66,15 +66,18 @@ impl Board {
     }
 
     pub(crate) fn with(config: FrameBufferConfig) -> Self {
-        let device = FrameBuffer::new(config, NODE).expect("valid");
-        Self { device, bench: TestBench::new(), slowness: config.port.word_ns / 50 }
+        Self::build(config, 1)
+    }
+
+    fn build(config: FrameBufferConfig, slowness: u64) -> Self {
+        let device = FrameBuffer::new(config, NODE, WORD * slowness).expect("valid");
+        Self { device, bench: TestBench::new(), slowness }
     }
 
     /// Makes a board on a slower ring, with word times of `slowness` x 50 ns. With a slowness of 2 or more, words
     /// arrive more slowly than the beam passes pixels.
     pub(crate) fn slow(slowness: u64) -> Self {
-        let port = PortTiming { word_ns: 50 * slowness };
-        Self::with(FrameBufferConfig { port, ..FrameBufferConfig::NTSC })
+        Self::build(FrameBufferConfig::NTSC, slowness)
     }
 
     pub(crate) fn feed(&mut self, at: Time, event: FrameBufferEvent) {

@@ -54,5 +54,5 @@ fn recorded_fields(plan: &Plan) -> Option<u64> {
     let ports = config.ports(plan.pipeline.eyes());
     let nodes: Vec<NodeId> = (0..ports).filter_map(|n| Some(NodeId(n.try_into().ok()?))).collect();
     // A period that begins when the recording ends is the first that is not simulated.
-    Some(config.build(&nodes).ok()?.period_at(ends).0)
+    Some(config.build(&nodes, plan.machine.ring.word()).ok()?.period_at(ends).0)
 }

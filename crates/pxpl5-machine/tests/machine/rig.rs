@@ -61,7 +61,7 @@ impl DisplayConfig for ScreenConfig {
         if self.surfaces > 0 { Ok(()) } else { Err(SettingError::combination("a screen has a surface at least")) }
     }
 
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
+    fn build(&self, nodes: &[NodeId], _word: Span) -> Result<Box<dyn Display>, SettingError> {
         self.check()?;
         let surface = Surface { label: self.name, title: self.name, width: 4, height: 2 };
         let surfaces = vec![surface; self.surfaces];

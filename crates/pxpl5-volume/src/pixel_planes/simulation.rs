@@ -136,7 +136,7 @@ impl<'a> Machine<'a> {
         let [width, height] = traffic.size.map(u64::from);
         let display = PerspectaConfig { slices: traffic.slices.len() as u64, width, height, ..PerspectaConfig::PAPERS };
         let display = display
-            .build(&[NodeId(nodes - 1)])
+            .build(&[NodeId(nodes - 1)], word)
             .map_err(|error| SettingError::value("display", "one that takes the volume", error))?;
         // Assign the slices to the processors in turn.
         let mut dealt: Vec<Processor> = (0..first).map(|_| Processor::default()).collect();

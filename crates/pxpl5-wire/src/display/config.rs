@@ -1,5 +1,6 @@
 use crate::NodeId;
 use crate::display::Display;
+use pxpl5_sim::Span;
 use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use std::any::Any;
 use std::fmt::{self, Debug};
@@ -55,12 +56,13 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
         tables.try_for_each(|(name, table)| table.check().map_err(|error| error.in_table(name)))
     }
 
-    /// Builds the display at the ring ports `nodes`. There must be as many ports as [`DisplayConfig::ports`] returns.
+    /// Builds the display at the ring ports `nodes`. There must be as many ports as [`DisplayConfig::ports`] returns. Each
+    /// port receives one word in the time `word`, the ring's own, because a channel holds both of its ends (TR94, F89).
     ///
     /// # Errors
     ///
     /// Returns the errors of [`DisplayConfig::check`].
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError>;
+    fn build(&self, nodes: &[NodeId], word: Span) -> Result<Box<dyn Display>, SettingError>;
 
     /// Returns a copy of the configuration in a box.
     fn boxed(&self) -> Box<dyn DisplayConfig>;

@@ -155,7 +155,7 @@ impl DisplayConfig for PerspectaConfig {
         Self::check(self)
     }
 
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
+    fn build(&self, nodes: &[NodeId], _word: Span) -> Result<Box<dyn Display>, SettingError> {
         DisplayConfig::check(self)?;
         let width = self.width as u32;
         let height = self.height as u32;
