@@ -64,7 +64,7 @@ impl Format {
 }
 
 /// Bytes in memory for each event of the trace while the file is made (measured, rounded up).
-const EVENT_BYTES: f64 = 400.0;
+const EVENT_BYTES: f64 = 200.0;
 
 /// Returns the memory that the trace of the records so far will take, in bytes. A message is an event of two ports.
 fn trace_bytes(observation: &Observation) -> f64 {
