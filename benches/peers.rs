@@ -9,7 +9,7 @@ use pxpl5::scene;
 use pxpl5_renderer::{BitSerial, Lanes};
 use support::{Euc, Ours, Retrofire, views};
 
-#[path = "support/peers.rs"]
+#[path = "speed/peers.rs"]
 mod support;
 
 fn peers(criterion: &mut Criterion) {

@@ -5,6 +5,8 @@
 
 #[path = "../crates/pphigs/tests/kernel/mod.rs"]
 mod kernel;
+#[path = "../crates/pphigs/tests/numbers/mod.rs"]
+mod numbers;
 
 use i860::timing::{DramTiming, FREEZES, Freeze};
 use i860::{AddressProfile, Config, Profile, linear};

@@ -1,7 +1,6 @@
 //! Tests of the cycle level: the times of graphics processors come from i860 code that runs for every triangle.
 
-mod support;
-
+use crate::support;
 use jitp::JitpTiming;
 use pxpl5::limit::test_scene;
 use pxpl5::run::{FacePipeline, FacePolicy};

@@ -1,8 +1,7 @@
 //! Tests that the same input gives the same trace, with any order of ties, any number of threads, and with or without
 //! pixels.
 
-mod support;
-
+use crate::support;
 use pxpl5::{Experiment, Frameless, MachineConfig, Measured, Pixels, RenderingControl, Slats, Workstation, scene};
 use rayon::prelude::*;
 

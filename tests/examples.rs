@@ -1,7 +1,7 @@
 //! Tests that the guide shows the Rust examples unchanged, and that the examples run. python/tests/test_examples.py
 //! does the same for the Python versions.
 //!
-//! `PXPL5_UPDATE_GUIDE=1 cargo test --test examples` writes the examples into the guide.
+//! `PXPL5_UPDATE_GUIDE=1 cargo test -p pxpl5 --test main examples` writes the examples into the guide.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -39,7 +39,7 @@ fn the_guide_shows_every_example_unchanged() {
         std::fs::write(&path, expected).expect("the project can be written");
         return;
     }
-    assert!(page == expected, "run PXPL5_UPDATE_GUIDE=1 cargo test --test examples");
+    assert!(page == expected, "run PXPL5_UPDATE_GUIDE=1 cargo test -p pxpl5 --test main examples");
 }
 
 /// Runs an example in a folder of its own and returns its output. Cargo builds examples beside the tests.

@@ -1,8 +1,8 @@
 //! Tests that Rust and Python find the same hashes for the experiments of `python/tests/experiments.json`.
 //! python/tests/test_runs.py reads the same file.
 //!
-//! Hashes change with every simulated time. `PXPL5_UPDATE_EXPERIMENTS=1 cargo test --test front_ends` writes them
-//! again.
+//! Hashes change with every simulated time. `PXPL5_UPDATE_EXPERIMENTS=1 cargo test -p pxpl5 --test main front_ends`
+//! writes them again.
 
 use pxpl5::{ExperimentFile, Measured};
 use serde_json::{Value, json};

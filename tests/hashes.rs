@@ -1,8 +1,8 @@
 //! Hashes of traces and pictures of 48 experiments. They detect every change of a simulated value, on any host and with
 //! any vector unit.
 //!
-//! `tests/golden/hashes.txt` changes only by `PXPL5_UPDATE_HASHES=1 cargo test --test hashes`. CHANGELOG.md then states
-//! the reason.
+//! `tests/golden/hashes.txt` changes only by `PXPL5_UPDATE_HASHES=1 cargo test -p pxpl5 --test main hashes`.
+//! CHANGELOG.md then states the reason.
 
 use pxpl5::{ExperimentFile, Measured, SurfaceId};
 use pxpl5_renderer::Vectors;

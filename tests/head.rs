@@ -1,8 +1,7 @@
 //! Tests of experiment files with a head, a tracker and a display. Their results must equal those of the comparison,
 //! and their pictures must be correct.
 
-mod support;
-
+use crate::support::video;
 use glam::{DQuat, DVec3};
 use pxpl5::compare::{CompareQuery, RowChoice, edge_scene};
 use pxpl5::tracking::Pose;
@@ -16,7 +15,6 @@ use pxpl5::{
     Raster, Viewpoint,
 };
 use std::sync::Arc;
-use support::video;
 
 fn file(settings: &[(&str, &str)]) -> ExperimentFile {
     let mut file = ExperimentFile::new();

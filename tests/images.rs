@@ -2,11 +2,10 @@
 //!
 //! A piece of each picture is in `tests/golden/` for inspection. A fingerprint of the whole picture is in
 //! `tests/golden/fingerprints.txt`. On a mismatch, `target/images/` gets a triptych: expected, difference, actual. The
-//! files change only by `PXPL5_UPDATE_IMAGES=1 cargo test --test images`, and must then be inspected.
+//! files change only by `PXPL5_UPDATE_IMAGES=1 cargo test -p pxpl5 --test main images`, and must then be inspected.
 
+use crate::support::boards;
 use image::{Rgb, RgbImage, imageops};
-mod support;
-
 use pxpl5::{
     Experiment, Eye, MachineConfig, Measured, Outcome, PeriodNumber, Pipeline, RegionBinning, RenderingControl, Slats,
     scene,
@@ -15,7 +14,6 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use support::boards;
 
 const UPDATE: &str = "PXPL5_UPDATE_IMAGES";
 

@@ -1,8 +1,7 @@
 //! Tests of questions that the papers leave open about Rendering Control. Every interpretation must run, draw the same
 //! pictures and agree with the closed form.
 
-mod support;
-
+use crate::support;
 use pxpl5::figures::{Bench, Interpretation, ROOM};
 use pxpl5::scene::{HeadMotion, HeadPath, Scene, Sway, builtin};
 use pxpl5::{

@@ -1,9 +1,8 @@
 //! Tests of the papers' statements about just-in-time pixels, latency and registration, from head to light on the whole
 //! machine.
 
+use crate::support::{self, video};
 use glam::DVec3;
-mod support;
-
 use pxpl5::compare::{CompareQuery, RowChoice, as_seen, edge_pictures, edge_scene, motion};
 use pxpl5::limit::LimitQuery;
 use pxpl5::scene::{Scene, builtin};
@@ -21,7 +20,6 @@ use pxpl5_sim::TraceHash;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
-use support::video;
 
 /// A fast turn of the head, in degrees per second (JITP).
 const PAN: f64 = 200.0;

@@ -1,15 +1,13 @@
 //! Tests of the latencies and limits of the papers, each with the tolerance that its derivation allows.
 //! `tests/published.rs` covers the same and more through the table of figures. Here, each experiment is independent.
 
-mod support;
-
+use crate::support::video;
 use pxpl5::{
     Arrival, Code, Experiment, Eye, MachineConfig, Measured, Outcome, PeriodNumber, PictureNumber, PictureTimes,
     Pixels, RenderingControl, Slats, StageSpan, scene,
 };
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Stage;
-use support::video;
 
 /// Time of a region of 15 messages with 1,024 + 16 words of 50 ns (TR94: 780 us).
 const REGION_US: f64 = 780.0;

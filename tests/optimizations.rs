@@ -1,14 +1,12 @@
 //! Tests of the optimizations: with each of them disabled, the trace and the visible pixels stay the same.
 
-mod support;
-
+use crate::support::ntsc;
 use pxpl5::{
     Experiment, Eye, Jitp, Level, Machine, MachineConfig, Optimization, PeriodNumber, Pixels, RenderingControl, Slats,
     Viewpoint, scene, scene::Scene,
 };
 use pxpl5_framebuffer::ScannedField;
 use std::collections::BTreeSet;
-use support::ntsc;
 
 /// Returns the Mig with at most `triangles` of its 417 triangles.
 fn mig(triangles: usize) -> Scene {

@@ -4,10 +4,9 @@
 //! Reports of random runs must be consistent. Counts add up, rates are possible, means lie between least and greatest,
 //! and pictures that were not shown have no values. Each case follows from a number, which a failure prints.
 //! `PXPL5_FUZZ=100` tries a hundred times as many cases, and `PXPL5_FUZZ_FROM` begins at another number. `PXPL5_FUZZ=25
-//! cargo test --test random_machines reports` checks 1,000 reports.
+//! cargo test -p pxpl5 --test main reports` checks 1,000 reports.
 
-mod support;
-
+use crate::support;
 use pxpl5::firmware::NodeId;
 use pxpl5::views::results::quantities_csv;
 use pxpl5::{

@@ -1,8 +1,6 @@
 //! Tests that results, traces and films agree with the run.
 
-use prost::Message;
-mod support;
-
+use crate::support::{self, boards, video};
 use pxpl5::views::results::{columns, csv};
 use pxpl5::views::trace_export::{Events, Trace, chrome, perfetto};
 use pxpl5::views::{Film, FilmSurfaces};
@@ -17,7 +15,6 @@ use pxpl5_wire::{PictureNumber, SurfaceId};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
-use support::{boards, video};
 
 fn experiment(pipeline: impl Pipeline + 'static, scene: &str, fields: u64) -> Experiment {
     let machine = if pipeline.name() == "slats" { MachineConfig::slats() } else { MachineConfig::small_hmd() };
@@ -216,65 +213,101 @@ fn parquet_equals_csv() {
     assert_eq!(found, rows(&csv(stereo())));
 }
 
-/// Messages of the Perfetto format for reading traces, from its published description.
-mod proto {
-    #[derive(Clone, prost::Message)]
-    pub(crate) struct Trace {
-        #[prost(message, repeated, tag = "1")]
-        pub(crate) packet: Vec<Packet>,
+/// A message of Protocol Buffers: numbers and parts by tag, read by the published wire format.
+#[derive(Default)]
+struct Message<'a> {
+    numbers: BTreeMap<u64, Vec<u64>>,
+    parts: BTreeMap<u64, Vec<&'a [u8]>>,
+}
+
+impl<'a> Message<'a> {
+    fn read(mut bytes: &'a [u8]) -> Self {
+        let mut message = Self::default();
+        while !bytes.is_empty() {
+            let key = varint(&mut bytes);
+            match key & 7 {
+                0 => message.numbers.entry(key >> 3).or_default().push(varint(&mut bytes)),
+                1 => {
+                    let (value, rest) = bytes.split_first_chunk().expect("eight bytes");
+                    message.numbers.entry(key >> 3).or_default().push(u64::from_le_bytes(*value));
+                    bytes = rest;
+                }
+                2 => {
+                    let length = varint(&mut bytes) as usize;
+                    let (part, rest) = bytes.split_at(length);
+                    message.parts.entry(key >> 3).or_default().push(part);
+                    bytes = rest;
+                }
+                kind => panic!("wire type {kind}"),
+            }
+        }
+        message
     }
-    #[derive(Clone, prost::Message)]
-    pub(crate) struct Packet {
-        #[prost(uint64, optional, tag = "8")]
-        pub(crate) timestamp: Option<u64>,
-        #[prost(uint32, tag = "10")]
-        pub(crate) trusted_packet_sequence_id: u32,
-        #[prost(message, optional, tag = "11")]
-        pub(crate) track_event: Option<TrackEvent>,
-        #[prost(message, optional, tag = "60")]
-        pub(crate) track_descriptor: Option<TrackDescriptor>,
+
+    fn numbers(&self, tag: u64) -> &[u64] {
+        self.numbers.get(&tag).map_or(&[], Vec::as_slice)
     }
-    #[derive(Clone, prost::Message)]
-    pub(crate) struct TrackDescriptor {
-        #[prost(uint64, tag = "1")]
-        pub(crate) uuid: u64,
-        #[prost(string, tag = "2")]
-        pub(crate) name: String,
-        #[prost(uint64, optional, tag = "5")]
-        pub(crate) parent_uuid: Option<u64>,
-        #[prost(message, optional, tag = "8")]
-        pub(crate) counter: Option<Counter>,
+
+    fn number(&self, tag: u64) -> Option<u64> {
+        self.numbers(tag).first().copied()
     }
-    #[derive(Clone, prost::Message)]
-    pub(crate) struct Counter {
-        #[prost(int32, tag = "3")]
-        pub(crate) unit: i32,
+
+    fn parts(&self, tag: u64) -> impl Iterator<Item = &'a [u8]> {
+        self.parts.get(&tag).into_iter().flatten().copied()
     }
-    #[derive(Clone, prost::Message)]
-    pub(crate) struct TrackEvent {
-        #[prost(int32, tag = "9")]
-        pub(crate) kind: i32,
-        #[prost(uint64, tag = "11")]
-        pub(crate) track_uuid: u64,
-        #[prost(string, tag = "23")]
-        pub(crate) name: String,
-        #[prost(int64, optional, tag = "30")]
-        pub(crate) counter_value: Option<i64>,
-        #[prost(fixed64, repeated, packed = "false", tag = "47")]
-        pub(crate) flow_ids: Vec<u64>,
-        #[prost(fixed64, repeated, packed = "false", tag = "48")]
-        pub(crate) terminating_flow_ids: Vec<u64>,
+
+    fn text(&self, tag: u64) -> String {
+        self.parts(tag).map(|part| std::str::from_utf8(part).expect("UTF-8")).collect()
     }
 }
 
-fn parsed(outcome: &Outcome) -> (BTreeMap<u64, proto::TrackDescriptor>, Vec<(u64, proto::TrackEvent)>) {
+fn varint(bytes: &mut &[u8]) -> u64 {
+    let length = 1 + bytes.iter().take_while(|byte| **byte >= 0x80).count();
+    let (number, rest) = bytes.split_at(length);
+    *bytes = rest;
+    number.iter().rev().fold(0, |value, byte| value << 7 | u64::from(byte & 0x7f))
+}
+
+struct Track {
+    name: String,
+    parent_uuid: Option<u64>,
+}
+
+struct TrackEvent {
+    /// 1 begins a slice, 2 ends it, 3 is an instant, 4 the value of a counter.
+    kind: u64,
+    track_uuid: u64,
+    name: String,
+    counter_value: Option<i64>,
+    flow_ids: Vec<u64>,
+    terminating_flow_ids: Vec<u64>,
+}
+
+/// Returns the tracks of the Perfetto trace by identifier, and the events with their times in nanoseconds. The tags are
+/// those of Perfetto's published description.
+fn parsed(outcome: &Outcome) -> (BTreeMap<u64, Track>, Vec<(u64, TrackEvent)>) {
     let mut bytes = Vec::new();
     perfetto(&Trace::of(outcome), &mut bytes).expect("memory can be written");
-    let trace = proto::Trace::decode(&bytes[..]).expect("Protocol Buffers");
-    assert!(trace.packet.iter().all(|packet| packet.trusted_packet_sequence_id == 1));
-    let descriptors = trace.packet.iter().filter_map(|packet| packet.track_descriptor.clone());
-    let events = trace.packet.iter().filter_map(|packet| Some((packet.timestamp?, packet.track_event.clone()?)));
-    (descriptors.map(|descriptor| (descriptor.uuid, descriptor)).collect(), events.collect())
+    let (mut tracks, mut events) = (BTreeMap::new(), Vec::new());
+    for packet in Message::read(&bytes).parts(1).map(Message::read) {
+        assert_eq!(packet.number(10), Some(1), "the sequence");
+        for track in packet.parts(60).map(Message::read) {
+            let uuid = track.number(1).expect("an identifier");
+            tracks.insert(uuid, Track { name: track.text(2), parent_uuid: track.number(5) });
+        }
+        for event in packet.parts(11).map(Message::read) {
+            let event = TrackEvent {
+                kind: event.number(9).expect("a kind"),
+                track_uuid: event.number(11).expect("a track"),
+                name: event.text(23),
+                counter_value: event.number(30).map(u64::cast_signed),
+                flow_ids: event.numbers(47).to_vec(),
+                terminating_flow_ids: event.numbers(48).to_vec(),
+            };
+            events.push((packet.number(8).expect("an instant"), event));
+        }
+    }
+    (tracks, events)
 }
 
 #[test]

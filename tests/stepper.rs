@@ -1,8 +1,7 @@
 //! Tests that a run in pieces equals an uninterrupted run. Neither the division into pieces nor the reading of state
 //! changes the trace or a picture.
 
-mod support;
-
+use crate::support;
 use pxpl5::Board;
 use pxpl5::{
     DisplayEntry, Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber,

@@ -4,11 +4,10 @@
 //! were once drawn into another slave's region. Pixels may differ only if two primitives have exactly the same depth
 //! there, and then show one of these primitives. The ideal renderer reports such ties.
 //!
-//! `PXPL5_MODELS=FOLDER cargo test --test still_scenes` also draws every model of a folder. With
+//! `PXPL5_MODELS=FOLDER cargo test -p pxpl5 --test main still_scenes` also draws every model of a folder. With
 //! `PXPL5_PICTURES=FOLDER`, all pictures and ideal pictures are written into a folder for inspection.
 
-mod support;
-
+use crate::support;
 use pxpl5::display::Coverage;
 use pxpl5::oracle::IdealPicture;
 use pxpl5::scene::config::FIT_DISTANCE_RADII;

@@ -1,8 +1,7 @@
 //! Tests that timelines agree with the simulated run.
 
+use crate::support::video;
 use proptest::prelude::*;
-mod support;
-
 use pxpl5::pipeline_figures::PIPELINE_FIGURES;
 use pxpl5::views::timeline::{Bar, MAX_FIELDS, Timeline, TimelineOptions, svg};
 use pxpl5::{
@@ -11,7 +10,6 @@ use pxpl5::{
 use pxpl5_gp::Stage;
 use pxpl5_sim::{Span, Time};
 use std::rc::Rc;
-use support::video;
 
 fn outcome(pipeline: impl pxpl5::Pipeline + 'static, scene: &str, fields: u64) -> Outcome {
     let machine = if pipeline.name() == "slats" { MachineConfig::slats() } else { MachineConfig::small_hmd() };

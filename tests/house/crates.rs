@@ -21,7 +21,7 @@ pub(crate) struct SourceFile {
     pub(crate) text: String,
 }
 
-/// Returns all crates, sorted by name.
+/// Returns all crates, sorted by name. The benches are no crate of the product.
 pub(crate) fn workspace() -> Vec<Crate> {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--offline", "--format-version", "1"])
@@ -30,7 +30,8 @@ pub(crate) fn workspace() -> Vec<Crate> {
         .expect("cargo runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let metadata: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let packages = metadata["packages"].as_array().expect("a list");
+    let packages = metadata["packages"].as_array().expect("a list").iter();
+    let packages: Vec<&Value> = packages.filter(|package| package["name"] != "pxpl5-benches").collect();
     let names: Vec<(&str, &str)> = packages.iter().map(|package| (text(package, "name"), name(package))).collect();
     let mut all: Vec<Crate> = packages.iter().map(|package| read(package, &names)).collect();
     all.sort_by(|a, b| a.name.cmp(&b.name));

@@ -1,7 +1,7 @@
 //! The tables of ARCHITECTURE.md that are generated from the crates.
 
-use crate::FLOORS;
-use crate::crates::Crate;
+use super::FLOORS;
+use super::crates::Crate;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -18,7 +18,7 @@ pub(crate) fn check(members: &[Crate]) {
     if std::env::var_os("PXPL5_UPDATE_HOUSE").is_some() {
         return std::fs::write(&path, made).expect("it can be written");
     }
-    assert!(made == text, "ARCHITECTURE.md is stale: run PXPL5_UPDATE_HOUSE=1 cargo test --test house");
+    assert!(made == text, "ARCHITECTURE.md is stale: run PXPL5_UPDATE_HOUSE=1 cargo test -p pxpl5 --test main house");
 }
 
 fn tables(members: &[Crate]) -> String {

@@ -1,7 +1,7 @@
 //! Imports between the modules of a crate, and circles among them.
 
-use crate::crates::Crate;
-use crate::source;
+use super::crates::Crate;
+use super::source;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns, for each module path such as `isa::decode`, the modules from which it imports. The root of a crate is the

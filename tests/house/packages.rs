@@ -1,6 +1,7 @@
 //! Rules for the packages of the crates that are published.
 
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 
@@ -10,6 +11,19 @@ const SHOWN: [&str; 6] = ["description", "documentation", "license", "readme", "
 /// Greatest number of keywords, and of characters in a keyword, that crates.io accepts.
 const MAX_KEYWORDS: usize = 5;
 const MAX_KEYWORD: usize = 20;
+
+/// Returns the name, version and features of each package below the default members, without or with those for tests:
+/// `no-dev` or `all`.
+pub(crate) fn features(edges: &str) -> BTreeSet<String> {
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--edges", edges, "--prefix", "none", "--format", "{p}|{f}"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).expect("text");
+    text.lines().filter(|line| !line.is_empty()).map(|line| line.trim_end_matches(" (*)").to_owned()).collect()
+}
 
 /// Fails if a published crate lacks what a registry shows, a licence, or a README with an example that is compiled.
 pub(crate) fn check() {

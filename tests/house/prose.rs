@@ -1,6 +1,6 @@
 //! Counts of hints that a text is hard to read. Each count may fall and may not rise: see docs/style.md.
 
-use crate::crates::Crate;
+use super::crates::Crate;
 use std::fs;
 use std::path::Path;
 

@@ -1,5 +1,4 @@
 //! Functions that several tests share.
-#![allow(dead_code, reason = "each test binary uses some of it")]
 
 use pxpl5::{NtscDisplay, Outcome, Record};
 use pxpl5_framebuffer::{FrameBuffer, Video};

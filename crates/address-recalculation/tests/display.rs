@@ -1,7 +1,7 @@
 //! Tests of the display on the ring: updates, swaps, orientations and the displayed picture.
 
-mod support;
-
+use crate::support::bench::{Bench, CONFIG, flat};
+use crate::support::turned;
 use address_recalculation::{
     ArpConfig, CubeFace, Latch, begin_update, face_region, orientation_message, region_grid, swap_together,
 };
@@ -12,8 +12,6 @@ use pxpl5_wire::{
     Body, CopyTarget, Eye, FieldParity, Lines, NodeId, PeriodNumber, RegionId, RegionPixels, swap_request,
 };
 use std::sync::atomic::Ordering;
-use support::bench::{Bench, CONFIG, flat};
-use support::turned;
 
 #[test]
 fn an_update_is_shown_from_the_next_retrace() {

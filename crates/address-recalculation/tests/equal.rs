@@ -1,7 +1,6 @@
 //! Tests that the fast model and the reference model give identical bits for all word lengths, faces and contents.
 
-mod support;
-
+use crate::support::{noise, texels, turned};
 use address_recalculation::reference::{BankedMemory, ReferencePipeline};
 use address_recalculation::{
     ArpConfig, ArpTiming, CompositionOrder, FaceSet, Lens, Lookup, Orientation, ScanTiming, Vector,
@@ -9,7 +8,6 @@ use address_recalculation::{
 use glam::DQuat;
 use proptest::prelude::*;
 use pxpl5_sim::SplitMix64;
-use support::{noise, texels, turned};
 
 /// A scan of 31 x 14 pixels, whose lines are not a multiple of eight pixels.
 const SMALL: ScanTiming = ScanTiming { visible_pixels: 31, visible_lines: 7, ..ScanTiming::PAPERS };

@@ -1,7 +1,6 @@
 //! Tests of the texels that a pixel reads: beyond edges and corners, in which banks, and in which regions of the faces.
 
-mod support;
-
+use crate::support::{texels, turned};
 use address_recalculation::{
     AddressUnit, ArpConfig, ArpTiming, CompositionOrder, CubeFace, DEPTH_FARTHEST, FaceGeometry, FaceSet, Footprint,
     Lookup, Orientation, ScanTiming, TexelAddress, Vector,
@@ -9,7 +8,6 @@ use address_recalculation::{
 use glam::DQuat;
 use pxpl5_sim::SplitMix64;
 use std::collections::BTreeMap;
-use support::{texels, turned};
 
 const SIZE: u32 = 128;
 const BARE: ArpTiming = ArpTiming { face_texels: SIZE as u64, guard_texels: 0, ..ArpTiming::PAPERS };

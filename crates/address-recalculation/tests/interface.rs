@@ -1,7 +1,7 @@
 //! Tests of the display's interface to the machine and the viewer, and of the contents of its memories.
 
-mod support;
-
+use crate::support::bench::{Bench, CONFIG};
+use crate::support::{texels, turned};
 use address_recalculation::{
     AddressUnit, ArpConfig, ArpTiming, CubeFace, FaceSet, Footprint, Latch, Lens, Lookup, Orientation, ScanTiming,
     TexelAddress, face_region, region_grid,
@@ -13,8 +13,6 @@ use pxpl5_wire::{Eye, PeriodNumber, PixelSource, Word, swap_request};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use support::bench::{Bench, CONFIG};
-use support::{texels, turned};
 
 /// Words of a region, with a flag that becomes true when the words are read.
 #[derive(Debug)]

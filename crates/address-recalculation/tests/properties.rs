@@ -1,7 +1,6 @@
 //! Tests of properties that hold for every direction, rotation and content.
 
-mod support;
-
+use crate::support::{noise, painted, texels, turned};
 use address_recalculation::{
     ArpConfig, ArpTiming, CubeFace, DEPTH_FARTHEST, FaceGeometry, FaceSet, Lens, LensTable, Lookup, Orientation,
     TexelAddress, Vector,
@@ -10,7 +9,6 @@ use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 use pxpl5_sim::SplitMix64;
 use std::sync::LazyLock;
-use support::{noise, painted, texels, turned};
 
 const GUARDED: FaceGeometry = FaceGeometry { texels: 512, guard: 1 };
 

@@ -1,10 +1,8 @@
 //! Tests of the i860 code that begins a pass and applies edits. The parameter blocks and matrices must equal the blocks
 //! and matrices of the native firmware.
 
-mod numbers;
-
+use crate::numbers::Numbers;
 use glam::{Mat4, Quat, Vec3};
-use numbers::Numbers;
 use pphigs::{
     DisplayList, DisplayStructure, EditWork, EyeView, FrameView, ModelEdit, ModelFrame, Picture, PlacedStructure,
     RegionBinning, Shading, Share, place_all,

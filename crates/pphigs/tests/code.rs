@@ -1,10 +1,8 @@
 //! Tests of TRANSFORM as i860 code on a board. The words must equal the words of the native firmware. Other tests check
 //! the time of the code.
 
-mod native;
-
+use crate::native::native;
 use glam::{Mat4, Vec3};
-use native::native;
 use pphigs::{
     DisplayList, DisplayStructure, EyeView, FrameView, KernelOutput, ModelEdit, ModelFrame, Pass, Picture,
     RegionBinning, Shading, Share, TransformWork,

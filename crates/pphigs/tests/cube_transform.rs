@@ -1,12 +1,9 @@
 //! Tests of the i860 code for six views around an eye. Each view's words and bins must equal the words and bins of the
 //! native firmware. Few primitives outside a view may be transformed for this view.
 
-mod native;
-mod numbers;
-
+use crate::native::native;
+use crate::numbers::Numbers;
 use glam::{Mat4, Quat, Vec3, Vec4};
-use native::native;
-use numbers::Numbers;
 use pphigs::{
     BinHandoffWork, CubeTransform, CubeTransformOutput, DisplayList, DisplayStructure, EyeView, FrameView, ModelEdit,
     ModelFrame, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share,

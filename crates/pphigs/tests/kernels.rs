@@ -1,10 +1,8 @@
 //! Tests of the triangle kernels against the native transform and set-up, word for word.
 
-mod kernel;
-
+use crate::kernel::{self, Bench, Output, Strip, frame, native, strips, triangles, triangles_of};
 use glam::{Mat4, Vec3, Vec4};
 use i860::Config;
-use kernel::{Bench, Output, Strip, frame, native, strips, triangles, triangles_of};
 use pxpl5_geometry::kernel::{Kernel, KernelList, KernelPicture, KernelSurface, Schedule};
 use pxpl5_geometry::{Triangle, ViewTransform, Viewport};
 use pxpl5_sim::SplitMix64;

@@ -1,11 +1,9 @@
 //! Tests that memoizing the clocks of the triangle kernels changes only the host's time. crates/i860/tests/memo.rs
 //! tests random programs.
 
-mod kernel;
-
+use crate::kernel::{Bench, frame, triangles};
 use i860::Config;
 use i860::timing::{FREEZES, FreezeRow, FreezeRules};
-use kernel::{Bench, frame, triangles};
 use pxpl5_geometry::Viewport;
 use pxpl5_geometry::kernel::Schedule;
 use pxpl5_sim::parameters::ParameterTable;

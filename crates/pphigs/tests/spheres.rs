@@ -1,11 +1,8 @@
 //! Tests of spheres as i860 code on a board. The words and bins must equal the words and bins of the native firmware.
 
-mod native;
-mod numbers;
-
+use crate::native::native;
+use crate::numbers::Numbers;
 use glam::{Mat4, Quat, Vec3};
-use native::native;
-use numbers::Numbers;
 use pphigs::{
     DisplayList, DisplayStructure, EyeView, FrameView, ModelEdit, ModelFrame, Picture, RegionBinning, Shading, Share,
 };

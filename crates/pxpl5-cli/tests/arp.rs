@@ -1,10 +1,8 @@
 //! Tests of `pxpl5 arp`: files, JSON and exit codes.
 
-mod support;
-
+use crate::support::{Folder, err, json, names, out};
 use image::RgbImage;
 use serde_json::Value;
-use support::{Folder, err, json, names, out};
 
 /// Options of a small walk: faces of 128 texels, a picture of 160 x 120 pixels, and two seconds.
 const SMALL: [&str; 10] = [

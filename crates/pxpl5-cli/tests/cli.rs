@@ -1,10 +1,8 @@
 //! Tests of the command as a user runs it: results on standard output, complete files, and helpful messages.
 
-mod support;
-
+use crate::support::{Folder, command, err, json, names, out};
 use std::path::Path;
 use std::process::Stdio;
-use support::{Folder, command, err, json, names, out};
 
 const SLATS: [&str; 7] = ["run", "--pipeline", "slats", "--scene", "full-screen:10", "--fields", "12"];
 const RC: [&str; 7] = ["run", "--pipeline", "rendering-control", "--scene", "full-screen:12", "--fields", "24"];

@@ -1,9 +1,7 @@
 //! Tests of the finished rows, the length and the precision of `pxpl5 compare`, as a user runs it.
 
-mod support;
-
+use crate::support::{Folder, err};
 use serde_json::Value;
-use support::{Folder, err};
 
 const SHORT: [&str; 10] = [
     "compare",

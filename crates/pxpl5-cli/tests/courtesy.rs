@@ -1,11 +1,9 @@
 //! Tests of help that the user did not ask for: warnings about doubtful numbers, the command to resume after Ctrl-C,
 //! and the pipelines that a machine can run.
 
-mod support;
-
+use crate::support::{Folder, command, err, json, out};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
-use support::{Folder, command, err, json, out};
 
 const RUN: [&str; 7] = ["run", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "12"];
 

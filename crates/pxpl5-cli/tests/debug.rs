@@ -1,10 +1,8 @@
 //! Tests of `pxpl5 debug`: scripts, their output, and refused commands. The sessions in the guide must match the
 //! actual output.
 
-mod support;
-
+use crate::support::{Folder, command, err, out};
 use std::path::{Path, PathBuf};
-use support::{Folder, command, err, out};
 
 const SLATS: [&str; 9] =
     ["debug", "--pipeline", "slats", "--scene", "full-screen:2", "--fields", "8", "--machine", "slats"];
@@ -53,7 +51,7 @@ fn the_debugger_prints_the_sessions_of_the_guide() {
         std::fs::write(page(), &made).expect("the page can be written");
         return;
     }
-    assert!(made == text, "stale: PXPL5_UPDATE_GUIDE=1 cargo test --test debug");
+    assert!(made == text, "stale: PXPL5_UPDATE_GUIDE=1 cargo test -p pxpl5-cli --test main debug::");
 }
 
 fn session(commands: &str) -> std::process::Output {

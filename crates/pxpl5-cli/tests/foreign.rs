@@ -1,9 +1,7 @@
 //! Tests of the command with input files from other programs.
 
-mod support;
-
+use crate::support::{Folder, err, out};
 use serde_json::Value;
-use support::{Folder, err, out};
 
 /// Text of a model file: a pyramid with a material, continued lines, and a comment in Latin-1.
 const MODEL: &[u8] =

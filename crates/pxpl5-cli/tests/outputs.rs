@@ -1,13 +1,11 @@
 //! Tests of output files. Regular files are replaced as a whole. Data for devices and pipes are written into them.
 #![cfg(unix)]
 
-mod support;
-
+use crate::support::{Folder, command, err, json, names};
 use std::fs;
 use std::os::unix::fs::{FileTypeExt, PermissionsExt, symlink};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use support::{Folder, command, err, json, names};
 
 const TRACE: [&str; 10] =
     ["trace", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "8", "--format", "perfetto", "--out"];

@@ -1,10 +1,8 @@
 //! Tests of the guide's own pipeline. The page equals the example, and the example runs in every command.
 
-mod support;
-
+use crate::support::Folder;
 use std::path::PathBuf;
 use std::process::{Command, Output};
-use support::Folder;
 
 const PAGE: &str = include_str!("../../../docs/guide/own-pipeline.md");
 const EXAMPLE: &str = include_str!("../examples/own_pipeline.rs");

@@ -1,9 +1,7 @@
 //! Tests of `pxpl5 plot` as a user runs it, on rows whose means were computed by hand.
 
-mod support;
-
+use crate::support::{Folder, err, out};
 use serde_json::{Value, json};
-use support::{Folder, err, out};
 
 /// Writes a sweep of three seeds at three points of two curves. `measured` returns the values of each point.
 fn sweep(folder: &Folder, measured: impl Fn(&str, u64, u64) -> Value) {

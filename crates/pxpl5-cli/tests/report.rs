@@ -1,8 +1,6 @@
 //! Tests of report pages, traces and films as a user creates them.
 
-mod support;
-
-use support::{Folder, err, out};
+use crate::support::{self, Folder, err, out};
 
 fn results(folder: &Folder) {
     let run =

@@ -1,8 +1,6 @@
 //! Tests of `pxpl5 rig` as a user runs it.
 
-mod support;
-
-use support::Folder;
+use crate::support::Folder;
 
 #[test]
 fn external_and_internal_latencies_are_printed_with_count_and_spread() {

@@ -1,13 +1,11 @@
 //! Tests of sweeps as a user runs them: killed, resumed, divided into shards, and joined.
 
-mod support;
-
+use crate::support::{Folder, command, err, names, out};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
-use support::{Folder, command, err, names, out};
 
 /// Text of a sweep with 64 points that take some milliseconds each.
 const FILE: &str = "pipeline = \"slats\"\nscene = \"mig\"\nfields = 20\n\

@@ -1,11 +1,9 @@
 //! Tests that the command and its outputs state version and commit, and that `pxpl5 cite` prints citations.
 
-mod support;
-
+use crate::support::{Folder, out};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
-use support::{Folder, out};
 
 /// Returns the commit of this clone from Git, or `None` without Git or outside of a clone.
 fn commit_of_clone() -> Option<String> {

@@ -1,10 +1,8 @@
 //! Tests of `pxpl5 volume`: files, JSON and exit codes.
 
-mod support;
-
+use crate::support::{Folder, err, json, names, out};
 use image::RgbImage;
 use serde_json::Value;
-use support::{Folder, err, json, names, out};
 
 /// Options of a small display: 36 slices with 128 x 96 pixels.
 const SMALL: [&str; 6] = ["--set", "display.slices=36", "--set", "display.width=128", "--set", "display.height=96"];

@@ -1,7 +1,6 @@
 //! Tests of buffers, swaps and scanned fields, rule by rule.
 
-mod support;
-
+use crate::support::{Board, MESSAGE, NODE, WORD, colour, field_target, n_parts, source, target};
 use pxpl5_framebuffer::{
     FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferFault, FrameBufferOutput, RgbImage,
 };
@@ -9,7 +8,6 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, Lines, NodeId, PeriodNumber, RegionGrid, RegionPixels};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use support::{Board, MESSAGE, NODE, WORD, colour, field_target, n_parts, source, target};
 
 const RED: u32 = 0x00ff_0000;
 const GREEN: u32 = 0x0000_ff00;

@@ -1,8 +1,7 @@
 //! Tests of the NTSC display through its interface. An independent model of the beam and the screen computes the
 //! expected pictures.
 
-mod support;
-
+use crate::support::{WORD, n_parts};
 use image::{Rgb, RgbImage};
 use pxpl5_framebuffer::{FrameBufferConfig, NtscDisplay, Video};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
@@ -13,7 +12,6 @@ use pxpl5_wire::{
 };
 use std::any::Any;
 use std::sync::Arc;
-use support::{WORD, n_parts};
 
 const NODES: [NodeId; 2] = [NodeId(30), NodeId(31)];
 const SIZE: [u32; 2] = [640, 480];

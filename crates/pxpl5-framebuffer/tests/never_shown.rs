@@ -2,12 +2,10 @@
 //! every pixel. A pixel of the old picture is shown if the beam scans it after the old word and before the new word
 //! arrives.
 
-mod support;
-
+use crate::support::{Board, MESSAGE, colour, n_parts, target};
 use proptest::prelude::*;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber, RegionGrid};
-use support::{Board, MESSAGE, colour, n_parts, target};
 
 const FIELDS: u64 = 8;
 

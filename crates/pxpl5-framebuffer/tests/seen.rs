@@ -1,14 +1,12 @@
 //! Compares scanned fields with a model, pixel by pixel. For every pixel, the model finds the last word that had
 //! arrived.
 
-mod support;
-
+use crate::support::{self, Board, Counted, MESSAGE, n_parts, source, target};
 use proptest::prelude::*;
 use pxpl5_framebuffer::{FrameBufferConfig, FrameBufferEvent, ScannedField, ScannedLateRegion};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber, RegionGrid};
 use std::sync::Arc;
-use support::{Board, Counted, MESSAGE, n_parts, source, target};
 
 /// Number of the scanned field.
 const FIELD: u64 = 5;

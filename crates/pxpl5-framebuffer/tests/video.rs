@@ -1,14 +1,12 @@
 //! Tests of retraces, lines and pixels with an accuracy of one picosecond. Expected values are exact fractions from the
 //! NTSC standard.
 
-mod support;
-
+use crate::support::field_target;
 use proptest::prelude::*;
 use pxpl5_framebuffer::{Video, VideoTiming};
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{ParameterTable, SettingErrorKind, Value};
 use pxpl5_wire::{FieldParity, PeriodNumber};
-use support::field_target;
 
 fn ntsc() -> Video {
     VideoTiming::PAPERS.video().expect("valid")

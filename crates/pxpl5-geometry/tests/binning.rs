@@ -1,13 +1,11 @@
 //! Tests of the touched regions. The tests compare the regions with an exhaustive search and with an independent exact
 //! test.
 
-mod support;
-
+use crate::support::{at_pixel, pixel_view};
 use glam::Vec3;
 use proptest::prelude::*;
 use pxpl5_geometry::{Culling, Light, Outline, RegionMask, SetupStats, Transform, Triangle, Viewport};
 use pxpl5_wire::{FieldParity, Lines, RegionGrid, RegionId};
-use support::{at_pixel, pixel_view};
 
 fn viewports() -> [Viewport; 4] {
     let small = RegionGrid { width: 200, height: 100, region_width: 40, region_height: 16 };

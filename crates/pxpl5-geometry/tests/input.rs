@@ -1,16 +1,14 @@
 //! Tests of user input: meshes, invalid numbers, culling, and invisible spheres.
 
-mod support;
-
+use crate::support::random::Random;
+use crate::support::spheres::{self, ExactSphere, native};
+use crate::support::{self, at_pixel, cases, pixel_view};
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
     Culling, GouraudSphere, LANES, Light, ScreenTriangle, SetupStats, SurfaceVertex, Touch, Transform, Triangle,
     TriangleLanes, VertexColours, ViewTransform, Viewport, WorldSphere,
 };
 use pxpl5_wire::{FieldParity, Linear};
-use support::random::Random;
-use support::spheres::{self, ExactSphere, native};
-use support::{at_pixel, cases, pixel_view};
 
 fn transform(culling: Culling) -> Transform {
     Transform::new(&pixel_view(1.0, 16_384.0), Viewport::FRAME, culling).expect("a finite view")

@@ -1,12 +1,10 @@
 //! Tests of hard cases. The errors must be within the limits of docs/numerics.md, and this file must be up to date.
 
-mod support;
-
+use crate::support::cases::Case;
+use crate::support::measure::Row;
+use crate::support::report::{self, Measured};
 use std::path::Path;
 use std::sync::OnceLock;
-use support::cases::Case;
-use support::measure::Row;
-use support::report::{self, Measured};
 
 /// Returns the measurements of all cases, which are made once for all tests.
 fn measured() -> &'static Measured {

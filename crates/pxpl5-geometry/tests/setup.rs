@@ -1,14 +1,12 @@
 //! Tests of the set-up against exact integers: edges, planes and ranges.
 
-mod support;
-
+use crate::support::native::Piece;
 use proptest::prelude::*;
 use pxpl5_geometry::{
     DEPTH_FAR, DEPTH_NEAR, GouraudTriangle, NORMAL_UNIT, Outline, RegionMask, ScreenTriangle, SetupStats,
     SurfaceNormals, VertexColours, Viewport,
 };
 use pxpl5_wire::{FieldParity, Linear, format};
-use support::native::Piece;
 
 const GUARD: i32 = pxpl5_geometry::GUARD_PIXELS * 16;
 

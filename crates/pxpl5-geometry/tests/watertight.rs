@@ -1,12 +1,10 @@
 //! Tests of shared edges. No pixel may be missing or drawn twice, even if clipping cuts the edges.
 
-mod support;
-
+use crate::support::native::Piece;
+use crate::support::{HEIGHT, WIDTH, at_pixel, pixel_view};
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;
 use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
-use support::native::Piece;
-use support::{HEIGHT, WIDTH, at_pixel, pixel_view};
 
 /// Counts how often each pixel is drawn.
 fn draw(view: &ViewTransform, triangles: &[[Vec3; 3]]) -> (Vec<u8>, SetupStats) {

@@ -1,7 +1,7 @@
 /// A shortcut of the simulator that an experiment can disable (`Experiment::without`).
 ///
 /// No optimization changes a time or a visible pixel. The test `tests/optimizations.rs` repeats runs with each
-/// optimization disabled. `cargo bench --bench optimizations` measures the speed-ups.
+/// optimization disabled. `cargo bench -p pxpl5-benches --bench optimizations` measures the speed-ups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Optimization {
     /// Boards sleep until their next event.

@@ -1,12 +1,10 @@
 //! Tests of a single renderer board: start times of commands, and messages of regions to the ring. The expected times
 //! follow from the rules of the FIFO and the timing table.
 
-mod support;
-
+use crate::support::{self, Bench, CYCLE, DISPLAY, HOST, NODE, WORD, list, order, run};
 use pxpl5_renderer::{CommandKind, RendererStats, RendererTiming};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, CommandRun, CopyContent, CopyPath, NodeId, RegionId};
-use support::{Bench, CYCLE, DISPLAY, HOST, NODE, WORD, list, order, run};
 
 const BEGIN: Time = Time(1_000_000_000);
 /// Time of a triangle: 258 clocks of 25 ns.

@@ -1,13 +1,11 @@
 //! Tests of the content of a renderer board's regions. The content follows from the lists that are sent to the region's
 //! context before the copy or the read.
 
-mod support;
-
+use crate::support::{Bench, WORD, list, list_of, order, run};
 use pxpl5_renderer::{Clear, Command, CommandKind, Lanes, PixelArray, SelectRegion, TriangleCommand};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, CommandList, CopyContent, CopyOrder, CopyPath, CopyTarget, Linear, Word};
 use std::sync::Arc;
-use support::{Bench, WORD, list, list_of, order, run};
 
 const BEGIN: Time = Time(1_000_000_000);
 const FARTHEST: Word = 0xFF_FFFF;

@@ -1,13 +1,11 @@
 //! The fast ring and the reference model give the same times for all traffic.
 
-mod support;
-
+use crate::support::{Receiver, Stepped, Times, run_fast, run_prepared};
 use proptest::prelude::*;
 use pxpl5_ring::reference::{CarriedMessage, Elastic, PlannedMessage, SteppedRing};
 use pxpl5_ring::{Ring, RingError, RingTiming};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::NodeId;
-use support::{Receiver, Stepped, Times, run_fast, run_prepared};
 
 #[derive(Clone, Debug)]
 struct RingCase {

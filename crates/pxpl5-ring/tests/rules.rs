@@ -1,13 +1,11 @@
 //! Tests of each rule of the ring. Expected values are published figures or sums of the timing table.
 
-mod support;
-
+use crate::support::{ELASTIC, Receiver, message, request, run_fast};
 use pxpl5_ring::reference::PlannedMessage;
 use pxpl5_ring::{ChannelSnapshot, Request, Ring, RingError, RingEvent, RingOutput, RingTiming, WaitReason};
 use pxpl5_sim::{Context, Phase, Span, TestBench, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId};
 use std::collections::BTreeMap;
-use support::{ELASTIC, Receiver, message, request, run_fast};
 
 const TIMING: RingTiming = RingTiming::PAPERS;
 /// A timing table in which each port sends one message at a time. Some rules are easier to test with this table.

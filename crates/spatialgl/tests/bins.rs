@@ -1,10 +1,8 @@
 //! Tests of the numbered cases 12 and 21, which were computed by hand: vertex codes, sectors, slices drawn, and
 //! fragments that bins without a tolerance lose.
 
-mod support;
-
+use crate::support::*;
 use spatialgl::*;
-use support::*;
 
 fn slices_drawn(triangle: Triangle, binning: Binning, tolerance: BinTolerance) -> u64 {
     let config = VolumeConfig { binning, bin_tolerance: tolerance, ..half(VolumeConfig::paper()) };

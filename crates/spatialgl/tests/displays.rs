@@ -1,11 +1,9 @@
 //! Tests of one recording on three displays, of connectedness (numbered case 28), and of the time model.
 
-mod support;
-
+use crate::support::*;
 use glam::DVec3;
 use pxpl5_scene::builtin;
 use spatialgl::*;
-use support::*;
 
 /// Returns a recording of a sphere with 24 x 48 facets and a radius of 300 pixels.
 fn sphere() -> CommandBuffer {

@@ -1,10 +1,8 @@
 //! Tests of the numbered cases 13 to 20 and 25, computed by hand: fragments of every clip variant, by the reference
 //! model and by the fast rasterizer.
 
-mod support;
-
+use crate::support::*;
 use spatialgl::*;
-use support::*;
 
 const ORTHOGRAPHIC: Projection = Projection::Orthographic;
 const EXACT: SliceClip = SliceClip::ShaderPlanes;

@@ -1,12 +1,10 @@
 //! Tests of the numbered cases 1 to 11 and 26, computed by hand: slices, tie rules, clip variants and projections as
 //! numbers.
 
-mod support;
-
+use crate::support::*;
 use glam::DVec3;
 use spatialgl::*;
 use std::f64::consts::FRAC_1_SQRT_2;
-use support::*;
 
 const EXACT: SliceClip = SliceClip::ShaderPlanes;
 

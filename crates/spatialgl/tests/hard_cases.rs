@@ -1,10 +1,8 @@
 //! Tests of hard cases, and of all kinds of input that cannot be drawn.
 
-mod support;
-
+use crate::support::*;
 use glam::{DMat4, DVec3};
 use spatialgl::*;
-use support::*;
 
 const ORTHOGRAPHIC: Projection = Projection::Orthographic;
 

@@ -1,11 +1,9 @@
 //! Tests of general properties of volumes, on random triangles, points and settings.
 
-mod support;
-
+use crate::support::*;
 use glam::DVec3;
 use proptest::prelude::*;
 use spatialgl::*;
-use support::*;
 
 const ORTHOGRAPHIC: Projection = Projection::Orthographic;
 const EXACT: SliceClip = SliceClip::ShaderPlanes;

@@ -1,9 +1,7 @@
 //! Tests of supersampling: colours follow from the covered area, and counts from the number of samples.
 
-mod support;
-
+use crate::support::*;
 use spatialgl::*;
-use support::*;
 
 /// Returns a recording of a white rectangle in slice 0. It covers rows 300 to 310, from column 400 to `beyond` pixels
 /// after it.

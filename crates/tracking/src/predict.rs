@@ -10,6 +10,8 @@ mod gate;
 mod orientation_kalman;
 mod position_kalman;
 mod predicting;
+#[cfg(test)]
+mod tests;
 mod tune;
 
 pub use config::{PredictorConfig, PredictorKind, Start};

@@ -118,11 +118,7 @@ mod tests {
 
         #[test]
         fn exp_agrees_with_an_independent_library(r in vector(6.0)) {
-            let oracle = nalgebra::UnitQuaternion::from_scaled_axis(nalgebra::Vector3::new(r.x, r.y, r.z));
-            let q = exp(r);
-            for (ours, theirs) in [(q.x, oracle.i), (q.y, oracle.j), (q.z, oracle.k), (q.w, oracle.w)] {
-                prop_assert!((ours - theirs).abs() < 1e-14);
-            }
+            prop_assert!((exp(r) - DQuat::from_scaled_axis(r)).length() < 1e-14);
         }
 
         #[test]

@@ -1,5 +1,4 @@
 //! Faces and head orientations for tests.
-#![allow(dead_code, reason = "not every test needs all of it")]
 
 pub(crate) mod bench;
 

@@ -5,12 +5,9 @@
 
 #![allow(dead_code, reason = "the test and the example each use a part")]
 
-#[path = "../numbers/mod.rs"]
-mod numbers;
-
+use super::numbers::Numbers;
 use glam::{Mat4, Vec3};
 use i860::{Config, Cpu, Profile, Program, Ram, RunEnd, linear, link};
-use numbers::Numbers;
 use pxpl5_geometry::kernel::{
     Heads, Kernel, KernelList, KernelPicture, KernelSurface, Schedule, display_list_words, vertex_words,
 };

@@ -1,7 +1,5 @@
 //! A frame buffer on a test bench, and pixel sources that count their evaluations.
 
-#![allow(dead_code, reason = "each test binary uses a part")]
-
 use pxpl5_framebuffer::{FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
 use pxpl5_wire::{

@@ -1,7 +1,5 @@
 //! A test bench with one renderer board.
 
-#![allow(dead_code, reason = "each test binary uses a part")]
-
 use pxpl5_renderer::{
     ArrayPool, Command, CommandKind, Layout, Renderer, RendererEvent, RendererOutput, RendererTiming,
 };

@@ -1,7 +1,5 @@
 //! A test machine that consists of a ring and receivers.
 
-#![allow(dead_code, reason = "each test binary uses a part")]
-
 use pxpl5_ring::reference::{PlannedMessage, Receivers};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput, RingTiming};
 use pxpl5_sim::{Context, EventQueue, Phase, Span, Time};

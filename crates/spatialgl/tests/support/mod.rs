@@ -1,5 +1,4 @@
 //! The triangles of the hard cases, and functions that draw them.
-#![allow(dead_code, reason = "each test uses some of it")]
 
 use glam::DVec3;
 use spatialgl::*;

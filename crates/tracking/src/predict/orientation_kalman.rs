@@ -155,5 +155,4 @@ fn cross(v: DVec3) -> DMat3 {
 }
 
 #[cfg(test)]
-#[path = "orientation_kalman_tests.rs"]
 mod tests;

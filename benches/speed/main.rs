@@ -5,14 +5,13 @@
 //! Times are CPU times of the process, except in comparisons of threads. All values of a table are measured in one
 //! process, in turns. The best of several rounds counts, because it varies least under other load.
 //!
-//! `cargo run --release --example speed [-- --check] [-- --opengl PROGRAM]`: `--check` measures one round and prints
+//! `cargo run --release -p pxpl5-benches [-- --check] [-- --opengl PROGRAM]`: `--check` measures one round and prints
 //! only. `--opengl` also measures the program of scripts/llvmpipe.
 
 mod cases;
 mod cores;
 mod opengl;
 mod page;
-#[path = "../../benches/support/peers.rs"]
 #[allow(dead_code, reason = "the bench draws with more arrays")]
 mod peers;
 mod timing;

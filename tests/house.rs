@@ -1,6 +1,6 @@
 //! Rules for the structure of the workspace, and the part of ARCHITECTURE.md that is generated from the crates.
 //!
-//! `PXPL5_UPDATE_HOUSE=1 cargo test --test house` updates that part, and the table of code lines (lines.rs).
+//! `PXPL5_UPDATE_HOUSE=1 cargo test -p pxpl5 --test main house` updates that part, and the table of code lines (lines.rs).
 
 mod crates;
 mod document;
@@ -12,6 +12,7 @@ mod source;
 
 use crates::{Crate, workspace};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 /// Layers of the workspace. A crate may depend on crates of the listed layers, and on crates of its own layer only if
 /// its own layer is listed too.
@@ -171,6 +172,36 @@ fn only_the_command_prints() {
 #[test]
 fn the_counts_of_unclear_texts_stay_within_their_limits() {
     prose::check(&workspace());
+}
+
+/// A feature that a crate for tests turns on in a crate of the command would have that crate, and all that stand above
+/// it, compiled once for `cargo run` and again for `cargo test`.
+#[test]
+fn crates_for_tests_turn_on_no_feature_of_a_crate_of_the_command() {
+    let [built, tested] = ["no-dev", "all"].map(packages::features);
+    let again: Vec<&String> = tested
+        .difference(&built)
+        .filter(|line| built.iter().any(|other| other.split('|').next() == line.split('|').next()))
+        .collect();
+    assert!(again.is_empty(), "compiled again for tests, with other features: {again:#?}");
+}
+
+/// Tests are not found by their place, because each crate has one program of tests.
+#[test]
+fn every_file_of_tests_belongs_to_a_program() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = workspace().into_iter().map(|member| root.join("crates").join(member.name)).chain([root.into()]);
+    for folder in folders.filter(|folder| folder.join("tests/main.rs").exists()) {
+        let read = |file: &str| std::fs::read_to_string(folder.join(file)).expect("text");
+        let (main, manifest) = (read("tests/main.rs"), read("Cargo.toml"));
+        for entry in std::fs::read_dir(folder.join("tests")).expect("a folder") {
+            let path = entry.expect("readable").path();
+            let name = path.file_stem().and_then(|name| name.to_str()).unwrap_or_default();
+            let is_source = path.extension().is_some_and(|extension| extension == "rs");
+            let is_known = main.contains(&format!("\nmod {name};")) || manifest.contains(&format!("name = \"{name}\""));
+            assert!(!is_source || is_known, "{} is a module of no program", path.display());
+        }
+    }
 }
 
 #[test]

@@ -1,27 +1,18 @@
 use super::*;
+use crate::predict::tests::{Dense, identity, is_positive_definite, norm, product, sum, transposed};
 use crate::time::{PS_PER_S, nearest_ps};
-use nalgebra::{Matrix3, SMatrix};
 use proptest::prelude::*;
-
-type Matrix9 = SMatrix<f64, 9, 9>;
 
 const BELIEF: NoiseModel = NoiseModel { measurement: 6.9e-6, jerk: 1e4, start: (4.0, 400.0) };
 
 /// Returns the covariance of the filter as one matrix of 9 x 9 numbers.
-fn dense(c: &Covariance) -> Matrix9 {
+fn dense(c: &Covariance) -> Dense<9> {
     let blocks = [
         [c.angle, c.angle_rate, c.angle_acceleration],
         [c.angle_rate.transpose(), c.rate, c.rate_acceleration],
         [c.angle_acceleration.transpose(), c.rate_acceleration.transpose(), c.acceleration],
     ];
-    let mut m = Matrix9::zeros();
-    for (i, row) in blocks.iter().enumerate() {
-        for (j, block) in row.iter().enumerate() {
-            let block = Matrix3::from_column_slice(&block.to_cols_array());
-            m.fixed_view_mut::<3, 3>(3 * i, 3 * j).copy_from(&block);
-        }
-    }
-    m
+    std::array::from_fn(|i| std::array::from_fn(|j| blocks[i / 3][j / 3].col(j % 3)[i % 3]))
 }
 
 fn turning() -> OrientationKalman {
@@ -59,10 +50,10 @@ fn extrapolation_solves_the_differential_equation_of_a_turning_axis() {
 }
 
 /// Returns the derivative of the predicted state by the current state (the matrix F), from finite differences.
-fn jacobian(filter: &OrientationKalman, dt: f64) -> Matrix9 {
+fn jacobian(filter: &OrientationKalman, dt: f64) -> Dense<9> {
     let step = 1e-6;
     let end = filter.extrapolate(dt);
-    let mut f = Matrix9::identity();
+    let mut f = identity();
     for column in 0..9 {
         let mut moved = filter.clone();
         let by = DVec3::AXES[column % 3] * step;
@@ -72,9 +63,9 @@ fn jacobian(filter: &OrientationKalman, dt: f64) -> Matrix9 {
             _ => moved.acceleration += by,
         }
         let change = rotation::difference(end, moved.extrapolate(dt)) / step;
-        (0..3).for_each(|row| f[(row, column)] = change[row]);
+        (0..3).for_each(|row| f[row][column] = change[row]);
         if column >= 6 {
-            f[(column - 3, column)] = dt;
+            f[column - 3][column] = dt;
         }
     }
     f
@@ -85,31 +76,36 @@ fn the_covariance_grows_by_the_jacobian_of_the_propagation() {
     let filter = turning();
     for dt in [1e-4, 1.0 / 120.0, 0.05] {
         let f = jacobian(&filter, dt);
-        let mut q = Matrix9::zeros();
+        let mut q = [[0.0; 9]; 9];
         for (i, entry) in white_jerk(dt).to_cols_array().into_iter().enumerate() {
-            (0..3).for_each(|axis| q[(i % 3 * 3 + axis, i / 3 * 3 + axis)] = entry * BELIEF.jerk);
+            (0..3).for_each(|axis| q[i % 3 * 3 + axis][i / 3 * 3 + axis] = entry);
         }
-        let expected = f * dense(&filter.covariance) * f.transpose() + q;
+        let moved = product(&product(&f, &dense(&filter.covariance)), &transposed(&f));
+        let expected = sum(&moved, BELIEF.jerk, &q);
         let mut predicted = filter.clone();
         predicted.predict(dt);
-        let error = (dense(&predicted.covariance) - expected).norm() / expected.norm();
+        let error = norm(&sum(&dense(&predicted.covariance), -1.0, &expected)) / norm(&expected);
         assert!(error < 2e-4, "{dt}: {error}");
     }
 }
 
 #[test]
-fn a_correction_equals_the_textbook_form_in_another_library() {
+fn a_correction_equals_the_textbook_form() {
     let mut filter = turning();
     let p = dense(&filter.covariance);
-    let h = SMatrix::<f64, 3, 9>::identity();
-    let s = h * p * h.transpose() + Matrix3::identity() * BELIEF.measurement;
-    let k = p * h.transpose() * s.try_inverse().unwrap();
+    // A report measures the angles alone: h is the first three rows of the identity, and k h = p (h' s^-1 h).
+    let s = filter.covariance.angle + glam::DMat3::IDENTITY * BELIEF.measurement;
+    let mut inverse = [[0.0; 9]; 9];
+    for (row, column) in (0..3).flat_map(|row| (0..3).map(move |column| (row, column))) {
+        inverse[row][column] = s.inverse().col(column)[row];
+    }
+    let gain = product(&p, &inverse);
     let surprise = DVec3::new(0.01, -0.02, 0.005);
-    let step = k * nalgebra::Vector3::new(surprise.x, surprise.y, surprise.z);
+    let step = gain.map(|row| DVec3::new(row[0], row[1], row[2]).dot(surprise));
     let before = filter.clone();
     filter.correct(rotation::exp(surprise) * filter.orientation);
-    let expected = (Matrix9::identity() - k * h) * p;
-    assert!((dense(&filter.covariance) - expected).norm() < 1e-9 * expected.norm());
+    let expected = product(&sum(&identity(), -1.0, &gain), &p);
+    assert!(norm(&sum(&dense(&filter.covariance), -1.0, &expected)) < 1e-9 * norm(&expected));
     let moved = rotation::difference(before.orientation, filter.orientation);
     for axis in 0..3 {
         assert!((moved[axis] - step[axis]).abs() < 1e-9);
@@ -133,7 +129,7 @@ proptest! {
             t_ps += nearest_ps(10f64.powf(step));
             q = rotation::from_yaw_pitch_roll(yaw, 0.0, roll) * q;
             filter.update(t_ps, q);
-            prop_assert!(dense(&filter.covariance).cholesky().is_some(), "{:?}", filter.covariance);
+            prop_assert!(is_positive_definite(&dense(&filter.covariance)), "{:?}", filter.covariance);
         }
     }
 }

@@ -1,12 +1,14 @@
 //! Measures the host computer's time for each simulated instruction of the triangle kernels. There are three modes:
 //! with memoized clock counts, with all clocks counted, and without timing.
 //!
-//! Unlike the loops in crates/i860/benches, these kernels do not stay in the simulated caches.
+//! Unlike the loops of instructions.rs, these kernels do not stay in the simulated caches.
 
 #![allow(missing_docs, reason = "criterion_group makes an undocumented function")]
 
-#[path = "../tests/kernel/mod.rs"]
+#[path = "../crates/pphigs/tests/kernel/mod.rs"]
 mod kernel;
+#[path = "../crates/pphigs/tests/numbers/mod.rs"]
+mod numbers;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use i860::Config;

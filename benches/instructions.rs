@@ -1,5 +1,5 @@
 //! Host time per simulated instruction: with memoized clocks, with all clocks counted, and without timing. The loops
-//! hit the caches. `crates/pphigs/benches` has the triangle kernels, which miss the caches.
+//! hit the caches. `kernels.rs` has the triangle kernels, which miss the caches.
 
 #![allow(missing_docs, reason = "criterion_group makes an undocumented function")]
 

@@ -1,4 +1,4 @@
-//! Tests of the machine itself with short programs, and with a display that the test controls by messages.
+//! Tests of the machine itself, with short programs and a display that the test controls by messages.
 
 mod configuration;
 mod messages;

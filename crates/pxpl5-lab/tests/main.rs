@@ -1,0 +1,18 @@
+//! Tests of the studies.
+
+// Figures and levels.
+mod code_times;
+mod groups;
+mod levels_of_code;
+mod limits;
+
+// What is counted and measured.
+mod counts;
+mod evaluation;
+mod retraces;
+mod rig;
+
+// Settings.
+mod parameters;
+mod predictors;
+mod today;

@@ -1,0 +1,16 @@
+//! Tests of scenes and their files.
+
+// Built-in scenes, motion, and changes of models.
+mod decimate;
+mod fit;
+mod motion;
+mod normals;
+mod scenes;
+
+// Files.
+mod foreign;
+mod fuzz;
+#[cfg(feature = "gltf")]
+mod gltf;
+mod import;
+mod stl;

@@ -1,0 +1,7 @@
+//! Tests of volumes.
+
+mod document;
+mod heads;
+mod pixel_planes;
+mod settings;
+mod volume;

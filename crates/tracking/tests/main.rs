@@ -1,0 +1,8 @@
+//! Tests of motion, trackers, and predictors.
+
+mod pendulum_rig;
+mod prediction;
+mod synthetic_motion;
+mod trackers;
+mod tuning;
+mod view;
