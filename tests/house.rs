@@ -1,6 +1,7 @@
 //! Rules for the structure of the workspace, and the part of ARCHITECTURE.md that is generated from the crates.
 //!
-//! `PXPL5_UPDATE_HOUSE=1 cargo test -p pxpl5 --test main house` updates that part, and the table of code lines (lines.rs).
+//! `PXPL5_UPDATE_HOUSE=1 cargo test -p pxpl5 --test main house` updates that part, and the table of code lines
+//! (lines.rs).
 
 mod crates;
 mod document;

@@ -14,12 +14,12 @@ use pxpl5_wire::{FieldParity, Lines, NodeId, RegionGrid, RegionId, ViewNumber};
 use std::sync::Arc;
 
 impl Numbers {
-    fn colour(&mut self) -> [u8; 3] {
+    fn any_colour(&mut self) -> [u8; 3] {
         [0; 3].map(|_| self.0.bits() as u8)
     }
 
     /// Returns a matrix that rotates, moves and scales uniformly. Every third matrix also mirrors.
-    fn model(&mut self, n: usize) -> Mat4 {
+    fn near_model(&mut self, n: usize) -> Mat4 {
         let size = 4.0_f32.powf(self.next());
         let mirror = if n.is_multiple_of(3) { -1.0 } else { 1.0 };
         let turn = Quat::from_scaled_axis(self.vector(3.0));
@@ -27,7 +27,7 @@ impl Numbers {
     }
 
     /// Returns a projection matrix: perspective, also off centre, or parallel.
-    fn projection(&mut self, n: usize) -> Mat4 {
+    fn near_projection(&mut self, n: usize) -> Mat4 {
         let mut lens = Mat4::perspective_rh(1.0 + 0.4 * self.next(), 4.0 / 3.0, 0.25, 60.0);
         match n % 4 {
             0 => Mat4::orthographic_rh(-12.0 + self.next(), 13.0, -9.0, 10.0 + self.next(), 0.1, 60.0),
@@ -46,7 +46,7 @@ impl Numbers {
         let radius = 10.0_f32.powf(1.5 * self.next() - 1.0);
         let along = Vec3::new(0.5 * self.next(), 0.4 * self.next(), -1.0);
         let centre = along * (28.0 + 36.0 * self.next()) + self.vector(0.5);
-        WorldSphere { centre, radius, colour: self.colour() }
+        WorldSphere { centre, radius, colour: self.any_colour() }
     }
 }
 
@@ -95,11 +95,11 @@ fn view(numbers: &mut Numbers, n: usize) -> FrameView {
     let eye = EyeView {
         world_to_eye: Mat4::from_translation(numbers.vector(1.0)) * turn,
         head_to_eye: Mat4::IDENTITY,
-        projection: numbers.projection(n),
+        projection: numbers.near_projection(n),
     };
     let edits = vec![
         ModelEdit { structure: 2, model: Mat4::from_scale(Vec3::splat(1.0 + 0.5 * numbers.next())) },
-        ModelEdit { structure: 3, model: numbers.model(n) },
+        ModelEdit { structure: 3, model: numbers.near_model(n) },
     ];
     FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits }
 }
