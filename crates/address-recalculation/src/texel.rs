@@ -137,7 +137,6 @@ impl FaceSet {
         (nearness(word) > 0).then(|| (colour(word), farthest - nearness(word)))
     }
 
-    /// Returns the words of all texels, one face after the other, row by row.
     pub(crate) fn words(&self) -> &[u64] {
         &self.words
     }

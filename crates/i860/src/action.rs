@@ -33,14 +33,12 @@ pub(crate) enum Core {
     StoreByte,
     StoreShort,
     StoreLong,
-    /// Loads one floating-point register.
     LoadSingle,
     LoadDouble,
     LoadQuad,
     StoreSingle,
     StoreDouble,
     StoreQuad,
-    /// Loads one floating-point register through the load pipe.
     PipelinedLoadSingle,
     PipelinedLoadDouble,
     StorePixels,
@@ -107,11 +105,9 @@ pub(crate) struct FloatingAction {
 /// then kinds with double-precision operands, then [`Floating::Any`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Floating {
-    /// Pipelined multiplication of two single-precision operands.
     PipelinedMultiply,
     PipelinedAdd,
     PipelinedSubtract,
-    /// Scalar multiplication of two single-precision operands.
     Multiply,
     Add,
     Subtract,

@@ -427,7 +427,6 @@ impl Assembler<'_> {
         if !self.errors.is_empty() {
             return Err(AssemblyErrors(self.errors));
         }
-        // Collect warnings and tables for listings and debuggers.
         let labels = self.labels.iter().map(|(_, address)| *address).collect();
         let mut warnings: Vec<AssemblyWarning> = check::warnings(&instructions, &labels)
             .into_iter()

@@ -16,7 +16,6 @@ pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u
 const VALID: u32 = 1;
 const DIRTY: u32 = 2;
 
-/// A tag array with the line size and associativity of the on-chip caches.
 type CacheTags<const SETS: usize> = Tags<SETS, CACHE_WAYS, { ChipSizes::PAPERS.line_bytes as u32 }>;
 const CACHE_WAYS: usize = ChipSizes::PAPERS.cache_ways as usize;
 

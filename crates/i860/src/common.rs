@@ -82,7 +82,6 @@ impl Common {
         self.stand_still(until, Freeze::InstructionMissBehindData);
     }
 
-    /// Returns true if an instruction-cache line is still arriving.
     #[inline]
     pub(crate) fn is_filling(&self) -> bool {
         self.now < self.instruction_fill_end

@@ -148,7 +148,6 @@ pub enum Op {
     DualOp,
 }
 
-/// A set of flags of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct Flags(pub u8);
 

@@ -13,7 +13,6 @@ pub struct Profile {
     pub issue: u64,
     /// Number of clocks lost to each row of the freeze table, in the order of [`FREEZES`].
     pub frozen: [u64; N_FREEZES],
-    /// Number of requests of the processor on the bus.
     pub bus_requests: u64,
     /// Number of bus requests that had to open a DRAM row.
     pub page_misses: u64,

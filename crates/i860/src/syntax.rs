@@ -72,7 +72,6 @@ impl Syntax {
     }
 }
 
-/// Names of the control registers, in the order of their numbers.
 pub(crate) const CONTROL_REGISTERS: [&str; 6] = ["fir", "psr", "dirbase", "db", "fsr", "epsr"];
 
 /// Returns the mask of the register bit fields that the instruction `i` uses in its word.

@@ -51,7 +51,6 @@ impl Buffer {
         }
     }
 
-    /// Returns the index of the region for `target` that is still arriving.
     pub(crate) fn arriving(&mut self, target: &CopyTarget) -> Option<usize> {
         self.arriving.iter().rev().copied().find(|place| self.held[*place].region.target == *target)
     }

@@ -68,7 +68,6 @@ impl RegionWrite {
         })
     }
 
-    /// Returns true if message `part` belongs to the region and has not arrived yet.
     pub(crate) fn lacks(&self, part: u32) -> bool {
         part < self.parts && self.arrived[part as usize] == NEVER
     }

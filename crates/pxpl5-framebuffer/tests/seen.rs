@@ -259,7 +259,6 @@ fn a_field_records_the_scanned_buffer() {
     assert_eq!(board.device.displayed(), 1);
 }
 
-/// A region is late only if it arrives while the field is scanned.
 #[test]
 fn a_region_that_arrives_during_the_scan_of_its_field_is_late() {
     // The first of the region's 16 messages arrives 15 messages before the last, at the end of the field. Either of the

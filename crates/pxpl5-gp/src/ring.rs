@@ -7,15 +7,14 @@
 //!   |         | frame, stack      | to send    | of messages and chains | that have arrived   |
 //! ```
 //!
-//! The original message software is not published. The file kernels/ring_rules.md states the assumptions about this
-//! software, and the rules by which its i860 code was written.
+//! The original software is not published. kernels/ring_rules.md states what is assumed about it, and the rules by
+//! which this code was written.
 //!
-//! Before each call, Rust code does the work of the ring interface's DMA. The simulated inbox holds any number of
-//! messages, but there are few receive buffers. The Rust code therefore puts a message into the next receive buffer
-//! only when the message software begins.
+//! Before each call, Rust code does the work of the interface's DMA. The simulated inbox holds any number of messages,
+//! while receive buffers are few. A message therefore gets its buffer only when the message software begins.
 //!
-//! Before the i860 code builds a chain of messages, the Rust code marks all earlier chains as sent. The i860 code thus
-//! finds no unsent chain. [`crate::Gp::start`] simulates the queue of chains instead.
+//! Before a chain of messages is built, all earlier chains are marked as sent, because [`crate::Gp::start`] simulates
+//! their queue.
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};

@@ -17,7 +17,6 @@ pub(crate) enum Event {
     /// Messages arrive at the first display on a host line, a connection that bypasses the ring.
     HostLine(usize),
     Display(usize, DisplayEvent),
-    /// A display begins a period.
     Tick(usize, PeriodNumber),
     /// An edge of the boards' 40 MHz clock. Only runs without the optimization `IdleBoards` have such events.
     Edge,

@@ -1,15 +1,14 @@
 //! The complete machine: its boards and the connections between them.
 //!
-//! - [`Machine`] builds all boards. Only [`Machine`] connects boards to each other.
-//! - [`MachineConfig`] holds every number of a machine. A configuration starts from a preset of the papers
-//!   ([`PRESETS`]).
-//! - [`Record`] holds the boards after a run and all observations of the run.
+//! - [`Machine`] builds all boards, and is alone in connecting them.
+//! - [`MachineConfig`] holds every number. It starts from a preset of the papers ([`PRESETS`]).
+//! - [`Record`] holds the boards after a run, and all observations of it.
 //!
-//! A machine owns any number of displays ([`pxpl5_wire::display::Display`]). The machine uses only this interface and
-//! contains no code for a particular kind of display.
+//! It owns any number of displays, which it reaches only through [`pxpl5_wire::display::Display`]. So it has no code
+//! for a particular kind.
 //!
-//! **Not here:** clocks, threads and files of the computer that runs the simulation. To compute pixels on another
-//! thread, a caller passes a [`PixelWorker`] to the machine.
+//! **Not here:** clocks, threads and files of the computer that runs the simulation. If you want pixels to be computed
+//! on another thread, pass in a [`PixelWorker`].
 
 #![warn(missing_docs)]
 

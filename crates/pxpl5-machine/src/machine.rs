@@ -247,7 +247,6 @@ impl Machine {
         for board in 0..self.processors.len() {
             self.queue.schedule(Time::ZERO, Phase::Work, Event::Gp(board, GpEvent::Poll));
         }
-        // Start the clocks of the displays.
         for (display, device) in self.record.displays.iter().enumerate() {
             self.queue.schedule(
                 device.tick(PeriodNumber::FIRST),
@@ -422,7 +421,6 @@ impl Machine {
                 let board = usize::from(message.destination.0 - record.ports.renderers[0].0);
                 self.renderer_event(now, board, RendererEvent::Announce { message, first_word_at });
             }
-            // A message has arrived completely.
             RingOutput::Delivered(message) => {
                 record.hash.record(now, &facts(2, &message));
                 if let Some(traffic) = &mut traffic {
@@ -481,7 +479,6 @@ impl Machine {
             let request = Request { message, ticket: Some(ticket), hold, order };
             queue.schedule(time, Phase::Arrive, Event::Ring(RingEvent::Request(request)));
         }
-        // A program that failed stops the machine.
         if let Some(fault) = processor.fault().cloned() {
             self.failure = Some(RunError::Fault { board: Board::of_processor(board), time: now, fault });
         }

@@ -112,7 +112,6 @@ fn copying_is_a_stage_from_the_first_message_on() {
     assert_eq!(machine.record().observation().marks.iter().filter(|mark| mark.edge == StageEdge::Begin).count(), 0);
 }
 
-/// Records are discarded before an instant, which is given as a number of periods of the first display.
 #[test]
 fn records_before_an_instant_can_be_discarded() {
     let (mut machine, [left, right]) = run_script(&[

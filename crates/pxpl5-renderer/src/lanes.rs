@@ -249,7 +249,6 @@ mod tests {
         assert_eq!(executed.clocks, u64::from(clocks));
     }
 
-    /// A batch of eight random triangles.
     #[derive(Debug)]
     struct SomeTriangles {
         layout: Layout,

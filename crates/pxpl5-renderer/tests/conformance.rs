@@ -178,7 +178,6 @@ fn spheres_agree_on_every_vector_unit() {
     }
 }
 
-/// Tests that a later read of Enable finds the value that a command left there.
 #[test]
 fn a_read_of_the_enable_bits_finds_the_value_that_the_previous_command_left() {
     for layout in [Layout::rendering_control_phong(), Layout::slats()] {
@@ -430,7 +429,6 @@ fn both_arrays_start_with_the_same_noise() {
     }
 }
 
-/// Tests that the error names the first wrong pixel, its wrong bit, and the number of wrong pixels in the plane.
 #[test]
 fn a_mismatch_names_the_first_wrong_pixel_and_counts_the_wrong_pixels() {
     let layout = Layout::slats();

@@ -129,7 +129,6 @@ impl RingChannels {
         self.flights[channel].as_ref()
     }
 
-    /// Iterates over the messages on channels, in the order of the channels.
     pub(crate) fn flights(&self) -> impl Iterator<Item = &MessageInFlight> {
         self.flights.iter().flatten()
     }

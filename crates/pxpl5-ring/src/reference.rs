@@ -88,7 +88,6 @@ pub struct SteppedRing<'a, R> {
     /// For each source, the indices of its waiting messages, and the time at which the first of these messages reached
     /// the head of the queue.
     queues: Vec<(VecDeque<usize>, Time)>,
-    /// For each source, the number of channels on which it sends.
     sending: Vec<u64>,
     receiving: Vec<bool>,
     reserved_for: Vec<Option<NodeId>>,

@@ -31,7 +31,6 @@ pub struct Ring {
     arbitrations: Vec<Time>,
     /// True if every end of a message causes an event, even if no other message waits for this end.
     watched: bool,
-    /// True if every word causes an event.
     word_by_word: bool,
     stats: RingStats,
     /// Time for which each port has received messages, including overhead and stalls.
@@ -340,7 +339,6 @@ impl Ring {
                 self.at_limit -= 1;
                 self.add_head(ended, flight.source);
             }
-            // Add the message to the statistics.
             let busy = ended.since(flight.granted);
             self.stats.channel_busy[channel] += busy;
             self.receiving[usize::from(flight.destination.0)] += busy;
@@ -381,7 +379,6 @@ impl Ring {
         let port = &mut self.sources[usize::from(source.0)];
         let Some(QueuedRequest { at, request }) = port.queue.pop_front() else { return };
         port.in_flight += 1;
-        // Add the time in the queue to the statistics.
         let waited = now.since(at);
         self.stats.waiting += waited;
         self.stats.longest_wait = self.stats.longest_wait.max(waited);

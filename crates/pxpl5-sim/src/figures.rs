@@ -1,8 +1,8 @@
 //! Published figures (numbers in papers) next to the values that a model gives, with their provenance, as rows of
 //! tables.
 //!
-//! Every comparison of a paper with a model uses the same [`FigureRow`]. Each document chooses the columns of its table
-//! from [`mod@column`] or defines its own columns.
+//! Every comparison of a paper with a model uses the same [`FigureRow`], and each document chooses the columns of its
+//! table from [`mod@column`] or defines its own.
 
 pub mod column;
 mod row;

@@ -1,7 +1,6 @@
 //! Core of a discrete-event simulation: exact time, clocks, and an ordered event queue.
 //!
-//! The core contains nothing specific to Pixel-Planes. A *device* is plain state with a method that handles one event
-//! at a time:
+//! Nothing here is specific to Pixel-Planes. A *device* is plain state with a method that handles one event at a time:
 //!
 //! ```text
 //!            event                     own events (later)
@@ -13,26 +12,24 @@
 //!
 //! # Ordering contract
 //!
-//! 1. Events are handled in the order of ([`Time`], [`Phase`]). At each instant, first all inputs *arrive*. Then the
-//!    devices *work* on the inputs. Finally, observers *observe* the state.
+//! 1. Events are handled in the order of ([`Time`], [`Phase`]). At each instant, all inputs *arrive* first. Then
+//!    devices *work* on them, and finally observers *observe* the state.
 //! 2. Results must not depend on the order of events with the same instant and phase. A device that must choose between
-//!    simultaneous requests stores them in `Arrive`. In `Work`, the device chooses one of the stored requests by its
-//!    own rule. For example, a device can choose the earliest request, and the lowest port among requests of the same
-//!    instant.
-//! 3. Events with the same instant and phase are handled in the order of scheduling. [`EventQueue::shuffle_ties`]
-//!    replaces this order by a pseudo-random order. Tests use the pseudo-random order to check point 2.
-//! 4. No event can be scheduled in the past. An attempt is a programming error and causes a panic.
+//!    simultaneous requests stores them in `Arrive` and chooses in `Work` by a rule of its own. It can take the
+//!    earliest, for example, and among equal times the lowest port.
+//! 3. Such events are handled in the order in which they were scheduled. [`EventQueue::shuffle_ties`] makes this order
+//!    pseudo-random, so that tests can check point 2.
+//! 4. Scheduling an event in the past is a programming error and panics.
 //!
 //! # Time
 //!
 //! [`Time`] and [`Span`] are picoseconds in `u64` (213 days). [`Clock`] computes its n-th edge from zero in 128 bits,
 //! so rounding errors do not accumulate. No computation of time uses floating point.
 //!
-//! Small functions on the path of every event have the attribute `inline`. With incremental compilation, the compiler
-//! inlines no other function of this crate into other crates.
+//! Small functions on the path of every event are marked `inline`, because incremental compilation inlines no others
+//! into other crates.
 //!
-//! **Not here:** threads and the computing time of the simulation. A simulation runs in one thread, and other crates
-//! compute pixels.
+//! **Not here:** threads and computing time. A simulation runs in one thread, and pixels are computed by other crates.
 
 mod clock;
 mod context;

@@ -1,6 +1,6 @@
 //! Tables of parameters. Each parameter has a unit, a provenance, a range and a source.
 //!
-//! A [`parameter_table!`] declares the parameters once. The declaration has four uses:
+//! A [`parameter_table!`] declares them once, for four uses:
 //!
 //! ```text
 //!                        +--> table.word_ns        code reads a plain public field
@@ -16,9 +16,9 @@
 //! word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94";
 //! ```
 //!
-//! The parts of a line are the value, the unit, the provenance, the *range*, the *limits* and the source. The range is
-//! the set of values that the sources allow. Within the limits, the model works. If a line has no limits, the range
-//! also serves as the limits. Values are whole numbers (`u64`, exact) unless the line has the type `f64`:
+//! These are the value, the unit, the provenance, the *range*, the *limits* and the source. The range is what the
+//! sources allow, and the limits are what the model can compute; if there are no limits, the range serves as both.
+//! Values are whole numbers (`u64`, exact) unless the line has the type `f64`:
 //!
 //! ```text
 //! /// Error of each axis, rms.
@@ -27,19 +27,18 @@
 //!
 //! # Range and limits
 //!
-//! A value outside its range is possible in an experiment, although no source allows such a value.
-//! [`ParameterTable::out_of_range`] lists the parameters with such values. A value outside its limits is an error of
-//! [`ParameterTable::check`].
+//! An experiment may use a value outside its range, although no source allows it; [`ParameterTable::out_of_range`]
+//! lists such parameters. Outside the limits, [`ParameterTable::check`] fails.
 //!
 //! # Errors
 //!
-//! All crates of the project use the same two types of errors for inputs. [`SettingError`] is for a setting, a name or
-//! an argument, and [`FileError`] is for a file or a text. An error states the place, the expected content and the
-//! found content. Programs can read the reason from `kind`. A setting that names an unusable file is a
-//! [`SettingError`] of the kind [`File`](SettingErrorKind::File).
+//! All crates share two types of errors for inputs: [`SettingError`] for a setting, a name or an argument, and
+//! [`FileError`] for a file or a text. Both state the place, what was expected and what was found, and programs can
+//! read the reason from `kind`. A setting that names an unusable file is a [`SettingError`] of the kind
+//! [`File`](SettingErrorKind::File).
 //!
-//! **Not here:** rules that relate several parameters, such as "at most the length of a line". The crate that owns the
-//! table checks these rules.
+//! **Not here:** rules that relate several parameters, such as "at most the length of a line". They belong to the crate
+//! that owns the table.
 
 mod by_path;
 mod error;

@@ -1,7 +1,7 @@
 //! Instants and durations of simulated time.
 //!
-//! Time ends after 2^64 ps (213 days). Arithmetic never wraps around: any later instant becomes [`Time::END`]. No
-//! simulation reaches this instant, so events at [`Time::END`] never happen.
+//! Time ends after 2^64 ps (213 days). Arithmetic never wraps around: any later instant becomes [`Time::END`], which no
+//! simulation reaches, so events there never happen.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;

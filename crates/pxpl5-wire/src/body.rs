@@ -188,7 +188,6 @@ impl CommandList {
 pub struct CommandRun {
     /// Operation code of the commands.
     pub opcode: u8,
-    /// Length of one command in words.
     pub words_each: u32,
     pub count: u32,
 }

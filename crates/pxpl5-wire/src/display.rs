@@ -6,20 +6,18 @@
 //!                                       +--> what a surface shows in a period, and when each of its pixels lights
 //! ```
 //!
-//! A display has ports, a clock and surfaces. The *ports* receive messages from the ring. The *clock* ticks at each
-//! retrace, at each update of cube faces, or at each strobe, depending on the kind of display. The *surfaces* are
-//! visible: an eye's picture, a face of a cube, or a slice of a volume. A *period* is the time from one tick to the
-//! next.
+//! A display has *ports* for messages from the ring, and a *clock*, which ticks at each retrace, update of cube faces
+//! or strobe, depending on its kind. Its *surfaces* are what can be seen: an eye's picture, a face of a cube, or a
+//! slice of a volume. A *period* is the time from one tick to the next.
 //!
-//! The machine owns any number of displays and uses only this interface. The first display is the machine's sync
-//! generator. The machine passes the ticks of the first display to the first graphics processor. The length of a run is
-//! a number of periods of the first display.
+//! The machine owns any number of displays and uses only this interface. Its first display is the sync generator: the
+//! ticks go to the first graphics processor, and the length of a run is counted in them.
 //!
-//! A crate that provides a display implements two traits: [`DisplayConfig`] for the parameters of a display, and
-//! [`Display`] for its boards. Timelines, traces, reports, pictures, films and pixel errors use only these traits.
+//! A new kind of display implements two traits, [`DisplayConfig`] for its parameters and [`Display`] for its boards.
+//! Timelines, traces, reports, pictures, films and pixel errors use nothing else.
 //!
-//! **Not here:** properties of one kind of display, such as fields or beams. Firmware for this kind of display can
-//! downcast to the type of the display, because every display is [`Any`].
+//! **Not here:** properties of one kind of display, such as fields or beams. Every display is [`Any`], so firmware that
+//! needs them can downcast.
 
 #![warn(missing_docs)]
 

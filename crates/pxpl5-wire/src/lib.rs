@@ -1,7 +1,6 @@
 //! Data on the ring: words, messages, addresses, and the number formats of expressions.
 //!
-//! This crate contains only types. The crate of every board depends on this crate, and on no crate of another board.
-//! This crate therefore defines everything that two boards share:
+//! The crates of boards do not depend on each other, so what two of them share is defined here:
 //!
 //! - [`Message`]: at most [`MAX_MESSAGE_WORDS`] words from one [`NodeId`] to another;
 //! - [`Body`]: the content of a message: renderer commands, pixels of a region, or words that firmware defines;
@@ -10,9 +9,9 @@
 //! - [`PeriodNumber`], [`PictureNumber`], [`ViewNumber`]: the counts of periods, pictures and views;
 //! - [`RegionGrid`]: the division of a picture into regions of at most 128 x 128 pixels.
 //!
-//! Bodies are *lazy*: the words of a body are computed only when a picture is read. A message always contains its
-//! length and the sequence of its command kinds. Simulated times depend only on the length and the kinds, because a
-//! SIMD array takes the same number of cycles for all data.
+//! Bodies are *lazy*: their words are computed only when a picture is read. A message always has its length and the
+//! sequence of its command kinds. Simulated times need no more, because a SIMD array takes the same number of cycles
+//! for all data.
 //!
 //! **Not modelled:** routing headers and check words. Instead, the ring adds a fixed overhead to each message.
 //!

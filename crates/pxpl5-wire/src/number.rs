@@ -6,8 +6,8 @@
 //! | [`PictureNumber`] | pictures of a pipeline: frames, fields, batches of blocks | the pipeline's firmware |
 //! | [`ViewNumber`] | poses and edits received from the host | the program that requests the views |
 //!
-//! A picture is shown in a period, and the picture shows a view. The pipeline determines the relation between the three
-//! numbers: [`PictureNumber::drawn_for`], [`PictureNumber::period_drawn_for`], [`ViewNumber::taken_for`] and
+//! A picture is shown in a period, and shows a view. How the three counts are related depends on the pipeline:
+//! [`PictureNumber::drawn_for`], [`PictureNumber::period_drawn_for`], [`ViewNumber::taken_for`] and
 //! [`ViewNumber::picture_taken_for`].
 
 use crate::Word;

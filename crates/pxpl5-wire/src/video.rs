@@ -14,9 +14,7 @@ pub struct VideoNumbers {
     pub line_pixels: u64,
     /// Number of lines in a video frame of two fields, including blanking.
     pub frame_lines: u64,
-    /// Number of visible pixels in a line.
     pub visible_pixels: u64,
-    /// Number of visible lines in a field.
     pub visible_lines: u64,
     /// Number of blanked pixel periods before the visible pixels of a line.
     pub left_blanking: u64,

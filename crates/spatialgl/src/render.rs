@@ -91,7 +91,6 @@ pub fn render_volume(
     let size = display.target_size();
     let shown = display.views().len();
     let drawn = if config.strobes == Strobes::Mirror { shown.div_ceil(2) } else { shown };
-    // Sort the primitives once for all slices.
     let bins = Bins::of(display, commands, config);
     let volume = Volume { commands, config, renderer, bins: &bins, size, scratch: Mutex::new(Vec::new()) };
     let mut planes = BitPlanes::dark(size, shown as u32);
@@ -101,7 +100,6 @@ pub fn render_volume(
     // Draw the batches, each as an independent task.
     let tasks = batches.iter_mut().map(|batch| Box::new(|| volume.draw(batch)) as Task<'_>).collect();
     workers.run(tasks);
-    // Collect counts and colours in the order of the slices.
     let mut stats = volume.count(display, &batches);
     let colours = batches.into_iter().flat_map(|batch| batch.colours).collect();
     stats.samples = u64::from(renderer.samples());

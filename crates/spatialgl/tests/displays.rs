@@ -81,7 +81,6 @@ fn a_stack_of_planes_divides_a_triangle_among_its_slabs() {
     assert!(divided.slices.iter().filter(|slice| slice.accepted > 0).count() > 5);
 }
 
-/// Checks that a flat screen shows the nearer of two squares in either order of drawing.
 #[test]
 fn a_flat_screen_shows_the_nearer_of_two_squares() {
     let square = |z: f64, size: f64, colour: [u8; 3]| {

@@ -40,7 +40,6 @@ impl Program {
             rows.row(address, &format!("{word:08x}"), &disassemble(word, address), line);
         }
         data.iter().for_each(|data| rows.data(self, data));
-        // List the labels after the last row.
         rows.labels_before(u32::MAX);
         rows.text
     }
@@ -57,7 +56,6 @@ struct Rows<'a> {
     text: String,
     labels: &'a [(String, u32)],
     source: Vec<&'a str>,
-    /// Source line number of the last row in the listing.
     line: usize,
 }
 

@@ -11,7 +11,6 @@ pub(super) enum Source {
     /// Value of an earlier operation: the index of the operation, and the index of one register of the value (`None`
     /// selects all registers).
     Value(usize, Option<u8>),
-    /// Register or constant, as the text in the source.
     Text(String),
 }
 

@@ -76,11 +76,6 @@ fn grid_row(out: &mut String, case: &Case, row: &Row) {
     let _ = writeln!(out, "| {} | {} |", case.name, cells.join(" | "));
 }
 
-fn bits_row(out: &mut String, case: &Case, row: &Row) {
-    let cells = row.bits.map(|bits| bits.to_string());
-    let _ = writeln!(out, "| {} | {} |", case.name, cells.join(" | "));
-}
-
 fn sphere_row(out: &mut String, case: &SphereCase, row: &SphereRow) {
     let _ = writeln!(
         out,
@@ -188,8 +183,10 @@ fn grids(out: &mut String, rows: &[(Case, Row)]) {
     rows.iter().for_each(|(case, row)| grid_row(out, case, row));
 }
 
+/// Writes the greatest numbers of bits that any case needs.
 fn bits(out: &mut String, rows: &[(Case, Row)]) {
-    let columns = ["case", "edge A, B", "edge C", "depth A, B", "colour A, B"];
-    heading(out, "Bits of coefficients, sign included", &columns);
-    rows.iter().for_each(|(case, row)| bits_row(out, case, row));
+    let columns = ["edge A, B", "edge C", "depth A, B", "colour A, B"];
+    heading(out, "Bits of coefficients, sign included: the most that a case needs", &columns);
+    let most = [0, 1, 2, 3].map(|place| rows.iter().map(|(_, row)| row.bits[place]).max().unwrap_or(0).to_string());
+    let _ = writeln!(out, "| {} |", most.join(" | "));
 }

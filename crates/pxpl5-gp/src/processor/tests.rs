@@ -132,7 +132,6 @@ fn writing_over_a_program_changes_the_program() {
     assert_eq!(processor.register(17), 40);
 }
 
-/// Tests that breakpoints are recorded, and that they change neither the time of a call nor its limit of instructions.
 #[test]
 fn breakpoints_change_neither_the_time_nor_the_instruction_limit_of_a_call() {
     let turns = program("start: nop\nagain: adds -1, r16, r16\n btne r0, r16, again\n bri r1\n nop");

@@ -241,7 +241,6 @@ fn a_buffer_starts_with_the_header_and_ends_at_the_next_buffer() {
     assert_eq!([second - 4, second].map(|address| at(&processor, address)), [9, 0]);
 }
 
-/// Returns a list that contains one command of `words_each` words.
 fn commands(words_each: u32) -> CommandList {
     let runs = vec![CommandRun { opcode: 1, words_each, count: 1 }];
     CommandList { runs, context: 0, copies: Vec::new(), content: None }

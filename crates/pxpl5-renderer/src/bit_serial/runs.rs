@@ -47,7 +47,6 @@ pub(super) struct RunStep {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BitOrigin {
-    /// Index of an expression in `InstructionRun::expressions`.
     Expression(usize),
     Constant(ConstantBits),
 }

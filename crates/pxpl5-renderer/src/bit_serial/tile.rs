@@ -9,7 +9,6 @@ use pxpl5_wire::REGION_SIZE;
 
 pub(super) const WIDTH: usize = 32;
 pub(super) const HEIGHT: usize = 16;
-/// Number of tiles in one row of tiles.
 pub(super) const ACROSS: usize = REGION_SIZE as usize / WIDTH;
 pub(super) const TILES: usize = PIXELS / (WIDTH * HEIGHT);
 

@@ -230,7 +230,6 @@ mod tests {
     use super::*;
     use std::collections::{BTreeMap, BTreeSet};
 
-    /// Tests the frequencies of the commands in random lists.
     #[test]
     fn random_commands_occur_in_the_intended_shares() {
         let layout = Layout::rendering_control_phong();

@@ -95,7 +95,6 @@ impl ArrayInstruction {
         }
     }
 
-    /// Returns the length of the instruction in words.
     #[must_use]
     pub fn words(&self) -> u32 {
         let mut words = Vec::with_capacity(14);

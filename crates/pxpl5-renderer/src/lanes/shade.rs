@@ -126,7 +126,6 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
     let c = insert(c, shine, 18);
     let mut rgb = 0;
     let mut shift = 16;
-    // Compute red, green and blue.
     for _ in 0..3 {
         let product = (colour >> shift & 255) * light;
         let sum = (product >> 8) + (shine >> 10);

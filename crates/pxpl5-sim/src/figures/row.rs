@@ -70,7 +70,6 @@ pub struct FigureRow {
     pub accepted: [f64; 2],
     /// Value that the model gives for the figure, in `unit`.
     pub simulated: f64,
-    /// Unit of all values of the row.
     pub unit: &'static str,
     /// Minimum and maximum of the figure over a condition of the experiment that the paper does not print. `simulated`
     /// is the value for the assumed condition. `None` if the paper prints all conditions.

@@ -29,20 +29,18 @@ fn head(text: &mut String, figures: &VolumeFigures) {
     let _ = write!(
         text,
         "# Volumetric slices: the SpatialGL paper's figures\n\n\
-         The command `pxpl5 volume figures --write docs/volumetric.md` generates this file. A test fails if the file is out of date.\n\n\
-         This file compares the model with the SpatialGL paper of Actuality Systems:\n\n\
-         | authors | title | report |\n|---|---|---|\n\
-         | W.-S. Chun, T. J. Purtell II, O. S. Cossairt | *Technical Introduction to the Basic SpatialGL Rendering Pipeline for \
-         Perspecta 1.9/2.0* | Actuality Systems, ASI-0110, 2005 |\n\n\
-         The column *provenance* has these values:\n\n\
-         - *published*: The paper prints the number.\n\n\
-         - *derived*: The number follows from printed numbers by a formula.\n\n\
-         - *measured*: The number was counted in the computed volume of a scene, with the hyperbolic clip and a projection along\n  \
-           the normal of each slice.\n\n\
-         The SpatialGL paper prints no times, rates or speed-ups. The times that `pxpl5 volume run` prints come from a model of a\n\
-         computer of 2005.\n\n\
-         The table has only rows for which the code could have produced another value. The section \"Definitions\" lists the\n\
-         inputs of the model and the numbers that follow from these inputs by arithmetic. The model reproduces {met} of the {} rows.\n\n",
+         The model reproduces {met} of the {} rows; the [misses](#missed) depend on the scene. The paper describes how\n\
+         Actuality Systems' spinning display Perspecta draws a scene once for every slice, but it prints no times,\n\
+         rates or speed-ups. Times therefore come from a model of a computer of 2005: for the Mig, it makes four to six\n\
+         volumes a second. What it says without numbers also holds in the model, among others that the bounding prism\n\
+         is too bright near the axis and that reading back is the narrow path. You can vary every number that it leaves\n\
+         open ([Numbers](#numbers)).\n\n\
+         `pxpl5 volume figures --write docs/volumetric.md` generates this page, and a test fails if it is out of date.\n\
+         The paper is W.-S. Chun, T. J. Purtell II and O. S. Cossairt, *Technical Introduction to the Basic SpatialGL\n\
+         Rendering Pipeline for Perspecta 1.9/2.0*, Actuality Systems, ASI-0110, 2005.\n\n\
+         *Published* numbers are printed in it, and *derived* ones follow from them by a formula. *Measured* ones were\n\
+         counted in the computed volume of a scene, with the hyperbolic clip and a projection along the normal of each\n\
+         slice. Inputs, and what follows from them by arithmetic, are no rows but [definitions](#definitions).\n\n",
         figures.figures.len()
     );
 }
@@ -100,9 +98,11 @@ fn definitions(text: &mut String, all: &[Definition]) {
     ];
     let _ = write!(
         text,
-        "\n## Definitions\n\n\
-         The following table lists the inputs that the paper prints, and the numbers that follow from these inputs by arithmetic.\n\
-         No simulation could change the numbers in the table of definitions.\n\n{}",
+        "\n\
+         ## Definitions\n\n\
+         These are inputs that the paper prints, and numbers that follow from them by arithmetic. No simulation could\n\
+         change them.\n\n\
+         {}",
         table(&columns, all)
     );
 }
@@ -117,11 +117,11 @@ fn shown(text: &mut String, all: &[ShownStatement]) {
 fn scenes(text: &mut String, all: &[MeasuredScene]) {
     let _ = write!(
         text,
-        "\n## Scenes\n\n\
-         A volume has 396 slices of 768 x 768 pixels. The scene is cut with the hyperbolic clip (0.25 px^2) and projected along\n\
-         the normal of each slice. Triangles are sorted into bins by all planes between slices. The renderer tests for 4 slices\n\
-         together which tiles of 32 px contain lit pixels. The times come from the model of a computer with the preset\n\
-         `geforce-6800`.\n\n\
+        "\n\
+         ## Scenes\n\n\
+         A volume has 396 slices of 768 x 768 pixels, with the hyperbolic clip (0.25 px^2) and a projection along the\n\
+         normal of each slice. All planes between slices sort triangles into bins. Tiles of 32 px with lit pixels are\n\
+         found for 4 slices together. Times are those of the modelled computer `geforce-6800`.\n\n\
          | scene | triangles | draws left | tiles occupied | MB unpacked | packed | sent | CPU ms | GPU ms | bus ms | volumes/s serial | overlapped | hash |\n\
          |---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
     );
@@ -144,26 +144,29 @@ fn scenes(text: &mut String, all: &[MeasuredScene]) {
 
 fn pictures(text: &mut String) {
     text.push_str(
-        "\n## Pictures\n\n\
+        "\n\
+         ## Pictures\n\n\
          ![Figures 4 to 12](pictures/volumetric-figures.png)\n\n\
-         The picture shows figures 4 to 12 of the SpatialGL paper, row by row. The SpatialGL paper has no figures 1 to 3. The\n\
-         command `pxpl5 volume figures --out DIR` draws the figures from values that the model computes for every pixel. The\n\
-         first row of the picture shows a slice volume, its orientation and a tapered clip. The second row of the picture shows a\n\
-         clip whose planes are moved outwards, the clip hyperbola, and a wall near the axis in several slices. The third row of\n\
-         the picture shows the planes between bins, the codes by which triangles are sorted into bins, and a tile query.\n\n\
+         These are the paper's figures 4 to 12, row by row (it has no figures 1 to 3). `pxpl5 volume figures --out DIR`\n\
+         draws them from values that the model computes for every pixel. First comes a slice volume with its\n\
+         orientation and a tapered clip. The second row shows a clip whose planes are moved outwards, the clip\n\
+         hyperbola, and a wall near the axis in several slices. In the third you see the planes between bins, the codes\n\
+         that sort triangles into bins, and a tile query.\n\n\
          ![Clips and projections](pictures/volumetric-variants.png)\n\n\
-         The picture shows the Mig for a viewer 40 degrees to the right and 25 degrees above. All views have the same exposure.\n\
-         The command `pxpl5 volume compare --scene mig --out DIR` makes the picture. From top to bottom, the rows of the picture\n\
-         are prism, user planes, exact, tapered, parallel and hyperbola. The columns of the picture are a projection along the\n\
-         normal of each slice, a projection for one eye position in all slices, and a jittered projection.\n",
+         `pxpl5 volume compare --scene mig --out DIR` draws the Mig for a viewer 40 degrees to the right and 25 degrees\n\
+         above, always with the same exposure. From top to bottom, the clips are prism, user planes, exact, tapered,\n\
+         parallel and hyperbola. From left to right, the projection is along the normal of each slice, for one eye\n\
+         position in all slices, and jittered.\n",
     );
 }
 
 fn numbers(text: &mut String) {
     let _ = write!(
         text,
-        "\n## Numbers\n\nThe following table lists the settings of the model. An assumed number has a range of values, because the paper does not\n\
-         print the number. The option `--set PATH=VALUE` changes a setting.\n\n\
+        "\n\
+         ## Numbers\n\n\
+         You can change each of these with `--set PATH=VALUE`. An assumed number has a range, because the paper does\n\
+         not print it.\n\n\
          | path | value | unit | provenance | range | source |\n|---|---|---|---|---|---|\n"
     );
     for Parameter { path, info, value, .. } in VolumeSettings::paper().numbers() {

@@ -195,7 +195,6 @@ mod tests {
         assert_eq!(buffers.faults(), (1, Some("expected buffer 0 or 1, found 2")));
     }
 
-    /// A region whose pixels all have the same colour.
     #[derive(Debug)]
     struct Plain(Word);
 

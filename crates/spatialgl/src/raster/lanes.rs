@@ -209,7 +209,6 @@ fn chunk(
     let accepted = inside & bits(|i| accepts(p[i], q[i], sum[i]));
     fragments.generated += u64::from(if mode.clips_first { accepted } else { inside }.count_ones());
     fragments.accepted += u64::from(accepted.count_ones());
-    // Draw the accepted pixels one by one.
     let mut rest = accepted;
     while rest != 0 {
         let i = rest.trailing_zeros() as usize;
