@@ -268,7 +268,7 @@ mod tests {
             (include_str!("../../../docs/guide/figures.md"), 5),
             (include_str!("../../../docs/guide/assembler.md"), 3),
             (include_str!("../../../docs/guide/address-recalculation.md"), 5),
-            (include_str!("../../../README.md"), 5),
+            (include_str!("../../../README.md"), 1),
         ] {
             let found = parses(page);
             assert!(found > least, "found {found}");
