@@ -69,9 +69,5 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, table) in &tables {
         page::replace(Path::new("docs/speed.md"), name, table)?;
     }
-    page::replace(
-        Path::new("README.md"),
-        "summary",
-        &format!("{conditions}\n\n{}", page::of_goals(&cases::chosen(&goals))),
-    )
+    page::replace(Path::new("README.md"), "summary", &page::of_summary(&goals))
 }

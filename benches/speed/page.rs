@@ -34,6 +34,17 @@ pub(crate) fn of_goals(rows: &[Row]) -> String {
     text
 }
 
+/// Returns the lines that README shows. Their goals are in docs/speed.md.
+pub(crate) fn of_summary(rows: &[Row]) -> String {
+    let mut text = "| work | measured |\n|---|---|\n".to_owned();
+    for Row { summary, unit, measured, .. } in rows {
+        if let Some(summary) = summary {
+            let _ = writeln!(text, "| {summary} | {}{unit} |", digits(*measured));
+        }
+    }
+    text
+}
+
 pub(crate) fn of_optimizations(rows: &[OptimizationRow]) -> String {
     let mut text =
         "| saving | work | with it, ms a field | without, ms a field | times |\n|---|---|---|---|---|\n".to_owned();
