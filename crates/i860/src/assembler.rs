@@ -78,7 +78,6 @@ pub enum DataKind {
 
 impl Program {
     /// Makes a program from machine code. The program has no labels and no line numbers.
-    #[must_use]
     pub fn of_bytes(base: u32, bytes: Vec<u8>) -> Program {
         Program {
             base,
@@ -92,12 +91,10 @@ impl Program {
     }
 
     /// Returns the program as little-endian 32-bit words. The last word is padded with zero bytes.
-    #[must_use]
     pub fn words(&self) -> Vec<u32> {
         self.bytes.chunks(4).map(word_of).collect()
     }
 
-    #[must_use]
     pub fn symbol(&self, name: &str) -> Option<u32> {
         self.symbols.get(name).copied()
     }

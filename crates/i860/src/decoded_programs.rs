@@ -28,7 +28,6 @@ impl fmt::Debug for DecodedPrograms {
 }
 
 impl DecodedPrograms {
-    #[must_use]
     pub fn new() -> DecodedPrograms {
         DecodedPrograms::default()
     }

@@ -77,7 +77,6 @@ pub struct PassStartWork {
 
 impl Share {
     /// Returns the work before the first triangle of a pass. `eyes` has the indices of the drawn eyes in the view.
-    #[must_use]
     pub fn beginning(&self, view: &FrameView, eyes: &[usize], picture: Picture) -> PassStartWork {
         let eyes = eyes.iter().map(|eye| place_cached(&self.list, view, *eye, picture.viewport)).collect();
         PassStartWork::new(&self.list, eyes, picture)

@@ -76,7 +76,6 @@ pub struct KernelOutput {
 }
 
 impl KernelOutput {
-    #[must_use]
     pub fn entries(&self) -> u64 {
         self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
     }
@@ -217,7 +216,6 @@ pub(crate) struct Marks {
 
 impl Pass {
     /// Returns the counts of primitives and bin entries for the timing table, without the placement of structures.
-    #[must_use]
     pub fn cost(&self) -> TransformCost {
         let counted = TransformCost::primitives(self.transformed());
         TransformCost { clipped: self.stats().clipped, entries: self.entries(), ..counted }

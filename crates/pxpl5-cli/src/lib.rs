@@ -134,7 +134,6 @@ enum Command {
 }
 
 /// Runs the command line of this process with the pipelines and displays of `registry`, and returns the exit code.
-#[must_use]
 pub fn main(registry: Arc<Registry>) -> ExitCode {
     ExitCode::from(run_arguments(registry, std::env::args_os()))
 }
@@ -143,7 +142,6 @@ pub fn main(registry: Arc<Registry>) -> ExitCode {
 /// the name of the program.
 ///
 /// The first call in a process determines the registry for all later calls.
-#[must_use]
 pub fn run_arguments(registry: Arc<Registry>, arguments: impl IntoIterator<Item = OsString>) -> u8 {
     version::state_commit();
     // The options of pipelines must be known before clap builds the command line.

@@ -207,14 +207,12 @@ pxpl5_sim::parameters::parameter_table! {
 
 impl HostTiming {
     /// Returns the time of `words` words on the link, rounded down to a picosecond.
-    #[must_use]
     pub const fn link_span(&self, words: u32) -> Span {
         Span((words as u128 * 4 * 1_000_000_000_000 / self.link_bytes_per_s as u128) as u64)
     }
 
     /// Returns the application's time for one frame, from a uniform distribution around the mean. `drawn` is a random
     /// 64-bit number that selects the time.
-    #[must_use]
     pub const fn application_span(&self, drawn: u64) -> Span {
         let jitter = if self.application_jitter_ns < self.application_ns {
             self.application_jitter_ns
@@ -227,7 +225,6 @@ impl HostTiming {
 
     /// Returns the timing table of the board that models the host. The host model uses only two values of the table:
     /// the CPU time to send or receive a message, and the memory size.
-    #[must_use]
     pub const fn board(&self) -> GpTiming {
         GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }
     }

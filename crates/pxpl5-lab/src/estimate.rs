@@ -176,7 +176,6 @@ impl RunWork {
     }
 
     /// Returns the number of NTSC fields in which the simulated processors transform all primitives for all eyes.
-    #[must_use]
     pub fn fields_of_transform(&self) -> f64 {
         let primitives = (self.primitives * self.eyes).max(1) as f64;
         TRANSFORM_S * primitives / (NTSC_FIELD_S * self.gps.max(1) as f64)
@@ -198,13 +197,11 @@ impl RunWork {
     }
 
     /// Estimates memory and time by the formulas in the documentation of [`crate::estimate`].
-    #[must_use]
     pub fn estimate(&self) -> Estimate {
         Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() }
     }
 
     /// Estimates the peak memory in bytes.
-    #[must_use]
     pub fn bytes(&self) -> f64 {
         let fields = self.fields as f64;
         // In long runs, observations take most of the memory. In large scenes, lists take most of the memory.
@@ -220,7 +217,6 @@ impl RunWork {
     }
 
     /// Estimates the run time in seconds on one idle core.
-    #[must_use]
     pub fn core_seconds(&self) -> f64 {
         let (fields, eyes, primitives) = (self.fields as f64, self.eyes as f64, self.primitives as f64);
         let as_code = if self.is_cycle_level { PRIMITIVE_AS_CODE_S * primitives } else { 0.0 };
@@ -278,7 +274,6 @@ const LEVELS_BYTES: f64 = 800e6;
 
 impl Study {
     /// Estimates the memory and time of the study on `threads` threads of a computer that also does other work.
-    #[must_use]
     pub fn estimate(self, threads: usize) -> Estimate {
         Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() / threads.max(1) as f64 }
     }

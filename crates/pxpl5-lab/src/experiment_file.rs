@@ -116,7 +116,6 @@ impl ExperimentFile {
     }
 
     /// Returns the registry of the pipelines and displays that settings can name.
-    #[must_use]
     pub const fn registry(&self) -> &Arc<Registry> {
         &self.registry
     }
@@ -124,7 +123,6 @@ impl ExperimentFile {
     /// Returns the keys for the pipelines and displays of a registry. Two groups of keys are left out. The key of a
     /// machine parameter is `machine.` followed by a path of `MachineConfig::set`. [`tracking_parameters`] lists the
     /// keys of trackers and predictors.
-    #[must_use]
     pub fn keys_of(registry: &Registry) -> Vec<FileKey> {
         keys::keys(registry)
     }
@@ -217,7 +215,6 @@ impl ExperimentFile {
     }
 
     /// Returns the line or option that set a key, or `None` if the key is not set.
-    #[must_use]
     pub fn place_of(&self, key: &str) -> Option<&str> {
         self.settings.get(key).map(|setting| setting.place.as_str())
     }
@@ -310,7 +307,6 @@ impl ExperimentFile {
     }
 
     /// Returns true if the file describes a sweep, which runs an experiment at many points of a parameter space.
-    #[must_use]
     pub const fn is_sweep(&self) -> bool {
         self.sweep.is_some()
     }

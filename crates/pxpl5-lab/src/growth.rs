@@ -174,7 +174,6 @@ fn run_seed(experiment: &Experiment, seed: u64) -> Result<(Vec<f64>, f64), Strin
 }
 
 /// Returns the exponent of a power law fitted to points: the slope of a straight line through their logarithms.
-#[must_use]
 pub fn exponent(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     let n = logs.len() as f64;
@@ -185,7 +184,6 @@ pub fn exponent(points: &[(f64, f64)]) -> f64 {
 }
 
 /// Returns the text of docs/scaling.md: tables, exponents and a chart.
-#[must_use]
 pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Application]) -> String {
     let mut text = format!(
         "# Growth\n\nThe command `pxpl5 levels --scaling docs/scaling.md` generates this file. All runs use Rendering Control in stereo. Each\n\

@@ -69,7 +69,6 @@ use std::sync::{Arc, LazyLock};
 /// Returns the registry of the built-in pipelines and displays.
 ///
 /// Some pipelines have a closed form.
-#[must_use]
 pub fn registry() -> Arc<Registry> {
     static OF_PAPERS: LazyLock<Arc<Registry>> = LazyLock::new(|| {
         let mut registry = Registry::of_papers();

@@ -136,7 +136,6 @@ impl Snapshot {
     }
 
     /// Returns the text of the checkpoint's file.
-    #[must_use]
     pub fn to_text(&self) -> String {
         let sealed = Sealed { snapshot: self.clone(), checksum: self.checksum() };
         let mut text = serde_json::to_string_pretty(&sealed).unwrap_or_default();

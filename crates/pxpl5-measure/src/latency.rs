@@ -6,7 +6,6 @@ use std::fmt;
 /// Returns the latency parts of the complete pictures in the result window.
 ///
 /// Pictures whose records were discarded ([`pxpl5_run::KeptRecords`]) are left out.
-#[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
     outcome.latency_parts()
 }
@@ -62,7 +61,6 @@ pub struct SurfaceStatistics {
 /// Returns the latencies of each surface and of the pair of surfaces, over the complete pictures in the result window.
 ///
 /// The result is empty if the surfaces share one TRANSFORM.
-#[must_use]
 pub fn latency_by_surface(outcome: &Outcome) -> Vec<SurfaceStatistics> {
     let labels: Vec<&str> = outcome.record().surfaces().map(|(_, surface)| surface.label).collect();
     let label_of = |surface: usize| labels.get(surface).copied().unwrap_or_default();

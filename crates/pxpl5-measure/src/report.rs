@@ -183,7 +183,6 @@ impl HeadReport {
 impl Report {
     /// Returns the number of lines that were overwritten before the display showed them. `None` if the display does not
     /// count such lines.
-    #[must_use]
     pub fn lines_never_shown(&self) -> Option<u64> {
         let counter = self.display_counters.iter().find(|counter| counter.name == Counter::LINES_NEVER_SHOWN);
         counter.map(|counter| counter.count)

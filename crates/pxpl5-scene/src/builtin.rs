@@ -54,7 +54,6 @@ const SPHERE: &str = "sphere:N";
 
 /// Returns the names of all built-in scenes, each with a one-sentence description. In a name, N stands for a number of
 /// triangles up to [`MAX_TRIANGLES`].
-#[must_use]
 pub fn names() -> &'static [(&'static str, &'static str)] {
     &NAMES
 }

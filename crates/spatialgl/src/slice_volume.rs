@@ -107,7 +107,6 @@ pub enum SliceVolume {
 
 impl SliceVolume {
     /// Returns the number of times that the recorded commands are replayed for a slice.
-    #[must_use]
     pub const fn passes(&self) -> u32 {
         match self {
             Self::Wedge(_, WedgeTest::UserPlanes(_)) | Self::Taper { .. } => 2,
@@ -116,7 +115,6 @@ impl SliceVolume {
     }
 
     /// Returns true if clip planes reject all points outside the volume before fragments are generated.
-    #[must_use]
     pub const fn clips_before_fragments(&self) -> bool {
         matches!(self, Self::Wedge(_, WedgeTest::UserPlanes(_)) | Self::Taper { .. } | Self::Slab { .. })
     }
@@ -133,7 +131,6 @@ impl SliceVolume {
     /// Returns the two values of a vertex that the test of the slice volume compares. Both values are linear in space
     /// and can be interpolated.
     #[inline(always)]
-    #[must_use]
     pub(crate) fn attributes(&self, world: [f64; 3], u: f64, s: f64) -> [f64; 2] {
         match self {
             Self::Frustum => [0.0, 0.0],
@@ -159,7 +156,6 @@ impl SliceVolume {
     }
 
     /// Returns true if a point belongs to the slice's volume in any pass.
-    #[must_use]
     pub fn contains(&self, world: [f64; 3], u: f64, s: f64) -> bool {
         let [p, q] = self.attributes(world, u, s);
         (0..self.passes()).any(|pass| self.test(pass).accepts(p, q, 1.0))

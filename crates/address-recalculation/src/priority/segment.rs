@@ -61,7 +61,6 @@ impl Segmentation {
 
     /// Returns the memory that must hold the uncut mesh. Of the memories whose cells the mesh touches, this memory is
     /// drawn most often. Returns `None` for an empty mesh.
-    #[must_use]
     pub fn fastest_memory(&self, assignment: &CellAssignment) -> Option<usize> {
         self.segments.keys().map(|cell| assignment.memory(*cell)).min()
     }

@@ -13,7 +13,6 @@ use std::fmt::Write as _;
 
 /// Returns the text of docs/address-recalculation.md: the rows with the provenance of each number, then the detailed
 /// tables.
-#[must_use]
 pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
     let mut text = String::new();
     head(&mut text, rows);
@@ -114,13 +113,11 @@ const COLUMNS: [TableColumn<FigureRow>; 9] = [
 ];
 
 /// Returns the figures as a Markdown table.
-#[must_use]
 pub fn table(rows: &[FigureRow]) -> String {
     figures::table(&COLUMNS, rows)
 }
 
 /// Returns as a Markdown list the rows whose simulated numbers miss the published numbers, with their known causes.
-#[must_use]
 pub fn missed(rows: &[FigureRow]) -> String {
     let mut text = String::new();
     for row in rows.iter().filter(|row| !row.is_met) {
@@ -185,7 +182,6 @@ fn fits(text: &mut String, all: &Experiments) {
 }
 
 /// Returns the interpretations of table 1 of the paper CPR05 (update rates) as Markdown, ranked by their error.
-#[must_use]
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n\
          ## Interpretations of table 1\n\n\

@@ -66,7 +66,6 @@ impl PanelNumbers {
     }
 
     /// Returns the order in which pixels are lit, and the time for which each pixel shines.
-    #[must_use]
     pub const fn light(&self) -> PixelLight {
         let scan = match (self.scan, self.direction) {
             (1, _) => ScanOrder::Global,

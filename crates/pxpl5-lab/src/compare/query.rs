@@ -432,7 +432,6 @@ impl Comparison {
     /// - the row `ideal`, which shows ideal pictures for comparison
     /// - rows whose evaluation begins later than that of most rows
     /// - the row with delayed video, because its error leaves out the delay of the real world
-    #[must_use]
     pub fn best(&self) -> Option<&ComparisonRow> {
         let evaluated =
             self.pipelines.iter().filter(|row| row.was_evaluated() && row.failure.is_none() && row.shows_all());
@@ -443,13 +442,11 @@ impl Comparison {
 
     /// Returns true if the evaluation of `row` begins four or more display periods after
     /// [`Comparison::evaluated_from`].
-    #[must_use]
     pub fn starts_late(&self, row: &ComparisonRow) -> bool {
         row.window.is_some_and(|window| window.first_period.0 >= self.evaluated_from.0 + MOST_PERIODS_APART)
     }
 
     /// Returns the row with this name, if any.
-    #[must_use]
     pub fn row(&self, pipeline: &str) -> Option<&ComparisonRow> {
         self.pipelines.iter().find(|row| row.pipeline == pipeline)
     }

@@ -211,7 +211,6 @@ pub(super) fn renamed(path: &str) -> &str {
 
 /// Returns all keys except those of machine parameters. The key of a machine parameter is `machine.` followed by a path
 /// of [`MachineConfig::set`].
-#[must_use]
 pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
     let pipelines: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();
     let displays: Vec<&str> = registry.displays().iter().map(|entry| entry.name).collect();

@@ -23,7 +23,6 @@ pub struct Limit {
 impl Limit {
     /// Returns true if a number of triangles missed the goal. Also returns true if the search ended below
     /// [`CEILING`](super::CEILING) at the last triangle of a model. Otherwise the pipeline has no limit.
-    #[must_use]
     pub const fn has_limit(&self) -> bool {
         self.first_miss.is_some() || self.triangles < super::CEILING
     }

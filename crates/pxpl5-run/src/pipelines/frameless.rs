@@ -62,7 +62,6 @@ impl Frameless {
     }
 
     /// Returns the number of blocks of a picture.
-    #[must_use]
     pub fn blocks(&self) -> u32 {
         self.grid().regions()
     }

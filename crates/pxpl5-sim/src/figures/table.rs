@@ -16,7 +16,6 @@ pub fn table<'a, R: 'a>(columns: &[TableColumn<R>], rows: impl IntoIterator<Item
 
 /// Formats a number with at least `digits` significant digits and without trailing zeros. A number that is not finite
 /// gives "none". A magnitude below a millionth counts as a rounding error and gives 0.
-#[must_use]
 pub fn significant(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return "none".to_owned();

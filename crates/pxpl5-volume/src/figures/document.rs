@@ -10,7 +10,6 @@ use std::fmt::Write as _;
 
 /// Returns the text of docs/volumetric.md. The text has every figure, the definitions, the statements without numbers,
 /// the scenes, and the project's assumed numbers with their ranges.
-#[must_use]
 pub fn markdown(figures: &VolumeFigures) -> String {
     let mut text = String::new();
     head(&mut text, figures);

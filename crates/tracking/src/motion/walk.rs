@@ -64,14 +64,12 @@ impl Walk {
     }
 
     /// Returns the length of the closed path, m.
-    #[must_use]
     pub fn length_m(&self) -> f64 {
         self.ways[self.corners.len()]
     }
 
     /// Returns the position (m) at a distance along the path from the first corner. A negative distance, or a distance
     /// longer than the closed path, wraps around.
-    #[must_use]
     pub fn place(&self, way_m: f64) -> DVec3 {
         let way = rounded(way_m, self.length_m());
         // Find the straight part of the path, and the fraction of this part.
