@@ -18,7 +18,7 @@
 //! | memory and time of an experiment on this computer | [`estimate`] |
 //! | experiments at many points of a parameter space | [`sweep`] |
 //! | the files of a folder that belong to one run | [`manifest`] |
-//! | experiments in text files, and saved runs that can be continued | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
+//! | experiments in text files | [`ExperimentFile`], [`Plan`] |
 //!
 //! [`registry`] lists the built-in pipelines and displays. A pipeline's entry contains its closed form, if there is
 //! one. An experiment file may also use a registry with pipelines and displays of the caller.
@@ -44,7 +44,6 @@ pub mod manifest;
 mod parallel;
 pub mod pipeline_figures;
 pub mod rig;
-mod snapshot;
 mod stop;
 mod suitability;
 pub mod sweep;
@@ -58,7 +57,6 @@ pub use experiment_file::{
 pub use head_names::{PREDICTORS, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;
 pub use parallel::map as in_parallel;
-pub use snapshot::Snapshot;
 pub use stop::StopFlag;
 pub use suitability::{Suitability, suitability};
 pub use what_if::{WhatIf, what_if};

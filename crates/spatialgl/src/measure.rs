@@ -47,12 +47,11 @@ pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: 
 
 fn each_curve(view: &SliceView, commands: &CommandBuffer, all: &Bin, mut each: impl FnMut([[f64; 3]; 2])) {
     // Clusters away from the slice are skipped.
-    let middle = view.volume.middle();
     let row = view.view.transpose().z_axis.to_array();
-    for primitive in all.clusters().flat_map(|cluster| cluster.reaching(&row, [middle, middle])) {
+    for primitive in all.clusters().flat_map(|cluster| cluster.reaching(&row, [0.0, 0.0])) {
         let Some(triangle) = commands.triangle(primitive) else { continue };
         let local = triangle.corners.map(|corner| view.local(DVec3::from_array(corner)).to_array());
-        if let Some((ends, _)) = plane_curve(local, middle) {
+        if let Some((ends, _)) = plane_curve(local) {
             each(ends);
         }
     }
