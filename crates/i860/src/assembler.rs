@@ -176,7 +176,7 @@ struct Placed {
 }
 
 /// Greatest size of an assembled program, in bytes (16 MB).
-const MOST_BYTES: u32 = 16 << 20;
+const MAX_BYTES: u32 = 16 << 20;
 
 struct Assembler<'a> {
     file: &'a str,
@@ -344,8 +344,8 @@ impl Assembler<'_> {
     fn push(&mut self, line: usize, item: Item, bytes: u32) -> Result<(), String> {
         // Check the size first, so that a huge gap allocates no memory.
         let used = self.here.wrapping_sub(self.base);
-        if used.checked_add(bytes).is_none_or(|total| total > MOST_BYTES) {
-            return Err(format!("the program is longer than {MOST_BYTES} bytes"));
+        if used.checked_add(bytes).is_none_or(|total| total > MAX_BYTES) {
+            return Err(format!("the program is longer than {MAX_BYTES} bytes"));
         }
         self.placed.push(Placed { address: self.here, line, item });
         self.here = self.here.wrapping_add(bytes);

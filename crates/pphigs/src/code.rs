@@ -34,7 +34,7 @@ pub(crate) const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
 
 /// Largest number of triangles into which clipping divides a triangle: six planes leave a polygon of up to nine
 /// corners.
-const MOST_PIECES: u32 = 7;
+const MAX_PIECES: u32 = 7;
 
 /// Largest number of instructions for one primitive, much more than a kernel needs. A kernel that exceeds the limit
 /// counts as an endless loop.
@@ -486,7 +486,7 @@ impl Pass {
     }
 
     pub(crate) fn most_commands(&self, given: PrimitiveCounts) -> u32 {
-        given.triangles + (MOST_PIECES - 1) * self.stats().clipped as u32 + 1
+        given.triangles + (MAX_PIECES - 1) * self.stats().clipped as u32 + 1
     }
 }
 

@@ -130,7 +130,7 @@ const BLOCK_WORDS: f64 = 16.0;
 const BLOCK_GPS: f64 = 20.0;
 /// Minimum time between two blocks of pixels in seconds, due to the messages of the processors. Derived: half of 12 us,
 /// because two blocks are sent at a time.
-const LEAST_BLOCK_S: f64 = 6e-6;
+const MIN_BLOCK_S: f64 = 6e-6;
 
 impl Estimate {
     /// Combines the estimates of many runs that are divided among `threads` threads. The time is the sum of all times
@@ -184,7 +184,7 @@ impl RunWork {
     /// Returns the maximum number of blocks of pixels in a field, limited by the ring and by the messages of the
     /// processors.
     fn most_blocks(&self) -> f64 {
-        if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s().max(LEAST_BLOCK_S) }
+        if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s().max(MIN_BLOCK_S) }
     }
 
     /// Returns the number of blocks of pixels that the processors of the experiment can send in a field.

@@ -15,7 +15,7 @@ use crate::result_window::ResultWindow;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-pub(crate) const LEAST_UPDATES: u64 = 2;
+pub(crate) const MIN_UPDATES: u64 = 2;
 
 /// Numbers of pictures that were due in the result window of a run.
 ///
@@ -97,6 +97,6 @@ impl DuePictures {
     /// `None` if fewer than two pictures were shown.
     pub fn updates_hz(&self, period_ms: f64) -> Option<f64> {
         let window_ms = (self.due * self.periods_a_picture) as f64 * period_ms;
-        (self.pictures >= LEAST_UPDATES).then_some(self.pictures as f64 * 1e3 / window_ms)
+        (self.pictures >= MIN_UPDATES).then_some(self.pictures as f64 * 1e3 / window_ms)
     }
 }

@@ -3,7 +3,7 @@ use crate::fingerprint::Fingerprint;
 use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::host::{BareHost, Host};
-use crate::kept_records::{KeptRecords, LEAST_RECORDS};
+use crate::kept_records::{KeptRecords, MIN_RECORDS};
 use crate::level::Level;
 use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
@@ -118,7 +118,7 @@ impl Experiment {
             shuffle: None,
             traffic: false,
             keep: KeptRecords::Everything,
-            least_records: LEAST_RECORDS,
+            least_records: MIN_RECORDS,
             disabled: BTreeSet::new(),
             level: Level::Transaction,
             head: None,

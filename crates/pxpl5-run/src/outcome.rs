@@ -1,5 +1,5 @@
 use crate::assembled::Assembled;
-use crate::due::{DuePictures, LEAST_UPDATES};
+use crate::due::{DuePictures, MIN_UPDATES};
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
 use crate::latency::{LatencyParts, parts};
@@ -137,7 +137,7 @@ impl Outcome {
     pub fn updates_hz(&self) -> Option<f64> {
         let complete = self.closed.tally.complete;
         // A single picture has no rate.
-        if complete < LEAST_UPDATES {
+        if complete < MIN_UPDATES {
             return None;
         }
         // Pipelines with due pictures have the rate of the pictures that were shown in time.

@@ -17,7 +17,7 @@ const AHEAD_M: f64 = 1.5;
 
 /// Least distance between two successive corners of a path, m. At a smaller distance, rounding errors would falsify the
 /// direction from one corner to the next.
-const LEAST_LEG_M: f64 = 1e-3;
+const MIN_LEG_M: f64 = 1e-3;
 
 /// A head that walks at constant speed along a closed path. The head is at the first corner at time 0. The head looks
 /// at a point of the path ahead. After [`Self::with_glances`] the head also looks around.
@@ -49,7 +49,7 @@ impl Walk {
         let mut ways = vec![0.0];
         for (i, corner) in corners.iter().enumerate() {
             let leg = corner.distance(corners[(i + 1) % corners.len()]);
-            check("leg of the path", leg, LEAST_LEG_M, 1e7)?;
+            check("leg of the path", leg, MIN_LEG_M, 1e7)?;
             ways.push(ways[i] + leg);
         }
         Ok(Self { corners: corners.into(), ways, m_per_s, glances: None })
