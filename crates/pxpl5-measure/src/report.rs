@@ -308,8 +308,10 @@ impl Default for HashedText {
 
 impl Write for HashedText {
     fn write_str(&mut self, text: &str) -> fmt::Result {
-        // Two fields have the names that they had when hashes of reports were first published.
+        // These have the names that they had when hashes of reports were first published.
         let text = match text {
+            "FieldMisregistration" => "FieldError",
+            "LatencyPartStatistics" => "NamedStatistics",
             "evaluated" => "judged",
             "evaluated_at_m" => "judged_at_m",
             other => other,

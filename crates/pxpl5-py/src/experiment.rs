@@ -254,7 +254,7 @@ struct StoppableHost {
 
 impl fmt::Debug for StoppableHost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Attended").field("workstation", &self.workstation).finish_non_exhaustive()
+        f.debug_struct("StoppableHost").field("workstation", &self.workstation).finish_non_exhaustive()
     }
 }
 
