@@ -62,11 +62,8 @@ pub(crate) struct CompareArgs {
     max_seeds: u64,
     /// Also search for the largest number of triangles that each pipeline can draw in time. The search takes longer
     /// than all runs.
-    #[arg(long, conflicts_with = "no_limits")]
+    #[arg(long)]
     limits: bool,
-    /// Do not search for the largest number of triangles, which is the default.
-    #[arg(long, alias = "no-triangles", hide = true)]
-    no_limits: bool,
     /// Also split the error of each row by its causes. For each cause, every run is evaluated once more without this
     /// cause.
     #[arg(long)]

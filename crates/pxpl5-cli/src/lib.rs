@@ -93,7 +93,6 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Simulate every published figure, and compare the result with the published value.
     Figures(figures::FiguresArgs),
-    #[command(alias = "readings")]
     Interpretations(interpretations::InterpretationsArgs),
     /// Find the largest number of triangles that a pipeline draws in time.
     Limit(limit::LimitArgs),

@@ -107,7 +107,6 @@ fn sweep_compare_and_limit_accept_the_pipeline() {
         "30",
         "--only",
         "one-at-a-time",
-        "--no-triangles",
         "--json",
     ];
     assert!(succeeded(&run(&folder, &compared)).contains("\"pipeline\": \"one-at-a-time\""));

@@ -114,7 +114,7 @@ fn a_report_of_a_sweep_shows_its_complete_rows() {
 fn a_report_of_a_comparison_has_a_row_for_each_pipeline_and_its_pictures() {
     let folder = Folder::new("report-comparison");
     let only = ["--only", "rendering-control,slats"];
-    let args = [&["compare", "--fields", "60", "--no-triangles", "--quiet", "--out", "c"][..], &only].concat();
+    let args = [&["compare", "--fields", "60", "--quiet", "--out", "c"][..], &only].concat();
     let output = folder.run(&args);
     assert!(output.status.success(), "{}", err(&output));
     let output = folder.run(&["report", "c"]);

@@ -93,8 +93,6 @@ pub struct Plan {
     pub output: Outputs,
     /// Published figure to compare with, if any.
     pub published: Option<Published>,
-    /// Warnings about settings with former names.
-    pub notes: Vec<String>,
 }
 
 /// Largest seed that TOML can represent.
@@ -132,7 +130,6 @@ impl ExperimentFile {
                 csv: self.flag("output.csv")?.unwrap_or(true),
             },
             published: Published::read(self)?,
-            notes: self.notes.clone(),
         })
     }
 
@@ -285,7 +282,7 @@ impl Plan {
         let of_table = warning_without_code(self.level, &self.machine, self.pipeline.as_ref());
         let of_head = self.head.iter().flat_map(HeadChoice::warnings);
         let of_machine = self.out_of_range().into_iter().map(|parameter| parameter.warning());
-        self.notes.iter().cloned().chain(of_machine).chain(of_table).chain(of_head).collect()
+        of_machine.into_iter().chain(of_table).chain(of_head).collect()
     }
 
     /// Returns the name of the level of detail.
