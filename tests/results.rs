@@ -238,7 +238,8 @@ fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
         let slices = flow_slices(&trace);
         for times in outcome.steady_pictures() {
             let of_picture = slices.iter().filter(|(id, ..)| *id == times.picture.next().0);
-            let (last, steps): (Vec<_>, Vec<_>) = of_picture.partition(|(_, step, _)| *step == Step::Last);
+            let (last, steps): (Vec<&(u64, Step, &Slice)>, Vec<_>) =
+                of_picture.partition(|(_, step, _)| *step == Step::Last);
             assert_eq!(last.len(), 1, "picture {}", times.picture);
             assert_eq!(last[0].2.begin, times.shown_at);
             let first = steps.iter().find(|(_, step, _)| *step == Step::First).expect("a first step");

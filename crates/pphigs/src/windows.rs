@@ -7,7 +7,7 @@
 
 use crate::begin::PassStartWork;
 use crate::bin_handoff::{
-    BUDGET, BUDGET_OF_ENTRY, MESSAGE_BYTES, MAX_ENTRIES, MessagePieces, PIECE_BYTES, listed, token_source,
+    BUDGET, BUDGET_OF_ENTRY, MAX_ENTRIES, MESSAGE_BYTES, MessagePieces, PIECE_BYTES, listed, token_source,
 };
 use crate::code::{Next, budget, sphere_kernel};
 use crate::cost::TransformCost;

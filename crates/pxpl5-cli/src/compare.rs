@@ -15,7 +15,7 @@ use crate::settings::SettingArgs;
 use crate::terminal::{self, answer, json_text};
 use progress::CompareProgress;
 use pxpl5::compare::{
-    CONFIDENCE, CompareQuery, CompareStore, MIN_SEEDS, MAX_SEEDS, Precision, ROWS_FOLDER, RecordedLength, RowChoice,
+    CONFIDENCE, CompareQuery, CompareStore, MAX_SEEDS, MIN_SEEDS, Precision, ROWS_FOLDER, RecordedLength, RowChoice,
     UntilPrecise, edge_pictures,
 };
 use pxpl5::views::png_bytes;

@@ -224,8 +224,7 @@ fn values_that_were_not_measured_are_null_in_json_and_empty_in_the_table() {
     let out = folder("null");
     let path = out.to_str().expect("a plain path");
     let only = ["--only", "slats,ideal,frameless,jitp-dual-screen"];
-    let settings =
-        ["--head", "pan:200", "--scene", "typical:500", "--gps", "3", "--fields", "30", "--seeds", "2"];
+    let settings = ["--head", "pan:200", "--scene", "typical:500", "--gps", "3", "--fields", "30", "--seeds", "2"];
     let json = json(&compare(&[settings.as_slice(), &only, &["--json", "--out", path]].concat()));
     // None of the 22 due fields of either seed was shown. The screen still shows the picture of the start.
     let heavy = row(&json, "jitp-dual-screen");

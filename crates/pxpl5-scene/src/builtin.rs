@@ -13,7 +13,7 @@ mod solid;
 mod sphere;
 mod typical;
 
-use crate::config::{MIN_SPHERE_TRIANGLES, MAX_TRIANGLES};
+use crate::config::{MAX_TRIANGLES, MIN_SPHERE_TRIANGLES};
 use crate::scene::Scene;
 use pxpl5_sim::parameters::SettingError;
 

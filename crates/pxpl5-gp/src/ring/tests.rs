@@ -74,11 +74,8 @@ fn messages_are_received_in_order_and_their_buffers_are_freed() {
     for _ in 0..4_000 {
         match below(&mut numbers, 5) {
             0 | 1 => {
-                let count = if numbers.unit() < 0.6 {
-                    1 + below(&mut numbers, 10)
-                } else {
-                    1 + below(&mut numbers, MAX_WORDS)
-                };
+                let count =
+                    if numbers.unit() < 0.6 { 1 + below(&mut numbers, 10) } else { 1 + below(&mut numbers, MAX_WORDS) };
                 let message = (below(&mut numbers, 1 << 16), count, words(&mut numbers, count));
                 if arrive(&mut processor, slot, message.0, message.1, &message.2) {
                     slot += 1;
