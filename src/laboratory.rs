@@ -113,7 +113,7 @@ pub use pxpl5_lab::suitability;
 pub use pxpl5_lab::Plan;
 
 pub use pxpl5_lab::{
-    HeadChoice, MotionChoice, Outputs, Published, SceneChoice, Settings, Suitability, WhatIf, compare, figures, growth,
+    HeadChoice, MotionChoice, Outputs, Published, SceneChoice, Settings, Suitability, WhatIf, compare, figures,
     in_parallel, interpretations, intervals, levels, limit, pipeline_figures, registry, rig, sweep,
     tracking_parameters,
 };
@@ -138,7 +138,6 @@ pub mod lab {
     pub use pxpl5_lab::FileKey;
 
     pub use pxpl5_lab::{
-        PREDICTORS, PathChoice, TRACKERS, application_time, code_times, diff, estimate, manifest, motion, predictor,
-        tracker,
+        PREDICTORS, PathChoice, TRACKERS, application_time, diff, estimate, manifest, motion, predictor, tracker,
     };
 }

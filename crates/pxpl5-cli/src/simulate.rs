@@ -56,9 +56,10 @@ const EVENT_BYTES: f64 = 200.0;
 fn trace_bytes(observation: &Observation) -> f64 {
     let of_traffic =
         |traffic: &Traffic| 2 * traffic.transfers.len() + traffic.busy_channels.len() + traffic.fifo_changes.len();
-    observation.traffic.as_deref().map_or(0.0, |traffic| {
-        EVENT_BYTES * (observation.records() + of_traffic(traffic)) as f64
-    })
+    observation
+        .traffic
+        .as_deref()
+        .map_or(0.0, |traffic| EVENT_BYTES * (observation.records() + of_traffic(traffic)) as f64)
 }
 
 pub(crate) fn simulate(plan: &Plan, how: How<'_>) -> Result<Simulated, CliError> {

@@ -68,7 +68,7 @@ pub enum CodeUse {
 }
 
 // Times of primitives that follow from i860 code (derived from code). They are means over the three application scenes,
-// measured by `pxpl5_lab::code_times`. A test of that module compares these constants with the code.
+// measured by examples/code_times. A test of pxpl5-lab compares these constants with the code.
 //
 // `message_ns` is the time of kernels/ring.s for a message or a chain, which differs between scenes
 // (docs/gp-timing.md). It is also the time of kernels/token.s for a token without entries. `token_entry_ns` is the time

@@ -8,8 +8,7 @@
 //! | the interpretation of the papers that explains the figures best | [`interpretations`] |
 //! | effect of the host application's time, which no paper prints | [`application_time`] |
 //! | differences between the levels of detail | [`levels`] |
-//! | times of primitives in executed code | [`code_times`] |
-//! | largest number of triangles drawn in time, growth of the cost | [`limit`], [`growth`] |
+//! | largest number of triangles drawn in time | [`limit`] |
 //! | range of any setting in which an experiment reaches a goal | [`limit::OverQuery`] |
 //! | differences between two results | [`diff`] |
 //! | effect of 10 % more of each resource | [`what_if`] |
@@ -26,14 +25,12 @@
 #![warn(missing_docs)]
 
 pub mod application_time;
-pub mod code_times;
 pub mod compare;
 pub mod diff;
 mod error;
 pub mod estimate;
 mod experiment_file;
 pub mod figures;
-pub mod growth;
 mod head_names;
 mod host;
 pub mod interpretations;

@@ -30,6 +30,18 @@ pub fn significant(value: f64, digits: i32) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
+/// Replaces each mark `{{name}}` of a text by a value. Ends of lines at the end of a value are left out.
+pub fn filled(text: &str, marks: &[(&str, String)]) -> String {
+    let filled =
+        |text: String, (name, value): &(&str, String)| text.replace(&format!("{{{{{name}}}}}"), value.trim_end());
+    marks.iter().fold(text.to_owned(), filled)
+}
+
+/// Returns rows of cells as lines of a Markdown table.
+pub fn lines<const N: usize>(rows: impl IntoIterator<Item = [String; N]>) -> String {
+    rows.into_iter().map(|cells| format!("| {} |\n", cells.join(" | "))).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
