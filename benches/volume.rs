@@ -160,7 +160,7 @@ fn draw_by_euc(display: &SweptDisplay, commands: &CommandBuffer, indices: &[u32]
 
 /// Largest allowed percentage of covered pixels that only one of the two rasterizers covers. `euc` works in single
 /// precision and has another rule for samples on edges.
-const MOST_DIFFERING_PERCENT: f64 = 2.0;
+const MAX_DIFFERING_PERCENT: f64 = 2.0;
 
 /// Returns the percentage of pixels that only one of the two rasterizers covers, in the slices of half a turn.
 fn differing_percent(
@@ -196,7 +196,7 @@ fn peers(c: &mut Criterion) {
     let mut target = Buffer2d::new([768, 768], 0);
     let paper = half(VolumeConfig::paper());
     let differing = differing_percent(&orthographic, &commands, &indices, &mut target);
-    assert!(differing < MOST_DIFFERING_PERCENT, "not the same slices: {differing} % of the covered pixels differ");
+    assert!(differing < MAX_DIFFERING_PERCENT, "not the same slices: {differing} % of the covered pixels differ");
     println!("{differing:.3} % of the pixels that either covers are covered by one alone");
     let mut group = c.benchmark_group("peers/198 slices of the head");
     group.sample_size(10).sampling_mode(SamplingMode::Flat).measurement_time(Duration::from_secs(10));

@@ -4,15 +4,16 @@
 //! Prints docs/gp-timing.md: `cargo run --profile test --example gp_timing > docs/gp-timing.md`. With `--details`, also
 //! prints more tables.
 
+mod code_times;
 #[path = "../crates/pphigs/tests/kernel/mod.rs"]
 mod kernel;
 #[path = "../crates/pphigs/tests/numbers/mod.rs"]
 mod numbers;
 
+use code_times::{code_times, strip_times};
 use i860::timing::{DramTiming, FREEZES, Freeze};
 use i860::{AddressProfile, Config, Profile, linear};
 use kernel::{Bench, Strip, frame, strips, triangles};
-use pxpl5::lab::code_times::{code_times, strip_times};
 use pxpl5::limit::{LimitQuery, test_scene};
 use pxpl5::{CodeVersion, Experiment, Level, MachineConfig, PictureNumber, Pixels, Slats, TestScene};
 use pxpl5_geometry::kernel::{Kernel, KernelList, KernelPicture, KernelSurface, Schedule};
@@ -401,7 +402,7 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
     println!(
         "With `machine.times = \"code\"`, the timing table holds these mean times of the code over the three application\n\
          scenes, whose provenance is \"derived from code\". Without it, it holds the published or fitted times. *Scenes*\n\
-         is the range from the smallest to the largest mean of a scene (pxpl5_lab::code_times).\n"
+         is the range from the smallest to the largest mean of a scene (examples/code_times).\n"
     );
     head(&[
         "code",
@@ -465,7 +466,7 @@ fn strips_and_blocks() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## Strips and blocks\n");
     println!(
         "Just-in-time pixels need these clocks for a strip of one line, with the triangles of `aircraft`\n\
-         (pxpl5_lab::code_times). Frameless rendering finds the triangles of its blocks with the same code, whose rules\n\
+         (examples/code_times). Frameless rendering finds the triangles of its blocks with the same code, whose rules\n\
          are windows_rules.md, between_rules.md and order_rules.md in crates/pphigs/kernels. A strip that is\n\
          interpolated between two views begins with a new pass over the triangles. In the timing table, an interpolated\n\
          triangle takes `jitp.interpolate_ns`, for which 280 clocks are assumed.\n"

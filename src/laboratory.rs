@@ -1,4 +1,4 @@
-//! Experiments in files, saved runs, and studies of many experiments.
+//! Experiments in files, and studies of many experiments.
 
 /// An experiment that was read from the text of a file.
 ///
@@ -17,27 +17,6 @@
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub use pxpl5_lab::ExperimentFile;
-
-/// A saved run, which the same experiment can continue later.
-///
-/// The example saves a run after one field. Another experiment cannot continue this run.
-///
-/// ```
-/// use pxpl5::prelude::*;
-///
-/// let scene = scene::builtin("full-screen:12")?;
-/// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
-/// let mut stepper = experiment.stepper()?;
-/// stepper.step_period();
-/// let text = Snapshot::of_stepper(&stepper)?.to_text();
-/// let saved = Snapshot::read(&text, "saved")?;
-/// let other = saved.resume(&experiment.clone().seed(2), "saved");
-/// assert!(other.is_err_and(|error| error.to_string().contains("differs from the saved run")));
-/// let resumed = saved.resume(&experiment, "saved")?;
-/// assert_eq!(resumed.finish()?.record().trace_hash(), stepper.finish()?.record().trace_hash());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub use pxpl5_lab::Snapshot;
 
 /// Finds the resources of a machine that limit the latency.
 ///
@@ -134,7 +113,7 @@ pub use pxpl5_lab::suitability;
 pub use pxpl5_lab::Plan;
 
 pub use pxpl5_lab::{
-    HeadChoice, MotionChoice, Outputs, Published, SceneChoice, Settings, Suitability, WhatIf, compare, figures, growth,
+    HeadChoice, MotionChoice, Outputs, Published, SceneChoice, Settings, Suitability, WhatIf, compare, figures,
     in_parallel, interpretations, intervals, levels, limit, pipeline_figures, registry, rig, sweep,
     tracking_parameters,
 };
@@ -159,7 +138,6 @@ pub mod lab {
     pub use pxpl5_lab::FileKey;
 
     pub use pxpl5_lab::{
-        PREDICTORS, PathChoice, TRACKERS, application_time, code_times, diff, estimate, manifest, motion, predictor,
-        tracker,
+        PREDICTORS, PathChoice, TRACKERS, application_time, diff, estimate, manifest, motion, predictor, tracker,
     };
 }

@@ -108,7 +108,7 @@
 //! | [`oracle`] | ideal pictures: a renderer without parallelism and without time | |
 #![cfg_attr(
     feature = "lab",
-    doc = "| [`lab`], [`figures`], [`levels`], [`limit`], [`compare`], [`sweep`] | questions over many experiments, experiment files, saved runs | `lab` |"
+    doc = "| [`lab`], [`figures`], [`levels`], [`limit`], [`compare`], [`sweep`] | questions over many experiments, experiment files | `lab` |"
 )]
 #![cfg_attr(
     feature = "views",
@@ -223,7 +223,7 @@ pub mod device {
 /// Names that most programs with this crate need: `use pxpl5::prelude::*`.
 pub mod prelude {
     #[cfg(feature = "lab")]
-    pub use crate::laboratory::{ExperimentFile, Plan, Snapshot, WhatIf, in_parallel, registry, what_if};
+    pub use crate::laboratory::{ExperimentFile, Plan, WhatIf, in_parallel, registry, what_if};
     pub use crate::scene::{self, Scene};
     pub use crate::tracking::Pose;
     pub use crate::tracking::motion::{Motion, Recording, from_fn};

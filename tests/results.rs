@@ -2,7 +2,7 @@
 
 use crate::support::{self, boards, video};
 use pxpl5::views::results::{columns, csv};
-use pxpl5::views::trace_export::{Events, Trace, chrome, perfetto};
+use pxpl5::views::trace_export::{Events, Slice, Step, Trace, chrome};
 use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
     Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Measured, Outcome, PeriodNumber, Pipeline, Pixels,
@@ -213,145 +213,39 @@ fn parquet_equals_csv() {
     assert_eq!(found, rows(&csv(stereo())));
 }
 
-/// A message of Protocol Buffers: numbers and parts by tag, read by the published wire format.
-#[derive(Default)]
-struct Message<'a> {
-    numbers: BTreeMap<u64, Vec<u64>>,
-    parts: BTreeMap<u64, Vec<&'a [u8]>>,
-}
-
-impl<'a> Message<'a> {
-    fn read(mut bytes: &'a [u8]) -> Self {
-        let mut message = Self::default();
-        while !bytes.is_empty() {
-            let key = varint(&mut bytes);
-            match key & 7 {
-                0 => message.numbers.entry(key >> 3).or_default().push(varint(&mut bytes)),
-                1 => {
-                    let (value, rest) = bytes.split_first_chunk().expect("eight bytes");
-                    message.numbers.entry(key >> 3).or_default().push(u64::from_le_bytes(*value));
-                    bytes = rest;
-                }
-                2 => {
-                    let length = varint(&mut bytes) as usize;
-                    let (part, rest) = bytes.split_at(length);
-                    message.parts.entry(key >> 3).or_default().push(part);
-                    bytes = rest;
-                }
-                kind => panic!("wire type {kind}"),
-            }
-        }
-        message
-    }
-
-    fn numbers(&self, tag: u64) -> &[u64] {
-        self.numbers.get(&tag).map_or(&[], Vec::as_slice)
-    }
-
-    fn number(&self, tag: u64) -> Option<u64> {
-        self.numbers(tag).first().copied()
-    }
-
-    fn parts(&self, tag: u64) -> impl Iterator<Item = &'a [u8]> {
-        self.parts.get(&tag).into_iter().flatten().copied()
-    }
-
-    fn text(&self, tag: u64) -> String {
-        self.parts(tag).map(|part| std::str::from_utf8(part).expect("UTF-8")).collect()
-    }
-}
-
-fn varint(bytes: &mut &[u8]) -> u64 {
-    let length = 1 + bytes.iter().take_while(|byte| **byte >= 0x80).count();
-    let (number, rest) = bytes.split_at(length);
-    *bytes = rest;
-    number.iter().rev().fold(0, |value, byte| value << 7 | u64::from(byte & 0x7f))
-}
-
-struct Track {
-    name: String,
-    parent_uuid: Option<u64>,
-}
-
-struct TrackEvent {
-    /// 1 begins a slice, 2 ends it, 3 is an instant, 4 the value of a counter.
-    kind: u64,
-    track_uuid: u64,
-    name: String,
-    counter_value: Option<i64>,
-    flow_ids: Vec<u64>,
-    terminating_flow_ids: Vec<u64>,
-}
-
-/// Returns the tracks of the Perfetto trace by identifier, and the events with their times in nanoseconds. The tags are
-/// those of Perfetto's published description.
-fn parsed(outcome: &Outcome) -> (BTreeMap<u64, Track>, Vec<(u64, TrackEvent)>) {
-    let mut bytes = Vec::new();
-    perfetto(&Trace::of(outcome), &mut bytes).expect("memory can be written");
-    let (mut tracks, mut events) = (BTreeMap::new(), Vec::new());
-    for packet in Message::read(&bytes).parts(1).map(Message::read) {
-        assert_eq!(packet.number(10), Some(1), "the sequence");
-        for track in packet.parts(60).map(Message::read) {
-            let uuid = track.number(1).expect("an identifier");
-            tracks.insert(uuid, Track { name: track.text(2), parent_uuid: track.number(5) });
-        }
-        for event in packet.parts(11).map(Message::read) {
-            let event = TrackEvent {
-                kind: event.number(9).expect("a kind"),
-                track_uuid: event.number(11).expect("a track"),
-                name: event.text(23),
-                counter_value: event.number(30).map(u64::cast_signed),
-                flow_ids: event.numbers(47).to_vec(),
-                terminating_flow_ids: event.numbers(48).to_vec(),
-            };
-            events.push((packet.number(8).expect("an instant"), event));
-        }
-    }
-    (tracks, events)
-}
-
-#[test]
-fn in_a_perfetto_trace_begin_and_end_alternate_on_every_track() {
-    for outcome in all() {
-        let (descriptors, events) = parsed(outcome);
-        assert!(events.windows(2).all(|pair| pair[0].0 <= pair[1].0));
-        let mut open: BTreeMap<u64, i32> = BTreeMap::new();
-        for (_, event) in &events {
-            let parent = descriptors.get(&event.track_uuid).expect("a track that was described");
-            assert!(parent.parent_uuid.is_none_or(|parent| descriptors.contains_key(&parent)));
-            let depth = open.entry(event.track_uuid).or_default();
-            *depth += i32::from(event.kind == 1) - i32::from(event.kind == 2);
-            assert!((0..=1).contains(depth), "{} on {}", event.name, parent.name);
-        }
-        assert!(open.values().all(|depth| *depth == 0));
-    }
+/// Returns all slices of a trace that are part of a flow, with the id and the step of the flow.
+fn flow_slices(trace: &Trace) -> Vec<(u64, Step, &Slice)> {
+    let slices = trace.tracks.iter().filter_map(|t| if let Events::Slices(s) = &t.events { Some(s) } else { None });
+    slices.flatten().filter_map(|slice| slice.flow.map(|flow| (flow.id, flow.step, slice))).collect()
 }
 
 #[test]
 fn a_trace_has_an_instant_at_every_retrace() {
-    let (_, events) = parsed(split());
-    let retraces: Vec<_> = events.iter().filter(|(_, event)| event.name.starts_with("retrace ")).collect();
+    let trace = Trace::of(split());
+    let track = trace.tracks.iter().find(|track| track.name == "retraces").expect("a track");
+    let Events::Instants(retraces) = &track.events else { panic!("{:?}", track.events) };
     assert_eq!(retraces.len() as u64, split().fields() + 1);
-    for (n, (ns, event)) in retraces.iter().enumerate() {
-        assert_eq!((event.kind, event.name.clone()), (3, format!("retrace {n}")));
-        // The period of 1001/60000 s is rounded down to picoseconds and then to nanoseconds.
-        assert_eq!(*ns, n as u64 * 1_001_000_000_000 / 60_000);
+    for (n, (time, name)) in (0..).zip(retraces) {
+        // The period of 1001/60000 s is rounded down to picoseconds.
+        assert_eq!((time.0, name.clone()), (n * 1_001_000_000_000_000 / 60_000, format!("retrace {n}")));
     }
 }
 
 #[test]
 fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
     for outcome in all() {
-        let (_, events) = parsed(outcome);
+        let trace = Trace::of(outcome);
+        let slices = flow_slices(&trace);
         for times in outcome.steady_pictures() {
-            let id = times.picture.next().0;
-            let last: Vec<_> = events.iter().filter(|(_, event)| event.terminating_flow_ids == [id]).collect();
+            let of_picture = slices.iter().filter(|(id, ..)| *id == times.picture.next().0);
+            let (last, steps): (Vec<&(u64, Step, &Slice)>, Vec<_>) =
+                of_picture.partition(|(_, step, _)| *step == Step::Last);
             assert_eq!(last.len(), 1, "picture {}", times.picture);
-            assert_eq!(last[0].0, times.shown_at.0 / 1_000);
-            let steps: Vec<_> = events.iter().filter(|(_, event)| event.flow_ids == [id]).collect();
-            assert!(steps[0].1.name.starts_with("SEND") || outcome.pipeline().name() == "slats");
-            assert!(steps.iter().any(|(_, event)| event.name.starts_with("TRANSFORM")));
-            assert!(steps.iter().any(|(_, event)| event.name.starts_with("RENDER")));
+            assert_eq!(last[0].2.begin, times.shown_at);
+            let first = steps.iter().find(|(_, step, _)| *step == Step::First).expect("a first step");
+            assert!(first.2.name.starts_with("SEND") || outcome.pipeline().name() == "slats");
+            assert!(steps.iter().any(|(.., slice)| slice.name.starts_with("TRANSFORM")));
+            assert!(steps.iter().any(|(.., slice)| slice.name.starts_with("RENDER")));
         }
     }
 }
@@ -359,15 +253,12 @@ fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
 #[test]
 fn the_counters_of_a_trace_stay_within_the_limits_of_the_machine() {
     for outcome in all() {
-        let (descriptors, events) = parsed(outcome);
         let machine = outcome.record();
         let mut highest: BTreeMap<String, i64> = BTreeMap::new();
-        for (_, event) in &events {
-            let Some(value) = event.counter_value else { continue };
-            let name = &descriptors[&event.track_uuid].name;
-            assert!(value >= 0, "{name}");
-            let entry = highest.entry(name.clone()).or_default();
-            *entry = value.max(*entry);
+        for track in Trace::of(outcome).tracks {
+            let Events::Counter(values) = track.events else { continue };
+            assert!(values.iter().all(|(_, value)| *value >= 0), "{}", track.name);
+            highest.insert(track.name, values.iter().map(|(_, value)| *value).max().unwrap_or_default());
         }
         let channels = machine.ring().stats().channel_busy.len() as i64;
         assert!((1..=channels).contains(&highest["busy channels"]));
@@ -412,7 +303,7 @@ fn has_messages(outcome: &Outcome) -> bool {
 }
 
 #[test]
-fn chrome_json_has_the_same_slices_to_the_picosecond() {
+fn the_file_of_a_trace_has_its_slices_to_the_picosecond() {
     // Each picture has slices of all kinds.
     let outcome = run(RenderingControl::mono(), "molecules", support::sample_or_all(20, 60));
     let trace = Trace::of(&outcome);

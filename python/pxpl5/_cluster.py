@@ -51,14 +51,14 @@ ESTIMATE_S = 8e-4
 ESTIMATING = 0.1
 
 #: Greatest number of points in a chunk.
-MOST_POINTS = 1_000
+MAX_POINTS = 1_000
 
 #: Number of waiting chunks for each thread of the cluster, in addition to the chunk in progress.
 WAITING = 1
 
 #: Number of times that Dask gives up a chunk of one point before the sweep fails. Each time, four workers have died (the default of
 #: Dask). A hundred dead workers are not chance.
-MOST_GIVEN_UP = 25
+MAX_GIVEN_UP = 25
 
 #: Number of points whose costs are estimated together.
 ESTIMATED = 100
@@ -162,7 +162,7 @@ class Chunks:
         """
         chunk: list[int] = []
         left_s = most_s
-        while self._at < len(self.points) and len(chunk) < MOST_POINTS:
+        while self._at < len(self.points) and len(chunk) < MAX_POINTS:
             point = self.points[self._at]
             if point not in self._costs:
                 each = max(1, round(threads * ESTIMATE_S / (ESTIMATING * self.pace.point_s)))
@@ -308,5 +308,5 @@ class Cluster:
 
     def _count_lost(self, point: int) -> None:
         lost = self._lost_alone[point] = self._lost_alone.get(point, 0) + 1
-        if lost >= MOST_GIVEN_UP:
+        if lost >= MAX_GIVEN_UP:
             raise SweepError(f"point {point}: workers died over it alone, again and again; the rows of other points are kept")

@@ -195,7 +195,7 @@ def limit_over(
             high=high,
             rate_hz=rate_hz,
             latency_fields=latency_fields,
-            fields=optional("fields", fields, LEAST_FIELDS),
+            fields=optional("fields", fields, MIN_FIELDS),
             progress=reporter,
         )
     return OverLimit(
@@ -214,7 +214,7 @@ def limit_over(
 
 
 #: Least number of fields of a search. Shorter runs end during the warm-up of every pipeline.
-LEAST_FIELDS = 10
+MIN_FIELDS = 10
 
 
 def _positive(name: str, value: float | None) -> None:
@@ -256,7 +256,7 @@ def limit(
             thinned=model is not None,
             rate_hz=rate_hz,
             latency_fields=latency_fields,
-            fields=optional("fields", fields, LEAST_FIELDS),
+            fields=optional("fields", fields, MIN_FIELDS),
             progress=reporter,
         )
     return Limit(**found)
@@ -433,8 +433,8 @@ def rig(
     for key in given:
         if key in KEYS_SET_BY_RIG or key.startswith(("motion", "head")):
             raise SettingError(f"{key}: expected no such setting, because the rig has its own scene, motion and length")
-    if whole("passes", passes, 2) > MOST_PASSES:
-        raise SettingError(f"passes: expected 2 to {MOST_PASSES}, found {passes}")
+    if whole("passes", passes, 2) > MAX_PASSES:
+        raise SettingError(f"passes: expected 2 to {MAX_PASSES}, found {passes}")
     made = Made()
     made.put_all(pipeline, "full-screen:2", machine, Head("pendulum", tracker=tracker), {"seed": seed, **given})
     found: RigData = _native.rig(made.settings, passes, optional("line", line))
@@ -445,7 +445,7 @@ def rig(
 KEYS_SET_BY_RIG = ("scene", "triangles", "fields", "pixels")
 
 #: Greatest number of passes of the pendulum in a measurement.
-MOST_PASSES = 10_000
+MAX_PASSES = 10_000
 
 LEVEL_DEFINITIONS = {
     "times_of_code": "true if the times of primitives come from executed code instead of published or fitted values",

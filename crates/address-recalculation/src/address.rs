@@ -46,7 +46,6 @@ pub struct Footprint {
 
 impl Footprint {
     /// Returns true if two of the texels lie in one memory bank, so that a second access is needed.
-    #[must_use]
     pub fn has_conflict(&self) -> bool {
         let banks = self.texels.iter().flatten().fold([0; 4], |mut banks, texel| {
             banks[texel.bank() as usize] += 1;
@@ -56,7 +55,6 @@ impl Footprint {
     }
 
     /// Returns the weights of the four texels, in units of `4^-weight_bits`.
-    #[must_use]
     pub const fn weights(&self, weight_bits: u64) -> [u32; 4] {
         let one = 1 << weight_bits;
         let [right, down] = self.fractions;
@@ -113,7 +111,6 @@ impl AddressUnit {
 
     /// Returns the texels and weights for a direction from [`crate::MatrixWords::turn`]. Returns `None` for the zero
     /// vector.
-    #[must_use]
     pub fn footprint(&self, direction: [i64; 3]) -> Option<Footprint> {
         let met = FaceHit::of(direction)?;
         // Positions in texels with `quotient_bits` fractional bits.

@@ -57,7 +57,6 @@ impl ArpConfig {
         self.lens.check(&self.picture())
     }
 
-    #[must_use]
     pub fn picture(&self) -> LensPicture {
         let height = self.scan.visible_lines as u32 * 2;
         LensPicture { width: self.scan.visible_pixels as u32, height, horizontal_deg: self.timing.horizontal_deg }
@@ -100,17 +99,14 @@ impl ArpConfig {
         FaceScan::new(self.scan, &self.timing)
     }
 
-    #[must_use]
     pub const fn geometry(&self) -> FaceGeometry {
         FaceGeometry { texels: self.timing.face_texels as u32, guard: self.timing.guard_texels as u32 }
     }
 
-    #[must_use]
     pub const fn format(&self) -> TexelFormat {
         TexelFormat::new(&self.timing)
     }
 
-    #[must_use]
     pub const fn composition(&self) -> Composition {
         Composition {
             order: self.order,
@@ -120,7 +116,6 @@ impl ArpConfig {
     }
 
     /// Returns the number of ports per eye: one per memory, plus one for the background memory.
-    #[must_use]
     pub const fn ports_of_an_eye(&self) -> usize {
         self.timing.display_memories as usize + self.has_background_memory as usize
     }

@@ -62,14 +62,12 @@ pub struct AddressRecalculationPipeline {
 }
 
 impl AddressRecalculationPipeline {
-    #[must_use]
     pub const fn config(&self) -> &ArpConfig {
         &self.optics.config
     }
 
     /// Returns the display memories of an eye, with the background memory last. Returns an empty slice for an eye that
     /// does not exist.
-    #[must_use]
     pub fn memories(&self, eye: Eye) -> &[DisplayMemory] {
         self.eyes.get(eye.index()).map_or(&[], |boards| &boards.memories)
     }
@@ -87,7 +85,6 @@ impl AddressRecalculationPipeline {
 
     /// Returns the matrix with which a pixel of a past field was computed. Returns `None` if the display no longer
     /// stores the field, or if the field does not scan the pixel.
-    #[must_use]
     pub fn latched(&self, eye: Eye, x: u32, y: u32, field: PeriodNumber) -> Option<MatrixWords> {
         self.field(eye.index(), field)?.matrix(x, y)
     }
@@ -95,13 +92,11 @@ impl AddressRecalculationPipeline {
     /// Returns the texels and weights from which a pixel of a past field was computed.
     ///
     /// Returns `None` if the display no longer stores the field, or if the field does not scan the pixel.
-    #[must_use]
     pub fn footprint(&self, eye: Eye, x: u32, y: u32, field: PeriodNumber) -> Option<Footprint> {
         self.field(eye.index(), field)?.footprint(x, y)
     }
 
     /// Returns the number of extra memory accesses for a past field, beyond one access per pixel and memory.
-    #[must_use]
     pub fn lookup_stats(&self, eye: Eye, field: PeriodNumber) -> Option<LookupStats> {
         let mut frame = self.empty_frame();
         Some(self.field(eye.index(), field)?.draw(&mut frame))

@@ -27,13 +27,11 @@ impl CubeFace {
     pub const ALL: [Self; 6] = [Self::PosX, Self::NegX, Self::PosY, Self::NegY, Self::PosZ, Self::NegZ];
 
     /// Returns the index of the face: 0 for [`CubeFace::PosX`] to 5 for [`CubeFace::NegZ`].
-    #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
 
     /// Returns the axis from the eye through the middle of the face.
-    #[must_use]
     pub const fn forward(self) -> [i64; 3] {
         match self {
             Self::PosX => [1, 0, 0],
@@ -46,7 +44,6 @@ impl CubeFace {
     }
 
     /// Returns the axis from the face's middle to its upper edge.
-    #[must_use]
     pub const fn up(self) -> [i64; 3] {
         match self {
             Self::PosY => [0, 0, 1],
@@ -57,7 +54,6 @@ impl CubeFace {
 
     /// Returns the axis from the face's middle to its right edge, seen from inside the cube: the cross product of
     /// forward and up.
-    #[must_use]
     pub const fn right(self) -> [i64; 3] {
         let f = self.forward();
         let u = self.up();
@@ -67,7 +63,6 @@ impl CubeFace {
     /// Returns the face that a direction hits, or `None` for the zero vector.
     ///
     /// The longest component selects the face. Among equally long components, x precedes y, and y precedes z.
-    #[must_use]
     pub fn of(direction: Vector) -> Option<Self> {
         let is_finite = direction.iter().all(|component| component.is_finite());
         if !is_finite || direction == [0.0; 3] {
@@ -111,20 +106,17 @@ pub struct TexelAddress {
 
 impl TexelAddress {
     /// Returns the bank (0 to 3) that holds the texel. Neighbouring texels lie in different banks.
-    #[must_use]
     pub const fn bank(self) -> u32 {
         self.column % 2 + 2 * (self.row % 2)
     }
 
     /// Returns the index of the texel's word within its bank, counted from the first word of the face in this bank. A
     /// face has `face_texels` texels along an edge.
-    #[must_use]
     pub const fn word(self, face_texels: u32) -> u32 {
         self.row / 2 * (face_texels / 2) + self.column / 2
     }
 
     /// Returns the index of the texel in a buffer that stores texels face by face, and row by row within a face.
-    #[must_use]
     pub const fn index(self, face_texels: u32) -> usize {
         ((self.face as u32 * face_texels + self.row) * face_texels + self.column) as usize
     }
@@ -143,14 +135,12 @@ pub struct FaceGeometry {
 impl FaceGeometry {
     /// Returns the number of texels along an edge, without the guard texels at both ends. These inner texels cover 90
     /// degrees.
-    #[must_use]
     pub const fn inner(&self) -> u32 {
         self.texels - 2 * self.guard
     }
 
     /// Returns the tangent of half the viewing angle with which a renderer draws a face: `texels` /
     /// [`inner`](Self::inner).
-    #[must_use]
     pub fn tangent(&self) -> f64 {
         f64::from(self.texels) / f64::from(self.inner())
     }
@@ -159,7 +149,6 @@ impl FaceGeometry {
     /// right and downwards.
     ///
     /// Returns `None` for the zero vector.
-    #[must_use]
     pub fn place(&self, direction: Vector) -> Option<(CubeFace, [f64; 2])> {
         let face = CubeFace::of(direction)?;
         let forward = along(direction, face.forward());
@@ -170,7 +159,6 @@ impl FaceGeometry {
 
     /// Returns the texel that a direction hits. This texel is never a guard texel (a copy of a texel of the
     /// neighbouring face). Returns `None` for the zero vector.
-    #[must_use]
     pub fn texel(&self, direction: Vector) -> Option<TexelAddress> {
         let (face, place) = self.place(direction)?;
         let inner = f64::from(self.inner());
@@ -183,7 +171,6 @@ impl FaceGeometry {
     ///
     /// The integer parts of the position are column and row of the upper left texel. The fractions are the distances
     /// from this texel to the right and downwards.
-    #[must_use]
     pub fn between_texels(&self, direction: Vector) -> Option<(CubeFace, [f64; 2])> {
         let (face, place) = self.place(direction)?;
         Some((face, place.map(|p| f64::from(self.guard) + (p + 1.0) / 2.0 * f64::from(self.inner()) - 0.5)))
@@ -191,7 +178,6 @@ impl FaceGeometry {
 
     /// Returns the direction of a texel's middle. The vector does not have unit length. Directions of guard texels hit
     /// a neighbouring face.
-    #[must_use]
     pub fn direction(&self, texel: TexelAddress) -> Vector {
         let inner = f64::from(self.inner());
         let [u, v] =
@@ -203,7 +189,6 @@ impl FaceGeometry {
     }
 
     /// Returns the solid angle of a texel in steradians. All texels together, except guard texels, cover 4 pi.
-    #[must_use]
     pub fn solid_angle(&self, texel: TexelAddress) -> f64 {
         let edge =
             |n: u32, next: f64| 2.0 * (f64::from(n) - f64::from(self.guard) + next) / f64::from(self.inner()) - 1.0;

@@ -116,7 +116,6 @@ impl Lens {
     /// Returns the viewing vector of a pixel in head axes. The vector does not have unit length.
     ///
     /// x points right and y up. The head looks along -z.
-    #[must_use]
     pub fn view(&self, picture: &LensPicture, x: u32, y: u32) -> Vector {
         let [right, down] = picture.offset(x, y);
         let focal = f64::from(picture.width) / 2.0 / picture.tangent();
@@ -274,12 +273,10 @@ impl LensTable {
         Self { width: picture.width, height: picture.height, words }
     }
 
-    #[must_use]
     pub const fn width(&self) -> u32 {
         self.width
     }
 
-    #[must_use]
     pub const fn height(&self) -> u32 {
         self.height
     }
@@ -289,7 +286,6 @@ impl LensTable {
     /// # Panics
     ///
     /// Panics if the pixel is outside the picture.
-    #[must_use]
     pub fn entry(&self, x: u32, y: u32) -> [i32; 3] {
         let place = y as usize * self.width as usize + x as usize;
         [0, 1, 2].map(|axis| self.words[axis][place])
@@ -302,7 +298,6 @@ impl LensTable {
 }
 
 /// Normalizes a vector and converts it to signed words of `bits` bits. Halves are rounded to even.
-#[must_use]
 pub(crate) fn unit_words(vector: Vector, bits: u64) -> [i32; 3] {
     let length = libm::sqrt(vector.iter().map(|component| component * component).sum());
     vector.map(|component| signed_word(component / length, bits))

@@ -135,19 +135,16 @@ impl DisplayMemory {
         Self { kind, buffers: Default::default(), shown: 0, request: None, late_since: None, stats }
     }
 
-    #[must_use]
     pub const fn stats(&self) -> &MemoryStats {
         &self.stats
     }
 
     /// Returns the index of the visible buffer, 0 or 1.
-    #[must_use]
     pub const fn shown_buffer(&self) -> u8 {
         self.shown
     }
 
     /// Returns the size of both buffers together, in bytes.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         let depth = if self.kind.has_depth { self.kind.format.depth_bits } else { 0 };
         let bits = u64::from(self.kind.format.colour_bits + depth);
@@ -155,7 +152,6 @@ impl DisplayMemory {
     }
 
     /// Returns the six visible faces, with the texels of all regions computed.
-    #[must_use]
     pub fn shown_faces(&self) -> FaceSet {
         let wanted = vec![true; region_grid(self.kind.face_texels).regions() as usize];
         let mut faces = FaceSet::new(self.kind.face_texels, self.kind.format);

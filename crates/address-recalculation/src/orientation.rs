@@ -58,20 +58,17 @@ impl Orientation {
         ])
     }
 
-    #[must_use]
     pub const fn rows(&self) -> [Vector; 3] {
         self.rows
     }
 
     /// Rotates a vector from head axes to world axes.
-    #[must_use]
     pub fn turn(&self, vector: Vector) -> Vector {
         self.rows.map(|row| dot(row, vector))
     }
 
     /// Returns the nine words of the matrix register. The words are signed and have `matrix_bits` bits. The largest
     /// word represents 1, and halves are rounded to even.
-    #[must_use]
     pub fn words(&self, matrix_bits: u64) -> MatrixWords {
         MatrixWords(self.rows.map(|row| row.map(|component| signed_word(component, matrix_bits))))
     }
@@ -86,7 +83,6 @@ pub struct MatrixWords(
 
 impl MatrixWords {
     /// Rotates a vector of words to world axes. The sums of products keep all bits.
-    #[must_use]
     pub fn turn(&self, vector: [i32; 3]) -> [i64; 3] {
         self.0.map(|row| (0..3).map(|i| i64::from(row[i]) * i64::from(vector[i])).sum())
     }
@@ -142,7 +138,6 @@ impl OrientationLatch {
     }
 
     /// Returns the matrix that the display reads at `time`: the last matrix that had arrived.
-    #[must_use]
     pub fn at(&self, time: Time) -> MatrixWords {
         let after = self.loaded.partition_point(|(arrived, _)| *arrived <= time);
         self.loaded[after.saturating_sub(1)].1
@@ -155,7 +150,6 @@ impl OrientationLatch {
     }
 
     /// Returns the number of accepted matrices and the number of refused matrices.
-    #[must_use]
     pub const fn counts(&self) -> [u64; 2] {
         [self.loads, self.refused]
     }

@@ -20,14 +20,12 @@ const MATRIX: Word = 0x0041_504D;
 
 /// Returns the division of six faces into regions of 128 x 128 texels. The faces lie one below the other, in the order
 /// of their indices.
-#[must_use]
 pub const fn region_grid(face_texels: u32) -> RegionGrid {
     let height = face_texels * CubeFace::ALL.len() as u32;
     RegionGrid { width: face_texels, height, region_width: REGION_SIZE, region_height: REGION_SIZE }
 }
 
 /// Returns the index of the region at a column and row of regions on a face. Returns `None` outside the face.
-#[must_use]
 pub const fn face_region(face_texels: u32, face: CubeFace, column: u32, row: u32) -> Option<RegionId> {
     let across = face_texels / REGION_SIZE;
     if column >= across || row >= across {
@@ -38,7 +36,6 @@ pub const fn face_region(face_texels: u32, face: CubeFace, column: u32, row: u32
 
 /// Returns the message that begins an update of a buffer. `regions` are the regions that will arrive. All other regions
 /// will be empty.
-#[must_use]
 pub fn begin_update(face_texels: u32, buffer: u8, regions: &[RegionId]) -> Arc<[Word]> {
     let count = region_grid(face_texels).regions();
     let mut words = vec![0; 2 + count.div_ceil(Word::BITS) as usize];
@@ -54,13 +51,11 @@ pub fn begin_update(face_texels: u32, buffer: u8, regions: &[RegionId]) -> Arc<[
 /// mask `memories` swap at the first retrace at which all are ready.
 ///
 /// Bit k of `memories` stands for memory k.
-#[must_use]
 pub fn swap_together(buffer: u8, memories: u8) -> Arc<[Word]> {
     [TOGETHER, buffer.into(), memories.into()].into()
 }
 
 /// Returns the message that sets the orientation. `rows` is the matrix from head axes to world axes.
-#[must_use]
 pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
     let components = rows.into_iter().flatten().map(|component| (component as f32).to_bits());
     [MATRIX].into_iter().chain(components).collect()

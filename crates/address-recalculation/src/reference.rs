@@ -90,7 +90,6 @@ impl ReferencePipeline {
     }
 
     /// Returns the number of stages from reading the table to displaying the pixel.
-    #[must_use]
     pub fn stages(&self) -> usize {
         self.stages.len()
     }

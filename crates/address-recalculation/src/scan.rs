@@ -55,7 +55,6 @@ impl FaceScan {
     }
 
     /// Returns the time at which the texels of a pixel are read. Returns `None` if the field does not scan the pixel.
-    #[must_use]
     pub fn reads(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         Some(Time(self.video.when(x, y, field)?.0.saturating_sub(self.read_ahead.0)))
     }
@@ -64,7 +63,6 @@ impl FaceScan {
     ///
     /// The time precedes the display of one pixel by the duration of all stages. This pixel is (x, y) with
     /// [`Latch::Pixel`], and otherwise the first visible pixel of the same line or field.
-    #[must_use]
     pub fn latches(&self, latch: Latch, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         let lit = self.video.when(x, y, field)?;
         let first = match latch {

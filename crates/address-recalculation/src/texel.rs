@@ -24,20 +24,17 @@ impl TexelFormat {
     /// Returns the number of words per texel in ring messages: 1 if colour and depth fit into 32 bits, otherwise 2.
     ///
     /// If colour and depth share a word, the colour is in its lower half.
-    #[must_use]
     pub const fn words(&self) -> u32 {
         if self.colour_bits + self.depth_bits <= 32 { 1 } else { 2 }
     }
 
     /// Returns a colour (0x00RRGGBB) as it is read back from a memory. With 16 bits, the upper bits of each channel are
     /// repeated in its lower bits.
-    #[must_use]
     pub const fn kept_colour(&self, colour: u32) -> u32 {
         if self.colour_bits == 24 { colour & 0x00FF_FFFF } else { widened(narrowed(colour)) }
     }
 
     /// Returns the part of a 24-bit depth that a memory stores: its highest bits.
-    #[must_use]
     pub const fn kept_depth(&self, depth: u32) -> u32 {
         (depth & DEPTH_FARTHEST) >> (24 - self.depth_bits)
     }
@@ -75,12 +72,10 @@ impl FaceSet {
         Self { texels, format, words: vec![0; 6 * (texels * texels) as usize] }
     }
 
-    #[must_use]
     pub const fn texels(&self) -> u32 {
         self.texels
     }
 
-    #[must_use]
     pub const fn format(&self) -> TexelFormat {
         self.format
     }
@@ -130,7 +125,6 @@ impl FaceSet {
     }
 
     /// Returns the colour and the stored depth of a texel. Returns `None` for an empty texel.
-    #[must_use]
     pub fn texel(&self, texel: TexelAddress) -> Option<(u32, u32)> {
         let word = self.words[texel.index(self.texels)];
         let farthest = DEPTH_FARTHEST >> (24 - self.format.depth_bits);

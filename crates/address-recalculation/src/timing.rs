@@ -63,27 +63,23 @@ const FIXED_STAGES: u64 = 8;
 
 impl ArpTiming {
     /// Returns the number of stages in which the depths of the memories are compared in pairs.
-    #[must_use]
     pub const fn compare_stages(&self) -> u64 {
         self.display_memories.next_power_of_two().trailing_zeros() as u64
     }
 
     /// Returns the number of stages from reading the table to displaying the pixel: 26 for four memories and quotients
     /// of 16 bits.
-    #[must_use]
     pub const fn stages(&self) -> u64 {
         FIXED_STAGES + self.quotient_bits + self.compare_stages()
     }
 
     /// Returns the duration of all stages. The orientation for a pixel must arrive at least this time before the pixel
     /// is displayed.
-    #[must_use]
     pub const fn depth(&self) -> Span {
         Span(self.stages() * self.stage_ps)
     }
 
     /// Returns the time from reading a pixel's texels to displaying the pixel: memory, comparators and interpolation.
-    #[must_use]
     pub const fn read_ahead(&self) -> Span {
         Span((2 + self.compare_stages()) * self.stage_ps)
     }

@@ -78,7 +78,6 @@ pub enum DataKind {
 
 impl Program {
     /// Makes a program from machine code. The program has no labels and no line numbers.
-    #[must_use]
     pub fn of_bytes(base: u32, bytes: Vec<u8>) -> Program {
         Program {
             base,
@@ -92,12 +91,10 @@ impl Program {
     }
 
     /// Returns the program as little-endian 32-bit words. The last word is padded with zero bytes.
-    #[must_use]
     pub fn words(&self) -> Vec<u32> {
         self.bytes.chunks(4).map(word_of).collect()
     }
 
-    #[must_use]
     pub fn symbol(&self, name: &str) -> Option<u32> {
         self.symbols.get(name).copied()
     }
@@ -179,7 +176,7 @@ struct Placed {
 }
 
 /// Greatest size of an assembled program, in bytes (16 MB).
-const MOST_BYTES: u32 = 16 << 20;
+const MAX_BYTES: u32 = 16 << 20;
 
 struct Assembler<'a> {
     file: &'a str,
@@ -347,8 +344,8 @@ impl Assembler<'_> {
     fn push(&mut self, line: usize, item: Item, bytes: u32) -> Result<(), String> {
         // Check the size first, so that a huge gap allocates no memory.
         let used = self.here.wrapping_sub(self.base);
-        if used.checked_add(bytes).is_none_or(|total| total > MOST_BYTES) {
-            return Err(format!("the program is longer than {MOST_BYTES} bytes"));
+        if used.checked_add(bytes).is_none_or(|total| total > MAX_BYTES) {
+            return Err(format!("the program is longer than {MAX_BYTES} bytes"));
         }
         self.placed.push(Placed { address: self.here, line, item });
         self.here = self.here.wrapping_add(bytes);

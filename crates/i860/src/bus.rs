@@ -40,12 +40,10 @@ pub struct Ram {
 
 impl Ram {
     /// Makes a memory of `len` zero bytes that begins at address `base`.
-    #[must_use]
     pub fn new(base: u32, len: usize) -> Ram {
         Ram { base, bytes: vec![0; len] }
     }
 
-    #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }

@@ -56,7 +56,6 @@ impl fmt::Debug for Cpu {
 impl Cpu {
     /// Makes a processor in the state after reset: the next instruction is at [`TRAP_VECTOR`], and the caches are
     /// empty.
-    #[must_use]
     pub fn new(config: Config) -> Cpu {
         Cpu {
             state: State::reset(),
@@ -73,7 +72,6 @@ impl Cpu {
     }
 
     /// Makes a processor whose next instruction is at address `pc`.
-    #[must_use]
     pub fn at(config: Config, pc: u32) -> Cpu {
         let mut cpu = Cpu::new(config);
         cpu.state.pc = pc;
@@ -89,26 +87,22 @@ impl Cpu {
     }
 
     /// Returns the number of clocks since reset, or 0 if timing is off.
-    #[must_use]
     pub fn clocks(&self) -> u64 {
         self.time.now()
     }
 
     /// Returns the number of instructions since the last reset or [`Cpu::clear_profile`].
-    #[must_use]
     pub fn instructions(&self) -> u64 {
         self.time.instructions()
     }
 
     /// Returns the number of instructions, since reset, whose clocks were reused from an earlier execution of the same
     /// code ([`Config::memoise`]).
-    #[must_use]
     pub fn repeated_instructions(&self) -> u64 {
         self.time.repeated_instructions()
     }
 
     /// Returns the clocks by cause and the numbers of cache misses, since reset or [`Cpu::clear_profile`].
-    #[must_use]
     pub fn profile(&self) -> Profile {
         self.time.profile()
     }
@@ -129,7 +123,6 @@ impl Cpu {
     }
 
     /// Returns the clocks for each code address since [`Cpu::watch`] was called.
-    #[must_use]
     pub fn watched(&self) -> Option<&AddressProfile> {
         self.time.sampler.as_ref()
     }

@@ -23,12 +23,11 @@ pub struct DecodedPrograms {
 
 impl fmt::Debug for DecodedPrograms {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Shelf").field("programs", &self.codes.len()).finish_non_exhaustive()
+        f.debug_struct("DecodedPrograms").field("programs", &self.codes.len()).finish_non_exhaustive()
     }
 }
 
 impl DecodedPrograms {
-    #[must_use]
     pub fn new() -> DecodedPrograms {
         DecodedPrograms::default()
     }

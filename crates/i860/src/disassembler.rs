@@ -9,7 +9,6 @@ use crate::syntax::{CONTROL_REGISTERS, Syntax};
 
 /// Returns the assembler text of an instruction word at address `pc`. If this text would not assemble to the same word,
 /// returns a `.long` directive with the word instead.
-#[must_use]
 pub fn disassemble(word: u32, pc: u32) -> String {
     let text = decode(word).ok().map(|i| text(&i, pc));
     // Print the text only if it assembles to the same word.

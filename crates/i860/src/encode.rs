@@ -10,7 +10,6 @@ fn join16(imm: i32) -> u32 {
 
 /// Encodes an instruction. All bit fields must be in range, as they are after [`decode`](crate::decode()) and in the
 /// assembler.
-#[must_use]
 pub fn encode(i: &Instruction) -> u32 {
     // Registers have fixed fields. Unused fields stay zero.
     let registers = u32::from(i.src2) << 21 | u32::from(i.dest) << 16 | u32::from(i.src1) << 11;

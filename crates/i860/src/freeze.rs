@@ -94,27 +94,23 @@ pub struct FreezeRules {
 
 impl FreezeRules {
     /// Returns rules with all rows of the freeze table [`FREEZES`] enabled.
-    #[must_use]
     pub fn all() -> FreezeRules {
         let enabled = (1 << N_FREEZES) - 1;
         FreezeRules { enabled, clocks: FreezeClocks::PAPERS, logicals_delay_branches: false }
     }
 
     /// Returns rules with all rows of the freeze table disabled: each instruction or pair takes one clock.
-    #[must_use]
     pub fn none() -> FreezeRules {
         FreezeRules { enabled: 0, ..FreezeRules::all() }
     }
 
     /// Returns a copy of the rules in which row `id` of the freeze table is disabled.
-    #[must_use]
     pub fn without(mut self, id: Freeze) -> FreezeRules {
         self.enabled &= !(1 << id as u32);
         self
     }
 
     /// Returns a copy of the rules in which row `id` of the freeze table is enabled.
-    #[must_use]
     pub fn with(mut self, id: Freeze) -> FreezeRules {
         self.enabled |= 1 << id as u32;
         self
@@ -128,7 +124,6 @@ impl FreezeRules {
         applying.chain(logicals).collect::<Vec<_>>().join(" ")
     }
 
-    #[must_use]
     pub fn applies(&self, id: Freeze) -> bool {
         self.enabled & 1 << id as u32 != 0
     }

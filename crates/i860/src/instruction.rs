@@ -166,13 +166,11 @@ impl Flags {
     /// The R bit: the result is in double precision.
     pub const RESULT_DOUBLE: Flags = Flags(32);
 
-    #[must_use]
     pub fn has(self, other: Flags) -> bool {
         self.0 & other.0 == other.0
     }
 
     /// Returns the union of this set and `other` if `condition` is true, otherwise this set.
-    #[must_use]
     pub fn with(self, other: Flags, condition: bool) -> Flags {
         Flags(self.0 | if condition { other.0 } else { 0 })
     }
@@ -200,57 +198,48 @@ pub struct Instruction {
 
 impl Instruction {
     /// Makes an instruction whose operands and flags are all zero.
-    #[must_use]
     pub fn new(op: Op) -> Instruction {
         Instruction { op, dest: 0, src1: 0, src2: 0, size: 0, flags: Flags(0), imm: 0 }
     }
 
-    #[must_use]
     pub fn has(&self, flags: Flags) -> bool {
         self.flags.has(flags)
     }
 
     /// Returns true if the operation belongs in the floating-point half of a pair.
-    #[must_use]
     pub fn is_floating(&self) -> bool {
         self.op >= Op::Fnop
     }
 
     /// Returns true if the operation is a branch with a delay slot. Such a branch takes effect after the next
     /// instruction or pair.
-    #[must_use]
     pub fn is_delayed_branch(&self) -> bool {
         use Op::{BcT, Bla, BncT, Br, Bri, Call, Calli};
         matches!(self.op, Br | Call | Bri | Calli | Bla | BcT | BncT)
     }
 
     /// Returns true if the operation is a branch, call or jump, with or without a delay slot.
-    #[must_use]
     pub fn is_branch(&self) -> bool {
         self.is_delayed_branch() || matches!(self.op, Op::Bc | Op::Bnc | Op::Bte | Op::Btne)
     }
 
     /// Returns true if the operation sets psr.CC.
-    #[must_use]
     pub fn sets_condition(&self) -> bool {
         use Op::{Addu, And, Andh, Andnot, Andnoth, Or, Orh, Pfeq, Pfgt, Pfle, Subs, Subu, Xor, Xorh};
         let logical = matches!(self.op, And | Andh | Andnot | Andnoth | Or | Orh | Xor | Xorh);
         logical || matches!(self.op, Addu | Subu | Op::Adds | Subs | Pfgt | Pfle | Pfeq)
     }
 
-    #[must_use]
     pub fn uses_multiplier(&self) -> bool {
         matches!(self.op, Op::Fmul | Op::Fmul3 | Op::Fmlow | Op::Frcp | Op::Frsqr | Op::DualOp)
     }
 
-    #[must_use]
     pub fn uses_adder(&self) -> bool {
         use Op::{DualOp, Fadd, Famov, Fix, Fsub, Ftrunc, Pfeq, Pfgt, Pfle};
         matches!(self.op, Fadd | Fsub | Fix | Famov | Pfgt | Pfle | Pfeq | Ftrunc | DualOp)
     }
 
     /// Returns true if the operation belongs to the graphics unit, like `fxfr`.
-    #[must_use]
     pub fn uses_graphics(&self) -> bool {
         self.op >= Op::Fxfr && self.op < Op::DualOp
     }

@@ -15,10 +15,10 @@ use rustc_hash::FxHashMap;
 
 /// Longest wait, in clocks, in a numbered scoreboard state. States with longer waits get no number, so their clocks are
 /// not memoized.
-pub(crate) const MOST_CLOCKS: u8 = 15;
+pub(crate) const MAX_CLOCKS: u8 = 15;
 /// Greatest number of scoreboard states that get a number. Code that starts in a state without a number is not
 /// memoized.
-const MOST_NUMBERS: usize = 1 << 15;
+const MAX_NUMBERS: usize = 1 << 15;
 
 /// The number of a scoreboard state (the remaining waits for registers and units). The highest bit is set if an
 /// instruction-cache line is arriving.
@@ -63,17 +63,17 @@ impl Memo {
     /// Returns the number of a scoreboard state, which can be a new number. Returns `None` if a wait is too long or the
     /// table is full.
     pub(crate) fn number_of(&mut self, written: &Scoreboard, now: u64, fill: ArrivingLine) -> Option<Number> {
-        if fill.clocks > u64::from(MOST_CLOCKS) {
+        if fill.clocks > u64::from(MAX_CLOCKS) {
             return None;
         }
         // The state must fit into a few bits. Otherwise, it gets no number.
-        let left = written.leftover(now, MOST_CLOCKS, [fill.clocks as u8, fill.first])?;
+        let left = written.leftover(now, MAX_CLOCKS, [fill.clocks as u8, fill.first])?;
         let Numbers { numbers, leftovers } = &mut *self.numbers;
         if let Some(number) = numbers.get(&left) {
             return Some(*number);
         }
         // A full table assigns no new numbers.
-        if leftovers.len() == MOST_NUMBERS {
+        if leftovers.len() == MAX_NUMBERS {
             return None;
         }
         let filling = if fill.clocks > 0 { Number::FILLING } else { 0 };

@@ -126,7 +126,6 @@ fn suffix(i: &Instruction) -> &'static str {
 }
 
 /// Returns the mnemonic of an instruction, with the prefix `d.` if its D bit is set.
-#[must_use]
 pub fn mnemonic(i: &Instruction) -> String {
     let dual = if i.is_floating() && i.has(Flags::DUAL) { "d." } else { "" };
     if i.op == Op::DualOp {

@@ -35,13 +35,11 @@ impl Profile {
     }
 
     /// Returns the number of clocks lost to row `id` of the freeze table.
-    #[must_use]
     pub fn frozen_by(&self, id: Freeze) -> u64 {
         self.frozen[id as usize]
     }
 
     /// Returns the number of all clocks: issue clocks and freezes.
-    #[must_use]
     pub fn clocks(&self) -> u64 {
         self.issue + self.frozen.iter().sum::<u64>()
     }
@@ -69,7 +67,6 @@ pub struct AddressProfile {
 
 impl AddressProfile {
     /// Makes an empty profile for `words` instruction words from address `base` on.
-    #[must_use]
     pub fn new(base: u32, words: usize) -> AddressProfile {
         AddressProfile { base, rows: vec![(0, 0); words] }
     }
@@ -84,7 +81,6 @@ impl AddressProfile {
 
     /// Returns the clocks and the number of executions of the instruction or pair at `pc`. Both numbers are zero
     /// outside the profile's range of addresses.
-    #[must_use]
     pub fn at(&self, pc: u32) -> (u64, u64) {
         let at = (pc.wrapping_sub(self.base) / 4) as usize;
         self.rows.get(at).copied().unwrap_or_default()
@@ -92,7 +88,6 @@ impl AddressProfile {
 
     /// Returns the clocks of the code from each label to the next label. `labels` must be sorted by address. Clocks
     /// before the first label do not count.
-    #[must_use]
     pub fn by_label<'a>(&self, labels: &[(&'a str, u32)]) -> Vec<(&'a str, u64)> {
         let end = self.base.wrapping_add(4 * self.rows.len() as u32);
         // The code of a label ends at the next label.

@@ -51,7 +51,7 @@ impl Left {
     }
 }
 
-const MOST_WAITS: u32 = u128::BITS / Left::BITS;
+const MAX_WAITS: u32 = u128::BITS / Left::BITS;
 
 /// A compact copy of the scoreboard at one clock: all waits that have not ended.
 ///
@@ -137,7 +137,7 @@ impl Scoreboard {
         // Pack each wait that has not ended.
         let mut add = |place: u8, wait: Wait| {
             let is_left = wait.until > now;
-            if is_left && count < MOST_WAITS {
+            if is_left && count < MAX_WAITS {
                 let wait = Left { place, clocks: (wait.until - now) as u8, why: wait.why };
                 left.waits |= wait.packed() << (count * Left::BITS);
             }
@@ -160,7 +160,7 @@ impl Scoreboard {
         if add(LAST_RESULT, Wait { until: self.last_result_until, why: Freeze::MultiplierFirstSource }) {
             left.last_result = self.last_result;
         }
-        (count <= MOST_WAITS).then_some(left)
+        (count <= MAX_WAITS).then_some(left)
     }
 
     pub(crate) fn restore(&mut self, left: &PendingWaits, now: u64) {

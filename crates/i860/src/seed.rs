@@ -25,7 +25,6 @@ pub enum SeedTable {
 
 impl SeedTable {
     /// Returns the name of this table of approximations, for lists of settings.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Truncated8 => "truncated-8",
@@ -56,7 +55,6 @@ fn midpoint(x: f64) -> f64 {
 
 impl SeedTable {
     /// Returns an upper bound of the relative error of the approximations in this table.
-    #[must_use]
     pub fn relative_error_bound(self) -> f64 {
         match self {
             SeedTable::Truncated8 | SeedTable::Midpoint8 => 1.0 / 256.0,
@@ -78,25 +76,21 @@ impl SeedTable {
     }
 
     /// Returns the double-precision result of `frcp`. Operand and result are bit patterns.
-    #[must_use]
     pub fn reciprocal(self, bits: u64) -> u64 {
         quiet(bits, self.apply(f64::from_bits(bits), |x| 1.0 / x))
     }
 
     /// Returns the double-precision result of `frsqr`. Operand and result are bit patterns.
-    #[must_use]
     pub fn reciprocal_root(self, bits: u64) -> u64 {
         quiet(bits, self.apply(f64::from_bits(bits), |x| 1.0 / x.sqrt()))
     }
 
     /// Returns the single-precision result of `frcp`. Operand and result are bit patterns.
-    #[must_use]
     pub fn reciprocal32(self, bits: u32) -> u32 {
         narrow(self.reciprocal(widen(bits)), false)
     }
 
     /// Returns the single-precision result of `frsqr`. Operand and result are bit patterns.
-    #[must_use]
     pub fn reciprocal_root32(self, bits: u32) -> u32 {
         narrow(self.reciprocal_root(widen(bits)), false)
     }

@@ -111,7 +111,6 @@ pub enum Mode {
 
 impl Mode {
     /// Returns true if the next two instructions form a pair.
-    #[must_use]
     pub fn is_dual(self) -> bool {
         matches!(self, Mode::DualOnce | Mode::Dual)
     }
@@ -170,7 +169,6 @@ pub const TRAP_VECTOR: u32 = 0xFFFF_FF00;
 impl State {
     /// Returns the state after reset: all registers are zero, the processor is in supervisor mode, and the next
     /// instruction is at [`TRAP_VECTOR`].
-    #[must_use]
     pub fn reset() -> State {
         State {
             pc: TRAP_VECTOR,

@@ -174,7 +174,6 @@ pub struct Config {
 
 impl Config {
     /// Returns the configuration with all rows of the freeze table and the default memory timing.
-    #[must_use]
     pub fn cycle() -> Config {
         Config {
             timing: true,
@@ -187,7 +186,6 @@ impl Config {
     }
 
     /// Returns all tables of timing parameters, each with the prefix of its parameter names.
-    #[must_use]
     pub fn tables(&self) -> [(&'static str, &dyn ParameterTable); 3] {
         [(FREEZES_PATH, &self.freezes.clocks), (DRAM_PATH, &self.dram), (CHIP_PATH, &ChipSizes::PAPERS)]
     }
@@ -200,7 +198,6 @@ impl Config {
     /// Returns the settings that differ from [`Config::cycle`] and change results, as keys and values. Names of
     /// experiments include these settings. Parameter tables are not part of the list. Memoization is not part of it
     /// either, because it changes no result.
-    #[must_use]
     pub fn unusual_settings(&self) -> Vec<(&'static str, String)> {
         // The pattern lists every field, so that the compiler reports a new field that is not handled here.
         let Config { timing, freezes, dram: _, seeds, replacement_seed, memoise: _ } = self;
@@ -215,7 +212,6 @@ impl Config {
     }
 
     /// Returns a configuration without clocks. Programs compute the same results as with [`Config::cycle`].
-    #[must_use]
     pub fn functional() -> Config {
         Config { timing: false, ..Config::cycle() }
     }

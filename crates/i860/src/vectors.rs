@@ -244,14 +244,12 @@ pub struct VectorSummary {
 }
 
 impl VectorSummary {
-    #[must_use]
     pub fn failed(&self) -> usize {
         self.failures.len()
     }
 }
 
 /// Runs the programs of all vectors on one processor, which is reset before each program.
-#[must_use]
 pub fn run(vectors: &[TestVector], config: Config) -> VectorSummary {
     let mut cpu = Cpu::new(config);
     let mut summary = VectorSummary::default();

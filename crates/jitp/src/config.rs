@@ -80,13 +80,11 @@ impl Beam {
     }
 
     /// Returns the time at which the beam reaches pixel `x` of a row of a field.
-    #[must_use]
     pub fn at(&self, field: PeriodNumber, row: u32, x: u32) -> Time {
         (self.at)(field, row, x)
     }
 
     /// Returns the time of the retrace that begins a field.
-    #[must_use]
     pub fn retrace(&self, field: PeriodNumber) -> Time {
         (self.retrace)(field)
     }
@@ -180,13 +178,11 @@ impl JitpConfig {
     ///
     /// If all strips share one view, the view has the number of strip 0. The views for the start and the end of a field
     /// have the numbers of strips 0 and 1.
-    #[must_use]
     pub const fn view_number(field: PeriodNumber, strip: u64) -> ViewNumber {
         ViewNumber(field.0 * VIEWS_PER_FIELD + strip)
     }
 
     /// Returns the regions into which a field (strips) or a video frame (blocks) is divided.
-    #[must_use]
     pub fn grid(&self) -> RegionGrid {
         match self.schedule {
             DrawingSchedule::Beam { strip_rows, .. } => RegionGrid { region_height: strip_rows, ..RegionGrid::FIELD },
@@ -239,14 +235,12 @@ impl JitpConfig {
     }
 
     /// Returns the instant for which a strip is drawn, such as the middle of its scan ([`JitpConfig::aim`]).
-    #[must_use]
     pub fn aimed_at_strip(&self, field: PeriodNumber, strip: u32) -> Time {
         let (first, last) = self.rows(strip);
         self.aimed_at(field, first, last)
     }
 
     /// Returns the instant for which a field is drawn if all strips share one view.
-    #[must_use]
     pub fn aimed_at_field(&self, field: PeriodNumber) -> Time {
         self.aimed_at(field, 0, self.grid().height - 1)
     }
@@ -261,7 +255,6 @@ impl JitpConfig {
     }
 
     /// Returns the times at which the beam reaches the first and the last pixel of a field.
-    #[must_use]
     pub fn ends(&self, field: PeriodNumber) -> (Time, Time) {
         let RegionGrid { width, height, .. } = self.grid();
         (self.beam.at(field, 0, 0), self.beam.at(field, height - 1, width - 1))
@@ -270,7 +263,6 @@ impl JitpConfig {
     /// Returns the instant for which a strip is drawn, as a part of the field. The part is 0 when the beam reaches the
     /// first pixel, and 1 when the beam reaches the last pixel. The result is negative if [`JitpConfig::aim`] is the
     /// retrace.
-    #[must_use]
     pub fn part(&self, field: PeriodNumber, strip: u32) -> f64 {
         let (begin, end) = self.ends(field);
         let from_begin = self.aimed_at_strip(field, strip).0 as f64 - begin.0 as f64;

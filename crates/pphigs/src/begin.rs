@@ -22,7 +22,7 @@ use pxpl5_sim::Span;
 use pxpl5_wire::Word;
 use std::sync::{Arc, LazyLock};
 
-const MOST_STRUCTURES: u32 = (MODELS_END - MODELS) / MATRIX_BYTES;
+const MAX_STRUCTURES: u32 = (MODELS_END - MODELS) / MATRIX_BYTES;
 const MATRIX_BYTES: u32 = 64;
 const EDIT_WORDS: u32 = 17;
 
@@ -44,7 +44,7 @@ impl Work for EditWork<'_> {
 
     fn by_code(&self, _: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         // Edits of unknown structures change nothing.
-        let edits_of_structures: Vec<_> = self.0.edits.iter().filter(|edit| edit.structure < MOST_STRUCTURES).collect();
+        let edits_of_structures: Vec<_> = self.0.edits.iter().filter(|edit| edit.structure < MAX_STRUCTURES).collect();
         let mut span = Span::ZERO;
         // Call the code for each message of edits. A view without edits still takes one call.
         for edits in
@@ -77,7 +77,6 @@ pub struct PassStartWork {
 
 impl Share {
     /// Returns the work before the first triangle of a pass. `eyes` has the indices of the drawn eyes in the view.
-    #[must_use]
     pub fn beginning(&self, view: &FrameView, eyes: &[usize], picture: Picture) -> PassStartWork {
         let eyes = eyes.iter().map(|eye| place_cached(&self.list, view, *eye, picture.viewport)).collect();
         PassStartWork::new(&self.list, eyes, picture)

@@ -36,8 +36,8 @@ pub(crate) const PIECE_BYTES: u32 = 8;
 pub(crate) const MESSAGE_BYTES: u32 = 16;
 /// Largest number of bin entries of a region for which the list of pieces has room. A message has at least 20 commands,
 /// and two more pieces for its first and its last commands.
-pub(crate) const MOST_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
-const _: () = assert!((MOST_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS, "room for the messages of so many");
+pub(crate) const MAX_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
+const _: () = assert!((MAX_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS, "room for the messages of so many");
 
 /// Largest number of instructions, much more than the code needs. Code that exceeds the limit counts as an endless
 /// loop.
@@ -55,12 +55,12 @@ impl Work for BinHandoffWork<'_> {
             return Ok(self.by_table(timing));
         };
         let entries = self.pass.counts(self.region).total();
-        if entries > MOST_ENTRIES {
+        if entries > MAX_ENTRIES {
             return Err(ProcessorFault::NoRoom {
                 gp: processor.node(),
                 context: self.context,
                 needed_bytes: entries * PIECE_BYTES,
-                available_bytes: MOST_ENTRIES * PIECE_BYTES,
+                available_bytes: MAX_ENTRIES * PIECE_BYTES,
             });
         }
         // The parameters contain the lengths of the commands and the envelope, from which the code divides the bin into

@@ -34,7 +34,7 @@ pub(crate) const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
 
 /// Largest number of triangles into which clipping divides a triangle: six planes leave a polygon of up to nine
 /// corners.
-const MOST_PIECES: u32 = 7;
+const MAX_PIECES: u32 = 7;
 
 /// Largest number of instructions for one primitive, much more than a kernel needs. A kernel that exceeds the limit
 /// counts as an endless loop.
@@ -76,7 +76,6 @@ pub struct KernelOutput {
 }
 
 impl KernelOutput {
-    #[must_use]
     pub fn entries(&self) -> u64 {
         self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
     }
@@ -217,7 +216,6 @@ pub(crate) struct Marks {
 
 impl Pass {
     /// Returns the counts of primitives and bin entries for the timing table, without the placement of structures.
-    #[must_use]
     pub fn cost(&self) -> TransformCost {
         let counted = TransformCost::primitives(self.transformed());
         TransformCost { clipped: self.stats().clipped, entries: self.entries(), ..counted }
@@ -488,7 +486,7 @@ impl Pass {
     }
 
     pub(crate) fn most_commands(&self, given: PrimitiveCounts) -> u32 {
-        given.triangles + (MOST_PIECES - 1) * self.stats().clipped as u32 + 1
+        given.triangles + (MAX_PIECES - 1) * self.stats().clipped as u32 + 1
     }
 }
 

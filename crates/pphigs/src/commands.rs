@@ -35,7 +35,6 @@ pub struct RegionEnvelope {
 /// Returns the messages with the primitives of a region's bin and with the commands that `envelope` selects.
 ///
 /// The number of messages is as small as their maximum length permits.
-#[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
     if pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0 {
         return Vec::new();
@@ -53,7 +52,6 @@ pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope
 }
 
 /// Returns a message that copies regions to a frame buffer, without drawing.
-#[must_use]
 pub fn copy_message(layout: Layout, copies: Vec<CopyOrder>, pixels: bool) -> CommandList {
     let runs =
         copies.iter().flat_map(|_| [run(CommandKind::SelectRegion, 1), run(CommandKind::CopyRegion, 1)]).collect();
@@ -194,7 +192,6 @@ impl Pass {
 
     /// Returns the size of the commands of all primitives on the screen, in bytes. Each command is stored once, because
     /// bins hold pointers to commands (TR94).
-    #[must_use]
     pub fn command_bytes(&self) -> u64 {
         let PrimitiveCounts { triangles, spheres } = self.screen_counts();
         bytes(self.triangle_kind(), triangles) + bytes(self.sphere_kind(), spheres)
@@ -419,7 +416,6 @@ fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
 /// Converts light and highlight to the number formats of the shading command, for an eye that looks along -z.
 ///
 /// Without a light all intensities are zero. Matte surfaces have no highlight.
-#[must_use]
 pub fn shade(light: Option<&Light>, is_matte: bool) -> Shade {
     let Some(light) = light else { return Shade::default() };
     let towards = light.direction;
@@ -492,7 +488,6 @@ fn phong_triangle(t: PhongTriangle) -> PhongTriangleCommand {
 }
 
 /// Returns the command of a sphere with Gouraud shading.
-#[must_use]
 pub fn gouraud_sphere(s: &GouraudSphere) -> Command {
     Command::Sphere(SphereCommand {
         body: body(&s.setup),

@@ -58,7 +58,6 @@ impl TransformCost {
     }
 
     /// Returns the processor time of this work, in nanoseconds.
-    #[must_use]
     pub const fn ns(self, timing: &GpTiming) -> u64 {
         timing.pass_ns * self.passes
             + timing.structure_ns * self.structures
@@ -69,7 +68,6 @@ impl TransformCost {
             + timing.bin_entry_ns * self.entries
     }
 
-    #[must_use]
     pub const fn span(self, timing: &GpTiming) -> Span {
         Span::from_ns(self.ns(timing))
     }
@@ -77,7 +75,6 @@ impl TransformCost {
 
 impl TransformCost<f64> {
     /// Returns the mean processor time of TRANSFORM, in nanoseconds, for mean counts.
-    #[must_use]
     pub fn ns(self, timing: &GpTiming) -> f64 {
         let structures =
             timing.structure_ns as f64 * self.structures + timing.sphere_view_ns as f64 * self.sphere_views;

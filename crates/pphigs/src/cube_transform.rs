@@ -6,7 +6,7 @@
 
 use crate::begin::PassStartWork;
 use crate::code::{Destination, KernelOutput, Marks, OutputSize, SPHERE_BYTES, TRIANGLE_BYTES, budget, sphere_kernel};
-use crate::layout::{DISPLAY_LIST, MOST_VIEWS, PARAMETERS, SORT_CODE, SPHERE_PARAMETERS};
+use crate::layout::{DISPLAY_LIST, MAX_VIEWS, PARAMETERS, SORT_CODE, SPHERE_PARAMETERS};
 use crate::list::PrimitiveCounts;
 use crate::pass::Pass;
 use crate::placed::PlacedStructure;
@@ -27,7 +27,7 @@ const MARGIN: f32 = 1.0 / 32.0;
 pub struct CubeTransform<'a> {
     /// Results of TRANSFORM for the views along +x, -x, +y, -y, +z and -z, in the eye coordinates of the last view. All
     /// views have the same projection.
-    pub passes: &'a [Arc<Pass>; MOST_VIEWS as usize],
+    pub passes: &'a [Arc<Pass>; MAX_VIEWS as usize],
     /// Set of bins for all views, 0 or 1. A board has two sets.
     pub context: u8,
 }
@@ -160,7 +160,7 @@ impl ViewSort {
         processor.call(&PROGRAM, entry, &[data.as_slice(), &numbers].concat(), budget(count))
     }
 
-    fn counts(&self, processor: &Processor) -> Result<[u32; MOST_VIEWS as usize], ProcessorFault> {
+    fn counts(&self, processor: &Processor) -> Result<[u32; MAX_VIEWS as usize], ProcessorFault> {
         let words: Vec<Word> = processor.read(self.words(), self.held.len())?;
         Ok(std::array::from_fn(|view| words.iter().map(|word| word >> view & 1).sum()))
     }

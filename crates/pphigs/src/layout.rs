@@ -45,17 +45,17 @@ pub(crate) const WINDOW_LISTS: u32 = 0x7_B000;
 pub(crate) const KEPT: u32 = 0x7_B400;
 /// Size of the record of a stored pass, in bytes.
 pub(crate) const KEPT_BYTES: u32 = 32;
-pub(crate) const MOST_KEPT: u32 = 16;
+pub(crate) const MAX_KEPT: u32 = 16;
 pub(crate) const ORDER_CODE: u32 = 0x7_B600;
 /// Address of the first words of an order, before its views.
 pub(crate) const ORDER_HEAD: u32 = 0x7_B800;
 pub(crate) const ORDER_VIEWS: u32 = 0x7_C000;
-pub(crate) const MOST_WINDOWS: u32 = 64;
+pub(crate) const MAX_WINDOWS: u32 = 64;
 pub(crate) const WINDOW_BYTES: u32 = 32;
 /// Size in bytes of the area at the end of memory for the list of primitives that one search finds.
 pub(crate) const ENTRY_BYTES: u32 = 4 * (LISTS_END - PIECES) / 8;
 /// Largest number of views that share a set of bins: the six faces of a cube.
-pub(crate) const MOST_VIEWS: u32 = 6;
+pub(crate) const MAX_VIEWS: u32 = 6;
 /// Address of the bounds of all bins, in both sets of bins, for the code that sends a region's bin.
 const BINS: u32 = 0x1_2F00;
 /// Bytes of the bounds of one set of bins: the address of the first sphere command, and two addresses for each region.
@@ -83,11 +83,11 @@ const _: () = {
     assert!(RIGHT_PARAMETERS + 4 * pxpl5_geometry::kernel::PARAMETER_WORDS as u32 <= BINS);
     assert!(BIN_TABLE + 4 * regions <= SPHERE_PARAMETERS, "a bin's end for each region");
     assert!(4 * (1 + 2 * regions) <= BIN_BOUNDS_BYTES && BINS + 2 * BIN_BOUNDS_BYTES <= TOKEN_PARAMETERS);
-    assert!(MORE_BINS + 2 * (MOST_VIEWS - 1) * BIN_BOUNDS_BYTES <= LISTS);
+    assert!(MORE_BINS + 2 * (MAX_VIEWS - 1) * BIN_BOUNDS_BYTES <= LISTS);
     assert!(BLENDED + 3 * 4 * BLENDED_ELEMENTS <= WINDOWS_CODE);
-    assert!(WINDOWS + WINDOW_BYTES * (1 + MOST_WINDOWS) <= REGION_WINDOWS);
+    assert!(WINDOWS + WINDOW_BYTES * (1 + MAX_WINDOWS) <= REGION_WINDOWS);
     assert!(REGION_WINDOWS + WINDOW_BYTES * (1 + regions) <= WINDOW_PLACES, "a window for each region");
-    assert!(WINDOW_PLACES + 4 * regions <= WINDOW_LISTS && MOST_WINDOWS <= regions);
-    assert!(WINDOW_LISTS + 4 * (1 + 2 * MOST_WINDOWS) <= KEPT && KEPT + KEPT_BYTES * MOST_KEPT <= ORDER_CODE);
+    assert!(WINDOW_PLACES + 4 * regions <= WINDOW_LISTS && MAX_WINDOWS <= regions);
+    assert!(WINDOW_LISTS + 4 * (1 + 2 * MAX_WINDOWS) <= KEPT && KEPT + KEPT_BYTES * MAX_KEPT <= ORDER_CODE);
     assert!(ORDER_VIEWS + 4 * pxpl5_wire::MAX_MESSAGE_WORDS <= MORE_BINS);
 };

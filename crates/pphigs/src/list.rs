@@ -14,13 +14,11 @@ pub struct PrimitiveCounts {
 }
 
 impl PrimitiveCounts {
-    #[must_use]
     pub const fn total(self) -> u32 {
         self.triangles + self.spheres
     }
 
     /// Returns the number of vertices: three corners of each triangle, and the centre of each sphere.
-    #[must_use]
     pub const fn vertices(self) -> u64 {
         3 * self.triangles as u64 + self.spheres as u64
     }
@@ -116,7 +114,6 @@ impl DisplayList {
     /// # Panics
     ///
     /// Panics if there is no triangle with index `number`, or if the triangle refers to a missing vertex.
-    #[must_use]
     pub fn triangle(&self, number: usize) -> Triangle {
         let corners = self.triangles[number].map(|i| i as usize);
         Triangle {
@@ -131,7 +128,6 @@ impl DisplayList {
     /// # Panics
     ///
     /// Panics if there is no triangle with index `number`, or if the triangle refers to a missing vertex.
-    #[must_use]
     pub fn corners(&self, number: usize) -> [Vec3; 3] {
         self.triangles[number].map(|i| self.positions[i as usize])
     }
@@ -171,7 +167,6 @@ impl Share {
         Self { list, first: index, step: of, triangles, spheres }
     }
 
-    #[must_use]
     pub fn list(&self) -> &Arc<DisplayList> {
         &self.list
     }
@@ -183,13 +178,11 @@ impl Share {
         Self { list, ..self.clone() }
     }
 
-    #[must_use]
     pub fn counts(&self) -> PrimitiveCounts {
         PrimitiveCounts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
     }
 
     /// Returns the numbers of primitives in the chosen structures. `chosen` has one entry for each structure.
-    #[must_use]
     pub fn chosen_counts(&self, chosen: &[bool]) -> PrimitiveCounts {
         let mut counts = PrimitiveCounts::default();
         for (structure, _) in self.list.structures.iter().zip(chosen).filter(|(_, chosen)| **chosen) {
@@ -222,7 +215,6 @@ impl Share {
     }
 
     /// Returns the size of the primitives in the graphics processor's memory, in bytes.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         let PrimitiveCounts { triangles, spheres } = self.counts();
         u64::from(triangles) * Self::TRIANGLE_BYTES + u64::from(spheres) * Self::SPHERE_BYTES

@@ -258,13 +258,11 @@ impl Walk {
 
 impl Share {
     /// Executes TRANSFORM of the share, for the eye with index `eye` of a view.
-    #[must_use]
     pub fn transform(&self, view: &FrameView, eye: usize, picture: Picture) -> Arc<Pass> {
         Arc::new(Pass::new(self.clone(), view, eye, picture, None))
     }
 
     /// Executes TRANSFORM of the chosen structures. `chosen` has one entry for each structure.
-    #[must_use]
     pub fn transform_chosen(&self, view: &FrameView, eye: usize, picture: Picture, chosen: &[bool]) -> Arc<Pass> {
         Arc::new(Pass::new(self.clone(), view, eye, picture, Some(chosen)))
     }
@@ -302,53 +300,44 @@ impl Pass {
         touching
     }
 
-    #[must_use]
     pub fn counts(&self, region: RegionId) -> PrimitiveCounts {
         self.found.counts[usize::from(region.0)]
     }
 
     /// Returns the numbers of primitives on the screen. A primitive in several regions counts once.
-    #[must_use]
     pub const fn screen_counts(&self) -> PrimitiveCounts {
         self.found.on_screen
     }
 
-    #[must_use]
     pub fn entries(&self) -> u64 {
         self.found.counts.iter().map(|counts| u64::from(counts.total())).sum()
     }
 
     /// Returns the numbers of transformed primitives, visible or not.
-    #[must_use]
     pub fn transformed(&self) -> PrimitiveCounts {
         self.walk.share.counts()
     }
 
     /// Returns the indices of the triangles and of the spheres in at least one bin. Returns `None` for a pass over all
     /// structures.
-    #[must_use]
     pub const fn touching(&self) -> Option<&[Vec<u32>; 2]> {
         self.found.touching.as_ref()
     }
 
     /// Returns how many primitives were dropped, cut, or limited to the range of a number format.
-    #[must_use]
     pub const fn stats(&self) -> SetupStats {
         self.stats
     }
 
-    #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.walk.picture
     }
 
-    #[must_use]
     pub fn background(&self) -> [u8; 3] {
         self.walk.share.list.background
     }
 
     /// Returns the light source of the first structure, in eye coordinates.
-    #[must_use]
     pub fn light(&self) -> Option<&Light> {
         self.walk.placed.first().map(|placed| &placed.light)
     }

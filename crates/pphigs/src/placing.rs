@@ -18,7 +18,6 @@ const UNMOVED: Mat4 = Mat4::IDENTITY;
 ///
 /// Panics if the view has no eye. Also panics if the structures have changed since they were first placed, and the
 /// cache [`recent`](DisplayList::recent) was not emptied.
-#[must_use]
 pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<PlacedStructure> {
     let eye = eye_of(view, eye);
     let named = list.recent.named(|| named(list));
@@ -92,7 +91,6 @@ fn turned(matrix: &Mat4, v: Vec3) -> [f32; 3] {
 
 impl PlacedStructure {
     /// Returns the light source for the corners of triangles: [`Light::NONE`] if the colours are precomputed.
-    #[must_use]
     pub fn light_of_corners(&self, shading: Shading) -> &Light {
         if shading == Shading::Precomputed { &Light::NONE } else { &self.light }
     }

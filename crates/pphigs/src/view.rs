@@ -68,7 +68,6 @@ pub const MAX_EDITS: usize = (MAX_MESSAGE_WORDS as usize - 8 - HEADER_WORDS - 2 
 impl FrameView {
     /// Encodes the view as words: number of the view (two words), number of eyes, number of edits, then the matrices
     /// column by column.
-    #[must_use]
     pub fn to_words(&self) -> Vec<Word> {
         let [low, high] = self.number.to_words();
         let header = [low, high, self.eyes.len() as Word, self.edits.len() as Word];

@@ -7,12 +7,12 @@
 
 use crate::begin::PassStartWork;
 use crate::bin_handoff::{
-    BUDGET, BUDGET_OF_ENTRY, MESSAGE_BYTES, MOST_ENTRIES, MessagePieces, PIECE_BYTES, listed, token_source,
+    BUDGET, BUDGET_OF_ENTRY, MAX_ENTRIES, MESSAGE_BYTES, MessagePieces, PIECE_BYTES, listed, token_source,
 };
 use crate::code::{Next, budget, sphere_kernel};
 use crate::cost::TransformCost;
 use crate::layout::{
-    ENTRY_BYTES, ENVELOPES, KEPT, KEPT_BYTES, LISTS, MOST_KEPT, MOST_WINDOWS, PIECES, REGION_WINDOWS, STACK,
+    ENTRY_BYTES, ENVELOPES, KEPT, KEPT_BYTES, LISTS, MAX_KEPT, MAX_WINDOWS, PIECES, REGION_WINDOWS, STACK,
     TOKEN_PARAMETERS, WINDOW_LISTS, WINDOW_PLACES, WINDOWS, WINDOWS_CODE,
 };
 use crate::list::{PrimitiveCounts, Share};
@@ -49,7 +49,7 @@ impl MemoryPart {
     #[must_use]
     pub const fn of(number: usize, of: u8) -> Self {
         let of = if of == 0 { 1 } else { of };
-        let of = if of as u32 > MOST_KEPT { MOST_KEPT as u8 } else { of };
+        let of = if of as u32 > MAX_KEPT { MAX_KEPT as u8 } else { of };
         Self { number: (number % of as usize) as u8, of }
     }
 
@@ -243,7 +243,7 @@ impl WindowSearchWork<'_> {
                 make_windows(processor, self.viewport.grid(), &self.viewport, &self.all_regions(), REGION_WINDOWS)?;
         }
         let mut next = [PIECES, LISTS];
-        let chunks = MOST_WINDOWS as usize;
+        let chunks = MAX_WINDOWS as usize;
         for (windows, counts) in self.windows.chunks(chunks).zip(self.counts.chunks(chunks)) {
             output.span += make_windows(processor, self.grid, &self.viewport, windows, WINDOWS)?;
             output.span += self.search(processor, &kept, counts)?;
@@ -261,7 +261,7 @@ impl WindowSearchWork<'_> {
     fn check_room(&self, processor: &Processor) -> Result<(), ProcessorFault> {
         let entries = self.entries() + 2 * self.windows.len() as u32;
         let fits =
-            entries <= MOST_ENTRIES && (entries / 20 + 2 * self.windows.len() as u32) * MESSAGE_BYTES <= PIECES - LISTS;
+            entries <= MAX_ENTRIES && (entries / 20 + 2 * self.windows.len() as u32) * MESSAGE_BYTES <= PIECES - LISTS;
         if fits {
             return Ok(());
         }
@@ -269,7 +269,7 @@ impl WindowSearchWork<'_> {
             gp: processor.node(),
             context: self.part.number,
             needed_bytes: entries * PIECE_BYTES,
-            available_bytes: MOST_ENTRIES * PIECE_BYTES,
+            available_bytes: MAX_ENTRIES * PIECE_BYTES,
         })
     }
 

@@ -34,7 +34,6 @@ impl Load {
     }
 
     /// Returns the number of entries in all bins together.
-    #[must_use]
     pub fn entries(&self) -> f64 {
         self.bins.iter().map(|[triangles, spheres]| triangles + spheres).sum()
     }

@@ -163,7 +163,6 @@ impl StereoModel {
     }
 
     /// Returns the times of successive frames. `loads` has the work for each eye of each frame.
-    #[must_use]
     pub fn frames(&self, loads: &[Load]) -> Vec<StereoTimes> {
         let mut history = History::default();
         history.rendering.idle_ns = vec![0.0; self.renderers];
@@ -416,7 +415,6 @@ fn frames_of(experiment: &Experiment) -> Result<(StereoModel, Vec<StereoTimes>),
 
 impl StereoModel {
     /// Returns the results for the frames that are shown in the first `fields` fields, without the warm-up.
-    #[must_use]
     pub fn summary(&self, frames: &[StereoTimes], fields: u64) -> Summary {
         // Frames of the warm-up do not count.
         let end_ns = fields as f64 * self.field_ns;

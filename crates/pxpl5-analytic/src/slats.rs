@@ -15,7 +15,6 @@ use pxpl5_run::{
 impl SlatsModel {
     /// Returns the times of a field after many equal fields. With split copies, renderers first copy the lower half of
     /// the previous field.
-    #[must_use]
     pub fn field(&self, triangles: f64, each: PerTriangle) -> FieldTimes {
         if self.gps > 1 {
             return self.field_of(&Clumps::uniform(self, triangles, each));
@@ -38,7 +37,6 @@ impl SlatsModel {
     ///
     /// For speed, sixteen successive machines are computed together if they have one graphics processor, equal numbers
     /// of renderers and channels, and the same program.
-    #[must_use]
     pub fn fields(models: &[Self], triangles: f64, each: PerTriangle) -> Vec<FieldTimes> {
         let mut all = Vec::with_capacity(models.len());
         for some in models.chunks(TOGETHER) {

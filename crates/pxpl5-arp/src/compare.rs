@@ -22,7 +22,6 @@ const VARIANTS: [(&str, &[(&str, &str)]); 9] = [
 ];
 
 /// Returns the number of combinations of policy, segmentation and warping that [`compare`] runs.
-#[must_use]
 pub const fn variant_count() -> u64 {
     VARIANTS.len() as u64
 }
@@ -68,7 +67,6 @@ pub struct ArpComparison {
 
 /// Simulates the walk with every variant. Calls `finished` with the number of finished variants and the number of all
 /// variants.
-#[must_use]
 pub fn compare(scene: &Scene, plan: &WalkPlan, finished: impl Fn(u64, u64)) -> ArpComparison {
     let mut comparison = ArpComparison {
         schema: "pxpl5-arp-comparison/1",

@@ -23,7 +23,6 @@ pub struct Content {
 
 impl Content {
     /// Returns the position at which a vertex of the scene is drawn after warping.
-    #[must_use]
     pub fn place(&self, vertex: DVec3) -> DVec3 {
         self.warp
             .as_ref()
@@ -31,7 +30,6 @@ impl Content {
     }
 
     /// Returns the direction from the eye in which a vertex is drawn. The vector does not have unit length.
-    #[must_use]
     pub fn direction(&self, vertex: DVec3) -> DVec3 {
         self.place(vertex) - self.eye
     }
@@ -41,7 +39,6 @@ impl Content {
     }
 
     /// Returns the number of triangles that an update of the memory draws.
-    #[must_use]
     pub fn triangles(&self, world: &World) -> u64 {
         self.segments.iter().map(|segment| world.segments[*segment].triangles.len() as u64).sum()
     }

@@ -81,7 +81,6 @@ impl WalkOutcome {
     }
 
     /// Returns the number of triangles drawn per second, summed over all memories.
-    #[must_use]
     pub fn triangles_per_s(&self) -> f64 {
         let drawn: u64 = self.tally.memories.iter().map(|memory| memory.triangles_drawn).sum();
         drawn as f64 * self.settings.numbers.frame_hz / self.tally.frames as f64

@@ -123,7 +123,6 @@ impl WalkPlan {
     }
 
     /// Returns the settings that the user gave explicitly, each with its path such as `priority.cell_m`.
-    #[must_use]
     pub const fn given(&self) -> &BTreeMap<String, String> {
         &self.given
     }
@@ -137,12 +136,10 @@ impl WalkPlan {
     }
 
     /// Returns the size and viewing angle of the display's picture. A lens table must match this size and this angle.
-    #[must_use]
     pub fn picture(&self) -> LensPicture {
         self.chosen.display.picture()
     }
 
-    #[must_use]
     pub const fn route(&self) -> Route {
         self.route
     }

@@ -25,7 +25,6 @@ pxpl5_sim::parameters::named!(PolicyKind, "policy", PolicyKind::ALL);
 impl PolicyKind {
     pub const ALL: [(&str, Self); 3] = [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells)];
 
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Full => "full",
@@ -132,7 +131,6 @@ impl WalkSettings {
         Ok(())
     }
 
-    #[must_use]
     pub const fn memories(&self) -> usize {
         match self.policy {
             PolicyKind::Full => 1,
@@ -150,7 +148,6 @@ impl WalkSettings {
     }
 
     /// Returns the mean angle between texels in degrees: 90 divided by the texels of a face's edge.
-    #[must_use]
     pub fn texel_deg(&self) -> f64 {
         90.0 / self.display.timing.face_texels as f64
     }

@@ -92,24 +92,20 @@ impl<'a> Simulation<'a> {
         })
     }
 
-    #[must_use]
     pub const fn world(&self) -> &'a World {
         self.world
     }
 
-    #[must_use]
     pub const fn settings(&self) -> &WalkSettings {
         &self.settings
     }
 
     /// Returns the contents of each memory, or `None` for a memory without an update so far.
-    #[must_use]
     pub fn shown(&self) -> &[Option<Content>] {
         &self.shown
     }
 
     /// Returns the current assignment of cells to memories. Returns `None` unless the policy is `cells`.
-    #[must_use]
     pub const fn assignment(&self) -> Option<&CellAssignment> {
         match &self.policy {
             Policy::Cells(cells) => Some(cells.assignment()),
@@ -119,7 +115,6 @@ impl<'a> Simulation<'a> {
 
     /// Returns the number of times that an object moved from one memory to another. Returns `None` unless the policy is
     /// `objects`.
-    #[must_use]
     pub const fn moved_objects(&self) -> Option<u64> {
         match &self.policy {
             Policy::Objects(objects) => Some(objects.counts()[0]),

@@ -72,7 +72,6 @@ pub struct TearWidths {
 
 impl TearWidths {
     /// Computes the percentiles of angles in radians. A texel has `texel_deg` degrees. Returns `None` without angles.
-    #[must_use]
     pub fn of(angles: &[f64], texel_deg: f64) -> Option<Self> {
         let mut sorted = angles.to_vec();
         sorted.sort_unstable_by(f64::total_cmp);

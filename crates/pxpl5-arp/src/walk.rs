@@ -53,13 +53,11 @@ pub struct WalkTally {
 }
 
 impl WalkTally {
-    #[must_use]
     pub fn rates_hz(&self, frame_hz: f64) -> Vec<f64> {
         self.memories.iter().map(|memory| memory.updates as f64 * frame_hz / self.frames as f64).collect()
     }
 
     /// Returns the number of segments (parts of objects) drawn per second.
-    #[must_use]
     pub fn draws_per_s(&self, frame_hz: f64) -> f64 {
         let draws: u64 = self.memories.iter().map(|memory| memory.segments_drawn).sum();
         draws as f64 * frame_hz / self.frames as f64

@@ -42,7 +42,6 @@ impl WalkFaces {
     }
 
     /// Returns the background colour, 0x00RRGGBB.
-    #[must_use]
     pub const fn background(&self) -> u32 {
         self.background
     }

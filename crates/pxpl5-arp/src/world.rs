@@ -147,7 +147,6 @@ impl World {
 
     /// Returns the centre of the bounding box of a range of segments (parts of objects), and the distance to their
     /// farthest vertex in metres.
-    #[must_use]
     pub fn bounding_sphere(&self, segments: Range<usize>) -> (DVec3, f64) {
         let corners = self.segments[segments].iter().flat_map(|segment| segment.triangles.iter().flatten());
         let places: Vec<DVec3> = corners.map(|i| self.vertices[*i as usize]).collect();

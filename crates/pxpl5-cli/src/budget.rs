@@ -12,24 +12,24 @@ use std::time::Instant;
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct BudgetArgs {
     /// Refuse a command that would take more memory than this, in MB of 10^6 bytes.
-    #[arg(long, value_name = "MB", default_value_t = MOST_MEGABYTES, value_parser = whole::<u64>(1, 1_000_000_000))]
+    #[arg(long, value_name = "MB", default_value_t = MAX_MEGABYTES, value_parser = whole::<u64>(1, 1_000_000_000))]
     max_memory: u64,
     /// Refuse a command that would take longer than this, in seconds.
-    #[arg(long, value_name = "S", default_value_t = MOST_SECONDS, value_parser = whole::<u64>(1, 1_000_000_000))]
+    #[arg(long, value_name = "S", default_value_t = MAX_SECONDS, value_parser = whole::<u64>(1, 1_000_000_000))]
     max_seconds: u64,
 }
 
 /// The limits of commands without options for memory and time.
 impl Default for BudgetArgs {
     fn default() -> Self {
-        Self { max_memory: MOST_MEGABYTES, max_seconds: MOST_SECONDS }
+        Self { max_memory: MAX_MEGABYTES, max_seconds: MAX_SECONDS }
     }
 }
 
 /// Limit in MB. Assumed: the memory of a workstation.
-const MOST_MEGABYTES: u64 = 16_000;
+const MAX_MEGABYTES: u64 = 16_000;
 /// Limit in seconds. Assumed: one day.
-const MOST_SECONDS: u64 = 86_400;
+const MAX_SECONDS: u64 = 86_400;
 
 /// Numbers of simulated fields after which the cost of a run is compared with the limits. After 32 fields, each report
 /// of progress compares the cost.

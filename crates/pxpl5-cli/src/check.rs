@@ -44,7 +44,7 @@ pub(crate) fn run(args: CheckArgs) -> Result<(), CliError> {
 }
 
 /// Maximum number of points of a sweep that are checked. Assumed: checking so many points takes some seconds.
-const MOST_CHECKED: u64 = 1_000;
+const MAX_CHECKED: u64 = 1_000;
 
 /// Returns the plan of the first valid point of a sweep, and comment lines about the sweep. Returns an error for each
 /// sweep that `pxpl5 sweep` refuses.
@@ -52,7 +52,7 @@ fn of_sweep(file: ExperimentFile) -> Result<(Plan, String), CliError> {
     let sweep = Sweep::new(file)?;
     sweep.header()?;
     let points = sweep.space().points();
-    let checked = points.min(MOST_CHECKED);
+    let checked = points.min(MAX_CHECKED);
     let mut first = None;
     let mut failed: Option<(u64, u64, String)> = None;
     // Resolve each point, keep the first plan, and count points that are invalid.

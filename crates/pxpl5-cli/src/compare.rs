@@ -15,7 +15,7 @@ use crate::settings::SettingArgs;
 use crate::terminal::{self, answer, json_text};
 use progress::CompareProgress;
 use pxpl5::compare::{
-    CONFIDENCE, CompareQuery, CompareStore, LEAST_SEEDS, MAX_SEEDS, Precision, ROWS_FOLDER, RecordedLength, RowChoice,
+    CONFIDENCE, CompareQuery, CompareStore, MAX_SEEDS, MIN_SEEDS, Precision, ROWS_FOLDER, RecordedLength, RowChoice,
     UntilPrecise, edge_pictures,
 };
 use pxpl5::views::png_bytes;
@@ -50,7 +50,7 @@ pub(crate) struct CompareArgs {
     all: bool,
     /// Number of seeds for the random parts of a run: tracker, host and synthetic motion. The first seed is --seed.
     /// Each pipeline runs once for each seed. The confidence interval of a mean needs at least two seeds.
-    #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = whole::<u64>(1, 1_000))]
+    #[arg(long, default_value_t = MIN_SEEDS as u64, value_name = "N", value_parser = whole::<u64>(1, 1_000))]
     seeds: u64,
     /// Add seeds to each row until the confidence interval of its mean end-to-end error is narrower than this. The
     /// width is a share of the mean (10%) or pixels (0.2px). Only for the motion `synthetic`, which differs with the
@@ -62,11 +62,8 @@ pub(crate) struct CompareArgs {
     max_seeds: u64,
     /// Also search for the largest number of triangles that each pipeline can draw in time. The search takes longer
     /// than all runs.
-    #[arg(long, conflicts_with = "no_limits")]
+    #[arg(long)]
     limits: bool,
-    /// Do not search for the largest number of triangles, which is the default.
-    #[arg(long, alias = "no-triangles", hide = true)]
-    no_limits: bool,
     /// Also split the error of each row by its causes. For each cause, every run is evaluated once more without this
     /// cause.
     #[arg(long)]

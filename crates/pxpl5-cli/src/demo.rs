@@ -5,7 +5,7 @@ use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::output::{OutputFolder, timeline};
 use crate::run::{comparison, pictures};
-use crate::snapshot::{How, SnapshotArgs};
+use crate::simulate::{How, simulate};
 use crate::table::{Comparison, table};
 use crate::terminal::print;
 use crate::version::{VERSION, commit};
@@ -94,7 +94,7 @@ pub(crate) fn run(args: DemoArgs) -> Result<(), CliError> {
 fn one((name, text): (&'static str, &str), args: &DemoArgs) -> Result<Run, CliError> {
     let plan: Plan = ExperimentFile::parse(text, name)?.resolve()?;
     let how = How { quiet: args.quiet, budget: args.budget, ..How::default() };
-    let results = Results::of_run(SnapshotArgs::default().simulate(&plan, how)?.long_enough()?);
+    let results = Results::of_run(simulate(&plan, how)?.long_enough()?);
     let comparison = comparison(&plan, &results);
     let (outcome, report) = results.run.ok_or_else(|| CliError::failure("a run without events"))?;
     Ok(Run { name, outcome, report, comparison })

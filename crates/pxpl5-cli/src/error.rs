@@ -41,7 +41,6 @@ pub struct CommandError(CliError);
 
 impl CommandError {
     /// Returns the exit code of the command: 1 for a failure, 2 for a wrong command line or experiment file.
-    #[must_use]
     pub const fn exit_code(&self) -> u8 {
         self.0.code
     }

@@ -189,7 +189,7 @@ fn load(file: &Path, base: u32) -> Result<Program, String> {
 
 /// Executes the conformance vectors of a file. Returns the report and the number of failed vectors.
 fn check_vectors(file: &Path, json: bool, show: usize) -> Result<(String, usize), String> {
-    let text = text_of(file, unpacked(file, read(file)?, MOST_VECTOR_BYTES)?)?;
+    let text = text_of(file, unpacked(file, read(file)?, MAX_VECTOR_BYTES)?)?;
     let list = vectors::parse(&text).map_err(|e| format!("{}: {e}", file.display()))?;
     let summary = vectors::run(&list, Config::cycle());
     let report = if json { json_report(&summary, show) } else { plain_report(&summary, show) };
@@ -198,7 +198,7 @@ fn check_vectors(file: &Path, json: bool, show: usize) -> Result<(String, usize)
 
 /// Maximum unpacked size of a file of conformance vectors, in bytes. Assumed: about ten times the published set. The
 /// limit guards against gzip bombs.
-const MOST_VECTOR_BYTES: u64 = 256 << 20;
+const MAX_VECTOR_BYTES: u64 = 256 << 20;
 
 /// Returns the contents of a file, unpacked if the first two bytes are the gzip signature. Fails if the unpacked data
 /// exceed `most` bytes.

@@ -6,7 +6,6 @@ use crate::estimate::Study;
 use crate::output::OutputFile;
 use crate::terminal::{advance, json_text, print, progress};
 use clap::Args;
-use pxpl5::growth;
 use pxpl5::levels::{LevelQuery, LevelRecord, LevelReport, compare_with};
 use pxpl5::views::charts::{SpeedAndError, level_chart};
 use std::fmt::Write;
@@ -21,8 +20,7 @@ use std::path::{Path, PathBuf};
   pxpl5 levels --json
   pxpl5 levels --measure                                            measures everything again, on this computer
   pxpl5 levels --measure --write crates/pxpl5-cli/src/levels.json --chart docs/levels.svg
-  pxpl5 levels --measure --errors-only --experiments 1000           without speeds, which need an idle computer
-  pxpl5 levels --scaling docs/scaling.md")]
+  pxpl5 levels --measure --errors-only --experiments 1000           without speeds, which need an idle computer")]
 pub(crate) struct LevelsArgs {
     /// Print one JSON object.
     #[arg(long)]
@@ -42,10 +40,6 @@ pub(crate) struct LevelsArgs {
     /// Write a chart of speed against error (SVG) to this file.
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
-    /// Write only the tables about scaling to this file: host time and latency for growing numbers of triangles and
-    /// boards.
-    #[arg(long, value_name = "FILE")]
-    scaling: Option<PathBuf>,
     #[command(flatten)]
     budget: BudgetArgs,
 }
@@ -53,18 +47,6 @@ pub(crate) struct LevelsArgs {
 const RECORD: &str = include_str!("levels.json");
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
-    // --scaling writes three tables and nothing else.
-    if let Some(path) = &args.scaling {
-        let file = OutputFile::open(path, "--scaling")?;
-        let bar = progress(3, "tables", false);
-        let by_triangles = growth::by_triangles()?;
-        bar.inc(1);
-        let by_machine = growth::by_machine()?;
-        bar.inc(1);
-        let applications = growth::applications()?;
-        bar.finish_and_clear();
-        return file.write(growth::markdown(&by_triangles, &by_machine, &applications).as_bytes());
-    }
     let open = |path: Option<&Path>, option| path.map(|path| OutputFile::open(path, option)).transpose();
     let chart = open(args.chart.as_deref(), "--chart")?;
     let written = open(args.write.as_deref(), "--write")?;

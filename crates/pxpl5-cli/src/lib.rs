@@ -41,8 +41,8 @@ mod rows;
 mod run;
 mod scenes;
 mod settings;
+mod simulate;
 mod slurm;
-mod snapshot;
 mod sweep;
 mod table;
 mod terminal;
@@ -93,7 +93,6 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Simulate every published figure, and compare the result with the published value.
     Figures(figures::FiguresArgs),
-    #[command(alias = "readings")]
     Interpretations(interpretations::InterpretationsArgs),
     /// Find the largest number of triangles that a pipeline draws in time.
     Limit(limit::LimitArgs),
@@ -134,7 +133,6 @@ enum Command {
 }
 
 /// Runs the command line of this process with the pipelines and displays of `registry`, and returns the exit code.
-#[must_use]
 pub fn main(registry: Arc<Registry>) -> ExitCode {
     ExitCode::from(run_arguments(registry, std::env::args_os()))
 }
@@ -143,7 +141,6 @@ pub fn main(registry: Arc<Registry>) -> ExitCode {
 /// the name of the program.
 ///
 /// The first call in a process determines the registry for all later calls.
-#[must_use]
 pub fn run_arguments(registry: Arc<Registry>, arguments: impl IntoIterator<Item = OsString>) -> u8 {
     version::state_commit();
     // The options of pipelines must be known before clap builds the command line.

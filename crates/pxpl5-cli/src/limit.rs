@@ -108,7 +108,7 @@ fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
 }
 
 /// Minimum number of simulated fields. Shorter runs end during the warm-up of every pipeline.
-const LEAST_FIELDS: u64 = 10;
+const MIN_FIELDS: u64 = 10;
 
 impl LimitArgs {
     fn query(&self) -> Result<LimitQuery, CliError> {
@@ -117,8 +117,8 @@ impl LimitArgs {
         warn(&plan.warnings(), false);
         let query = LimitQuery::of_plan(&plan);
         let fields = self.fields.unwrap_or(query.criterion.fields);
-        if fields < LEAST_FIELDS {
-            return Err(CliError::usage(format!("--fields: expected at least {LEAST_FIELDS}, found {fields}")));
+        if fields < MIN_FIELDS {
+            return Err(CliError::usage(format!("--fields: expected at least {MIN_FIELDS}, found {fields}")));
         }
         let scene = self.test_scene().unwrap_or(query.criterion.scene);
         let goal = self.goal()?.unwrap_or(query.criterion.goal);
@@ -153,7 +153,7 @@ impl LimitArgs {
         }
         // The experiment without --over gives the defaults of length, range and goal.
         let first = file.resolve()?;
-        let fields = self.fields.unwrap_or(first.limit.fields).max(LEAST_FIELDS);
+        let fields = self.fields.unwrap_or(first.limit.fields).max(MIN_FIELDS);
         file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "--fields")?;
         // A missing end of the range comes from the sources of the parameter.
         let values = OverQuery::values(&first, key, self.from, self.to).map_err(|e| e.at("--from and --to"))?;

@@ -28,7 +28,7 @@ pub(crate) struct OutputFolder {
 }
 
 /// Maximum number of attempts to create a folder, because other processes may remove the folder again.
-const MOST_TRIES: u32 = 100;
+const MAX_TRIES: u32 = 100;
 
 /// The relation of the written files to the manifest in the folder. A manifest is the list of a run's files.
 #[derive(Debug)]
@@ -89,7 +89,7 @@ impl OutputFolder {
             tries += 1;
             match done {
                 // Another process that has created the folder may remove it while it is empty.
-                Err(error) if error.kind() == io::ErrorKind::NotFound && tries < MOST_TRIES => {}
+                Err(error) if error.kind() == io::ErrorKind::NotFound && tries < MAX_TRIES => {}
                 Err(error) => return Err(self.place.refused(&self.path, &error)),
                 Ok(()) => return Ok(()),
             }

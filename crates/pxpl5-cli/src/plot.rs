@@ -8,7 +8,7 @@ use crate::error::CliError;
 use crate::numbers::{are, confidence, count_of};
 use crate::output::OutputFolder;
 use crate::rows::{self, ResultRows, RowsKind};
-use crate::terminal::{json_text, print, print_error, warn};
+use crate::terminal::{json_text, print, print_error};
 use crate::version::{VERSION, commit};
 use formats::Format;
 use pxpl5::compare::CONFIDENCE;
@@ -119,7 +119,7 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     let format = Format::of(&args.out)?;
     let folder = rows::folder_of(&args.results);
     let results = rows::of(folder)?.ok_or_else(|| no_rows(folder))?;
-    let question = with_new_names(args.question(results.kind), &results, args.quiet);
+    let question = args.question(results.kind);
     let groups = question.groups(&results)?;
     // Failed points have no number. Nothing is drawn if no point has one.
     let missing: usize = groups.iter().map(|group| group.missing).sum();
@@ -145,22 +145,6 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     }
     let places = groups.iter().filter(|group| group.n > 0).count();
     print(&format!("{} drawn in {}; the numbers are beside it.\n", are(places as u64, "place"), args.out.display()))
-}
-
-fn with_new_names(mut question: Question, results: &ResultRows, quiet: bool) -> Question {
-    if results.kind != RowsKind::Comparison {
-        return question;
-    }
-    let is_known = |name: &str| results.rows.iter().flatten().any(|(key, _)| key == name);
-    let only = question.only.iter_mut().map(|(name, _)| name);
-    let names = [&mut question.x, &mut question.y].into_iter().chain(&mut question.by).chain(only);
-    for name in names {
-        if let Some(new) = rows::renamed(name).filter(|new| !is_known(name) && is_known(new)) {
-            warn(&[format!("the column `{name}` is called `{new}` now")], quiet);
-            *name = new;
-        }
-    }
-    question
 }
 
 fn no_rows(folder: &Path) -> CliError {

@@ -165,28 +165,3 @@ fn name_of(value: &Value) -> Option<String> {
         _ => None,
     }
 }
-
-/// Returns the current name of a renamed comparison column, or `None` for all other names.
-pub(crate) fn renamed(old: &str) -> Option<String> {
-    let new = match old {
-        "updates_hz" => "updates_hz.mean",
-        "error_px_mean" => "error.mean_px.mean",
-        "error_px_low" => "error.mean_px.low",
-        "error_px_high" => "error.mean_px.high",
-        "seeds_judged" => "error.mean_px.n",
-        "error_px_p50" => "error.pixels.p50",
-        "error_px_p90" => "error.pixels.p90",
-        "error_px_p99" => "error.pixels.p99",
-        "pixels_judged" => "error.n",
-        _ => {
-            if let Some(cause) = old.strip_prefix("error_px_by_") {
-                return Some(format!("causes.{cause}.px.mean"));
-            }
-            let statistics = ["latency_ms", "head_to_light_ms", "prediction_interval_ms"];
-            // An old name has an underscore before `mean` or `sd`, and JSON has a dot there.
-            let (name, end) = old.rsplit_once('_').filter(|(_, end)| ["mean", "sd"].contains(end))?;
-            return statistics.contains(&name).then(|| format!("{name}.{end}"));
-        }
-    };
-    Some(new.to_owned())
-}

@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::numbers::{count_of, whole};
 use crate::output::{OutputFolder, png, timeline};
 use crate::settings::SettingArgs;
-use crate::snapshot::{How, Simulated, SnapshotArgs};
+use crate::simulate::{How, Simulated, simulate};
 use crate::table::{Comparison, table};
 use crate::terminal::{print, warn};
 use clap::Args;
@@ -27,8 +27,6 @@ use std::path::PathBuf;
   pxpl5 run --pipeline jitp-scanline-racing --scene full-screen:4 --head pan:200 --tracker fastrak
   pxpl5 run --pipeline slats --scene mig --triangles 100 --set gp.triangle_ns=30000
   pxpl5 run --pipeline slats --scene mig --triangles 50 --level cycle
-  pxpl5 run --pipeline slats --scene head --triangles 100 --save-at 60 --save s.json
-  pxpl5 run --restore s.json --fields 600
 
 Exit code 0: The run succeeded. Exit code 1: The run failed, or it showed no picture after the first four and so has no latency. The report
 and all files are written also without a latency, with null for missing results. Exit code 2: The command line or a file is wrong.")]
@@ -48,8 +46,6 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    snapshot: SnapshotArgs,
-    #[command(flatten)]
     budget: BudgetArgs,
     /// Also print the effect of 10 % more of each resource. The effect comes from the pipeline's closed form if the
     /// form applies, otherwise from six more runs.
@@ -67,14 +63,15 @@ pub(crate) struct RunArgs {
 }
 
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
-    let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
+    let plan = plan(args.settings.gather()?)?;
     warn(&plan.warnings(), args.quiet);
     // Open the output first, so that a bad path fails before the run.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "run")).transpose()?;
     // Files list every picture. The report alone needs only statistics, whose size does not grow with the run.
     let keep = if folder.is_some() { KeptRecords::Everything } else { KeptRecords::Statistics };
-    let how = How { threads: args.threads, without: &args.without, keep, budget: args.budget, quiet: args.quiet };
-    let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, how)?;
+    let (without, budget, quiet) = (&args.without[..], args.budget, args.quiet);
+    let how = How { threads: args.threads, without, keep, budget, quiet, ..How::default() };
+    let Simulated { outcome, too_short } = simulate(&plan, how)?;
     let results = Results::of_run(outcome);
     let Some((_, report)) = &results.run else { return Err(no_events()) };
     // A run without a latency still writes its files and its report, and then ends with an error.

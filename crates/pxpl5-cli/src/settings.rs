@@ -44,7 +44,7 @@ pub(crate) struct SettingArgs {
     /// walk:M_PER_S along the scene's path, walk:M_PER_S:SEED (a walk that looks around as synthetic:SEED does), or a
     /// recording. A recording is a FILE.csv, .txt, .tum or .jsonl: a table with time_s,x,y,z,qw,qx,qy,qz, a file of
     /// EuRoC or TUM, a pose log, or any table with --columns.
-    #[arg(long, alias = "motion", value_name = "MOTION", allow_hyphen_values = true)]
+    #[arg(long, value_name = "MOTION", allow_hyphen_values = true)]
     head: Option<String>,
     /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz. The time is t,
     /// t_ms, t_us or t_ns; positions are x,y,z or x_mm and so on.
@@ -52,7 +52,7 @@ pub(crate) struct SettingArgs {
     columns: Option<String>,
     /// Distance from the eye, in metres, at which pixel errors are evaluated; default: the distance of the scene's
     /// content.
-    #[arg(long, alias = "judge-at", value_name = "METRES")]
+    #[arg(long, value_name = "METRES")]
     evaluate_at: Option<f64>,
     /// Tracker of the head: optical, fastrak, fastrak-polled, flock, flock-patched, 3space, 3space-patched or ideal;
     /// default optical.

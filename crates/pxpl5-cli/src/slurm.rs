@@ -37,7 +37,7 @@ pub(crate) struct Jobs<'a> {
 /// start.
 const TASK_S: f64 = 900.0;
 /// Maximum number of tasks in an array: Slurm's default (`MaxArraySize` 1001).
-const MOST_TASKS: u64 = 1_000;
+const MAX_TASKS: u64 = 1_000;
 const SAMPLE: u64 = 300;
 /// Seconds to start a task and load its scenes. Assumed.
 const START_S: f64 = 60.0;
@@ -142,9 +142,9 @@ impl Resources {
 }
 
 /// Returns the smallest number of tasks, at least `wanted`, without a common factor with the number of points. Returns
-/// a smaller number if the array would exceed [`MOST_TASKS`].
+/// a smaller number if the array would exceed [`MAX_TASKS`].
 fn even_tasks(wanted: u64, points: u64) -> u64 {
-    let most = MOST_TASKS.min(points).max(1);
+    let most = MAX_TASKS.min(points).max(1);
     let wanted = wanted.clamp(1, most);
     let is_even = |tasks: &u64| common_factor(*tasks, points) == 1;
     (wanted..=most).find(is_even).or_else(|| (1..wanted).rev().find(is_even)).unwrap_or(wanted)

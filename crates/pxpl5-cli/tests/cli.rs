@@ -440,69 +440,6 @@ fn without_arguments_the_command_runs_both_pipelines_and_writes_pictures() {
     }
 }
 
-#[test]
-fn a_run_continued_from_a_checkpoint_has_the_same_trace() {
-    let folder = Folder::new("snapshot");
-    let whole = json(&folder.run(&with(&RC, &["--json", "--save-at", "9", "--save", "s.json", "--seed", "4"])));
-    for more in [&[][..], &["--pixels", "off"], &["--pixels", "all", "--threads", "2"]] {
-        let args = with(&["run", "--restore", "s.json", "--json"], more);
-        let restored = json(&folder.run(&args));
-        assert_eq!((&restored["trace_hash"], &restored["config_hash"]), (&whole["trace_hash"], &whole["config_hash"]));
-    }
-    let longer = json(&folder.run(&["run", "--restore", "s.json", "--fields", "30", "--json"]));
-    let alone = json(&folder.run(&[
-        "run",
-        "--pipeline",
-        "rendering-control",
-        "--scene",
-        "full-screen:12",
-        "--fields",
-        "30",
-        "--seed",
-        "4",
-        "--json",
-    ]));
-    assert_eq!(longer["trace_hash"], alone["trace_hash"]);
-}
-
-#[test]
-fn an_unusable_checkpoint_is_refused_with_the_reason() {
-    let folder = Folder::new("bad-snapshot");
-    json(&folder.run(&with(&RC, &["--json", "--save-at", "9", "--save", "s.json"])));
-    let text = std::fs::read_to_string(folder.0.join("s.json")).expect("saved");
-    for (name, contents, says) in [
-        ("cut.json", text[..text.len() / 2].to_owned(), "not whole JSON"),
-        ("edited.json", text.replace("\"field\": 9", "\"field\": 8"), "damaged: expected checksum"),
-        ("newer.json", text.replace("snapshot/1", "snapshot/9"), "found pxpl5-snapshot/9"),
-        ("report.json", "{\"schema\": \"pxpl5-report/1\"}".to_owned(), "found pxpl5-report/1"),
-        ("picture.png", "\u{89}PNG".to_owned(), "not a checkpoint"),
-    ] {
-        let path = folder.file(name, contents);
-        refused(&["run", "--restore", path.to_str().expect("text")], 1, &[name, says]);
-    }
-    let path = folder.0.join("s.json");
-    let path = path.to_str().expect("text");
-    refused(&["run", "--restore", path, "--seed", "3"], 2, &["seed comes from the checkpoint"]);
-    refused(&["run", "--restore", path, "--fields", "9"], 2, &["expected at least 10"]);
-    refused(&["run", "--restore", "missing.json"], 1, &["missing.json"]);
-    refused(&with(&RC, &["--save-at", "24", "--save", "s"]), 2, &["from 1 to 23, found 24"]);
-    refused(&with(&RC, &["--save-at", "4"]), 2, &["--save"]);
-}
-
-#[test]
-fn a_checkpoint_of_a_changed_model_file_is_refused() {
-    let folder = Folder::new("changed");
-    folder.file("m.ply", ply("0 0 0", "2", 1));
-    let args =
-        ["run", "--pipeline", "slats", "--scene", "m.ply", "--fields", "12", "--save-at", "6", "--save", "s.json"];
-    assert!(folder.run(&args).status.success());
-    assert!(folder.run(&["run", "--restore", "s.json"]).status.success());
-    folder.file("m.ply", ply("0 0 1", "2", 1));
-    let output = folder.run(&["run", "--restore", "s.json"]);
-    assert_eq!(output.status.code(), Some(1));
-    assert!(err(&output).contains("s.json: the repeated run differs from the saved run"), "{}", err(&output));
-}
-
 /// Returns the names and texts of the repository's experiment files.
 fn experiments() -> Vec<(String, String)> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments");

@@ -36,7 +36,7 @@ fn folder(name: &str) -> PathBuf {
 
 #[test]
 fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up() {
-    let arguments = ["--head", "pan:200", "--scene", "full-screen:2", "--fields", "24", "--seeds", "2", "--no-limits"];
+    let arguments = ["--head", "pan:200", "--scene", "full-screen:2", "--fields", "24", "--seeds", "2"];
     let json = json(&compare(&[arguments.as_slice(), &["--causes", "--predictors", "--json"]].concat()));
     assert_eq!(json["seeds"].as_array().map(Vec::len), Some(2));
     let names: Vec<_> = rows(&json).iter().filter_map(|row| row["pipeline"].as_str()).collect();
@@ -114,7 +114,6 @@ fn a_comparison_uses_the_boards_triangles_seeds_and_settings_of_the_command_line
         "1",
         "--seed",
         "7",
-        "--no-limits",
         "--only",
         "slats,ideal",
         "--json",
@@ -131,7 +130,7 @@ fn a_comparison_uses_the_boards_triangles_seeds_and_settings_of_the_command_line
 fn the_line_with_the_least_error_names_the_references_that_it_leaves_out() {
     let shared = ["--scene", "full-screen:2", "--tracker", "ideal", "--head", "pan:200", "--fields", "30"];
     let footer = |only: &str| {
-        let output = compare(&[shared.as_slice(), &["--seeds", "1", "--no-limits", "--only", only]].concat());
+        let output = compare(&[shared.as_slice(), &["--seeds", "1", "--only", only]].concat());
         let text = String::from_utf8(output.stdout).expect("text");
         text.lines().find(|line| line.starts_with("Least error")).expect("a row has the least error").to_owned()
     };
@@ -167,7 +166,7 @@ fn a_comparison_writes_its_tables_drawings_and_four_pictures_into_the_folder() {
     let path = out.to_str().expect("a plain path");
     let shown = ["rendering-control", "slats", "vdrt", "frameless", "jitp-field", "jitp-scanline-racing"];
     let only = shown.join(",");
-    let settings = ["--fields", "24", "--seeds", "2", "--scene", "full-screen:2", "--no-limits", "--only", &only];
+    let settings = ["--fields", "24", "--seeds", "2", "--scene", "full-screen:2", "--only", &only];
     let output = compare(&[settings.as_slice(), &["--out", path]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = |name: &str| std::fs::read_to_string(out.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -225,8 +224,7 @@ fn values_that_were_not_measured_are_null_in_json_and_empty_in_the_table() {
     let out = folder("null");
     let path = out.to_str().expect("a plain path");
     let only = ["--only", "slats,ideal,frameless,jitp-dual-screen"];
-    let settings =
-        ["--head", "pan:200", "--scene", "typical:500", "--gps", "3", "--fields", "30", "--seeds", "2", "--no-limits"];
+    let settings = ["--head", "pan:200", "--scene", "typical:500", "--gps", "3", "--fields", "30", "--seeds", "2"];
     let json = json(&compare(&[settings.as_slice(), &only, &["--json", "--out", path]].concat()));
     // None of the 22 due fields of either seed was shown. The screen still shows the picture of the start.
     let heavy = row(&json, "jitp-dual-screen");

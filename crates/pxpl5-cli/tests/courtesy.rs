@@ -167,12 +167,12 @@ fn a_run_above_the_limits_of_time_or_memory_is_refused_with_an_estimate() {
             "--max-seconds",
         ),
         (
-            &["trace", "--pixels", "off", "--out", "o/t.pftrace", "--max-seconds", "60", "--max-memory", "1000000"],
+            &["trace", "--pixels", "off", "--out", "o/t.json", "--max-seconds", "60", "--max-memory", "1000000"],
             "--max-seconds",
         ),
         // Memory is the reason for the refusal on a host of any speed.
         (
-            &["trace", "--pixels", "off", "--out", "o/t.pftrace", "--max-memory", "200", "--max-seconds", "1000000000"],
+            &["trace", "--pixels", "off", "--out", "o/t.json", "--max-memory", "200", "--max-seconds", "1000000000"],
             "--max-memory",
         ),
     ] {
@@ -301,7 +301,7 @@ fn an_invalid_input_is_reported_with_its_limits_and_its_place() {
     folder.file("c.txt", b"show time\n\xe9\n");
     let mig = ["run", "--pipeline", "slats", "--scene", "mig"];
     let debug = ["debug", "--pipeline", "slats", "--scene", "mig", "--do-file", "c.txt"];
-    let cases: [(&[&str], &[&str]); 20] = [
+    let cases: [(&[&str], &[&str]); 19] = [
         (&["--fields", "99999999999999999999"], &["--fields", "at most 9223372036854775807"]),
         (&["--seed", "9223372036854775808"], &["--seed", "at most 9223372036854775807"]),
         (&["--set", "gp.triangle_ns=9223372036854775808"], &["from 0 to 9223372036854775807"]),
@@ -311,7 +311,6 @@ fn an_invalid_input_is_reported_with_its_limits_and_its_place() {
         (&["--set", "gp.tri=3"], &["did you mean `gp.triangle_ns`"]),
         (&["--set", "machine.gp=3"], &["did you mean `machine.gp."]),
         (&["--head", "h.csv"], &["h.csv", "line 1: expected the columns time_s,x,y,z,qw,qx,qy,qz"]),
-        (&["--restore", "h.csv"], &["line 2, byte 1", "0xe9"]),
         (&["limit", "--fields", "99999999999999999999"], &["from 0 to 10000000"]),
         (&["compare", "--seeds", "99999999999999999999"], &["from 1 to 1000"]),
         (&["run", "e.toml"], &["e.toml", "line 3, byte 6", "0xe9"]),
@@ -325,13 +324,7 @@ fn an_invalid_input_is_reported_with_its_limits_and_its_place() {
     ];
     for (args, says) in cases {
         let is_option = args[0].starts_with("--");
-        let args = if args[0] == "--restore" {
-            [&["run"], args].concat()
-        } else if is_option {
-            [&mig, args].concat()
-        } else {
-            args.to_vec()
-        };
+        let args = if is_option { [&mig, args].concat() } else { args.to_vec() };
         let output = folder.run(&args);
         let text = err(&output);
         assert!(matches!(output.status.code(), Some(1 | 2)), "{args:?}: {text}");

@@ -7,16 +7,13 @@ use std::os::unix::fs::{FileTypeExt, PermissionsExt, symlink};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-const TRACE: [&str; 10] =
-    ["trace", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "8", "--format", "perfetto", "--out"];
-const SAVE: [&str; 11] =
-    ["run", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "12", "--quiet", "--save-at", "4", "--save"];
+const TRACE: [&str; 8] = ["trace", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "8", "--out"];
 const FILM: [&str; 11] =
     ["film", "--pipeline", "slats", "--scene", "full-screen:4", "--from", "4", "--length", "2", "--quiet", "--out"];
 const ASSEMBLE: [&str; 4] = ["i860", "asm", "p.s", "-o"];
 
 /// Commands that write one file each, without the name of the file.
-const COMMANDS: [&[&str]; 4] = [&TRACE, &SAVE, &FILM, &ASSEMBLE];
+const COMMANDS: [&[&str]; 3] = [&TRACE, &FILM, &ASSEMBLE];
 
 fn folder(name: &str) -> Folder {
     let folder = Folder::new(name);
@@ -209,7 +206,7 @@ fn a_written_experiment_runs_again_from_any_folder() {
 #[test]
 fn a_path_that_cannot_be_written_is_reported_before_the_run() {
     let folder = folder("early");
-    for args in [["levels", "--chart"], ["levels", "--scaling"], ["figures", "--write"]] {
+    for args in [["levels", "--chart"], ["figures", "--write"]] {
         let output = folder.run(&[&args[..], &["p.s/below"]].concat());
         assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{args:?}");
         assert!(err(&output).contains("p.s/below cannot be written"), "{args:?}: {}", err(&output));
@@ -326,7 +323,7 @@ fn an_error_names_the_file_and_the_option_that_were_given() {
         |is: bool| fs::set_permissions(folder.0.join("d"), fs::Permissions::from_mode(if is { 0o555 } else { 0o755 }));
     for (args, option) in [
         (&["levels", "--chart"][..], "--chart"),
-        (&SAVE, "--save"),
+        (&FILM, "--out"),
         (&["figures", "--write"], "--write"),
         (&ASSEMBLE, "-o"),
     ] {
@@ -337,8 +334,8 @@ fn an_error_names_the_file_and_the_option_that_were_given() {
     read_only(true).expect("ours");
     // A process with permission to write everywhere gets no error.
     if fs::write(folder.0.join("d/mine"), "").is_err() {
-        let output = folder.run(&[&SAVE[..], &["d/s.json"]].concat());
-        assert!(err(&output).contains("d/s.json cannot be written"), "{}", err(&output));
+        let output = folder.run(&[&FILM[..], &["d/s.png"]].concat());
+        assert!(err(&output).contains("d/s.png cannot be written"), "{}", err(&output));
     }
     read_only(false).expect("ours");
 }

@@ -99,17 +99,7 @@ fn sweep_compare_and_limit_accept_the_pipeline() {
     succeeded(&run(&folder, &["sweep", "sweep.toml", "--out", "rows", "--quiet"]));
     let rows = std::fs::read_to_string(folder.0.join("rows/rows.jsonl")).expect("written");
     assert_eq!(rows.matches("\"status\":\"done\"").count(), 2);
-    let compared = [
-        "compare",
-        "--scene",
-        "full-screen:4",
-        "--fields",
-        "30",
-        "--only",
-        "one-at-a-time",
-        "--no-triangles",
-        "--json",
-    ];
+    let compared = ["compare", "--scene", "full-screen:4", "--fields", "30", "--only", "one-at-a-time", "--json"];
     assert!(succeeded(&run(&folder, &compared)).contains("\"pipeline\": \"one-at-a-time\""));
     let limit = succeeded(&run(&folder, &["limit", "--pipeline", "one-at-a-time", "--json"]));
     let limit: serde_json::Value = serde_json::from_str(&limit).expect("JSON");

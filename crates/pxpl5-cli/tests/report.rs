@@ -53,30 +53,14 @@ fn a_folder_without_a_report_is_refused_with_what_was_expected() {
 }
 
 #[test]
-fn traces_are_written_in_both_formats() {
+fn a_trace_is_written_as_json() {
     let folder = Folder::new("trace");
     let run = ["trace", "--pipeline", "slats", "--scene", "mig", "--triangles", "30", "--fields", "12", "--out"];
-    let output = folder.run(&[&run[..], &["a.pftrace"]].concat());
-    assert!(output.status.success(), "{}", err(&output));
-    let trace = std::fs::read(folder.0.join("a.pftrace")).expect("written");
-    // A trace is a sequence of packets, field 1 of the outermost message. The first packet describes the host's
-    // track.
-    assert_eq!(trace[0], 0x0a);
-    assert!(trace.windows(4).any(|bytes| bytes == b"host"));
     let output = folder.run(&[&run[..], &["a.json"]].concat());
     assert!(output.status.success(), "{}", err(&output));
     let json = std::fs::read(folder.0.join("a.json")).expect("written");
     let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
     assert!(json["traceEvents"].as_array().is_some_and(|events| events.len() > 100));
-    let output = folder.run(&[&run[..], &["b.txt", "--format", "chrome"]].concat());
-    assert!(output.status.success(), "{}", err(&output));
-    assert_eq!(std::fs::read(folder.0.join("b.txt")).expect("written")[0], b'{');
-    for name in ["c.txt", "c", "c.csv"] {
-        let output = folder.run(&[&run[..], &[name]].concat());
-        assert_eq!(output.status.code(), Some(2), "{name}: {}", err(&output));
-        assert!(err(&output).contains("expected a name that ends in .pftrace or .json"), "{}", err(&output));
-        assert!(!folder.names().contains(&name.to_owned()));
-    }
 }
 
 #[test]
@@ -94,7 +78,7 @@ fn a_film_has_the_requested_fields() {
 fn if_a_file_cannot_be_written_nothing_is_written() {
     let folder = Folder::new("trace-nowhere");
     folder.file("file", "");
-    let output = folder.run(&["trace", "--pipeline", "slats", "--scene", "mig", "--out", "file/a.pftrace"]);
+    let output = folder.run(&["trace", "--pipeline", "slats", "--scene", "mig", "--out", "file/a.json"]);
     assert_eq!(output.status.code(), Some(1));
     let output = folder.run(&["film", "--pipeline", "slats", "--scene", "mig", "--out", "/"]);
     assert_eq!(output.status.code(), Some(2));
@@ -130,7 +114,7 @@ fn a_report_of_a_sweep_shows_its_complete_rows() {
 fn a_report_of_a_comparison_has_a_row_for_each_pipeline_and_its_pictures() {
     let folder = Folder::new("report-comparison");
     let only = ["--only", "rendering-control,slats"];
-    let args = [&["compare", "--fields", "60", "--no-triangles", "--quiet", "--out", "c"][..], &only].concat();
+    let args = [&["compare", "--fields", "60", "--quiet", "--out", "c"][..], &only].concat();
     let output = folder.run(&args);
     assert!(output.status.success(), "{}", err(&output));
     let output = folder.run(&["report", "c"]);
@@ -196,7 +180,7 @@ fn runs_with_few_pictures_write_all_results() {
         assert_eq!(output.status.success(), is_enough, "{fields} fields, {needed} were predicted: {}", err(&output));
     }
     for (args, file) in [
-        (&["trace", "--out", "t.pftrace"][..], "t.pftrace"),
+        (&["trace", "--out", "t.json"][..], "t.json"),
         (&["film", "--from", "2", "--length", "3", "--head", "still", "--raster", "vdrt", "--out", "f.png"], "f.png"),
     ] {
         let output = folder.run(&[args, &few[..], &["10"]].concat());

@@ -84,45 +84,38 @@ impl FrameBuffer {
     }
 
     /// Returns the ring port of the board.
-    #[must_use]
     pub const fn node(&self) -> NodeId {
         self.node
     }
 
     /// Returns the video signal, which gives the place of the beam at any time.
-    #[must_use]
     pub const fn video(&self) -> &Video {
         &self.video
     }
 
     /// Returns the number of the displayed buffer, 0 or 1.
-    #[must_use]
     pub const fn displayed(&self) -> u8 {
         self.displayed
     }
 
     /// Returns the field that is being scanned, or `None` before the first retrace.
-    #[must_use]
     pub const fn scanning(&self) -> Option<PeriodNumber> {
         self.scanning
     }
 
     /// Returns a field as it was scanned. Returns `None` before the end of the field, and after the board has discarded
     /// the field.
-    #[must_use]
     pub fn seen(&self, field: PeriodNumber) -> Option<ScannedField> {
         self.seen.iter().find(|seen| seen.field == field).cloned()
     }
 
     /// Returns the last completely scanned field, or `None` before the end of the first field.
-    #[must_use]
     pub fn last_seen(&self) -> Option<ScannedField> {
         self.seen.back().cloned()
     }
 
     /// Returns the current field as it was scanned up to `now`, or `None` before the first retrace. Pixels that arrive
     /// after `now` are not included.
-    #[must_use]
     pub fn current_scan(&self, now: Time) -> Option<ScannedField> {
         let buffer = self.displayed;
         let regions: Regions = self.buffers[usize::from(buffer)].regions();
@@ -130,27 +123,23 @@ impl FrameBuffer {
     }
 
     /// Returns the contents of the displayed buffer, with all pixels that have arrived so far.
-    #[must_use]
     pub fn displayed_frame(&self) -> BufferContents {
         BufferContents { video: self.video, regions: self.buffers[usize::from(self.displayed)].regions() }
     }
 
     /// Returns the contents of buffer 0 or 1, with all pixels that have arrived so far. Returns `None` for all other
     /// numbers.
-    #[must_use]
     pub fn buffer(&self, buffer: u8) -> Option<BufferContents> {
         let regions = self.buffers.get(usize::from(buffer))?.regions();
         Some(BufferContents { video: self.video, regions })
     }
 
     /// Returns the counts of fields, messages, regions and swaps.
-    #[must_use]
     pub const fn stats(&self) -> &FrameBufferStats {
         &self.stats
     }
 
     /// Returns the events that the board could not handle.
-    #[must_use]
     pub const fn faults(&self) -> &Faults {
         &self.faults
     }

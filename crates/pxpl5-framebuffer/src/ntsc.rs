@@ -23,13 +23,11 @@ pub struct NtscDisplay {
 
 impl NtscDisplay {
     /// Returns the video signal of the boards, which gives the place of the beam at any time.
-    #[must_use]
     pub const fn video(&self) -> &Video {
         &self.video
     }
 
     /// Returns the frame buffer boards, the left eye first.
-    #[must_use]
     pub fn boards(&self) -> &[FrameBuffer] {
         &self.boards
     }
@@ -172,7 +170,6 @@ impl Display for NtscDisplay {
 /// Half of the lines belong to the previous field. Of the other lines, those above the beam belong to the current
 /// field, and those below the beam belong to the field two fields earlier. The model's phosphor does not fade, so each
 /// line stays until the beam returns.
-#[must_use]
 pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
     let now = video.field_at(time);
     let ages = [0, 1, 2].map(|age| picture_of(fields, now.before(age)));

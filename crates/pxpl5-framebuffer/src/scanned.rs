@@ -40,26 +40,22 @@ pub struct ScannedLateRegion {
 
 impl ScannedField {
     /// Returns the number of the scanned field.
-    #[must_use]
     pub const fn field(&self) -> PeriodNumber {
         self.field
     }
 
     /// Returns the number of the buffer that was scanned, 0 or 1.
-    #[must_use]
     pub const fn buffer(&self) -> u8 {
         self.buffer
     }
 
     /// Returns the parity of the scanned lines: the even or the odd lines of the frame.
-    #[must_use]
     pub const fn parity(&self) -> FieldParity {
         FieldParity::of_field(self.field)
     }
 
     /// Returns a picture of only the scanned lines: 640 x 240 pixels for NTSC. Pixels that were never written are
     /// black.
-    #[must_use]
     pub fn picture(&self) -> RgbImage {
         let mut canvas = Canvas::new(self.video.width(), self.video.height() / 2);
         self.paint(&mut canvas, |y| y / 2);
@@ -68,7 +64,6 @@ impl ScannedField {
 
     /// Returns the picture of two interlaced fields, as on a screen: 640 x 480 pixels for NTSC. If both fields have the
     /// same parity, the picture shows the later field, with black lines between.
-    #[must_use]
     pub fn interlaced_with(&self, other: &Self) -> RgbImage {
         let (earlier, later) = if self.field < other.field { (self, other) } else { (other, self) };
         let mut canvas = Canvas::new(self.video.width(), self.video.height());
@@ -81,7 +76,6 @@ impl ScannedField {
 
     /// Returns the colour of the pixel [x, y] of the frame, or `None` if this field does not scan the pixel. A pixel
     /// that was never written is black. Only the pixels of one region are computed.
-    #[must_use]
     pub fn pixel(&self, [x, y]: [u32; 2]) -> Option<[u8; 3]> {
         self.video.when(x, y, self.field)?;
         let word = self.regions.iter().rev().find_map(|region| {
@@ -98,7 +92,6 @@ impl ScannedField {
     }
 
     /// Returns the regions that arrived too late for this field, in the order of their arrival.
-    #[must_use]
     pub fn late_regions(&self) -> Vec<ScannedLateRegion> {
         let during = self.regions.iter().filter(|region| self.may_be_late(region));
         during.filter_map(|region| self.late(region)).collect()
@@ -188,7 +181,6 @@ pub struct BufferContents {
 impl BufferContents {
     /// Returns the picture of both fields, with all messages that have arrived so far. Pixels that were never written
     /// are black.
-    #[must_use]
     pub fn picture(&self) -> RgbImage {
         let mut canvas = Canvas::new(self.video.width(), self.video.height());
         for region in self.regions.iter().rev() {

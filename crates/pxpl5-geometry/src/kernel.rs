@@ -164,7 +164,6 @@ impl Kernel {
     ///
     /// Returns `None` if no kernel has regions of this size. A kernel without bins exists only for NTSC video frames
     /// and fields.
-    #[must_use]
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let picture = KernelPicture::of(viewport).filter(|picture| binned || *picture != KernelPicture::Grid)?;
         let list = KernelList::Triangles;
@@ -172,7 +171,6 @@ impl Kernel {
     }
 
     /// Returns true if this kernel can make the commands of both eyes in one pass over the triangles.
-    #[must_use]
     pub fn can_serve_both_eyes(&self) -> bool {
         self.surface == KernelSurface::Precomputed
             && self.schedule != Schedule::Straight
@@ -185,7 +183,6 @@ impl Kernel {
     ///
     /// For [`Schedule::Dual`], the assembler of this project must first choose the order and registers of the parts
     /// without branches.
-    #[must_use]
     pub fn source(&self) -> String {
         let choices = self.choices(false);
         let common = [&choices, PARAMETERS, include_str!("../kernels/list.s"), PICTURE];
@@ -202,7 +199,6 @@ impl Kernel {
     /// Returns the source of the clipper, which is the same for all versions. Execution begins at the label `clipper`.
     ///
     /// [The parameters](Self::parameters) of the kernel contain the address of the clipper.
-    #[must_use]
     pub fn clipper_source(&self) -> String {
         let choices = Self { schedule: Schedule::Compiled, ..*self }.choices(false);
         let clipper = include_str!("../kernels/clipper.s");
@@ -229,7 +225,6 @@ impl Kernel {
         ])
     }
 
-    #[must_use]
     pub const fn command_bytes(&self) -> u32 {
         match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => 120,
@@ -239,7 +234,6 @@ impl Kernel {
 
     /// Returns the kernel's parameters for a view. `clipper` is the address of the code for triangles that need
     /// clipping.
-    #[must_use]
     pub fn parameters(
         &self,
         transform: &Transform,
@@ -388,7 +382,6 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
 ///
 /// The code at `place` writes all parameters that depend on a view or a light, for [`Kernel::parameters`] and for
 /// [`crate::sphere_kernel`].
-#[must_use]
 pub fn place_source() -> String {
     let [spheres, place] = [include_str!("../kernels/sphere_parameters.s"), include_str!("../kernels/place.s")];
     [PARAMETERS, spheres, NEWTON, place].join("\n")
@@ -406,7 +399,6 @@ pub(crate) const fn halves(value: f64) -> [Word; 2] {
 }
 
 /// Returns the words of a separate triangle in the display list, with normals of unit length.
-#[must_use]
 pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
     let mut words = [0; TRIANGLE_WORDS];
     for (n, corner) in words.chunks_exact_mut(VERTEX_WORDS).enumerate() {
@@ -420,7 +412,6 @@ pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
 ///
 /// `begins` is true for the first two vertices of a strip, which make no triangle. Every later vertex makes a triangle
 /// with the two vertices before it. The order of these corners is the same for both windings.
-#[must_use]
 pub fn vertex_words(position: Vec3, normal: Vec3, colour: [u8; 3], begins: bool) -> [Word; VERTEX_WORDS] {
     let [x, y, z] = position.to_array().map(f32::to_bits);
     let [nx, ny, nz] = light::unit_normal(normal).map(f32::to_bits);

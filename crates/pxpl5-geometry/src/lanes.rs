@@ -34,12 +34,10 @@ impl Default for TriangleLanes<'_> {
 }
 
 impl<'a> TriangleLanes<'a> {
-    #[must_use]
     pub const fn len(&self) -> usize {
         self.len
     }
 
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -55,7 +53,6 @@ impl<'a> TriangleLanes<'a> {
     /// # Panics
     /// Panics if [`LANES`] triangles have already been added.
     #[inline(always)]
-    #[must_use]
     pub fn push(&mut self, [a, b, c]: [&'a SurfaceVertex; 3]) -> bool {
         let inside = a.screen.is_inside() & b.screen.is_inside() & c.screen.is_inside();
         if inside {
@@ -153,7 +150,6 @@ pub struct GouraudLanes(Expressions);
 
 impl GouraudLanes {
     /// Returns the first `len` triangles in the form that renderers evaluate.
-    #[must_use]
     pub const fn batch(&self, len: usize) -> TriangleBatch<'_> {
         TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: None }
     }
@@ -163,7 +159,6 @@ impl GouraudLanes {
     /// # Panics
     /// Panics if `i` is not below [`LANES`].
     #[inline(always)]
-    #[must_use]
     pub const fn get(&self, i: usize) -> GouraudTriangle {
         let (edges, z, rgb) = self.0.get(i);
         GouraudTriangle { edges, z, rgb }
@@ -176,7 +171,6 @@ pub struct PhongLanes(Expressions);
 
 impl PhongLanes {
     /// Returns the first `len` triangles in the form that renderers evaluate. `colours` are 0x00RRGGBB.
-    #[must_use]
     pub const fn batch(&self, len: usize, colours: [u32; LANES]) -> TriangleBatch<'_> {
         TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: Some(colours) }
     }
@@ -186,7 +180,6 @@ impl PhongLanes {
     /// # Panics
     /// Panics if `i` is not below [`LANES`].
     #[inline(always)]
-    #[must_use]
     pub const fn get(&self, i: usize, colour: [u8; 3]) -> PhongTriangle {
         let (edges, z, normal) = self.0.get(i);
         PhongTriangle { edges, z, normal, colour }
@@ -195,13 +188,11 @@ impl PhongLanes {
 
 impl Transform {
     /// Computes edges and planes like [`Self::gouraud`], but for several triangles and without touched regions.
-    #[must_use]
     pub fn gouraud_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> GouraudLanes {
         GouraudLanes(self.set_up_lanes(triangles, 0.0, stats))
     }
 
     /// Computes edges and planes like [`Self::phong`], but for several triangles and without touched regions.
-    #[must_use]
     pub fn phong_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> PhongLanes {
         PhongLanes(self.set_up_lanes(triangles, screen::NORMAL_HALF, stats))
     }

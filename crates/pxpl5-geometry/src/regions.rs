@@ -20,17 +20,14 @@ impl RegionMask {
         Self(1 << region.0)
     }
 
-    #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    #[must_use]
     pub const fn len(self) -> u32 {
         self.0.count_ones()
     }
 
-    #[must_use]
     pub const fn contains(self, region: RegionId) -> bool {
         Self::only(region).0 & self.0 != 0
     }
@@ -46,7 +43,6 @@ impl RegionMask {
     }
 
     /// Returns the set as bits. Bit n is set if region n is in the set.
-    #[must_use]
     pub const fn bits(self) -> u128 {
         self.0
     }

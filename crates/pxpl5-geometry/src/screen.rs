@@ -192,7 +192,6 @@ pub(crate) fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
 
 impl<A> ScreenTriangle<A> {
     /// Returns the expressions of the three edges over the columns and rows of the picture.
-    #[must_use]
     pub fn edges(&self, viewport: &Viewport) -> [Linear; 3] {
         self.outline.picture_edges(viewport)
     }
@@ -201,7 +200,6 @@ impl<A> ScreenTriangle<A> {
 impl ScreenTriangle<VertexColours> {
     /// Computes the linear expressions of the triangle. `viewport` must be the viewport of the
     /// [`Transform`](crate::Transform) that made the triangle.
-    #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, stats: &mut SetupStats) -> GouraudTriangle {
         let [a, b, c] = &self.surface.0;
         let colours = [values(a, colour_value), values(b, colour_value), values(c, colour_value)];
@@ -212,7 +210,6 @@ impl ScreenTriangle<VertexColours> {
 impl ScreenTriangle<SurfaceNormals> {
     /// Computes the linear expressions of the triangle. `viewport` must be the viewport of the
     /// [`Transform`](crate::Transform) that made the triangle.
-    #[must_use]
     pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongTriangle {
         let [a, b, c] = &self.surface.normals;
         let normals = [values(a, normal_value), values(b, normal_value), values(c, normal_value)];

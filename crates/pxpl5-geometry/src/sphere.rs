@@ -53,7 +53,6 @@ impl ScreenSphere {
     ///
     /// `across` has the first and the last pixel column of the rectangle, and `lines` its first and last line in the
     /// video frame.
-    #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
         self.ellipse.bounds().is_some_and(|[x, y]| overlaps(pixels(x), across) && overlaps(pixels(y), lines))
     }

@@ -46,13 +46,11 @@ pub const SPHERE_VIEW_WORDS: usize = 55;
 
 impl SphereKernel {
     /// Returns the kernel for the picture of `viewport`, or `None` if no kernel has regions of this size.
-    #[must_use]
     pub fn for_picture(surface: KernelSurface, viewport: &Viewport) -> Option<Self> {
         KernelPicture::of(viewport).map(|picture| Self { surface, picture, keeps_boxes: false })
     }
 
     /// Returns the kernel's source in i860 assembly. Execution begins at the label `spheres`.
-    #[must_use]
     pub fn source(&self) -> String {
         let choices = kernel::choices(&[
             ("PHONG", self.surface == KernelSurface::Phong),
@@ -65,7 +63,6 @@ impl SphereKernel {
         [&choices, parameters, kernel::PICTURE, kernel::NEWTON, include_str!("../kernels/sphere.s")].join("\n")
     }
 
-    #[must_use]
     pub const fn command_words(&self) -> usize {
         match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => 53,
@@ -77,7 +74,6 @@ impl SphereKernel {
     ///
     /// `command` is a renderer command with zeros as operands. For each sphere, the kernel copies this command and
     /// fills in the operands.
-    #[must_use]
     pub fn parameters(
         &self,
         transform: &Transform,
@@ -155,7 +151,6 @@ fn doubles(words: &mut [Word], values: &[f64]) {
 }
 
 /// Returns the words of a sphere in the display list.
-#[must_use]
 pub fn sphere_words(sphere: &WorldSphere) -> [Word; SPHERE_WORDS] {
     let [x, y, z] = sphere.centre.to_array().map(f32::to_bits);
     let [r, g, b] = sphere.colour.map(Word::from);

@@ -151,7 +151,6 @@ impl ScreenSphere {
     /// The square root gives the component of the normal towards the eye. Linear expressions approximate the other
     /// components, so a pixel that faces away from the light is darker than ambient light. Light from behind the sphere
     /// adds nothing.
-    #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, light: &Light, stats: &mut SetupStats) -> GouraudSphere {
         let (setup, conic) = self.common(viewport, stats);
         let direction = light.direction.map(f64::from);
@@ -176,7 +175,6 @@ impl ScreenSphere {
         GouraudSphere { setup, rgb, root_factor }
     }
 
-    #[must_use]
     pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongSphere {
         let (setup, conic) = self.common(viewport, stats);
         let middle = self.middle(self.rectangle(viewport));

@@ -30,7 +30,6 @@ impl Touched {
     /// # Panics
     /// Panics if `i` is not the index of a triangle.
     #[inline(always)]
-    #[must_use]
     pub fn get(&self, i: usize) -> Touch {
         match self.codes[i] {
             NEEDS_CLIPPING => Touch::NeedsClipping,
@@ -47,7 +46,6 @@ impl Touched {
     /// # Panics
     /// Panics if `i` is not the index of a triangle.
     #[inline(always)]
-    #[must_use]
     pub fn only_region(&self, i: usize) -> Option<RegionId> {
         let code = self.codes[i];
         (code < RegionMask::CAPACITY).then_some(RegionId(code as u16))
@@ -76,7 +74,6 @@ impl Transform {
     ///
     /// # Panics
     /// Panics if a corner's index is not in `vertices`.
-    #[must_use]
     pub fn touched(&self, vertices: &[ScreenVertex], first: u32, triangles: &[[u32; 3]]) -> Touched {
         let mut all = Touched { codes: Vec::with_capacity(triangles.len()), several: Vec::new() };
         let (chunks, rest) = triangles.as_chunks();

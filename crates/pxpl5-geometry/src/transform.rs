@@ -88,7 +88,6 @@ impl TriangleEnds {
 
     /// Returns the smallest and largest distance of a corner from the top of the video frame, over both views, in 1/16
     /// px.
-    #[must_use]
     pub fn y_range(&self) -> [i32; 2] {
         let ys = self.from.iter().chain(&self.to).map(|corner| corner.y);
         [ys.clone().min().unwrap_or_default(), ys.max().unwrap_or_default()]
@@ -227,7 +226,6 @@ impl Transform {
         })
     }
 
-    #[must_use]
     pub const fn viewport(&self) -> &Viewport {
         &self.viewport
     }
@@ -325,7 +323,6 @@ impl Transform {
     /// the same viewport.
     ///
     /// Returns `None` if a corner is outside the guard band in one of the views.
-    #[must_use]
     pub fn ends(&self, end: &Self, positions: &[Vec3; 3]) -> Option<TriangleEnds> {
         Some(TriangleEnds { from: self.snap_unclipped(positions)?, to: end.snap_unclipped(positions)? })
     }

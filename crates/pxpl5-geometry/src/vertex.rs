@@ -68,14 +68,12 @@ fn snapped_colour(component: f32) -> f32 {
 impl Transform {
     /// Transforms a vertex from its world position to the screen.
     #[inline(always)]
-    #[must_use]
     pub fn screen_vertex(&self, position: Vec3) -> ScreenVertex {
         let clip = self.to_clip.point(position);
         ScreenVertex(if self.guard.contains(clip) { self.to_screen.snap(clip) } else { NOT_INSIDE })
     }
 
     /// Transforms many vertices from their world positions to the screen, several at a time.
-    #[must_use]
     pub fn screen_vertices(&self, positions: &[Vec3]) -> Vec<ScreenVertex> {
         let mut out = Vec::with_capacity(positions.len());
         let (lanes, rest) = positions.as_chunks();
@@ -88,7 +86,6 @@ impl Transform {
     ///
     /// The slices have one element for each vertex: its position on the screen, its position in the world, and its
     /// normal in the world. The shortest slice determines the number of vertices.
-    #[must_use]
     pub fn vertex_normals(
         &self,
         on_screen: &[ScreenVertex],
@@ -105,7 +102,6 @@ impl Transform {
     ///
     /// The slices have one element for each vertex: its position on the screen, its position in the world, its normal
     /// in the world, and its colour. The shortest slice determines the number of vertices.
-    #[must_use]
     pub fn vertex_colours(
         &self,
         light: &Light,

@@ -76,20 +76,17 @@ impl Viewport {
         Ok(Self { grid, lines })
     }
 
-    #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         self.grid
     }
 
     /// Returns the lines of the video frame that the picture contains: all, even or odd.
-    #[must_use]
     pub const fn lines(&self) -> Lines {
         self.lines
     }
 
     /// Returns the distance between rows of the picture, in lines of the video frame: 1 for a whole video frame, 2 for
     /// a field.
-    #[must_use]
     pub const fn line_step(&self) -> u32 {
         match self.lines {
             Lines::Frame => 1,
@@ -98,7 +95,6 @@ impl Viewport {
     }
 
     /// Returns the line of the video frame on which the picture's first row lies: 0 or 1.
-    #[must_use]
     pub const fn first_line(&self) -> u32 {
         match self.lines {
             Lines::Frame => 0,
@@ -107,7 +103,6 @@ impl Viewport {
     }
 
     /// Returns the height of the video frame to which the picture belongs, in lines.
-    #[must_use]
     pub const fn frame_lines(&self) -> u32 {
         self.grid.height * self.line_step()
     }

@@ -65,7 +65,6 @@ pub struct GpUse {
 
 impl GpUse {
     /// Returns the CPU time of all work except messages and tokens, for example of EDIT and TRANSFORM.
-    #[must_use]
     pub const fn work(&self) -> Span {
         Span(self.busy.0.saturating_sub(self.messages.0 + self.tokens.0))
     }
@@ -147,7 +146,6 @@ impl GpBoard {
     }
 
     /// Returns the handle through which the program of priority `priority` uses the board.
-    #[must_use]
     pub fn handle_for(&self, priority: Priority) -> Gp {
         Gp { shared: Rc::clone(&self.shared), priority }
     }
@@ -263,7 +261,6 @@ impl GpBoard {
     }
 
     /// Returns the fault (an input that cannot be processed) that has stopped a program or the board.
-    #[must_use]
     pub const fn fault(&self) -> Option<&Fault> {
         self.fault.as_ref()
     }
@@ -276,13 +273,11 @@ impl GpBoard {
         }
     }
 
-    #[must_use]
     pub fn busy(&self) -> Span {
         self.shared.borrow().cpu.busy()
     }
 
     /// Returns the CPU time up to `now`, by kind of work. `now` must not be earlier than the last handled event.
-    #[must_use]
     pub fn used(&self, now: Time) -> GpUse {
         let shared = self.shared.borrow();
         GpUse { busy: shared.cpu.busy_at(now), messages: shared.message_software, tokens: shared.answer_work }
@@ -290,26 +285,22 @@ impl GpBoard {
 
     /// Returns the number of vertices that the programs have transformed
     /// ([`Work::vertex_transforms`](crate::Work::vertex_transforms)).
-    #[must_use]
     pub fn vertex_transforms(&self) -> u64 {
         self.shared.borrow().vertex_transforms
     }
 
     /// Returns true if a decision of a program has ever depended on a full backing store of a renderer
     /// ([`Gp::note_full_store`]).
-    #[must_use]
     pub fn found_store_full(&self) -> bool {
         self.shared.borrow().found_store_full
     }
 
     /// Returns the greatest number of bytes of memory that were in use at the same time.
-    #[must_use]
     pub fn memory_peak_bytes(&self) -> u64 {
         self.shared.borrow().memory.peak()
     }
 
     /// Returns a snapshot of the board at time `now`, which must not be earlier than the last handled event.
-    #[must_use]
     pub fn snapshot(&self, now: Time) -> GpSnapshot {
         GpSnapshot::of(&self.shared.borrow(), self.tasks.iter().map(|task| task.priority), now)
     }
@@ -328,20 +319,17 @@ impl GpBoard {
     }
 
     /// Removes and returns the recorded breakpoint hits, if the board runs i860 code.
-    #[must_use]
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()
     }
 
     /// Returns the name of the condition for which the board waits, for reports of deadlocks. If both programs wait,
     /// returns the condition of the foreground program.
-    #[must_use]
     pub fn blocked(&self) -> Option<&'static str> {
         Some(self.wait()?.what)
     }
 
     /// Returns true if the board waits for an event that only another board can cause. A retrace is no such event.
-    #[must_use]
     pub fn waits_for_a_board(&self) -> bool {
         self.wait().is_some_and(|wait| wait.ended_by != Cause::Retrace)
     }

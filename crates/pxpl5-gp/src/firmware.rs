@@ -218,33 +218,28 @@ impl Gp {
         Self { shared: Rc::clone(&self.shared), priority }
     }
 
-    #[must_use]
     #[inline]
     pub fn node(&self) -> NodeId {
         self.shared.borrow().node
     }
 
-    #[must_use]
     #[inline]
     pub fn now(&self) -> Time {
         self.shared.borrow().now
     }
 
-    #[must_use]
     #[inline]
     pub fn timing(&self) -> GpTiming {
         self.shared.borrow().timing
     }
 
     /// Returns the number of the current field of the first display, which began at the last retrace.
-    #[must_use]
     pub fn field(&self) -> PeriodNumber {
         self.shared.borrow().field
     }
 
     /// Returns the value of another board's status signal, or zero before its first change. The status signal of a
     /// frame buffer carries the number of its swaps.
-    #[must_use]
     pub fn status(&self, from: NodeId) -> u64 {
         self.shared.borrow().status.iter().find(|status| status.0 == from).map_or(0, |status| status.1)
     }
@@ -346,7 +341,6 @@ impl Gp {
 
     /// Returns true if the bins of `context` (one of two sets of bins) can use `bytes` bytes while the other set keeps
     /// its size.
-    #[must_use]
     pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
         bytes <= self.shared.borrow().memory.room_for_bins(context)
     }

@@ -107,23 +107,19 @@ impl Memory {
 
     /// Returns the number of bytes that the bins of `context` (one of two sets of bins) can use while the other set
     /// keeps its size.
-    #[must_use]
     pub const fn room_for_bins(&self, context: u8) -> u64 {
         self.bins.saturating_sub(self.used[Account::Bins(context ^ 1).slot()])
     }
 
-    #[must_use]
     pub const fn used_by(&self, account: Account) -> u64 {
         self.used[account.slot()]
     }
 
-    #[must_use]
     pub fn used(&self) -> u64 {
         self.used.iter().sum()
     }
 
     /// Returns the greatest number of bytes so far that were in use at the same time.
-    #[must_use]
     pub const fn peak(&self) -> u64 {
         self.peak
     }

@@ -33,7 +33,6 @@ impl Gp {
 
     /// Takes the next message if one has arrived. The program must spend the CPU time of its reception later, with
     /// [`Gp::pay_for`].
-    #[must_use]
     #[inline]
     pub fn take_message(&self) -> Option<Received> {
         self.shared.borrow_mut().inbox.pop_front()

@@ -32,7 +32,6 @@ impl CodeVersion {
     pub const ALL: [Self; 3] = [Self::Unoptimised, Self::Compiled, Self::Scheduled];
 
     /// Returns the name with which experiment files choose this version of the code.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Unoptimised => "unoptimised",
@@ -205,18 +204,15 @@ impl Processor {
         self.cpu = Cpu::new(self.core);
     }
 
-    #[must_use]
     pub const fn version(&self) -> CodeVersion {
         self.version
     }
 
-    #[must_use]
     pub const fn node(&self) -> NodeId {
         self.gp
     }
 
     /// Returns the size of the board's memory in bytes.
-    #[must_use]
     pub fn memory_bytes(&self) -> u32 {
         self.memory.0.bytes().len() as u32
     }
@@ -281,7 +277,6 @@ impl Processor {
         Ok(begin)
     }
 
-    #[must_use]
     pub const fn register(&self, number: usize) -> Word {
         self.cpu.state.r[number]
     }
@@ -367,18 +362,15 @@ impl Processor {
     }
 
     /// Returns the state of the i860 after the last call. The program counter contains the return address of this call.
-    #[must_use]
     pub const fn state(&self) -> &State {
         &self.cpu.state
     }
 
     /// Returns the sum of the clocks of all calls so far.
-    #[must_use]
     pub fn clocks(&self) -> u64 {
         self.cpu.clocks()
     }
 
-    #[must_use]
     pub const fn program(&self) -> Option<&Arc<Program>> {
         self.loaded.as_ref()
     }

@@ -68,7 +68,7 @@ pub enum CodeUse {
 }
 
 // Times of primitives that follow from i860 code (derived from code). They are means over the three application scenes,
-// measured by `pxpl5_lab::code_times`. A test of that module compares these constants with the code.
+// measured by examples/code_times. A test of pxpl5-lab compares these constants with the code.
 //
 // `message_ns` is the time of kernels/ring.s for a message or a chain, which differs between scenes
 // (docs/gp-timing.md). It is also the time of kernels/token.s for a token without entries. `token_entry_ns` is the time
@@ -207,14 +207,12 @@ pxpl5_sim::parameters::parameter_table! {
 
 impl HostTiming {
     /// Returns the time of `words` words on the link, rounded down to a picosecond.
-    #[must_use]
     pub const fn link_span(&self, words: u32) -> Span {
         Span((words as u128 * 4 * 1_000_000_000_000 / self.link_bytes_per_s as u128) as u64)
     }
 
     /// Returns the application's time for one frame, from a uniform distribution around the mean. `drawn` is a random
     /// 64-bit number that selects the time.
-    #[must_use]
     pub const fn application_span(&self, drawn: u64) -> Span {
         let jitter = if self.application_jitter_ns < self.application_ns {
             self.application_jitter_ns
@@ -227,7 +225,6 @@ impl HostTiming {
 
     /// Returns the timing table of the board that models the host. The host model uses only two values of the table:
     /// the CPU time to send or receive a message, and the memory size.
-    #[must_use]
     pub const fn board(&self) -> GpTiming {
         GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }
     }

@@ -56,7 +56,6 @@ impl Gp {
     }
 
     /// Returns true if the time of this board's work comes from i860 code.
-    #[must_use]
     pub fn runs_code(&self) -> bool {
         self.shared.borrow().processor.is_some()
     }

@@ -79,7 +79,6 @@ fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTim
 }
 
 /// Returns the mean and the standard deviation that TR94 prints for the latency of each fly-through.
-#[must_use]
 pub fn published() -> Vec<FlyThroughLatency> {
     let of_fly_throughs = FIGURES.iter().filter(|figure| FLY_THROUGHS.contains(&figure.id));
     of_fly_throughs

@@ -18,7 +18,6 @@ pub struct Changed {
 impl Changed {
     /// Returns the change from the first to the second value, in percent of the first value. `None` unless both values
     /// are numbers and the first is not 0.
-    #[must_use]
     pub fn percent(&self) -> Option<f64> {
         let [a, b] = [&self.a, &self.b].map(|value| value.as_ref().and_then(Value::as_f64));
         let (a, b) = (a?, b?);
@@ -64,7 +63,6 @@ const SETTINGS: [&str; 17] = [
 const LEFT_OUT: [&str; 4] = ["config_hash", "trace_hash", "host_seconds", "events"];
 
 /// Compares two reports in JSON, such as the contents of two files `report.json`.
-#[must_use]
 pub fn diff(a: &Value, b: &Value) -> Differences {
     let [of_a, of_b] = [a, b].map(|report| {
         let mut leaves = BTreeMap::new();

@@ -130,7 +130,7 @@ const BLOCK_WORDS: f64 = 16.0;
 const BLOCK_GPS: f64 = 20.0;
 /// Minimum time between two blocks of pixels in seconds, due to the messages of the processors. Derived: half of 12 us,
 /// because two blocks are sent at a time.
-const LEAST_BLOCK_S: f64 = 6e-6;
+const MIN_BLOCK_S: f64 = 6e-6;
 
 impl Estimate {
     /// Combines the estimates of many runs that are divided among `threads` threads. The time is the sum of all times
@@ -176,7 +176,6 @@ impl RunWork {
     }
 
     /// Returns the number of NTSC fields in which the simulated processors transform all primitives for all eyes.
-    #[must_use]
     pub fn fields_of_transform(&self) -> f64 {
         let primitives = (self.primitives * self.eyes).max(1) as f64;
         TRANSFORM_S * primitives / (NTSC_FIELD_S * self.gps.max(1) as f64)
@@ -185,7 +184,7 @@ impl RunWork {
     /// Returns the maximum number of blocks of pixels in a field, limited by the ring and by the messages of the
     /// processors.
     fn most_blocks(&self) -> f64 {
-        if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s().max(LEAST_BLOCK_S) }
+        if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s().max(MIN_BLOCK_S) }
     }
 
     /// Returns the number of blocks of pixels that the processors of the experiment can send in a field.
@@ -198,13 +197,11 @@ impl RunWork {
     }
 
     /// Estimates memory and time by the formulas in the documentation of [`crate::estimate`].
-    #[must_use]
     pub fn estimate(&self) -> Estimate {
         Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() }
     }
 
     /// Estimates the peak memory in bytes.
-    #[must_use]
     pub fn bytes(&self) -> f64 {
         let fields = self.fields as f64;
         // In long runs, observations take most of the memory. In large scenes, lists take most of the memory.
@@ -220,7 +217,6 @@ impl RunWork {
     }
 
     /// Estimates the run time in seconds on one idle core.
-    #[must_use]
     pub fn core_seconds(&self) -> f64 {
         let (fields, eyes, primitives) = (self.fields as f64, self.eyes as f64, self.primitives as f64);
         let as_code = if self.is_cycle_level { PRIMITIVE_AS_CODE_S * primitives } else { 0.0 };
@@ -278,7 +274,6 @@ const LEVELS_BYTES: f64 = 800e6;
 
 impl Study {
     /// Estimates the memory and time of the study on `threads` threads of a computer that also does other work.
-    #[must_use]
     pub fn estimate(self, threads: usize) -> Estimate {
         Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() / threads.max(1) as f64 }
     }

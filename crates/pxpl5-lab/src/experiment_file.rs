@@ -87,8 +87,6 @@ const SYNTHETIC: &str = "synthetic";
 pub struct ExperimentFile {
     registry: Arc<Registry>,
     pub(crate) settings: BTreeMap<String, Setting>,
-    /// Warnings about settings with former names.
-    pub(crate) notes: Vec<String>,
     pub(crate) sweep: Option<Setting>,
     /// File and line of each key in the table `sweep`, by the path of the key.
     pub(crate) sweep_places: BTreeMap<String, String>,
@@ -108,7 +106,6 @@ impl ExperimentFile {
         Self {
             registry,
             settings: BTreeMap::new(),
-            notes: Vec::new(),
             sweep: None,
             sweep_places: BTreeMap::new(),
             contents: BTreeMap::new(),
@@ -116,7 +113,6 @@ impl ExperimentFile {
     }
 
     /// Returns the registry of the pipelines and displays that settings can name.
-    #[must_use]
     pub const fn registry(&self) -> &Arc<Registry> {
         &self.registry
     }
@@ -124,7 +120,6 @@ impl ExperimentFile {
     /// Returns the keys for the pipelines and displays of a registry. Two groups of keys are left out. The key of a
     /// machine parameter is `machine.` followed by a path of `MachineConfig::set`. [`tracking_parameters`] lists the
     /// keys of trackers and predictors.
-    #[must_use]
     pub fn keys_of(registry: &Registry) -> Vec<FileKey> {
         keys::keys(registry)
     }
@@ -217,7 +212,6 @@ impl ExperimentFile {
     }
 
     /// Returns the line or option that set a key, or `None` if the key is not set.
-    #[must_use]
     pub fn place_of(&self, key: &str) -> Option<&str> {
         self.settings.get(key).map(|setting| setting.place.as_str())
     }
@@ -272,11 +266,6 @@ impl ExperimentFile {
 
     pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), SettingError> {
         let canonical = self.canonical_key(path, &place)?;
-        if keys::renamed(path) != path {
-            // A setting that a program has made by a call has no place in a file.
-            let place = if place.is_empty() { String::new() } else { format!("{place}: ") };
-            self.notes.push(format!("{place}{path} is now {canonical}; the next version does not accept {path}"));
-        }
         let setting = Setting { value, place, folder: folder.to_owned() };
         // A number with a unit is kept as a number in the key's own unit.
         let converted = match setting.value.as_str().map(|text| units::converted(&self.registry, &canonical, text)) {
@@ -306,11 +295,9 @@ impl ExperimentFile {
             self.sweep_places = other.sweep_places;
         }
         self.settings.extend(other.settings);
-        self.notes.extend(other.notes);
     }
 
     /// Returns true if the file describes a sweep, which runs an experiment at many points of a parameter space.
-    #[must_use]
     pub const fn is_sweep(&self) -> bool {
         self.sweep.is_some()
     }

@@ -36,7 +36,6 @@ pub struct Replay {
 }
 
 /// Returns true for a motion `walk`, which follows the scene's path.
-#[must_use]
 pub fn is_walk(name: &str) -> bool {
     name.split(':').next() == Some("walk")
 }
@@ -69,7 +68,6 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, SettingError> {
 }
 
 /// Returns true if the name of a motion is the path of a recording's file.
-#[must_use]
 pub fn is_recording(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
     [".csv", ".txt", ".tum", ".jsonl"].iter().any(|end| name.ends_with(end))

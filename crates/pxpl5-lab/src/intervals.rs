@@ -81,14 +81,12 @@ pub struct Interval {
 
 impl Interval {
     /// Returns the minimum and maximum over `one_at_a_time`, `interpretations` and `joint`.
-    #[must_use]
     pub const fn bounds(&self) -> [f64; 2] {
         let [low, high] = self.of_parameters();
         [low.min(self.interpretations[0]), high.max(self.interpretations[1])]
     }
 
     /// Returns the minimum and maximum while only the parameters vary, with the same interpretation of the papers.
-    #[must_use]
     pub const fn of_parameters(&self) -> [f64; 2] {
         [self.one_at_a_time[0].min(self.joint[0]), self.one_at_a_time[1].max(self.joint[1])]
     }
@@ -104,7 +102,6 @@ const FITTED: [(&str, u64, (u64, u64)); 2] =
 /// Parameters of the i860 are left out, because the analytic level executes no code. An interval would wrongly suggest
 /// that these parameters never matter, but they matter at the cycle level. In the intervals, the range of
 /// `gp.triangle_ns` stands for their effect.
-#[must_use]
 pub fn variations() -> Vec<Variation> {
     let parameters = MachineConfig::small_hmd().parameters().into_iter().filter(|p| !p.path.starts_with("i860."));
     let open = parameters.filter(|p| p.info.provenance != Provenance::Published && p.info.range.0 < p.info.range.1);
@@ -137,7 +134,6 @@ fn value_of(bench: &Bench, id: &str) -> Option<f64> {
 
 /// Computes the intervals of all figures at the analytic level. `bench` has the settings of all measurements. The list
 /// is empty if another thread sets the flag of `bench`.
-#[must_use]
 pub fn intervals(bench: &Bench) -> Vec<Interval> {
     let bench = Bench { level: Level::Analytic, ..bench.clone() }.with_mig(MIG.0, MIG.1);
     let variations = variations();

@@ -32,7 +32,6 @@ pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary
 /// - The deviation is 0 if neither level has a value, because pictures that are never in time have no latency.
 /// - The deviation is 0 if both values are 0.
 /// - The deviation is 100 if only one level has a value, or if only the value of the cycle level is 0.
-#[must_use]
 pub fn deviation_percent(value: f64, of_cycle: f64) -> f64 {
     match (value.is_finite(), of_cycle.is_finite()) {
         (true, true) if value == of_cycle => 0.0,

@@ -8,8 +8,7 @@
 //! | the interpretation of the papers that explains the figures best | [`interpretations`] |
 //! | effect of the host application's time, which no paper prints | [`application_time`] |
 //! | differences between the levels of detail | [`levels`] |
-//! | times of primitives in executed code | [`code_times`] |
-//! | largest number of triangles drawn in time, growth of the cost | [`limit`], [`growth`] |
+//! | largest number of triangles drawn in time | [`limit`] |
 //! | range of any setting in which an experiment reaches a goal | [`limit::OverQuery`] |
 //! | differences between two results | [`diff`] |
 //! | effect of 10 % more of each resource | [`what_if`] |
@@ -18,7 +17,7 @@
 //! | memory and time of an experiment on this computer | [`estimate`] |
 //! | experiments at many points of a parameter space | [`sweep`] |
 //! | the files of a folder that belong to one run | [`manifest`] |
-//! | experiments in text files, and saved runs that can be continued | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
+//! | experiments in text files | [`ExperimentFile`], [`Plan`] |
 //!
 //! [`registry`] lists the built-in pipelines and displays. A pipeline's entry contains its closed form, if there is
 //! one. An experiment file may also use a registry with pipelines and displays of the caller.
@@ -26,14 +25,12 @@
 #![warn(missing_docs)]
 
 pub mod application_time;
-pub mod code_times;
 pub mod compare;
 pub mod diff;
 mod error;
 pub mod estimate;
 mod experiment_file;
 pub mod figures;
-pub mod growth;
 mod head_names;
 mod host;
 pub mod interpretations;
@@ -44,7 +41,6 @@ pub mod manifest;
 mod parallel;
 pub mod pipeline_figures;
 pub mod rig;
-mod snapshot;
 mod stop;
 mod suitability;
 pub mod sweep;
@@ -58,7 +54,6 @@ pub use experiment_file::{
 pub use head_names::{PREDICTORS, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;
 pub use parallel::map as in_parallel;
-pub use snapshot::Snapshot;
 pub use stop::StopFlag;
 pub use suitability::{Suitability, suitability};
 pub use what_if::{WhatIf, what_if};
@@ -69,7 +64,6 @@ use std::sync::{Arc, LazyLock};
 /// Returns the registry of the built-in pipelines and displays.
 ///
 /// Some pipelines have a closed form.
-#[must_use]
 pub fn registry() -> Arc<Registry> {
     static OF_PAPERS: LazyLock<Arc<Registry>> = LazyLock::new(|| {
         let mut registry = Registry::of_papers();

@@ -303,7 +303,6 @@ fn is_reached(goal: Goal, summary: &Summary) -> bool {
 /// # Panics
 ///
 /// Panics above the scene generator's maximum number of triangles.
-#[must_use]
 pub fn test_scene(kind: TestScene, triangles: u32) -> Scene {
     builtin(&format!("{}:{}", kind.name(), triangles.max(1))).expect("in range")
 }

@@ -109,7 +109,6 @@ impl Manifest {
     }
 
     /// Returns the name of the command that wrote the files of the manifest.
-    #[must_use]
     pub fn command(&self) -> &str {
         &self.command
     }
@@ -120,7 +119,6 @@ impl Manifest {
     }
 
     /// Returns true if the manifest contains a file of this name.
-    #[must_use]
     pub fn lists(&self, name: &str) -> bool {
         self.names().any(|listed| listed == name)
     }
@@ -168,7 +166,6 @@ impl Manifest {
 
     /// Replaces the previous manifest `before` by this manifest. Returns the old files that must be removed: unchanged
     /// files that the new run does not write.
-    #[must_use]
     pub fn replace(&mut self, before: &Self, folder: &Path) -> Vec<PathBuf> {
         let gone = before.files.iter().chain(&before.replaced).filter(|entry| !self.lists(&entry.name));
         // Files that the user has changed are kept. A file can be in both lists if it was replaced and written again.
@@ -180,7 +177,6 @@ impl Manifest {
     }
 
     /// Returns the text of the manifest file.
-    #[must_use]
     pub fn to_text(&self) -> String {
         // Serialization of text and lists of text cannot fail.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"

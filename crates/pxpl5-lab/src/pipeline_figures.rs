@@ -84,7 +84,6 @@ impl PipelineFigure {
     }
 
     /// Returns the title of the diagram, which stands above the drawing.
-    #[must_use]
     pub fn title(&self) -> String {
         format!("{} ({})", self.shows, self.source)
     }

@@ -22,7 +22,6 @@ impl StopFlag {
     }
 
     /// Returns true after a call of [`Self::stop`].
-    #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

@@ -21,7 +21,6 @@ pub struct Suitability {
 /// # Panics
 ///
 /// Never panics, because the scene is built in.
-#[must_use]
 pub fn suitability(registry: &Registry, config: &MachineConfig) -> Vec<Suitability> {
     let scene = Arc::new(builtin("full-screen:1").expect("built in"));
     let tried = |entry: &PipelineEntry| {

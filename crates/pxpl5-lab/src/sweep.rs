@@ -91,7 +91,6 @@ impl Sweep {
     }
 
     /// Returns the settings that all points of the sweep share.
-    #[must_use]
     pub const fn base(&self) -> &ExperimentFile {
         &self.base
     }
@@ -101,7 +100,6 @@ impl Sweep {
     }
 
     /// Returns the parameter space. Each of its points is an experiment.
-    #[must_use]
     pub const fn space(&self) -> &SweepSpace {
         &self.space
     }

@@ -1,7 +1,11 @@
 //! Tests that the timing table's constants equal the times of the executed code.
 
+#[allow(dead_code, reason = "the example gp_timing uses the rest")]
+#[path = "../../../examples/code_times/mod.rs"]
+mod code_times;
+
+use code_times::{CodeTimes, code_times};
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming};
-use pxpl5_lab::code_times::{CodeTimes, code_times};
 use rayon::prelude::*;
 
 fn table(times: CodeTimes) -> Vec<u64> {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 const MOVED: [&str; 6] = ["4", "7", "7b", "12", "14", "15"];
 
 /// Maximum difference between the two levels in percent, which is the goal for the timing table.
-const MOST_PERCENT: f64 = 5.0;
+const MAX_PERCENT: f64 = 5.0;
 
 #[test]
 fn with_the_times_of_the_code_both_levels_are_within_five_percent() {
@@ -23,7 +23,7 @@ fn with_the_times_of_the_code_both_levels_are_within_five_percent() {
         assert!(table.is_finite() && cycle.is_finite(), "figure {id}: {table} and {cycle}");
         let deviation = deviation_percent(table, cycle);
         assert!(
-            deviation <= MOST_PERCENT,
+            deviation <= MAX_PERCENT,
             "figure {id}: {table} with the table, {cycle} with the code, {deviation:.1} %"
         );
     });

@@ -77,13 +77,11 @@ const MAX_BOARDS: u64 = 1_000;
 
 impl MachineConfig {
     /// Returns the numbers of graphics processors and of renderers, in this order.
-    #[must_use]
     pub fn boards(&self) -> [u64; 2] {
         [self.n_gps as u64, self.n_renderers as u64]
     }
 
     /// Returns the name of the i860 code: `unoptimised`, `compiled`, `scheduled`, or `none`.
-    #[must_use]
     pub const fn code_name(&self) -> &'static str {
         match self.code {
             Some(code) => code.name(),
@@ -116,7 +114,6 @@ impl MachineConfig {
     ///
     /// Parameters of pipelines and of the i860 are omitted if they have the values of the papers. Older versions could
     /// not change these parameters, so names of old experiments do not contain them.
-    #[must_use]
     pub fn identifying_parameters(&self) -> Vec<Parameter> {
         let all = self.parameters().into_iter();
         all.filter(|parameter| parameter.value != parameter.info.papers || !self.is_implied(parameter)).collect()
@@ -136,13 +133,11 @@ impl MachineConfig {
     }
 
     /// Returns the timing table of a pipeline that has the type `T`.
-    #[must_use]
     pub fn firmware_table<T: FirmwareTable>(&self) -> Option<&T> {
         self.firmware.iter().find_map(|(_, table)| (table.as_ref() as &dyn Any).downcast_ref())
     }
 
     /// Returns all parameters in the order of the boards.
-    #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let all = self.tables().into_iter();
         all.flat_map(|(path, table)| Parameter::of_table(path, table, path == i860::CHIP_PATH)).collect()
@@ -151,7 +146,6 @@ impl MachineConfig {
     /// Returns the parameters that differ from the preset, by path.
     ///
     /// If the preset lacks the table of a parameter, the parameter is compared with the value of the papers.
-    #[must_use]
     pub fn overrides(&self) -> BTreeMap<String, Value> {
         let Ok(preset) = Self::preset(&self.preset) else { return BTreeMap::new() };
         let of_preset: BTreeMap<String, Value> = preset.settings().into_iter().collect();
@@ -163,7 +157,6 @@ impl MachineConfig {
 
     /// Returns the changed parameters whose values lie outside the range that the sources support. The model accepts
     /// such values.
-    #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let changed = self.overrides();
         let is_supposed = |parameter: &Parameter| !parameter.is_in_range() && changed.contains_key(&parameter.path);
@@ -171,7 +164,6 @@ impl MachineConfig {
     }
 
     /// Returns the numbers of boards and the values of all parameters, each with its path.
-    #[must_use]
     pub fn settings(&self) -> Vec<(String, Value)> {
         let [n_gps, n_renderers] = self.boards();
         let boards = [("n_gps".to_owned(), n_gps.into()), ("n_renderers".to_owned(), n_renderers.into())];

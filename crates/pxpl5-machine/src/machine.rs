@@ -179,20 +179,17 @@ impl Machine {
     }
 
     /// Returns the boards and all observations so far.
-    #[must_use]
     pub const fn record(&self) -> &Record {
         &self.record
     }
 
     /// Returns the CPU time up to `now` by kind of work. There is one entry for the host and one for each graphics
     /// processor, in the order of their ports. `now` must not be earlier than the last event.
-    #[must_use]
     pub fn processors_used(&self, now: Time) -> Vec<GpUse> {
         self.processors.iter().map(|board| board.used(now)).collect()
     }
 
     /// Ends the run and returns the boards and all observations.
-    #[must_use]
     pub fn into_record(mut self) -> Record {
         self.finish_pixels();
         self.record.events = self.queue.events_taken();
@@ -205,7 +202,6 @@ impl Machine {
     }
 
     /// Returns the ring ports of all boards.
-    #[must_use]
     pub const fn ports(&self) -> &Ports {
         &self.record.ports
     }
@@ -216,7 +212,6 @@ impl Machine {
     /// # Panics
     ///
     /// Panics if no processor has this port.
-    #[must_use]
     pub fn processor(&self, node: NodeId, level: Priority) -> Gp {
         self.processors[usize::from(node.0)].handle_for(level)
     }
@@ -296,7 +291,6 @@ impl Machine {
     }
 
     /// Returns a description of the next event, or `None` if no event is pending.
-    #[must_use]
     pub fn next_event_description(&self) -> Option<EventDescription> {
         self.queue.peek().map(|(time, event)| event.happening(time, &self.record.ports))
     }
@@ -355,7 +349,6 @@ impl Machine {
     }
 
     /// Returns the number of successive idle periods of the first display. [`DEADLOCK_TICKS`] defines an idle period.
-    #[must_use]
     pub const fn idle_ticks(&self) -> u64 {
         self.idle_ticks
     }
@@ -363,13 +356,11 @@ impl Machine {
     /// Returns true if only displays, clocks and [host lines](HostLine) have pending events.
     ///
     /// The start of a display period can still end the wait of a program.
-    #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.queue.pending().all(Event::is_of_displays)
     }
 
     /// Returns all boards that wait, each with the condition for which the board waits.
-    #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         let Record { ports, renderers, ring, .. } = &self.record;
         // Programs that wait. A program that waits for a message does not state the sender of the message.
@@ -515,13 +506,11 @@ impl Machine {
     }
 
     /// Returns the host and the graphics processors, indexed by port.
-    #[must_use]
     pub fn processors(&self) -> &[GpBoard] {
         &self.processors
     }
 
     /// Returns the host or a graphics processor, or `None` for any other board.
-    #[must_use]
     pub fn board(&self, board: Board) -> Option<&GpBoard> {
         match board {
             Board::Host => self.processors.first(),
@@ -538,25 +527,21 @@ impl Machine {
     }
 
     /// Removes and returns the breakpoints reached since the last call, in the order of the boards.
-    #[must_use]
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         self.processors.iter_mut().flat_map(GpBoard::take_hits).collect()
     }
 
     /// Returns the error that stopped the machine, if any.
-    #[must_use]
     pub const fn failure(&self) -> Option<&RunError> {
         self.failure.as_ref()
     }
 
     /// Returns the number of events handled so far.
-    #[must_use]
     pub const fn events(&self) -> u64 {
         self.queue.events_taken()
     }
 
     /// Returns the number of events in the queue.
-    #[must_use]
     pub fn pending_events(&self) -> usize {
         self.queue.len()
     }

@@ -23,7 +23,6 @@ pub struct Arrival {
 impl Arrival {
     /// Returns the time at which the transfer of the region began on the ring. `message` is the duration of one
     /// message.
-    #[must_use]
     pub const fn begins_at(&self, message: Span) -> Time {
         Time(self.first_part_at.0.saturating_sub(message.0))
     }
@@ -107,7 +106,6 @@ impl Observation {
     ///
     /// Programs record the stages, except COPY. COPY lasts from the first to the last word of the picture's regions at
     /// the displays. `message` is the duration of one message.
-    #[must_use]
     pub fn stages(&self, message: Span) -> Vec<StageSpan> {
         let mut spans: BTreeMap<(PictureNumber, Option<SurfaceId>, Stage), StageSpan> = BTreeMap::new();
         // Stages for which programs have set time stamps.
@@ -142,7 +140,6 @@ impl Observation {
     ///
     /// A key of the map is the number of a swap, which counts from 0 on each surface. Frames with discarded swaps are
     /// missing.
-    #[must_use]
     pub fn frames(&self, surfaces: usize) -> BTreeMap<u64, PeriodNumber> {
         let of = |surface| self.swaps_of(surface).map(|swap| (swap.number, swap.tick));
         let mut frames: BTreeMap<u64, PeriodNumber> = of(SurfaceId(0)).collect();
@@ -154,19 +151,16 @@ impl Observation {
     }
 
     /// Returns the display period of the first swap in the run, or `None` if no display has swapped.
-    #[must_use]
     pub fn first_swap(&self) -> Option<PeriodNumber> {
         self.discarded.first_swap.or_else(|| self.swaps.iter().map(|swap| swap.tick).min())
     }
 
     /// Returns the number of swaps of a port that were discarded. Returns 0 if no swap of this port is in memory.
-    #[must_use]
     pub fn first_swap_held(&self, port: NodeId) -> u64 {
         self.swaps.iter().filter(|swap| swap.port == port).map(|swap| swap.number).min().unwrap_or_default()
     }
 
     /// Returns the largest number of regions that arrived for one picture, over the whole run.
-    #[must_use]
     pub fn most_regions_of_a_picture(&self) -> u32 {
         let mut of_pictures: BTreeMap<PictureNumber, u32> = BTreeMap::new();
         self.arrivals.iter().for_each(|arrival| *of_pictures.entry(arrival.target.picture).or_default() += 1);
@@ -174,7 +168,6 @@ impl Observation {
     }
 
     /// Returns the number of time stamps, arrivals and swaps in memory.
-    #[must_use]
     pub fn records(&self) -> usize {
         self.marks.len() + self.arrivals.len() + self.swaps.len()
     }

@@ -72,7 +72,6 @@ pub enum ObservedKind {
 
 impl ObservedKind {
     /// Returns the number of the picture that the event belongs to. Returns `None` for swaps and messages.
-    #[must_use]
     pub const fn picture(&self) -> Option<PictureNumber> {
         match *self {
             Self::Stage { picture, .. } | Self::Copied { picture, .. } | Self::Arrived { picture, .. } => Some(picture),
@@ -109,7 +108,6 @@ impl Record {
     ///
     /// The events are stages of programs, copied regions, arrived regions, swaps, and ring messages if these were
     /// recorded.
-    #[must_use]
     pub fn observed_events(&self) -> Vec<ObservedEvent> {
         let observed = self.observation();
         let board = |node| self.ports().board(node);

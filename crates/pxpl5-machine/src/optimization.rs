@@ -28,7 +28,6 @@ impl Optimization {
     pub const ALL: [Self; 4] = [Self::IdleBoards, Self::Transfers, Self::EmptyRegions, Self::RepeatedCode];
 
     /// Returns the name used on the command line.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::IdleBoards => "idle-boards",

@@ -29,7 +29,6 @@ impl Ports {
     }
 
     /// Returns the ports of the first display, for which pipelines draw.
-    #[must_use]
     pub fn display(&self) -> &[NodeId] {
         self.displays.first().map_or(&[], Vec::as_slice)
     }
@@ -40,7 +39,6 @@ impl Ports {
     }
 
     /// Returns the board that has the port `node`.
-    #[must_use]
     pub fn board(&self, node: NodeId) -> Board {
         if let Some((display, _)) = self.of_display(node) {
             return Board::Display(display);

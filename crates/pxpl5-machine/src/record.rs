@@ -40,32 +40,27 @@ pub struct Record {
 
 impl Record {
     /// Returns the configuration that the machine was built from.
-    #[must_use]
     pub const fn config(&self) -> &MachineConfig {
         &self.config
     }
 
     /// Returns the ring ports of all boards.
-    #[must_use]
     pub const fn ports(&self) -> &Ports {
         &self.ports
     }
 
     /// Returns the ring with its state at the end of the run.
-    #[must_use]
     pub const fn ring(&self) -> &Ring {
         &self.ring
     }
 
     /// Returns the renderers with their state at the end of the run, in the order of their boards.
-    #[must_use]
     pub fn renderers(&self) -> &[Renderer] {
         &self.renderers
     }
 
     /// Returns the displays with their state at the end of the run. The clock of the first display defines the periods
     /// of the run.
-    #[must_use]
     pub fn displays(&self) -> &[Box<dyn Display>] {
         &self.displays
     }
@@ -75,13 +70,11 @@ impl Record {
     /// # Panics
     ///
     /// Never panics, because [`MachineConfig::check`] refuses a machine without a display.
-    #[must_use]
     pub fn display(&self) -> &dyn Display {
         self.displays[0].as_ref()
     }
 
     /// Returns the first display of type `D`, or `None` if the machine has none.
-    #[must_use]
     pub fn display_of_kind<D: Display + 'static>(&self) -> Option<&D> {
         self.displays.iter().find_map(|display| (display.as_ref() as &dyn Any).downcast_ref())
     }
@@ -97,25 +90,21 @@ impl Record {
     }
 
     /// Returns a surface by its number.
-    #[must_use]
     pub fn surface(&self, id: SurfaceId) -> Option<&Surface> {
         self.surfaces().nth(id.index()).map(|(_, surface)| surface)
     }
 
     /// Returns the attachment of type `T`, or `None` if the pipeline added none.
-    #[must_use]
     pub fn attached<T: Attachment>(&self) -> Option<&T> {
         self.attachments.iter().find_map(|attachment| (attachment.as_ref() as &dyn Any).downcast_ref())
     }
 
     /// Returns all observations so far.
-    #[must_use]
     pub const fn observation(&self) -> &Observation {
         &self.observation
     }
 
     /// Returns all stages of all pictures. The times of COPY are measured at the displays.
-    #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.observation.stages(self.message_span())
     }
@@ -125,7 +114,6 @@ impl Record {
     /// The picture of a swap is the newest picture of which a region arrived before the swap. No region of the next
     /// picture can have arrived before the swap, because the port's second buffer becomes free only at the swap.
     /// Pictures with discarded observations are missing.
-    #[must_use]
     pub fn shown_by(&self, port: NodeId) -> Vec<Shown> {
         // Sort the arrivals at this port by time.
         let arrivals = self.observation.arrivals.iter().filter(|arrival| arrival.target.frame_buffer == port);
@@ -149,13 +137,11 @@ impl Record {
     }
 
     /// Returns the time for which a message of maximum length occupies a ring channel.
-    #[must_use]
     pub const fn message_span(&self) -> Span {
         self.ring.timing().occupancy(MAX_MESSAGE_WORDS)
     }
 
     /// Returns the start of a period of the first display.
-    #[must_use]
     pub fn tick(&self, period: PeriodNumber) -> Time {
         self.display().tick(period)
     }
@@ -167,26 +153,22 @@ impl Record {
     }
 
     /// Returns the trace hash of the run. Equal runs have equal hashes.
-    #[must_use]
     pub const fn trace_hash(&self) -> TraceHash {
         self.hash
     }
 
     /// Returns the number of events handled in the whole run.
-    #[must_use]
     pub const fn events(&self) -> u64 {
         self.events
     }
 
     /// Returns the simulated time at which the run ended. Returns time zero while the machine runs.
-    #[must_use]
     pub const fn elapsed(&self) -> Time {
         self.elapsed
     }
 
     /// Returns the CPU time of the whole run by kind of work. The host comes first, then the graphics processors. The
     /// slice is empty while the machine runs.
-    #[must_use]
     pub fn processors_used(&self) -> &[GpUse] {
         &self.processors_used
     }
@@ -194,7 +176,6 @@ impl Record {
     /// Returns the number of vertices that graphics processors transformed in the whole run.
     ///
     /// Each corner of a triangle and each centre of a sphere counts once in each pass for one eye.
-    #[must_use]
     pub const fn vertex_transforms(&self) -> u64 {
         self.vertex_transforms
     }
@@ -205,7 +186,6 @@ impl Record {
     /// If the result is false, the same run with larger backing stores has the same times. Firmware whose decisions
     /// depend on the capacity must report a full backing store with
     /// [`Gp::note_full_store`](pxpl5_gp::Gp::note_full_store).
-    #[must_use]
     pub const fn met_full_store(&self) -> bool {
         self.met_full_store
     }

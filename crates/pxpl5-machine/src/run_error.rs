@@ -39,13 +39,11 @@ pub enum RunError {
 
 impl RunError {
     /// Returns the boards that wait at a deadlock. Returns an empty list for other errors.
-    #[must_use]
     pub fn blocked(&self) -> &[Blocked] {
         if let Self::Deadlock { blocked, .. } = self { blocked } else { &[] }
     }
 
     /// Returns the simulated time at which the run ended.
-    #[must_use]
     pub const fn time(&self) -> Time {
         match self {
             Self::Fault { time, .. } | Self::Deadlock { time, .. } | Self::Ring { time, .. } => *time,

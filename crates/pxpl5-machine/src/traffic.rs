@@ -36,7 +36,6 @@ pub struct Traffic {
 
 impl Traffic {
     /// Returns the number of words in a renderer's FIFO after each change. Only complete commands count.
-    #[must_use]
     pub fn fifo_words(&self, renderer: usize) -> Vec<(Time, i64)> {
         let of = self.fifo_changes.iter().filter(|change| change.0 == renderer);
         let mut changes: BTreeMap<Time, i64> = BTreeMap::new();
@@ -50,7 +49,6 @@ impl Traffic {
     }
 
     /// Returns the number of messages and changes in memory.
-    #[must_use]
     pub fn records(&self) -> usize {
         self.transfers.len() + self.busy_channels.len() + self.fifo_changes.len()
     }

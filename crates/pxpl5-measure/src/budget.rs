@@ -72,7 +72,6 @@ impl Budget {
 /// The first mean is the time from the measurement of the pose until its report reaches the host. The second mean is
 /// the time from the start of TRANSFORM until the picture is shown, over both eyes. The sum leaves out three stages of
 /// [`Budget::total_ms`]: the wait for the pipeline, SEND and EDIT, and the scan to the middle of the picture.
-#[must_use]
 pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
     let Budget { tracking_ms, drawing_ms, showing_ms, .. } = Budget::of(outcome);
     let of_eyes = outcome.summary().eye_latency_ms();

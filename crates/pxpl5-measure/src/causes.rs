@@ -35,7 +35,6 @@ impl ErrorCauses {
     ///
     /// `whole` holds the errors of the same run in the display mode `showing` ([`PixelErrors::shown`]). Returns `None`
     /// for a run without a head, or if no pixel could be evaluated.
-    #[must_use]
     pub fn of(outcome: &Outcome, showing: Showing, whole: &PixelErrors) -> Option<Self> {
         outcome.head()?;
         if whole.evaluated == 0 {

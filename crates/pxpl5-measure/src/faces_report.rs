@@ -69,7 +69,6 @@ impl FacesReport {
     pub const SCHEMA: &'static str = "pxpl5-arp/1";
 
     /// Returns the report of a run, or `None` if the run's display is not an address recalculation display.
-    #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         let display: &AddressRecalculationPipeline = outcome.record().display_of_kind()?;
         let timing = &display.config().timing;

@@ -25,7 +25,6 @@ pub struct HeadSum {
 impl HeadSum {
     /// Creates the streaming observer. This function is the argument of
     /// [`Experiment::observed_by`](pxpl5_run::Experiment::observed_by).
-    #[must_use]
     pub fn begin() -> Box<dyn StreamingObserver> {
         Box::<Self>::default()
     }

@@ -65,7 +65,6 @@ impl EyeReport {
     /// Returns the report of a run with a head, for the display mode `showing`.
     ///
     /// Returns `None` for a run without a head, and for a display without persistence and without reprojection.
-    #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Option<Self> {
         outcome.head().and_then(|_| evaluated(outcome, showing, None).1)
     }
@@ -80,7 +79,6 @@ pub(crate) fn errors_and_eye(outcome: &Outcome) -> Option<(PixelErrors, Option<E
 }
 
 /// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.
-#[must_use]
 pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
     Some(PixelErrors::shown(outcome, outcome.head()?.head().raster().into()))
 }
@@ -100,7 +98,6 @@ impl Budget {
 
     /// Returns the latency of each picture whose records are in memory, in milliseconds. The latency lasts from the
     /// measurement of the pose until the middle of the picture is lit.
-    #[must_use]
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
         let run = outcome.final_results();
         let stages = of_pictures(&run, &poses(&run), run.steady_pictures());

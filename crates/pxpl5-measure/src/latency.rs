@@ -1,12 +1,10 @@
 //! Statistics of the latency of pictures and its parts.
 
 use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
-use std::fmt;
 
 /// Returns the latency parts of the complete pictures in the result window.
 ///
 /// Pictures whose records were discarded ([`pxpl5_run::KeptRecords`]) are left out.
-#[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
     outcome.latency_parts()
 }
@@ -22,7 +20,7 @@ pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<LatencyPartStati
 }
 
 /// One part of the latency of pictures, with its statistics.
-#[derive(Clone, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct LatencyPartStatistics {
     /// Name of the part, as in [`LATENCY_PARTS`].
     pub name: String,
@@ -31,17 +29,6 @@ pub struct LatencyPartStatistics {
     /// Statistics of this part of the latency in milliseconds, and the definition of the part.
     #[serde(flatten)]
     pub statistics: DefinedStatistics,
-}
-
-/// Prints the name that this type had when hashes of reports were first published. The hash of a report covers this
-/// text, so the printed name must not change.
-impl fmt::Debug for LatencyPartStatistics {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, in_published_latency, statistics } = self;
-        let mut text = f.debug_struct("NamedStatistics");
-        text.field("name", name).field("in_published_latency", in_published_latency);
-        text.field("statistics", statistics).finish()
-    }
 }
 
 /// Latency of one surface or of a pair of surfaces.
@@ -62,7 +49,6 @@ pub struct SurfaceStatistics {
 /// Returns the latencies of each surface and of the pair of surfaces, over the complete pictures in the result window.
 ///
 /// The result is empty if the surfaces share one TRANSFORM.
-#[must_use]
 pub fn latency_by_surface(outcome: &Outcome) -> Vec<SurfaceStatistics> {
     let labels: Vec<&str> = outcome.record().surfaces().map(|(_, surface)| surface.label).collect();
     let label_of = |surface: usize| labels.get(surface).copied().unwrap_or_default();

@@ -31,7 +31,6 @@ impl LatencyCurve {
     }
 
     /// Returns the mean of the errors at all points of the curve, in pixels.
-    #[must_use]
     pub fn mean_px(&self) -> f64 {
         self.points.iter().map(|p| p.1).sum::<f64>() / self.points.len().max(1) as f64
     }

@@ -17,7 +17,6 @@ use pxpl5_wire::{PeriodNumber, SurfaceId};
 /// Returns two pictures next to each other, the left eye on the left.
 ///
 /// The result is as high as the taller picture.
-#[must_use]
 pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> RgbImage {
     let mut both = RgbImage::new(left.width() + right.width(), left.height().max(right.height()));
     // Both copies fit, so the result can be ignored.
@@ -29,7 +28,6 @@ pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> RgbImage {
 /// Returns the picture that the viewer of a surface sees at the end of a run.
 ///
 /// Returns `None` if the experiment computes no pixels, or before anything was shown.
-#[must_use]
 pub fn picture(outcome: &Outcome, surface: impl Into<SurfaceId>) -> Option<RgbImage> {
     let surface = surface.into();
     if outcome.experiment().pixels_wanted() == Pixels::Off {
@@ -50,7 +48,6 @@ pub fn picture(outcome: &Outcome, surface: impl Into<SurfaceId>) -> Option<RgbIm
 /// If `offsets` is set, the rows are shifted by these offsets.
 ///
 /// Returns a black picture for a surface that does not exist.
-#[must_use]
 pub fn screen(
     record: &Record,
     surface: SurfaceId,

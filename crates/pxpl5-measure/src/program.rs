@@ -19,7 +19,6 @@ pub fn set_commit(commit: &'static str) {
 }
 
 /// Returns the commit from which the running program was built. Returns `None` if the program did not state a commit.
-#[must_use]
 pub fn commit() -> Option<&'static str> {
     COMMIT.get().copied()
 }

@@ -205,7 +205,6 @@ impl Measure {
     }
 
     /// Returns the quantities measured by default: latencies, update rate and missed retraces.
-    #[must_use]
     pub fn usual() -> Vec<Self> {
         let names = ["latency_fields.", "latency_ms.", "updates_hz", "missed_retraces"];
         QUANTITIES.iter().filter(|q| names.iter().any(|name| q.name.starts_with(name))).map(Self).collect()
@@ -213,7 +212,6 @@ impl Measure {
 
     /// Returns the counts that every row of results needs: pictures due, pictures not shown, and evaluated pixels.
     /// Without these counts, a mean over few pictures looks like a mean over all pictures.
-    #[must_use]
     pub fn counts() -> Vec<Self> {
         let is_count = |q: &&Quantity| [Self::DUE, Self::NOT_SHOWN, Self::EVALUATED].contains(&q.name);
         QUANTITIES.iter().filter(is_count).map(Self).collect()
@@ -229,19 +227,16 @@ impl Measure {
     pub const EVALUATED: &'static str = "error_px.n";
 
     /// Returns the name of the quantity, which includes the unit.
-    #[must_use]
     pub const fn name(&self) -> &'static str {
         self.0.name
     }
 
     /// Returns the definition of the quantity: a description of the measured interval or count, in one sentence.
-    #[must_use]
     pub const fn definition(&self) -> &'static str {
         self.0.definition
     }
 
     /// Returns the value of this quantity in `results`, or `None` if `results` has no finite value for this quantity.
-    #[must_use]
     pub fn of(&self, results: &Results) -> Option<f64> {
         let value = match self.0.value {
             Value::OfSummary(value) => Some(value(&results.summary)),
@@ -255,7 +250,6 @@ impl Measure {
     /// Returns the value of this quantity for a run, or `None` if the run has no finite value for this quantity.
     ///
     /// This method computes a report of the run. If a report already exists, [`Measure::of`] takes less time.
-    #[must_use]
     pub fn of_outcome(&self, outcome: &Outcome) -> Option<f64> {
         let value = match self.0.value {
             Value::OfSummary(value) => Some(value(&outcome.summary())),

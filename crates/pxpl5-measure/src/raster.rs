@@ -87,7 +87,6 @@ impl<'a> RasterOffsets<'a> {
     ///
     /// If the display shifts the raster (VDRT), some fields have no offset: fields without a picture, and fields whose
     /// picture was drawn for several poses.
-    #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let head = outcome.head()?;
         let run = outcome.final_results();
@@ -115,7 +114,6 @@ impl<'a> RasterOffsets<'a> {
     ///
     /// Returns `None` if nothing is shown, or if the picture was not drawn for a single pose. Also returns `None` if a
     /// device moves pictures to the newest pose instead.
-    #[must_use]
     pub fn field(&self, field: PeriodNumber) -> Option<&RasterOffset> {
         let MovedBy::Offsets(offsets) = &self.moved_by else { return None };
         offsets.get(usize::try_from(field.0).ok()?)?.as_ref()

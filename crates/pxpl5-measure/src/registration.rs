@@ -206,7 +206,6 @@ pub struct Registration<'a> {
 impl<'a> Registration<'a> {
     /// Prepares the evaluation of a run from the records that remain in memory. Returns `None` for a run without a
     /// head.
-    #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let run = outcome.final_results();
         let head = run.head?;
@@ -216,7 +215,6 @@ impl<'a> Registration<'a> {
     /// Returns the error of the pixel (`x`, `y`). The field `field` must scan the line of the pixel.
     ///
     /// Returns `None` if the picture shown was not complete in time, or if its content is behind the eye.
-    #[must_use]
     pub fn at(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Misregistration> {
         let at = self.run.record.display().lights(0, x, y, field)?;
         let Seen::Complete(drawn) = self.shown.seen(&self.run, [x, y], field, at) else { return None };

@@ -183,7 +183,6 @@ impl HeadReport {
 impl Report {
     /// Returns the number of lines that were overwritten before the display showed them. `None` if the display does not
     /// count such lines.
-    #[must_use]
     pub fn lines_never_shown(&self) -> Option<u64> {
         let counter = self.display_counters.iter().find(|counter| counter.name == Counter::LINES_NEVER_SHOWN);
         counter.map(|counter| counter.count)
@@ -309,8 +308,10 @@ impl Default for HashedText {
 
 impl Write for HashedText {
     fn write_str(&mut self, text: &str) -> fmt::Result {
-        // Two fields have the names that they had when hashes of reports were first published.
+        // These have the names that they had when hashes of reports were first published.
         let text = match text {
+            "FieldMisregistration" => "FieldError",
+            "LatencyPartStatistics" => "NamedStatistics",
             "evaluated" => "judged",
             "evaluated_at_m" => "judged_at_m",
             other => other,

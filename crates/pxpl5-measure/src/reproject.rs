@@ -109,7 +109,6 @@ pub(crate) fn move_row(
 /// Each pixel of the result is the nearest pixel of the picture. Pixels without a source are black. Returns the result
 /// and the number of these black pixels, or `None` if the picture and the view differ in size. [`Warp::Depth`] is
 /// treated as a rotation, because the function receives no depths.
-#[must_use]
 pub fn reproject(picture: &RgbImage, view: &Hmd, by: Warp, drawn_for: &Pose, now: &Pose) -> Option<(RgbImage, u64)> {
     let size = DVec2::new(f64::from(picture.width()), f64::from(picture.height()));
     if size / 2.0 != view.centre_px() {

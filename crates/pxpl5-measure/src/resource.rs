@@ -41,7 +41,6 @@ impl Resource {
     ];
 
     /// Returns the name of the resource in reports and quantities.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Retrace => "retrace",
@@ -57,7 +56,6 @@ impl Resource {
     }
 
     /// Returns a description of the work for which a picture waits at this resource.
-    #[must_use]
     pub const fn about(self) -> &'static str {
         match self {
             Self::Retrace => "the wait for the display's retrace",

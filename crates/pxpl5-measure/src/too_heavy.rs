@@ -25,7 +25,6 @@ pub struct TooHeavy {
 
 impl TooHeavy {
     /// Returns the warning that the load of an experiment was too heavy, or `None` if the load was acceptable.
-    #[must_use]
     pub fn of(experiment: &Experiment, due: &DuePictures) -> Option<Self> {
         if !due.is_too_heavy() {
             return None;

@@ -49,7 +49,7 @@ const ARRIVALS_SEARCHED: usize = 512;
 
 /// Largest number of steps that are followed for one picture. The part of the latency before these steps is assigned to
 /// [`Resource::Other`].
-const MOST_STEPS: usize = 20_000;
+const MAX_STEPS: usize = 20_000;
 
 /// The work of a run from a chosen instant on, sorted by end time.
 pub(crate) struct Trail<'a> {
@@ -107,7 +107,7 @@ impl Way {
     }
 
     fn is_over(&self) -> bool {
-        self.cursor <= self.floor || self.steps.len() >= MOST_STEPS
+        self.cursor <= self.floor || self.steps.len() >= MAX_STEPS
     }
 }
 
@@ -200,7 +200,7 @@ impl<'a> Trail<'a> {
         };
         let mut steps = 0;
         // Each step moves the cursor back in time to the end of the work that was waited for.
-        while !way.is_over() && !matches!(at, At::Begin) && steps < MOST_STEPS {
+        while !way.is_over() && !matches!(at, At::Begin) && steps < MAX_STEPS {
             at = match at {
                 At::Arrival(place) => self.before_arrival(&mut way, place),
                 At::Drawn(place) => self.before_drawn(&mut way, place),

@@ -40,7 +40,6 @@ pub struct Shares {
 impl Shares {
     /// Returns the shares of `time` for which boards were busy. `spans` has the busy time of each board. Returns `None`
     /// if there is no board or if `time` is zero.
-    #[must_use]
     pub fn of(spans: impl IntoIterator<Item = Span>, time: Time) -> Option<Self> {
         let shares: Vec<f64> = spans.into_iter().map(|span| share(span, time)).collect();
         let (busiest, max) = shares.iter().copied().enumerate().rev().max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -110,7 +109,6 @@ pub struct PortShare {
 impl Utilisation {
     /// Returns the shares of time for which the boards were busy in a finished run. Returns `None` for a machine that
     /// has not run.
-    #[must_use]
     pub fn of(record: &Record) -> Option<Self> {
         Self::until(record, record.elapsed(), record.processors_used())
     }
@@ -119,7 +117,6 @@ impl Utilisation {
     /// time zero.
     ///
     /// The time of a message on the ring is added when the message ends.
-    #[must_use]
     pub fn so_far(run: &Stepper) -> Option<Self> {
         Self::until(run.record(), run.now(), &run.machine().processors_used(run.now()))
     }

@@ -12,7 +12,7 @@ use tracking::predict::PredictorKind;
 use tracking::tracker::{TrackerConfig, TrackerFault};
 
 /// Number of records below which a run discards nothing. By default, runs discard records eight times less often.
-const LEAST_RECORDS: usize = 4_096;
+const MIN_RECORDS: usize = 4_096;
 
 fn scene(name: &str, triangles: usize) -> Scene {
     let scene = builtin(name).expect("built in");
@@ -23,7 +23,7 @@ fn experiment(pipeline: &str, machine: MachineConfig, scene: Scene) -> Experimen
     let pipeline = (Registry::of_papers().pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
     let config = pipeline.adapt(machine);
     let experiment = Experiment::with(config, pipeline, Arc::new(scene)).pixels(Pixels::Off);
-    experiment.observed_by(Some(HeadSum::begin)).least_records(LEAST_RECORDS)
+    experiment.observed_by(Some(HeadSum::begin)).least_records(MIN_RECORDS)
 }
 
 fn head(motion: impl Motion + Send + Sync + 'static, tracker: TrackerConfig, kind: PredictorKind) -> Head {

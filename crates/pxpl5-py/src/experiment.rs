@@ -82,9 +82,9 @@ impl Experiment {
     }
 
     /// Returns warnings about results that no source supports. The warnings concern parameters outside their plausible
-    /// range, runs at the cycle level in which some times do not come from executed code, and former names of keys.
+    /// range, and runs at the cycle level in which some times do not come from executed code.
     fn warnings(&self) -> Vec<String> {
-        self.plan.notes.iter().cloned().chain(self.native.warnings()).collect()
+        self.native.warnings()
     }
 
     /// Returns all parameters by path with values, units and sources, including the parameters of the tracker.
@@ -254,7 +254,7 @@ struct StoppableHost {
 
 impl fmt::Debug for StoppableHost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Attended").field("workstation", &self.workstation).finish_non_exhaustive()
+        f.debug_struct("StoppableHost").field("workstation", &self.workstation).finish_non_exhaustive()
     }
 }
 

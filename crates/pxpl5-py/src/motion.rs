@@ -240,7 +240,7 @@ const UNIT: f64 = 1e-3;
 
 impl fmt::Debug for CallableMotion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Called").field("name", &self.name).finish_non_exhaustive()
+        f.debug_struct("CallableMotion").field("name", &self.name).finish_non_exhaustive()
     }
 }
 

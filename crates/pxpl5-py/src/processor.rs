@@ -97,7 +97,7 @@ impl Processor {
     }
 }
 
-const MOST_MEMORY: usize = 1 << 30;
+const MAX_MEMORY: usize = 1 << 30;
 
 #[pymethods]
 impl Processor {
@@ -110,8 +110,8 @@ impl Processor {
     #[pyo3(signature = (program, *, memory = 0x0080_0000, entry = None))]
     fn new(program: &Program, memory: usize, entry: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let program = program.program.clone();
-        if memory > MOST_MEMORY {
-            return Err(wrong_setting(format!("memory: expected at most {MOST_MEMORY} bytes, found {memory}")));
+        if memory > MAX_MEMORY {
+            return Err(wrong_setting(format!("memory: expected at most {MAX_MEMORY} bytes, found {memory}")));
         }
         let mut ram = Ram::new(0, memory);
         let base = program.base;

@@ -392,31 +392,26 @@ impl Renderer {
 
     /// Returns true if a finished region has ever waited for room in the backing store. If false, a larger backing
     /// store would change nothing.
-    #[must_use]
     pub const fn waited_for_room(&self) -> bool {
         self.waited_for_room
     }
 
-    #[must_use]
     pub const fn stats(&self) -> RendererStats {
         self.stats
     }
 
     /// Returns the time that the board has spent on commands so far, without copies.
-    #[must_use]
     pub const fn busy(&self) -> Span {
         self.fifo.busy()
     }
 
     /// Returns the time until `now` that the board has spent on commands, without copies. `now` must not be earlier
     /// than the last handled event.
-    #[must_use]
     pub fn busy_at(&self, now: Time) -> Span {
         self.fifo.busy_at(now)
     }
 
     /// Returns the time until `now` for which copy commands have occupied the controller.
-    #[must_use]
     pub fn copying_at(&self, now: Time) -> Span {
         self.fifo.blocked_at(now)
     }
@@ -431,7 +426,6 @@ impl Renderer {
     ///
     /// Returns `None` if no context has received lists that change pixels. This is the case, for example, if the
     /// computation of pixels is off.
-    #[must_use]
     pub fn pixel_memory(&self) -> Option<Lanes> {
         if self.logs.iter().all(|log| log.lists.is_empty()) {
             return None;
@@ -459,7 +453,6 @@ impl Renderer {
     }
 
     /// Returns a snapshot of the board at time `now`, which must not be earlier than the last handled event.
-    #[must_use]
     pub fn snapshot(&self, now: Time) -> RendererSnapshot {
         let passed = self.fifo.passed(now);
         RendererSnapshot {
@@ -479,7 +472,6 @@ impl Renderer {
     ///
     /// A command takes effect when it starts. Returns `None` if [`Renderer::watch_fifo`] was not called, or if no
     /// command has changed a pixel.
-    #[must_use]
     pub fn array_at(&self, now: Time) -> Option<Lanes> {
         let started = self.fifo.passed(now)?.started;
         self.sent.as_ref()?.executed(started, self.pool.layout())
@@ -494,7 +486,6 @@ impl Renderer {
     }
 
     /// Returns the region to copy and its frame buffer if a copy blocks the board.
-    #[must_use]
     pub fn blocked(&self) -> Option<CopyTarget> {
         Some(self.copying.filter(|_| self.fifo.is_blocked())?.target)
     }

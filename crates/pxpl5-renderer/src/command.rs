@@ -83,7 +83,6 @@ impl CommandKind {
         Self::WaitBacking,
     ];
 
-    #[must_use]
     pub const fn from_opcode(opcode: u8) -> Option<Self> {
         match opcode {
             1..=11 => Some(Self::ALL[opcode as usize - 1]),
@@ -91,13 +90,11 @@ impl CommandKind {
         }
     }
 
-    #[must_use]
     pub const fn opcode(self) -> u8 {
         self as u8
     }
 
     /// Returns the length of the command in words. The length is the same in every layout.
-    #[must_use]
     pub const fn words(self) -> u32 {
         match self {
             Self::SelectRegion => 2,
@@ -153,7 +150,6 @@ pub enum Command {
 }
 
 impl Command {
-    #[must_use]
     pub const fn kind(&self) -> CommandKind {
         match self {
             Self::SelectRegion(_) => CommandKind::SelectRegion,

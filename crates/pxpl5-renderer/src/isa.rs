@@ -96,7 +96,6 @@ pub enum Expression {
 }
 
 impl Expression {
-    #[must_use]
     pub const fn bits(&self) -> u32 {
         match self {
             Self::Linear(_) | Self::LinearAgain => LINEAR_BITS,
@@ -104,7 +103,6 @@ impl Expression {
         }
     }
 
-    #[must_use]
     pub const fn is_quadratic(&self) -> bool {
         matches!(self, Self::Quadratic(_) | Self::QuadraticAgain)
     }

@@ -39,7 +39,6 @@ impl fmt::Debug for ArrayPool {
 
 impl ArrayPool {
     /// Creates a pool, whose arrays divide pixel memory as `layout` states.
-    #[must_use]
     pub fn new(layout: Layout) -> Arc<Self> {
         Arc::new(Self { layout, idle: Mutex::default(), empty_regions: Mutex::default() })
     }

@@ -111,32 +111,27 @@ impl Layout {
     }
 
     /// Returns the bit fields as a plan, from which a caller can make a similar layout.
-    #[must_use]
     pub const fn plan(&self) -> &ContextPlan {
         &self.0
     }
 
     /// Returns the address of the first bit of context `context` in pixel memory.
-    #[must_use]
     pub const fn context_base(&self, context: u8) -> u8 {
         context.wrapping_mul(self.0.context_bits)
     }
 
     /// Returns the bits of pixel memory for colour component `index`: 0 (red), 1 (green) or 2 (blue).
-    #[must_use]
     pub const fn component(&self, index: u8) -> Operand {
         self.0.colour.part((2 - index) * COLOUR_BITS as u8, COLOUR_BITS as u8)
     }
 
     /// Returns the number of low bits of a depth expression that pixel memory does not hold.
-    #[must_use]
     pub const fn z_shift(&self) -> u8 {
         (Z_FRACTION_BITS + Z_BITS) as u8 - self.0.z.width
     }
 
     /// Returns the bits of pixel memory for component `index` of the normal: 0 (x), 1 (y) or 2 (z). Returns `None` if
     /// the layout has no normals.
-    #[must_use]
     pub fn normal(&self, index: u8) -> Option<Operand> {
         let all = self.0.normal?;
         Some(all.part(index * NORMAL_BITS as u8, NORMAL_BITS as u8).signed())
@@ -144,7 +139,6 @@ impl Layout {
 
     /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch memory has only 30 to 35 bits.
     /// Returns `None` if the scratch memory is smaller.
-    #[must_use]
     pub fn root_bits(&self) -> Option<u8> {
         match self.0.scratch?.width {
             36.. => Some(12),
@@ -154,7 +148,6 @@ impl Layout {
     }
 
     /// Returns the bit ranges of all bit fields, in the order of the bit fields in [`ContextPlan`].
-    #[must_use]
     pub fn ranges(&self) -> Vec<FieldRange> {
         ranges(&self.0)
     }

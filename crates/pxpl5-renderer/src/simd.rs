@@ -42,7 +42,6 @@ impl Vectors {
     const ALL: [Self; 4] = [Self::Portable, Self::Simd128, Self::Avx2, Self::Avx512];
 
     /// Returns all vector units that the running computer has, from the slowest to the fastest.
-    #[must_use]
     pub fn available() -> Vec<Self> {
         Self::ALL.into_iter().filter(|vectors| vectors.present()).collect()
     }

@@ -33,7 +33,6 @@ pub struct RendererSnapshot {
 
 impl RendererSnapshot {
     /// Returns true while the controller executes commands other than copies, or has such commands in its FIFO.
-    #[must_use]
     pub fn works(&self) -> bool {
         self.executing || self.fifo_words.is_some_and(|words| words > 0)
     }

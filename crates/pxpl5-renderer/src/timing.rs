@@ -41,13 +41,11 @@ pxpl5_sim::parameters::parameter_table! {
 
 impl RendererTiming {
     /// Returns the time to move one 32-bit block of all pixels to or from the backing store.
-    #[must_use]
     pub fn backing_block(&self) -> Span {
         Clock::from_hz(self.clock_hz).map_or(Span::ZERO, |clock| clock.span(Cycles(self.backing_block_clocks)))
     }
 
     /// Returns the number of finished regions for which the backing store has room: 128 with the default values.
-    #[must_use]
     pub const fn backing_regions(&self) -> u64 {
         match self.backing_bits.checked_div(self.kept_bits) {
             Some(regions) => regions,
@@ -57,7 +55,6 @@ impl RendererTiming {
 
     /// Returns the execution time of one command. Returns `None` for the copy of a region, because the duration of a
     /// copy depends on the frame buffer.
-    #[must_use]
     pub fn span(&self, kind: CommandKind) -> Option<Span> {
         let clocks = match kind {
             CommandKind::SelectRegion => self.select_clocks,

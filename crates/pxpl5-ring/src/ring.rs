@@ -154,38 +154,32 @@ impl Ring {
             && self.destinations.iter().zip(heads_of_ports).all(|(port, heads)| port.heads == heads)
     }
 
-    #[must_use]
     pub const fn timing(&self) -> &RingTiming {
         &self.timing
     }
 
-    #[must_use]
     pub fn n_nodes(&self) -> u16 {
         self.sources.len() as u16
     }
 
     /// Returns the statistics of all messages that had ended at the last grant or [`Ring::settle`].
-    #[must_use]
     pub const fn stats(&self) -> &RingStats {
         &self.stats
     }
 
     /// Returns the time for which a port has received messages, including overhead and stalls. Only ended messages
     /// count. The result is zero for a port that does not exist.
-    #[must_use]
     pub fn receiving(&self, port: NodeId) -> Span {
         self.receiving.get(usize::from(port.0)).copied().unwrap_or(Span::ZERO)
     }
 
     /// Returns the number of refused messages and answers, and the reason for the first refusal.
-    #[must_use]
     pub const fn refusals(&self) -> &Refusals {
         &self.refusals
     }
 
     /// Returns the number of occupied channels. Unless [`Ring::watch`] was called, the channel of an ended message can
     /// still count as occupied.
-    #[must_use]
     pub fn busy_channels(&self) -> u32 {
         self.channels.busy()
     }
@@ -197,7 +191,6 @@ impl Ring {
     }
 
     /// Returns true if, at the last grant or [`Ring::settle`], no message was on a channel or waited for a channel.
-    #[must_use]
     pub fn is_idle(&self) -> bool {
         self.heads.is_empty() && self.channels.is_idle()
     }
@@ -219,7 +212,6 @@ impl Ring {
 
     /// Returns the messages that wait for a grant as first of their queue, and the messages that wait for their
     /// receiver's answer. The messages are sorted by source.
-    #[must_use]
     pub fn waiting(&self) -> Vec<WaitingMessage> {
         let heads = self.heads.iter().filter_map(|head| self.waiting_head(*head));
         let mut all: Vec<_> = self.channels.all_unanswered().chain(heads).collect();

@@ -68,7 +68,6 @@ pub enum WaitReason {
 impl WaitingMessage {
     /// Returns the port of the board that must act before the message can continue: the receiver, or the board that
     /// occupies or reserves the receiver. Returns `None` if the message waits for the ring.
-    #[must_use]
     pub const fn waits_on(&self) -> Option<NodeId> {
         match self.reason {
             WaitReason::Acceptance => Some(self.destination),
@@ -78,7 +77,6 @@ impl WaitingMessage {
     }
 
     /// Returns the condition for which the message waits, for reports of deadlocks. `name` returns the name of a board.
-    #[must_use]
     pub fn waits_for<N: fmt::Display>(&self, name: impl Fn(NodeId) -> N) -> String {
         let to = name(self.destination);
         let words = self.words;

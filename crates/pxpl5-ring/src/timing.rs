@@ -27,26 +27,22 @@ pxpl5_sim::parameters::parameter_table! {
 
 impl RingTiming {
     /// Returns the time from an event inside a board to its signal at the ring port.
-    #[must_use]
     pub const fn signal(&self) -> Span {
         Span::from_ns(self.signal_ns)
     }
 
     /// Returns the time in which a channel moves one word.
-    #[must_use]
     pub const fn word(&self) -> Span {
         Span::from_ns(self.word_ns)
     }
 
     /// Returns the time for which a message of `words` words occupies its channel and ports, without stalls.
-    #[must_use]
     pub const fn occupancy(&self, words: u32) -> Span {
         Span::from_ns((self.overhead_words + words as u64) * self.word_ns)
     }
 
     /// Returns the latency from one port to another on a ring of `n_nodes` ports. A message from a port to itself
     /// travels once around the ring.
-    #[must_use]
     pub fn latency(&self, source: NodeId, destination: NodeId, n_nodes: u16) -> Span {
         let from = u64::from(source.0);
         let to = u64::from(destination.0);

@@ -19,7 +19,6 @@ impl Stepper {
 
     /// Returns one line of text about what a board does now. Returns `None` for the ring, and for a board that the
     /// machine does not have.
-    #[must_use]
     pub fn description(&self, board: Board) -> Option<String> {
         match board {
             Board::Host | Board::Gp(_) => Some(processor_line(&self.processor(board)?)),
@@ -31,7 +30,6 @@ impl Stepper {
 
     /// Returns lines of text about a processor: its messages, memory, busy time and code. Returns no lines for boards
     /// of other kinds.
-    #[must_use]
     pub fn details(&self, board: Board) -> Vec<String> {
         let Some(snapshot) = self.processor(board) else { return Vec::new() };
         let ports = self.record().ports();
@@ -59,7 +57,6 @@ impl Stepper {
     }
 
     /// Returns the line that the beam of the first display draws now. Returns `None` before the first line of a period.
-    #[must_use]
     pub fn beam_line(&self) -> Option<u32> {
         let display = self.record().display();
         let lines = display.surfaces().first()?.height;
@@ -70,7 +67,6 @@ impl Stepper {
     /// Returns the memory of one pixel of a renderer, divided into bit fields, after all commands that have started.
     ///
     /// Returns `None` under the same conditions as [`Stepper::array`], and for `x` or `y` outside the array.
-    #[must_use]
     pub fn pixel_fields(&self, renderer: usize, x: u32, y: u32) -> Option<Vec<PixelField>> {
         if x >= REGION_SIZE || y >= REGION_SIZE {
             return None;
@@ -127,7 +123,6 @@ pub struct PixelField {
 }
 
 /// Returns the bit of the pixel in column `x` and row `y` of a renderer's array. `plane` holds one bit of every pixel.
-#[must_use]
 pub const fn bit_of(plane: &Plane, x: u32, y: u32) -> bool {
     plane[(2 * y + x / 64) as usize] >> (x % 64) & 1 == 1
 }
@@ -157,13 +152,11 @@ fn program(program: &ProgramSnapshot) -> String {
 }
 
 /// Formats an instant in milliseconds, to the nanosecond: `16.683333 ms`.
-#[must_use]
 pub fn in_ms(at: Time) -> String {
     format!("{}.{:06} ms", at.0 / 1_000_000_000, at.0 % 1_000_000_000 / 1_000)
 }
 
 /// Formats a span in microseconds, to the nanosecond: `21.700 us`.
-#[must_use]
 pub fn in_us(span: Span) -> String {
     format!("{}.{:03} us", span.0 / 1_000_000, span.0 % 1_000_000 / 1_000)
 }

@@ -15,7 +15,7 @@ use crate::result_window::ResultWindow;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-pub(crate) const LEAST_UPDATES: u64 = 2;
+pub(crate) const MIN_UPDATES: u64 = 2;
 
 /// Numbers of pictures that were due in the result window of a run.
 ///
@@ -51,7 +51,6 @@ impl DuePictures {
     /// that was not over when the run ended.
     ///
     /// A picture also counts as shown if it is shown before its due period, but after the preceding due period.
-    #[must_use]
     pub fn count(
         pictures: impl Iterator<Item = (PeriodNumber, PictureResult)>,
         periods_a_picture: u64,
@@ -77,13 +76,11 @@ impl DuePictures {
     }
 
     /// Returns the number of due pictures that were not shown: late, incomplete and missed pictures.
-    #[must_use]
     pub const fn not_shown(&self) -> u64 {
         self.due - self.shown
     }
 
     /// Returns the share of due pictures that were not shown, from 0 to 1.
-    #[must_use]
     pub const fn not_shown_share(&self) -> f64 {
         self.not_shown() as f64 / self.due as f64
     }
@@ -92,16 +89,14 @@ impl DuePictures {
     ///
     /// This is the case if any due picture was late or incomplete, or if fewer than half of the due pictures were
     /// shown.
-    #[must_use]
     pub const fn is_too_heavy(&self) -> bool {
         self.late + self.incomplete > 0 || 2 * self.shown < self.due
     }
 
     /// Returns the number of pictures shown per second, for a display period of `period_ms` milliseconds. Returns
     /// `None` if fewer than two pictures were shown.
-    #[must_use]
     pub fn updates_hz(&self, period_ms: f64) -> Option<f64> {
         let window_ms = (self.due * self.periods_a_picture) as f64 * period_ms;
-        (self.pictures >= LEAST_UPDATES).then_some(self.pictures as f64 * 1e3 / window_ms)
+        (self.pictures >= MIN_UPDATES).then_some(self.pictures as f64 * 1e3 / window_ms)
     }
 }

@@ -39,7 +39,6 @@ impl Cause {
     pub const ALL: [Self; 5] = [Self::Latency, Self::ScanOut, Self::Noise, Self::Prediction, Self::Sampling];
 
     /// Returns the name of the cause of error in tables and files.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Latency => "latency",

@@ -3,7 +3,7 @@ use crate::fingerprint::Fingerprint;
 use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::host::{BareHost, Host};
-use crate::kept_records::{KeptRecords, LEAST_RECORDS};
+use crate::kept_records::{KeptRecords, MIN_RECORDS};
 use crate::level::Level;
 use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
@@ -41,7 +41,6 @@ pxpl5_sim::parameters::named!(Pixels, "choice of pixels", Pixels::ALL);
 pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
 /// Returns the parameters that the user set to values outside the range that the sources support.
-#[must_use]
 pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
     let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());
     let usual = usual.unwrap_or_default();
@@ -52,7 +51,6 @@ pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Para
 ///
 /// The times of work without code come from the parameters `gp.*` of the timing table. Returns `None` if all work has
 /// code, or if the level is not [`Level::Cycle`].
-#[must_use]
 pub fn warning_without_code(level: Level, config: &MachineConfig, pipeline: &dyn Pipeline) -> Option<String> {
     let what = (level == Level::Cycle).then(|| pipeline.without_code(config)).flatten()?;
     let name = pipeline.name();
@@ -120,7 +118,7 @@ impl Experiment {
             shuffle: None,
             traffic: false,
             keep: KeptRecords::Everything,
-            least_records: LEAST_RECORDS,
+            least_records: MIN_RECORDS,
             disabled: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
@@ -271,7 +269,6 @@ impl Experiment {
 
     /// Returns an estimate of how many primitives the scene can have, after decimation, so that all pictures are in
     /// time. Returns `None` if the pipeline has no closed form, or if the formulas give no estimate.
-    #[must_use]
     pub fn primitives_in_time(&self) -> Option<u64> {
         (self.estimates?.primitives_in_time)(self)
     }
@@ -286,7 +283,6 @@ impl Experiment {
 
     /// Returns the head-mounted display with the resolution of the papers' display. A run uses the resolution of the
     /// machine's display instead.
-    #[must_use]
     pub const fn hmd(&self) -> &Hmd {
         &self.hmd
     }
@@ -321,20 +317,17 @@ impl Experiment {
     }
 
     /// Returns the correction that the head-mounted display applies to a picture during scan-out.
-    #[must_use]
     pub fn raster(&self) -> Raster {
         self.head.as_ref().map(|head| head.raster()).unwrap_or_default()
     }
 
     /// Returns the instant for which pictures are drawn, such as the middle of the time in which a picture lights.
-    #[must_use]
     pub fn aim(&self) -> Aim {
         self.head.as_ref().map(|head| head.aim()).unwrap_or_default()
     }
 
     /// Returns a hash of everything that affects the results: machine, pipeline with its settings, contents of the
     /// scene, number of fields, seed, level and head.
-    #[must_use]
     pub fn config_hash(&self) -> Fingerprint {
         let mut hash = Fingerprint::default();
         // Machine: the code version, the displays, the number of boards, and all parameters that affect the trace.
@@ -373,7 +366,6 @@ impl Experiment {
     }
 
     /// Returns the parameters of machine, tracker and predictor whose values no source supports ([`out_of_range`]).
-    #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(|head| head.unsupported_parameters()).cloned();
         out_of_range(&self.config, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
@@ -381,7 +373,6 @@ impl Experiment {
 
     /// Returns warnings about parameters without a source ([`out_of_range`]), work without code
     /// ([`warning_without_code`]), and problems in the files of the head's motion and of the scene.
-    #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let supposed = self.out_of_range();
         let of_table = warning_without_code(self.level, &self.config, self.pipeline.as_ref());
@@ -391,25 +382,21 @@ impl Experiment {
     }
 
     /// Returns the scene that the pipeline draws.
-    #[must_use]
     pub const fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
     /// Returns the machine's configuration before the pipeline changes it ([`Pipeline::adapt`]).
-    #[must_use]
     pub const fn config(&self) -> &MachineConfig {
         &self.config
     }
 
     /// Returns the pipeline of the experiment.
-    #[must_use]
     pub const fn pipeline(&self) -> &Arc<dyn Pipeline> {
         &self.pipeline
     }
 
     /// Returns the number of fields to simulate.
-    #[must_use]
     pub const fn length(&self) -> u64 {
         self.fields
     }
@@ -419,25 +406,21 @@ impl Experiment {
     }
 
     /// Returns the seed of the pseudo-random head motion.
-    #[must_use]
     pub const fn motion_seed(&self) -> u64 {
         self.seed
     }
 
     /// Returns the level of detail of the simulation.
-    #[must_use]
     pub const fn modelling_level(&self) -> Level {
         self.level
     }
 
     /// Returns the choice of the pixels that the run computes.
-    #[must_use]
     pub const fn pixels_wanted(&self) -> Pixels {
         self.pixels
     }
 
     /// Returns the head with its tracker, or `None` if the experiment has none.
-    #[must_use]
     pub const fn tracked_head(&self) -> Option<&Arc<Head>> {
         self.head.as_ref()
     }

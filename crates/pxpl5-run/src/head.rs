@@ -175,7 +175,6 @@ impl Head {
 
     /// Returns the distance at which pixel errors are evaluated, in metres. `None` means the distance of the scene's
     /// content.
-    #[must_use]
     pub const fn evaluate_at_m(&self) -> Option<f64> {
         self.evaluate_at_m
     }
@@ -188,7 +187,6 @@ impl Head {
     }
 
     /// Returns the coordinates in which the motion is given.
-    #[must_use]
     pub const fn place(&self) -> HeadPlace {
         self.place
     }
@@ -214,7 +212,6 @@ impl Head {
     }
 
     /// Returns the parameters that [`Head::with_unsupported_parameters`] has stored.
-    #[must_use]
     pub fn unsupported_parameters(&self) -> &[Parameter] {
         &self.unsupported_parameters
     }
@@ -242,19 +239,16 @@ impl Head {
     }
 
     /// Returns the instant for which poses are predicted, such as the middle of the time in which a picture lights.
-    #[must_use]
     pub const fn aim(&self) -> Aim {
         self.aim
     }
 
     /// Returns the correction that the head-mounted display applies to a picture during scan-out.
-    #[must_use]
     pub const fn raster(&self) -> Raster {
         self.raster
     }
 
     /// Returns a hash of the motion and of all settings of the head.
-    #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
         let mut hash = Fingerprint::default();
         let mut add = |key: &str, value: &dyn fmt::Display| hash.setting(key, value);
@@ -289,13 +283,11 @@ impl Head {
     }
 
     /// Returns true if the head's pose is predicted.
-    #[must_use]
     pub fn predicts(&self) -> bool {
         self.predictor.kind != PredictorKind::None
     }
 
     /// Returns true if a run tunes, or has tuned, the parameters of the predictor.
-    #[must_use]
     pub fn is_tuned(&self) -> bool {
         self.numbers != Numbers::Given
     }
@@ -337,14 +329,12 @@ impl Head {
     }
 
     /// Returns the predictor's kind and parameters. In an outcome, the parameters are those that the run used.
-    #[must_use]
     pub const fn predictor(&self) -> &PredictorConfig {
         &self.predictor
     }
 
     /// Returns the training data from which the predictor was tuned. Returns `None` before the run, or if the user set
     /// the parameters.
-    #[must_use]
     pub const fn training(&self) -> Option<&Training> {
         if let Numbers::Tuned(Some(training), _) = &self.numbers { Some(training) } else { None }
     }
@@ -352,25 +342,21 @@ impl Head {
     /// Returns the training data from which the parameters for orientations were tuned separately, or `None`.
     ///
     /// Only a display that turns pictures by the newest orientation needs separate parameters.
-    #[must_use]
     pub const fn training_of_turns(&self) -> Option<&Training> {
         if let Numbers::Tuned(_, Some(training)) = &self.numbers { Some(training) } else { None }
     }
 
     /// Returns the kind of filter that computes poses from the tracker's reports.
-    #[must_use]
     pub const fn predictor_kind(&self) -> PredictorKind {
         self.predictor.kind
     }
 
     /// Returns the tracker that reports the pose of the head.
-    #[must_use]
     pub const fn tracker(&self) -> &TrackerModel {
         &self.tracker
     }
 
     /// Returns the head's motion, in the tracker's coordinates.
-    #[must_use]
     pub fn motion(&self) -> &(dyn Motion + Send + Sync) {
         self.motion.as_ref()
     }

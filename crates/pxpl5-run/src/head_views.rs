@@ -150,14 +150,12 @@ impl HeadViews {
 
     /// Returns the measurement time of the first report that reaches the host at the instant `arrived` or later.
     /// Returns `None` if no such report exists.
-    #[must_use]
     pub fn measured_at(&self, arrived: Time) -> Option<Time> {
         Some(self.schedule().from(arrived)?.measured)
     }
 
     /// Returns the arrival time of the last report that reached the host at `instant` or earlier. Returns `None` before
     /// the first report.
-    #[must_use]
     pub fn report_by(&self, instant: Time) -> Option<Time> {
         Some(self.schedule().by(instant)?.arrives)
     }
@@ -212,7 +210,6 @@ impl HeadViews {
 
     /// Returns the arrival time of the first report that reaches the host after an instant. Returns `None` if no later
     /// report exists.
-    #[must_use]
     pub fn report_after(&self, after: Time) -> Option<Time> {
         Some(self.schedule().after(after)?.arrives)
     }
@@ -224,19 +221,16 @@ impl HeadViews {
     }
 
     /// Returns the head's actual pose at a time, without tracker and prediction, in the scene's coordinates.
-    #[must_use]
     pub fn truth(&self, time: Time) -> Pose {
         self.in_scene(&self.head.motion.pose(time.0))
     }
 
     /// Returns the head with its tracker and predictor.
-    #[must_use]
     pub fn head(&self) -> &Head {
         &self.head
     }
 
     /// Returns the scene in which the head moves.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -245,7 +239,6 @@ impl HeadViews {
     /// unknown.
     ///
     /// The default is the distance from the head's start to the centre of the scene, but at least 0.1 metres.
-    #[must_use]
     pub fn distance_m(&self) -> f64 {
         let (centre, _) = self.scene.bounding_sphere();
         self.head.evaluate_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
@@ -253,7 +246,6 @@ impl HeadViews {
 
     /// Returns the records of the requested poses in memory, sorted by view number. [`KeptRecords`](crate::KeptRecords)
     /// decides how many records stay in memory.
-    #[must_use]
     pub fn sampled(&self) -> Vec<SampledPose> {
         let mut all = self.state().1.clone();
         all.sort_by_key(|sampled| sampled.number);

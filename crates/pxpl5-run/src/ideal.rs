@@ -19,7 +19,6 @@ impl Outcome {
     ///
     /// For a still scene and a still head, every complete picture of the machine equals this picture. The only
     /// exceptions are pixels where several primitives have exactly the same depth ([`IdealPicture::ties`]).
-    #[must_use]
     pub fn ideal_picture(&self, surface: impl Into<SurfaceId>, time: Time) -> Option<IdealPicture> {
         ideal_picture(self.experiment(), self.record(), self.head().map(AsRef::as_ref), surface.into(), time)
     }

@@ -1,5 +1,5 @@
 /// Number of records below which a run discards nothing. A record, such as an arrival or a swap, takes about 80 bytes.
-pub(crate) const LEAST_RECORDS: usize = 32_768;
+pub(crate) const MIN_RECORDS: usize = 32_768;
 
 /// The records that a run keeps in memory.
 ///

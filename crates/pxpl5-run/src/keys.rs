@@ -16,25 +16,21 @@ impl PipelineSettings {
     }
 
     /// Returns the value of a true-or-false key, or `None` if the user did not set the key.
-    #[must_use]
     pub fn flag(&self, key: &str) -> Option<bool> {
         if let Some(KeyValue::Flag(flag)) = self.values.get(key) { Some(*flag) } else { None }
     }
 
     /// Returns the value of a whole-number key, or `None` if the user did not set the key.
-    #[must_use]
     pub fn whole(&self, key: &str) -> Option<u64> {
         if let Some(KeyValue::Whole(number)) = self.values.get(key) { Some(*number) } else { None }
     }
 
     /// Returns the text of a key, or `None` if the user did not set the key.
-    #[must_use]
     pub fn text(&self, key: &str) -> Option<&str> {
         if let Some(KeyValue::Text(text)) = self.values.get(key) { Some(text) } else { None }
     }
 
     /// Returns the value of a key with named values, or `None` if the user did not set the key.
-    #[must_use]
     pub fn name(&self, key: &str) -> Option<&'static str> {
         if let Some(KeyValue::Name(name)) = self.values.get(key) { Some(name) } else { None }
     }

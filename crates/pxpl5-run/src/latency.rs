@@ -58,13 +58,11 @@ pub struct LatencyParts {
 
 impl LatencyParts {
     /// Returns the end of the latency: the time at which the first pixel of the picture is lit.
-    #[must_use]
     pub fn end(&self) -> Time {
         self.begin + self.spans.iter().copied().sum::<Span>()
     }
 
     /// Returns the part of the latency that the papers count, from the start of TRANSFORM to the retrace.
-    #[must_use]
     pub fn published(&self) -> Span {
         LATENCY_PARTS.iter().zip(self.spans).filter(|(part, _)| part.published).map(|(_, span)| span).sum()
     }

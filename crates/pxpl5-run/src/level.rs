@@ -40,7 +40,6 @@ impl Level {
     pub const ALL: [Self; 3] = [Self::Analytic, Self::Transaction, Self::Cycle];
 
     /// Returns the name of the level in experiment files.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Analytic => "analytic",

@@ -21,7 +21,6 @@ pub struct ObservedRun<'a> {
 
 impl Outcome {
     /// Returns the observations of the whole run.
-    #[must_use]
     pub fn observed_run(&self) -> ObservedRun<'_> {
         let pictures = Cow::Borrowed(self.pictures());
         ObservedRun { experiment: self.experiment(), record: self.record(), pictures, end: self.end() }
@@ -30,7 +29,6 @@ impl Outcome {
 
 impl Stepper {
     /// Returns the observations up to now, including the shown pictures in memory.
-    #[must_use]
     pub fn observed_run(&self) -> ObservedRun<'_> {
         let pictures = self.experiment().pipeline().pictures(self.record(), self.now());
         ObservedRun {
@@ -44,56 +42,47 @@ impl Stepper {
 
 impl ObservedRun<'_> {
     /// Returns the machine's boards and all observations.
-    #[must_use]
     pub const fn record(&self) -> &Record {
         self.record
     }
 
     /// Returns the time stamps of stages, the arrivals at displays and the swaps, each in order of time.
-    #[must_use]
     pub const fn observation(&self) -> &Observation {
         self.record.observation()
     }
 
     /// Returns the pictures that were begun and evaluated, in order.
-    #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.pictures
     }
 
     /// Returns the pipeline that runs.
-    #[must_use]
     pub fn pipeline(&self) -> &dyn Pipeline {
         self.experiment.pipeline().as_ref()
     }
 
     /// Returns the start and end of every stage of every picture so far. The times of COPY are measured at the
     /// displays.
-    #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()
     }
 
     /// Returns the number of periods of the first display that the whole run takes.
-    #[must_use]
     pub const fn fields(&self) -> u64 {
         self.experiment.length()
     }
 
     /// Returns the instant at which the observations end.
-    #[must_use]
     pub const fn end(&self) -> Time {
         self.end
     }
 
     /// Returns the time that a graphics processor needs to receive one message.
-    #[must_use]
     pub const fn receive_span(&self) -> Span {
         Span::from_ns(self.experiment.config().gp.message_ns)
     }
 
     /// Returns the latency parts of the newest complete pictures, at most `most`. The newest picture is the last entry.
-    #[must_use]
     pub fn last_latencies(&self, most: usize) -> Vec<LatencyParts> {
         let stages = self.stages();
         let complete: Vec<&PictureTimes> = self.pictures.iter().filter(|times| times.is_shown()).collect();

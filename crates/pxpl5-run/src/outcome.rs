@@ -1,5 +1,5 @@
 use crate::assembled::Assembled;
-use crate::due::{DuePictures, LEAST_UPDATES};
+use crate::due::{DuePictures, MIN_UPDATES};
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
 use crate::latency::{LatencyParts, parts};
@@ -56,33 +56,28 @@ impl Outcome {
     }
 
     /// Returns the results of the run for evaluation, as far as the records are in memory.
-    #[must_use]
     pub fn final_results(&self) -> FinalResults<'_> {
         let all = self.experiment.final_results(&self.record, self.head.as_ref());
         FinalResults { pictures: self.pictures(), window: self.closed.window, ..all }
     }
 
     /// Returns the result of the streaming observer ([`Experiment::observed_by`]) if it has the type `T`.
-    #[must_use]
     pub fn observed<T: 'static>(&self) -> Option<&T> {
         self.closed.observed.as_deref()?.downcast_ref()
     }
 
     /// Returns true if the run discarded old records ([`KeptRecords`](crate::KeptRecords)). Most results are then
     /// available only for the last periods.
-    #[must_use]
     pub fn has_discarded_records(&self) -> bool {
         self.observation().discarded.before > Time::ZERO
     }
 
     /// Returns the statistics that the run has accumulated.
-    #[must_use]
     pub const fn tally(&self) -> &Tally {
         &self.closed.tally
     }
 
     /// Returns the experiment that was run.
-    #[must_use]
     pub const fn experiment(&self) -> &Experiment {
         &self.experiment
     }
@@ -91,20 +86,17 @@ impl Outcome {
     ///
     /// [`Tally::pictures`] counts these pictures. A run that keeps only statistics
     /// ([`KeptRecords`](crate::KeptRecords)) returns only the last pictures.
-    #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.closed.pictures
     }
 
     /// Returns the display periods over which latencies, due pictures, errors and rates are computed. Returns `None` if
     /// the run ended before these periods began.
-    #[must_use]
     pub const fn window(&self) -> Option<ResultWindow> {
         self.closed.window
     }
 
     /// Returns the pictures in the result window.
-    #[must_use]
     pub fn steady_pictures(&self) -> &[PictureTimes] {
         let Some(window) = self.closed.window else { return &[] };
         let display = self.record.display();
@@ -122,21 +114,18 @@ impl Outcome {
     }
 
     /// Returns the number of complete pictures in the whole run, including the warm-up.
-    #[must_use]
     pub const fn shown(&self) -> u64 {
         self.closed.tally.shown
     }
 
     /// Returns the number of due pictures, counted by result (shown, late, incomplete or missed). Returns `None` if the
     /// pipeline has no due pictures, or if the run ended before the first due picture.
-    #[must_use]
     pub fn due(&self) -> Option<DuePictures> {
         let every = self.pipeline().periods_a_picture(&self.record)?;
         Some(DuePictures::of_ends(self.closed.tally.ends(), every, &self.closed.window?))
     }
 
     /// Returns a text that defines for this pipeline when a picture is due, and when it is in time.
-    #[must_use]
     pub fn due_definition(&self) -> String {
         format!("{}; {WINDOW_DEFINITION}", self.pipeline().due_definition())
     }
@@ -145,11 +134,10 @@ impl Outcome {
     ///
     /// At most one picture per display period counts, because a viewer cannot see more. Returns `None` if fewer than
     /// two pictures were shown, or if all shown pictures belong to the warm-up.
-    #[must_use]
     pub fn updates_hz(&self) -> Option<f64> {
         let complete = self.closed.tally.complete;
         // A single picture has no rate.
-        if complete < LEAST_UPDATES {
+        if complete < MIN_UPDATES {
             return None;
         }
         // Pipelines with due pictures have the rate of the pictures that were shown in time.
@@ -166,7 +154,6 @@ impl Outcome {
 
     /// Returns true if the viewer sees a complete screen at the end. With interlaced fields, a screen shows the
     /// pictures of two fields, and both pictures must have been in time.
-    #[must_use]
     pub fn ends_complete(&self) -> bool {
         let (_, fields_of_a_screen) = self.record.display().rows_lit(PeriodNumber::FIRST);
         let of_a_pass = self.pipeline().updates_per_picture(&self.record).ceil() as usize;
@@ -175,26 +162,22 @@ impl Outcome {
     }
 
     /// Returns the state of the machine's boards at the end of the run, and all observations of the run.
-    #[must_use]
     pub const fn record(&self) -> &Record {
         &self.record
     }
 
     /// Returns the views of the tracked head, or `None` if no head is tracked.
-    #[must_use]
     pub const fn head(&self) -> Option<&Arc<HeadViews>> {
         self.head.as_ref()
     }
 
     /// Returns the real time that the run took on the host computer, in seconds. Returns `None` on a host without a
     /// clock.
-    #[must_use]
     pub const fn host_seconds(&self) -> Option<f64> {
         self.host_seconds
     }
 
     /// Returns the time stamps of stages, the arrivals at displays and the swaps, each in order of time.
-    #[must_use]
     pub const fn observation(&self) -> &Observation {
         self.record.observation()
     }
@@ -208,59 +191,50 @@ impl Outcome {
     }
 
     /// Returns the start and end of every stage of every picture. The times of COPY are measured at the displays.
-    #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()
     }
 
     /// Returns the time that a graphics processor needs to receive one message.
-    #[must_use]
     pub const fn receive_span(&self) -> Span {
         Span::from_ns(self.experiment.config.gp.message_ns)
     }
 
     /// Returns the pipeline that was run.
-    #[must_use]
     pub fn pipeline(&self) -> &dyn Pipeline {
         self.experiment.pipeline.as_ref()
     }
 
     /// Returns the requested number of periods of the first display. For NTSC, a period is a field.
-    #[must_use]
     pub const fn fields(&self) -> u64 {
         self.experiment.fields
     }
 
     /// Returns the simulated time at which the run ended.
-    #[must_use]
     pub fn end(&self) -> Time {
         self.record.tick(self.experiment.end())
     }
 
     /// Returns the statistics of the latencies in milliseconds, over the complete pictures in the result window. The
     /// pipeline defines its latency.
-    #[must_use]
     pub fn latency_ms(&self) -> Statistics {
         self.closed.tally.latency_ms.statistics()
     }
 
     /// Returns the statistics of the latencies in milliseconds. Returns `None` if the result window has no complete
     /// picture.
-    #[must_use]
     pub fn latency(&self) -> Option<Statistics> {
         Some(self.latency_ms()).filter(|statistics| statistics.n > 0)
     }
 
     /// Returns the statistics of the latencies in periods of the first display. For NTSC, a period is a field of
     /// 1001/60000 s.
-    #[must_use]
     pub fn latency_fields(&self) -> Statistics {
         self.closed.tally.latency_ms.statistics_in(self.field_ms())
     }
 
     /// Returns the parts of the latencies of the complete pictures in the result window. Pictures without records in
     /// memory are left out.
-    #[must_use]
     pub fn latency_parts(&self) -> Vec<LatencyParts> {
         let stages = self.stages();
         let parts =
@@ -269,7 +243,6 @@ impl Outcome {
     }
 
     /// Returns the results that are available at every level of detail, over the pictures in the result window.
-    #[must_use]
     pub fn summary(&self) -> Summary {
         let tally = self.tally();
         let [first_copy_ms, last_copy_ms] = tally.copy_ms.each_ref().map(|samples| samples.statistics().mean);
@@ -291,7 +264,6 @@ impl Outcome {
     }
 
     /// Returns the mean duration of a period of the first display over 60,000 periods, in milliseconds.
-    #[must_use]
     pub fn field_ms(&self) -> f64 {
         field_ms(&self.record)
     }

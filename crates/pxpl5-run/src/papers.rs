@@ -17,7 +17,6 @@ impl Registry {
     /// Returns true if a short comparison, with one row per family of pipelines, includes `pipeline`.
     ///
     /// Each family of the papers has one such pipeline. In any other family, the first compared pipeline is included.
-    #[must_use]
     pub fn is_usual(&self, pipeline: &PipelineEntry) -> bool {
         let mut family = self.pipelines().iter().filter(|other| other.compared && other.family == pipeline.family);
         let first = family.clone().next().map(|first| first.name);

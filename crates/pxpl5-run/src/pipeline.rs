@@ -92,7 +92,6 @@ pub struct PictureTimes {
 
 impl PictureTimes {
     /// Returns true if the picture was complete in time. Other pictures have no latency.
-    #[must_use]
     pub fn is_shown(&self) -> bool {
         self.end == PictureResult::Shown
     }

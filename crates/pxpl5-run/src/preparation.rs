@@ -39,7 +39,6 @@ impl Experiment {
     }
 
     /// Returns the dry run that [`Experiment::after_dry_run`] has stored.
-    #[must_use]
     pub const fn dry_run(&self) -> Option<&Arc<DryRun>> {
         self.dry_run.as_ref()
     }

@@ -22,7 +22,6 @@ impl Raster {
     pub const ALL: [(&str, Self); 2] = [("plain", Self::Plain), ("vdrt", Self::Vdrt)];
 
     /// Returns the correction as a device that moves pictures, or `None` without a correction.
-    #[must_use]
     pub const fn reprojection(self) -> Option<Reprojection> {
         match self {
             Self::Plain => None,

@@ -45,7 +45,6 @@ impl TestScene {
     pub const ALL: [Self; 2] = [Self::FullScreen, Self::Typical];
 
     /// Returns the name of the test scene on the command line and in tables.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::FullScreen => "full-screen",
@@ -155,7 +154,6 @@ impl Registry {
     }
 
     /// Adds the timing tables of the firmware of all pipelines to the configuration of a machine.
-    #[must_use]
     pub fn machine_of(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
         for entry in &self.pipelines {
@@ -187,13 +185,11 @@ impl Registry {
     }
 
     /// Returns all pipelines, in the order in which they were added.
-    #[must_use]
     pub fn pipelines(&self) -> &[PipelineEntry] {
         &self.pipelines
     }
 
     /// Returns all displays, in the order in which they were added.
-    #[must_use]
     pub fn displays(&self) -> &[DisplayEntry] {
         &self.displays
     }
@@ -218,7 +214,6 @@ impl Registry {
 
     /// Returns the settings (keys) of all pipelines. Each setting appears once, with the families of pipelines that
     /// have this setting.
-    #[must_use]
     pub fn keys(&self) -> Vec<(Key, Vec<&'static str>)> {
         let mut all: Vec<(Key, Vec<&'static str>)> = Vec::new();
         for entry in &self.pipelines {

@@ -62,7 +62,6 @@ impl Every {
     /// With one pose per field, the latency is 2,000 (range 1,000 to 4,000). The graphics hardware of a current headset
     /// begins this long before the retrace. With one pose per strip the latency is 500. With one pose per line the
     /// latency is 100 (range 64 to 1,000), because the device holds only a few lines.
-    #[must_use]
     pub const fn usual_latency_us(self) -> u64 {
         match self {
             Self::Field => 2_000,

@@ -95,19 +95,16 @@ impl ResultWindow {
     }
 
     /// Returns true if the display period `period` lies in the result window.
-    #[must_use]
     pub fn holds(&self, period: PeriodNumber) -> bool {
         (self.first_period..=self.last_period).contains(&period)
     }
 
     /// Returns true if a picture that is first shown in `period` lies in the result window and after the warm-up.
-    #[must_use]
     pub fn holds_picture(&self, period: PeriodNumber) -> bool {
         self.steady_from.is_some_and(|steady| steady <= period) && self.holds(period)
     }
 
     /// Returns the number of display periods in the result window.
-    #[must_use]
     pub const fn periods(&self) -> u64 {
         self.last_period.0 + 1 - self.first_period.0
     }

@@ -24,7 +24,6 @@ pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: ViewNumber, ti
 }
 
 /// Returns a head-mounted display with the resolution of the first surface of the machine's display.
-#[must_use]
 pub fn hmd_on(display: &dyn Display, hmd: &Hmd) -> Hmd {
     display.surfaces().first().map_or(*hmd, |surface| hmd.with_pixels(surface.width, surface.height))
 }

@@ -181,26 +181,22 @@ impl Stepper {
     }
 
     /// Returns the simulated instant at which the last step ended.
-    #[must_use]
     pub const fn now(&self) -> Time {
         self.now
     }
 
     /// Returns the instant at which the run ends.
-    #[must_use]
     pub fn end(&self) -> Time {
         self.record().tick(self.experiment.end())
     }
 
     /// Returns the current period of the first display. For NTSC, a period is a field.
-    #[must_use]
     pub fn period(&self) -> PeriodNumber {
         self.record().display().period_at(self.now)
     }
 
     /// Returns the instant at which the beam of the first display reaches its next line. After the last line, returns
     /// the start of the next period.
-    #[must_use]
     pub fn next_line(&self) -> Time {
         let display = self.record().display();
         let period = self.period();
@@ -210,19 +206,16 @@ impl Stepper {
     }
 
     /// Returns the last event, if the last step ended with an event.
-    #[must_use]
     pub const fn last(&self) -> Option<EventDescription> {
         self.last
     }
 
     /// Returns the error with which the machine failed, or `None` if the machine has not failed.
-    #[must_use]
     pub const fn failure(&self) -> Option<&RunError> {
         self.run.machine.failure()
     }
 
     /// Returns the machine with its boards and all observations so far.
-    #[must_use]
     pub const fn machine(&self) -> &Machine {
         &self.run.machine
     }
@@ -232,26 +225,22 @@ impl Stepper {
     }
 
     /// Returns the boards and all observations so far.
-    #[must_use]
     pub const fn record(&self) -> &Record {
         self.run.machine.record()
     }
 
     /// Returns the experiment that is running.
-    #[must_use]
     pub const fn experiment(&self) -> &Experiment {
         &self.experiment
     }
 
     /// Returns a snapshot of the host or of a graphics processor. Returns `None` for other boards and for boards that
     /// the machine does not have.
-    #[must_use]
     pub fn processor(&self, board: Board) -> Option<GpSnapshot> {
         Some(self.run.machine.board(board)?.snapshot(self.now))
     }
 
     /// Returns a snapshot of a renderer, or `None` if the machine does not have that renderer.
-    #[must_use]
     pub fn renderer(&self, number: usize) -> Option<RendererSnapshot> {
         Some(self.record().renderers().get(number)?.snapshot(self.now))
     }
@@ -259,20 +248,17 @@ impl Stepper {
     /// Returns the pixel memory of a renderer after all commands that have started.
     ///
     /// Returns `None` unless [messages are recorded](Experiment::record_traffic) and pixels are computed.
-    #[must_use]
     pub fn array(&self, renderer: usize) -> Option<Lanes> {
         self.record().renderers().get(renderer)?.array_at(self.now)
     }
 
     /// Returns the messages that occupy channels of the ring now.
-    #[must_use]
     pub fn channels(&self) -> Vec<ChannelSnapshot> {
         self.record().ring().channel_snapshots(self.now).collect()
     }
 
     /// Returns the picture on the screen of a surface now. Lines above the beam are new, and lines below the beam are
     /// from the preceding scan.
-    #[must_use]
     pub fn seen(&self, surface: SurfaceId) -> Option<RgbImage> {
         let mut left = surface.index();
         for display in self.record().displays() {
@@ -286,7 +272,6 @@ impl Stepper {
     }
 
     /// Returns the ideal picture of a surface for the current state of the scene. See [`Outcome::ideal_picture`].
-    #[must_use]
     pub fn ideal_picture(&self, surface: SurfaceId) -> Option<IdealPicture> {
         ideal_picture(&self.experiment, self.record(), self.run.head.as_deref(), surface, self.now)
     }

@@ -37,27 +37,23 @@ pub struct Summary {
 
 impl Summary {
     /// Returns the statistics of the latencies, in milliseconds.
-    #[must_use]
     pub fn latency_ms(&self) -> Statistics {
         self.latencies_ms.statistics()
     }
 
     /// Returns the statistics of the times from the start of an eye's TRANSFORM to the swap, over both eyes, in
     /// milliseconds. The statistics are empty if the eyes share one TRANSFORM.
-    #[must_use]
     pub fn eye_latency_ms(&self) -> Statistics {
         self.eye_swap_latencies_ms.statistics()
     }
 
     /// Returns the statistics of the numbers of retraces from the start of an eye's TRANSFORM to the swap.
-    #[must_use]
     pub fn eye_retraces(&self) -> Statistics {
         self.eye_retraces.statistics()
     }
 
     /// Returns the statistics of the latencies in periods of the display. For NTSC, a period is a field of 1001/60000
     /// s.
-    #[must_use]
     pub fn latency_fields(&self) -> Statistics {
         self.latencies_ms.statistics_in(self.field_ms)
     }
@@ -65,7 +61,6 @@ impl Summary {
 
 /// Returns the number of retraces in a latency that ends with a retrace, including this retrace. `field_ms` is the
 /// duration of a display period in milliseconds.
-#[must_use]
 pub fn retraces(latency_ms: f64, field_ms: f64) -> f64 {
     /// Tolerance in display periods. Without this tolerance, rounding errors would change the result for a latency of a
     /// whole number of periods.

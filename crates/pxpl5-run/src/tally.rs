@@ -272,7 +272,6 @@ impl Tally {
 
     /// Returns the mean time for which 15,360 pixels of a region occupy a port of the display, in microseconds. Returns
     /// NaN if no region arrived.
-    #[must_use]
     pub fn region_copy_us(&self) -> f64 {
         self.region_ms * 1e3 * 15_360.0 / self.region_pixels as f64
     }

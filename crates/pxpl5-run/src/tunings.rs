@@ -40,13 +40,11 @@ impl Tunings {
     }
 
     /// Returns the number of predictors in the cache.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.cached.lock().unwrap_or_else(PoisonError::into_inner).len()
     }
 
     /// Returns true if the cache has no predictor.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

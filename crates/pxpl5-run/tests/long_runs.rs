@@ -14,7 +14,7 @@ use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
 /// Number of records below which a run discards nothing. By default, runs discard records eight times less often.
-const LEAST_RECORDS: usize = 4_096;
+const MIN_RECORDS: usize = 4_096;
 
 /// Returns the first value in a sample, and the second value with `PXPL5_ALL_CASES=1`, as in scripts/nightly.
 fn sample_or_all<T>(sample: T, all: T) -> T {
@@ -30,7 +30,7 @@ fn experiment(machine: MachineConfig, pipeline: impl Pipeline, scene: Scene, fie
     Experiment::with(machine, Arc::new(pipeline), Arc::new(scene))
         .fields(fields)
         .pixels(Pixels::Off)
-        .least_records(LEAST_RECORDS)
+        .least_records(MIN_RECORDS)
 }
 
 fn faces(name: &'static str, policy: FacePolicy, source: FaceSource, fields: u64) -> (&'static str, Experiment) {

@@ -13,7 +13,7 @@ mod solid;
 mod sphere;
 mod typical;
 
-use crate::config::{LEAST_SPHERE_TRIANGLES, MAX_TRIANGLES};
+use crate::config::{MAX_TRIANGLES, MIN_SPHERE_TRIANGLES};
 use crate::scene::Scene;
 use pxpl5_sim::parameters::SettingError;
 
@@ -54,7 +54,6 @@ const SPHERE: &str = "sphere:N";
 
 /// Returns the names of all built-in scenes, each with a one-sentence description. In a name, N stands for a number of
 /// triangles up to [`MAX_TRIANGLES`].
-#[must_use]
 pub fn names() -> &'static [(&'static str, &'static str)] {
     &NAMES
 }
@@ -81,7 +80,7 @@ fn counted(name: &str) -> Result<Scene, SettingError> {
     match name.split_once(':') {
         Some(("full-screen", count)) => Ok(full_screen::scene(triangles(FULL_SCREEN, count, 1)?)),
         Some(("typical", count)) => Ok(typical::scene(triangles(TYPICAL, count, 1)?)),
-        Some(("sphere", count)) => match triangles(SPHERE, count, LEAST_SPHERE_TRIANGLES)? {
+        Some(("sphere", count)) => match triangles(SPHERE, count, MIN_SPHERE_TRIANGLES)? {
             n if n.is_multiple_of(2) => Ok(sphere::scene(n)),
             n => Err(wrong_count(SPHERE, "even", &n.to_string())),
         },

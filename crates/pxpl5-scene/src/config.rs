@@ -65,7 +65,7 @@ pub const DEFAULT_COLOUR: [u8; 3] = [200, 196, 188];
 pub const MAX_TRIANGLES: u32 = 1_000_000;
 
 /// Least N of the scene `sphere:N`. A sphere of 8 triangles is an octahedron.
-pub const LEAST_SPHERE_TRIANGLES: u32 = 8;
+pub const MIN_SPHERE_TRIANGLES: u32 = 8;
 
 /// Length of the two legs of a right-angled triangle in the scene `typical:N`, in pixels of a 640 x 480 picture.
 /// Derived: the triangle's bounding box touches (1 + 18/128)^2 = 1.30 regions of 128 x 128 pixels on average, as

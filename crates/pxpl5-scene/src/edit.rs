@@ -35,7 +35,6 @@ pub struct Hinge {
 
 impl Hinge {
     /// Returns the angle of the swing at simulated time `time_ps` (picoseconds), degrees.
-    #[must_use]
     pub fn angle_deg(&self, time_ps: u64) -> f64 {
         let turns = (time_ps % self.period_ps) as f64 / self.period_ps as f64;
         self.amplitude_deg * trig::sin_turns(turns + self.phase_turns)
@@ -43,7 +42,6 @@ impl Hinge {
 
     /// Returns the model matrix at simulated time `time_ps` (picoseconds). The matrix is a rotation about the axis of
     /// the swing.
-    #[must_use]
     pub fn model(&self, time_ps: u64) -> Mat4 {
         let rotation = rotation_about(self.axis.as_dvec3(), self.angle_deg(time_ps));
         let point = self.point.as_dvec3();

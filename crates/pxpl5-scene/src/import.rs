@@ -77,14 +77,12 @@ pub enum Format {
 impl Format {
     /// Returns the format of a file by the extension of its name, in upper or lower case. Returns `None` for an unknown
     /// extension. The file itself is not read.
-    #[must_use]
     pub fn of_path(path: &Path) -> Option<Self> {
         Self::of_extension(path.extension()?.to_str()?)
     }
 
     /// Returns the format for an extension without its dot, in upper or lower case. Returns `None` for an unknown
     /// extension.
-    #[must_use]
     pub fn of_extension(extension: &str) -> Option<Self> {
         match extension.to_ascii_lowercase().as_str() {
             "ply" => Some(Format::Ply),

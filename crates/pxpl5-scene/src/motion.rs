@@ -141,13 +141,11 @@ impl HeadMotion {
     }
 
     /// Returns the path of the head without sway.
-    #[must_use]
     pub fn path(&self) -> &HeadPath {
         &self.path
     }
 
     /// Returns the sway that is added to the path.
-    #[must_use]
     pub fn sway(&self) -> &Sway {
         &self.sway
     }
@@ -163,7 +161,6 @@ impl HeadMotion {
     ///
     /// The pose is computed in double precision with software trigonometry. The pose is then rounded to single
     /// precision, as are all coordinates of a scene. The time is exact to 2 ns after 200 days.
-    #[must_use]
     pub fn pose(&self, time_ps: u64) -> Pose {
         let seconds = time_ps as f64 * 1e-12;
         let swing = self.sway.swing_at(seconds);

@@ -42,7 +42,6 @@ pub enum Frame {
 
 impl Frame {
     /// Returns the matrix from the coordinates of this frame to eye coordinates.
-    #[must_use]
     pub const fn to_eye(self, view: &View) -> Mat4 {
         match self {
             Self::World => view.world_to_eye,
@@ -152,63 +151,53 @@ impl Scene {
 
     /// Returns warnings about the file from which the scene was read, one sentence each. The warnings concern content
     /// that may have been misinterpreted. The list is empty for a scene without a file.
-    #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
     /// Returns the name of the scene, as it appears in reports.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.parts.name
     }
 
     /// Returns the vertices of all structures, one structure after the other.
-    #[must_use]
     pub fn vertices(&self) -> &[Vertex] {
         &self.parts.vertices
     }
 
     /// Returns the number of triangles and spheres.
-    #[must_use]
     pub fn primitives(&self) -> usize {
         self.parts.triangles.len() + self.parts.spheres.len()
     }
 
     /// Returns all triangles, each as three indices into [`Self::vertices`], anticlockwise seen from outside.
-    #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.parts.triangles
     }
 
     /// Returns the spheres of all structures, one structure after the other.
-    #[must_use]
     pub fn spheres(&self) -> &[Sphere] {
         &self.parts.spheres
     }
 
     /// Returns the structures of the scene, at least one. Together, the structures contain all triangles and spheres,
     /// in the order of the lists of triangles and spheres.
-    #[must_use]
     pub fn structures(&self) -> &[Structure] {
         &self.parts.structures
     }
 
     /// Returns the lighting and the background colour of the scene.
-    #[must_use]
     pub fn lighting(&self) -> &Lighting {
         &self.parts.lighting
     }
 
     /// Returns the motion of a head that looks at this scene. The scene stays in view for any duration.
-    #[must_use]
     pub fn motion(&self) -> &HeadMotion {
         &self.parts.motion
     }
 
     /// Returns the corners of a closed path on which a head can walk through the scene, as eye positions in metres. The
     /// list is empty if the scene has no path.
-    #[must_use]
     pub fn path(&self) -> &[Vec3] {
         &self.parts.path
     }
@@ -222,14 +211,12 @@ impl Scene {
     }
 
     /// Returns the contents of the scene. After changes, [`Scene::new`] can make a scene from these contents again.
-    #[must_use]
     pub fn into_parts(self) -> SceneParts {
         self.parts
     }
 
     /// Returns the changed model matrices of a frame that begins at simulated time `time_ps` (picoseconds). The list
     /// has one matrix for each structure with a motion of its own.
-    #[must_use]
     pub fn edits_at(&self, time_ps: u64) -> Vec<Edit> {
         let structures = self.structures().iter().enumerate();
         structures
@@ -245,7 +232,6 @@ impl Scene {
     ///
     /// The matrices may only rotate, move and scale uniformly. Matrices for structures that the scene does not have are
     /// ignored.
-    #[must_use]
     pub fn posed(&self, edits: &[Edit]) -> Scene {
         let mut posed = self.clone();
         for edit in edits {
@@ -257,7 +243,6 @@ impl Scene {
     }
 
     /// Returns the centre of the scene's bounding box, and the distance from this centre to the farthest point, metres.
-    #[must_use]
     pub fn bounding_sphere(&self) -> (Vec3, f32) {
         let points = self.vertices().iter().map(|v| (v.position.as_dvec3(), 0.0));
         let spheres = self.spheres().iter();

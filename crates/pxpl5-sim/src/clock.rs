@@ -21,7 +21,6 @@ pub struct Clock {
 impl Clock {
     /// Makes a clock whose period is `numerator_ps / denominator` picoseconds. Returns `None` unless both numbers are
     /// positive and the period is at least one picosecond.
-    #[must_use]
     pub const fn new(numerator_ps: u64, denominator: u64) -> Option<Self> {
         if denominator == 0 || numerator_ps < denominator {
             return None;
@@ -30,13 +29,11 @@ impl Clock {
     }
 
     /// Makes a clock from a frequency in hertz. Returns `None` for a frequency of zero or of more than a terahertz.
-    #[must_use]
     pub const fn from_hz(hz: u64) -> Option<Self> {
         Self::new(1_000_000_000_000, hz)
     }
 
     /// Returns the time of clock edge `n`, or [`Time::END`] if the edge would come after [`Time::END`].
-    #[must_use]
     #[inline]
     pub const fn edge(&self, n: u64) -> Time {
         match n.checked_mul(self.numerator_ps) {
@@ -53,7 +50,6 @@ impl Clock {
     }
 
     /// Returns the number of the first clock edge at or after `time`.
-    #[must_use]
     pub const fn edge_at_or_after(&self, time: Time) -> u64 {
         // The division rounds down, so the edge may still lie before `time`.
         let mut n = (time.0 as u128 * self.denominator as u128 / self.numerator_ps as u128) as u64;
@@ -64,7 +60,6 @@ impl Clock {
     }
 
     /// Returns the duration of `cycles` clock cycles from edge 0 on, rounded down to a picosecond.
-    #[must_use]
     pub const fn span(&self, cycles: Cycles) -> Span {
         Span(self.edge(cycles.0).0)
     }

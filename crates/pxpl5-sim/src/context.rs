@@ -31,7 +31,6 @@ impl<E, O> Context<E, O> {
     }
 
     /// Returns the time of the event that is being handled.
-    #[must_use]
     #[inline]
     pub const fn now(&self) -> Time {
         self.now
@@ -74,7 +73,6 @@ impl<E, O> Context<E, O> {
     }
 
     /// Returns true if the device has made no output since the last [`Context::drain_outputs`].
-    #[must_use]
     #[inline]
     pub const fn has_no_outputs(&self) -> bool {
         self.outputs.is_empty()

@@ -9,4 +9,4 @@ mod row;
 mod table;
 
 pub use row::{Basis, Definition, Detail, FigureRow, around};
-pub use table::{TableColumn, significant, table};
+pub use table::{TableColumn, filled, lines, significant, table};

@@ -199,7 +199,6 @@ impl<E> EventQueue<E> {
         self.events.iter().flatten().chain(&self.soon)
     }
 
-    #[must_use]
     pub fn next_time(&self) -> Option<Time> {
         if !self.soon.is_empty() {
             return Some(self.now);
@@ -208,7 +207,6 @@ impl<E> EventQueue<E> {
     }
 
     /// Returns the next event and its time, without removing it.
-    #[must_use]
     pub fn peek(&self) -> Option<(Time, &E)> {
         let first = self.first();
         if self.is_current_work_next(first) {
@@ -219,23 +217,19 @@ impl<E> EventQueue<E> {
     }
 
     /// Returns the current time: the time of the last removed event.
-    #[must_use]
     pub const fn now(&self) -> Time {
         self.now
     }
 
     /// Returns the number of events that were removed so far.
-    #[must_use]
     pub const fn events_taken(&self) -> u64 {
         self.popped
     }
 
-    #[must_use]
     pub fn len(&self) -> usize {
         self.heap.len() + self.near.len() + self.soon.len()
     }
 
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

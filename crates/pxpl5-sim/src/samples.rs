@@ -51,18 +51,15 @@ impl Samples {
     }
 
     /// Returns the number of all added numbers, whether they are kept or not.
-    #[must_use]
     pub fn count(&self) -> u64 {
         self.moments.as_ref().map_or(self.kept.len() as u64, |moments| moments.n)
     }
 
-    #[must_use]
     pub fn statistics(&self) -> Statistics {
         self.statistics_in(1.0)
     }
 
     /// Returns the statistics of all added numbers, each divided by `unit`.
-    #[must_use]
     pub fn statistics_in(&self, unit: f64) -> Statistics {
         match &self.moments {
             None => Statistics::of(self.kept.iter().map(|value| value / unit)),

@@ -84,7 +84,6 @@ impl Statistics {
     }
 
     /// Adds a sentence that defines the numbers of these statistics.
-    #[must_use]
     pub fn defined(self, definition: &str) -> DefinedStatistics {
         DefinedStatistics { statistics: self, definition: definition.to_owned() }
     }

@@ -22,7 +22,6 @@ impl Time {
     pub const END: Self = Self(u64::MAX);
 
     /// Returns the duration from `earlier` to this instant, or zero if `earlier` is later.
-    #[must_use]
     #[inline]
     pub const fn since(self, earlier: Self) -> Span {
         Span(self.0.saturating_sub(earlier.0))
@@ -45,7 +44,6 @@ impl Span {
     }
 
     /// Returns the duration in milliseconds, rounded to the precision of `f64`. Use the result only in reports.
-    #[must_use]
     pub fn as_ms(self) -> f64 {
         self.0 as f64 * 1e-9
     }

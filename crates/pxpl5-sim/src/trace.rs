@@ -12,7 +12,6 @@ pub(crate) const INCREMENT: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// Mixes 64 bits: each input bit affects about half of the output bits. The function is the last step of the generator
 /// SplitMix64. Different inputs give different outputs.
-#[must_use]
 #[inline]
 pub const fn mix(value: u64) -> u64 {
     let a = value.wrapping_add(INCREMENT);

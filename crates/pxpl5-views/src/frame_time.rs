@@ -5,7 +5,6 @@ use pxpl5_wire::display::Display;
 /// Returns the duration of a film's frame as a fraction of a second, in the form that animated PNG needs.
 ///
 /// Numerator and denominator have 16 bits each. The result is the fraction nearest to the duration of a display period.
-#[must_use]
 pub fn frame_seconds(display: &dyn Display) -> (u16, u16) {
     // Ticks are rounded to picoseconds. Over this number of periods, the rounding is negligible.
     const PERIODS: u64 = 60_000;

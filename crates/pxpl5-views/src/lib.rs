@@ -1,7 +1,7 @@
 //! Output of runs for people: drawings, traces, tables, pages and films.
 //!
 //! ```text
-//!   Outcome --+--> timeline, trace_export, results --> SVG, Perfetto, Chrome's JSON, CSV, Parquet
+//!   Outcome --+--> timeline, trace_export, results --> SVG, Chrome's JSON, CSV, Parquet
 //!   Report ---+--> page (with pictures and a timeline beside it) --> HTML
 //!   Experiment --> film --> animated PNG
 //!   numbers ----> charts --> SVG

@@ -34,7 +34,6 @@ use pxpl5_run::{ObservedRun, Outcome};
 
 /// Draws a run as an SVG document, 960 units wide. For a run without pictures, the document shows the first display
 /// periods.
-#[must_use]
 pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
     let report = Report::of(outcome);
     let subject = format!("{} on {}, {}", report.pipeline, report.machine, report.scene);
@@ -47,7 +46,6 @@ pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
 }
 
 /// Draws a run that has ended or is in progress, without title and texts.
-#[must_use]
 pub fn drawing(run: &ObservedRun<'_>, options: &TimelineOptions) -> String {
     let title = options.title.clone().unwrap_or_default();
     draw::document(&Timeline::so_far(run, options), &Words { title, subtitle: String::new(), origin: String::new() })

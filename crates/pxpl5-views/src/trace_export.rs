@@ -1,9 +1,7 @@
-//! A run as a trace for viewers, in the Perfetto trace format or as Chrome's JSON. The viewer ui.perfetto.dev opens
-//! both formats.
+//! A run as a trace for viewers such as ui.perfetto.dev, in Chrome's JSON format.
 //!
-//! [`Trace::of`] collects tracks from the observations. [`perfetto`] and [`chrome`] write the tracks. Tracks of
-//! messages and counters of the ring and the FIFOs need
-//! [`Experiment::record_traffic`](pxpl5_run::Experiment::record_traffic).
+//! [`Trace::of`] collects tracks from the observations, and [`chrome`] writes them. Tracks of messages and counters of
+//! the ring and the FIFOs need [`Experiment::record_traffic`](pxpl5_run::Experiment::record_traffic).
 //!
 //! | group | tracks |
 //! |---|---|
@@ -16,23 +14,18 @@
 //! Flow arrows lead from a picture's SEND through its stages to the first period that shows the picture. If the numbers
 //! of ports and surfaces of a display differ, ports and surfaces have separate groups.
 //!
-//! Time is simulated time. Chrome's JSON has microseconds with six decimals, so times in picoseconds are exact.
-//! Perfetto's timestamps are nanoseconds, rounded down. Slices (events with a duration) of one track never overlap. A
-//! message may reach a port shortly before the previous message has left the port. The message is then drawn from the
-//! end of the previous message.
+//! Time is simulated time in microseconds with six decimals, so times in picoseconds are exact. Slices (events with a
+//! duration) of one track never overlap. A message may reach a port shortly before the previous message has left it.
+//! The message is then drawn from the end of the previous message.
 //!
-//! Sources: the published `.proto` files of the Perfetto project (`TracePacket`, `TrackDescriptor`, `TrackEvent`) and
-//! the description of Chrome's trace event format. **Not written:** interned strings, clock snapshots.
+//! Source: the description of Chrome's trace event format.
 
 mod chrome;
 mod collect;
 mod flows;
 mod groups;
 mod model;
-mod perfetto;
-mod protobuf;
 mod slices;
 
 pub use chrome::chrome;
 pub use model::{Events, Flow, Slice, Step, Trace, Track};
-pub use perfetto::perfetto;

@@ -116,7 +116,6 @@ fn variants() -> Vec<Variant> {
 }
 
 /// Returns the number of volumes that a comparison draws: one for each variant.
-#[must_use]
 pub fn variant_count() -> u64 {
     variants().len() as u64
 }
@@ -240,7 +239,6 @@ impl VolumeComparison {
 
     /// Returns one picture with a row for each of the six clips and a column for each of the three projections. Returns
     /// `None` for a comparison without pictures.
-    #[must_use]
     pub fn clips_and_projections(&self) -> Option<RgbImage> {
         let columns = ProjectionKind::ALL.len();
         let pictures = self.pictures.get(..ClipKind::ALL.len() * columns)?;
@@ -250,7 +248,6 @@ impl VolumeComparison {
     /// Returns five views with the hyperbolic clip side by side. The first view has an orthographic projection and one
     /// sample per pixel. The other views differ from the first by jitter, by 4 samples, by 16 samples, and by connected
     /// coverage. Returns `None` for a comparison without pictures.
-    #[must_use]
     pub fn samples_and_coverage(&self) -> Option<RgbImage> {
         let shown: Vec<RgbImage> = self
             .variants

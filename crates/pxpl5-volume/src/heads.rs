@@ -125,7 +125,6 @@ impl Volume {
     /// model's time for one volume, plus two mean waits. The first wait is half a turn until strobe 0 (the first flash
     /// of a turn). The second wait is a quarter turn until the screen reaches the changed plane. Returns `None` if the
     /// volume was not drawn by a GPU.
-    #[must_use]
     pub fn latency_ms(&self) -> Option<f64> {
         let turn_ms = 60e3 / self.settings.display.spin_rpm as f64;
         let serial_hz = self.bounds.is_none().then(|| self.time().serial_hz())?;

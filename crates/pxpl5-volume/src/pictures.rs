@@ -104,7 +104,6 @@ impl EyeView {
 }
 
 /// Returns all slices as thumbnails, row by row.
-#[must_use]
 pub fn sheet(volume: &Volume) -> RgbImage {
     let slices = volume.frame.planes.slices();
     let columns = SHEET_COLUMNS.min(slices);
@@ -126,7 +125,6 @@ pub fn sheet(volume: &Volume) -> RgbImage {
 ///
 /// # Panics
 /// Panics if there is no such slice ([`Volume::check_slice`]).
-#[must_use]
 pub fn halftoned(volume: &Volume, slice: u32) -> RgbImage {
     let planes = &volume.frame.planes;
     let [width, height] = planes.size();
@@ -146,7 +144,6 @@ pub fn halftoned(volume: &Volume, slice: u32) -> RgbImage {
 ///
 /// # Panics
 /// The same as [`halftoned`].
-#[must_use]
 pub fn coloured(volume: &Volume, slice: u32) -> RgbImage {
     let [width, height] = volume.frame.planes.size();
     let background = volume.commands.background();
@@ -167,14 +164,12 @@ pub fn coloured(volume: &Volume, slice: u32) -> RgbImage {
 ///
 /// # Panics
 /// The same as [`halftoned`].
-#[must_use]
 pub fn before_and_after(volume: &Volume, slice: u32) -> RgbImage {
     beside(&[coloured(volume, slice), halftoned(volume, slice)])
 }
 
 /// Returns a picture of the tiles of every batch of slices, row by row. Each tile is shown as a square of 3 x 3 pixels.
 /// Tiles with lit pixels are white. Returns `None` if the volume was drawn without tiles.
-#[must_use]
 pub fn tile_map(volume: &Volume) -> Option<RgbImage> {
     let tile = u32::try_from(volume.settings.tile.size).ok().filter(|tile| *tile > 0)?;
     let colours = volume.frame.colours.as_ref()?;
@@ -214,7 +209,6 @@ fn fill(picture: &mut RgbImage, [left, top]: [u32; 2], [width, height]: [u32; 2]
 ///
 /// # Panics
 /// The same as [`halftoned`].
-#[must_use]
 pub fn tiles_of_slice(volume: &Volume, slice: u32, tiling: Tiling) -> RgbImage {
     let picture = coloured(volume, slice);
     let grid = tiling.grid(volume.display.target_size());
@@ -241,13 +235,11 @@ pub fn tiles_of_slice(volume: &Volume, slice: u32, tiling: Tiling) -> RgbImage {
 }
 
 /// Returns the pictures side by side as one picture, which is as high as the highest picture.
-#[must_use]
 pub fn beside(pictures: &[RgbImage]) -> RgbImage {
     grid(pictures, pictures.len().max(1) as u32)
 }
 
 /// Returns the pictures in rows of `columns` as one picture. Each cell of this grid is as large as the largest picture.
-#[must_use]
 pub fn grid(pictures: &[RgbImage], columns: u32) -> RgbImage {
     let width = pictures.iter().map(RgbImage::width).max().unwrap_or(1);
     let height = pictures.iter().map(RgbImage::height).max().unwrap_or(1);

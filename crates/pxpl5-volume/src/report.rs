@@ -200,14 +200,12 @@ const BUS_UNPACKED: &str = "4 bytes a pixel of all slices / readback, and the sa
 
 impl Volume {
     /// Returns the modelled time of the volume, computed with the time model of its settings.
-    #[must_use]
     pub fn time(&self) -> VolumeTime {
         let tile = self.settings.tile.size as u32;
         self.settings.time_model().packed(&self.frame.stats, self.display.target_size(), tile)
     }
 
     /// Returns the report of the volume.
-    #[must_use]
     pub fn report(&self) -> VolumeReport {
         let stats = &self.frame.stats;
         let planes = &self.frame.planes;
@@ -262,13 +260,11 @@ impl Volume {
     /// Returns the percentage of samples that are shown. The samples lie at most a pixel apart on the curves in which
     /// the slices intersect the mesh. A sample is shown if its pixel, or one of the eight neighbouring pixels, is
     /// drawn. The result is NaN if the frame has no colours.
-    #[must_use]
     pub fn connected_percent(&self) -> f64 {
         connected(&self.display, &self.commands, &self.frame).map_or(f64::NAN, |found| found.percent())
     }
 
     /// Returns the number of lit pixels in rings around the axis.
-    #[must_use]
     pub fn brightness(&self) -> Brightness {
         Brightness { ring_px: RING_PX, lit_voxels: brightness_by_radius(&self.frame.planes, RING_PX) }
     }
@@ -307,7 +303,6 @@ impl DisplayReport {
 
 impl VolumeSettings {
     /// Returns the settings whose numbers differ from the SpatialGL paper's values.
-    #[must_use]
     pub fn overrides(&self) -> Vec<Override> {
         let changed = self.numbers().into_iter().filter(|number| number.value != number.info.papers);
         changed.map(|Parameter { path, value, info, .. }| Override { path, value, papers: info.papers }).collect()

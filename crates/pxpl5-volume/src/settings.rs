@@ -89,7 +89,6 @@ impl VolumeSettings {
     }
 
     /// Returns the clip, with its offset or bias.
-    #[must_use]
     pub const fn slice_clip(&self) -> SliceClip {
         let ClipNumbers { offset_px, bias_px2, .. } = self.clip_numbers;
         match self.clip {
@@ -103,7 +102,6 @@ impl VolumeSettings {
     }
 
     /// Returns the clip as text for options and reports: its name, and after a colon its offset or bias.
-    #[must_use]
     pub fn clip_text(&self) -> String {
         let name = self.clip.name();
         match self.slice_clip() {
@@ -115,7 +113,6 @@ impl VolumeSettings {
     }
 
     /// Returns the projection, with the position of its eye or the limits of its random eye positions.
-    #[must_use]
     pub const fn slice_projection(&self) -> Projection {
         match self.projection {
             ProjectionKind::Orthographic => Projection::Orthographic,
@@ -135,13 +132,11 @@ impl VolumeSettings {
     }
 
     /// Returns the name of the projection in options and reports.
-    #[must_use]
     pub fn projection_text(&self) -> &'static str {
         self.projection.name()
     }
 
     /// Returns the radius of the display, pixels.
-    #[must_use]
     pub const fn radius(&self) -> f64 {
         self.display.width as f64 / 2.0
     }
@@ -191,19 +186,16 @@ impl VolumeSettings {
     }
 
     /// Returns the time model with the numbers of these settings.
-    #[must_use]
     pub const fn time_model(&self) -> TimeModel {
         TimeModel { timing: self.gpu }
     }
 
     /// Returns the name of the renderer in options and reports.
-    #[must_use]
     pub fn renderer_text(&self) -> &'static str {
         self.renderer.name()
     }
 
     /// Returns the features of these settings that go beyond the SpatialGL paper.
-    #[must_use]
     pub fn beyond_paper(&self) -> Vec<&'static str> {
         let mut beyond = Vec::new();
         if self.coverage == Coverage::Connected {

@@ -34,14 +34,12 @@ use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 /// Returns, as JSON, the pipelines, scenes, displays and motions that a visitor can choose, each with a name and a
 /// description.
 #[wasm_bindgen]
-#[must_use]
 pub fn catalog() -> String {
     catalog::catalog().to_string()
 }
 
 /// Returns all terms of the glossary with their explanations, as JSON.
 #[wasm_bindgen]
-#[must_use]
 pub fn glossary() -> String {
     glossary::glossary().to_string()
 }
@@ -99,46 +97,39 @@ impl WebMachine {
     }
 
     /// Returns the present instant of simulated time, in picoseconds.
-    #[must_use]
     pub fn now(&self) -> f64 {
         self.0.stepper().now().0 as f64
     }
 
     /// Returns the state of the run as JSON: times in picoseconds, displays, failure and hashes.
-    #[must_use]
     pub fn state(&self) -> String {
         self.0.state().to_string()
     }
 
     /// Returns the messages that occupy the channels of the ring as JSON, one entry for each channel. The entry of a
     /// free channel is null.
-    #[must_use]
     pub fn channels(&self) -> String {
         state::channels(self.0.stepper()).to_string()
     }
 
     /// Returns the present state of each board as JSON.
-    #[must_use]
     pub fn boards(&self) -> String {
         state::boards(self.0.stepper()).to_string()
     }
 
     /// Returns the messages that began after the instant `after_ps` (picoseconds) as JSON, at most `most` messages. If
     /// more messages began, only every n-th message is returned.
-    #[must_use]
     pub fn messages(&self, after_ps: f64, most: usize) -> String {
         diagram::messages(self.0.stepper(), pxpl5_sim::Time(after_ps as u64), most).to_string()
     }
 
     /// Returns the regions that renderers are drawing or copying to displays, as JSON.
-    #[must_use]
     pub fn regions(&self) -> String {
         diagram::regions(self.0.stepper()).to_string()
     }
 
     /// Returns the age of the shown picture as JSON: the time since its head pose was sampled, in milliseconds. The
     /// result is `null` before the first picture.
-    #[must_use]
     pub fn age(&self) -> String {
         diagram::age(self.0.stepper()).to_string()
     }
@@ -146,7 +137,6 @@ impl WebMachine {
     /// Returns the outlines in the ideal picture of a surface at the present instant. The ideal picture has no latency.
     /// Each pixel has four bytes: red, green, blue and opacity. Pixels outside the outlines are transparent. The result
     /// is empty if the surface has no ideal picture.
-    #[must_use]
     pub fn outlines(&self, surface: u16) -> Vec<u8> {
         self.0.outlines(surface)
     }
@@ -162,28 +152,24 @@ impl WebMachine {
 
     /// Returns the parts of one pixel's memory in a renderer, such as colour and depth, with one part per line. The
     /// text is empty before the renderer's first command, and for a position outside the pixel array.
-    #[must_use]
     pub fn pixel(&self, renderer: usize, x: u32, y: u32) -> String {
         state::pixel(self.0.stepper(), renderer, x, y).unwrap_or_default().join("\n")
     }
 
     /// Returns the picture on a surface as a viewer sees it now, drawn up to the beam's present position. The result is
     /// empty if no picture is available.
-    #[must_use]
     pub fn seen(&self, surface: u16) -> Vec<u8> {
         self.0.seen(surface)
     }
 
     /// Returns the ideal picture of a surface at the present instant, without latency, as bytes. The result is empty if
     /// the surface has no ideal picture.
-    #[must_use]
     pub fn ideal(&self, surface: u16) -> Vec<u8> {
         self.0.ideal(surface)
     }
 
     /// Returns a heat map of the differences between the seen and the ideal picture of a surface. Black means equal,
     /// and larger differences are red, yellow and white. The result is empty without an ideal picture.
-    #[must_use]
     pub fn heat(&self, surface: u16) -> Vec<u8> {
         self.0.difference(surface).map(|difference| difference.heat).unwrap_or_default()
     }
@@ -191,14 +177,12 @@ impl WebMachine {
     /// Returns the difference between the seen and the ideal picture of a surface as JSON. The object has the
     /// percentage of pixels that differ, and the mean difference over all pixels in per cent. The difference at a pixel
     /// is the largest of the differences of red, green and blue. The result is `null` without an ideal picture.
-    #[must_use]
     pub fn difference(&self, surface: u16) -> String {
         self.0.difference(surface).map_or_else(|| "null".to_owned(), |difference| difference.numbers().to_string())
     }
 
     /// Returns the 128 x 128 pixels of a renderer as bytes. Enabled pixels are green, and other pixels have the colours
     /// in their memory. The result is empty before the renderer's first command.
-    #[must_use]
     pub fn renderer(&self, renderer: usize) -> Vec<u8> {
         pictures::renderer(self.0.stepper(), renderer)
     }
@@ -206,33 +190,28 @@ impl WebMachine {
     /// Returns the six faces of a cube around the head, as an eye's display memory holds the faces. `eye` is 0 or 1.
     /// The faces form a cross of 512 x 384 pixels. Without `memory`, all memories are combined: each texel is the
     /// nearest texel of all memories. The result is empty for a display without such memories.
-    #[must_use]
     pub fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
         self.0.faces(eye, memory)
     }
 
     /// Returns a timeline of the last `fields` display periods as SVG.
-    #[must_use]
     pub fn timeline(&self, fields: u32) -> String {
         state::timeline(self.0.stepper(), u64::from(fields))
     }
 
     /// Returns, as JSON, the parts of the latency for each of the last complete pictures. The result has at most `most`
     /// pictures.
-    #[must_use]
     pub fn latencies(&self, most: usize) -> String {
         state::latencies(self.0.stepper(), most).to_string()
     }
 
     /// Returns true if pictures after the warm-up were due, and no recent picture was complete in time.
-    #[must_use]
     pub fn misses_all(&self) -> bool {
         state::misses_all(self.0.stepper())
     }
 
     /// Returns, as JSON, the share of time for which each kind of board was busy, and the waits that delayed the last
     /// pictures. Shares are 0 to 1, and values that were not measured are null.
-    #[must_use]
     pub fn limits(&self) -> String {
         state::limits(self.0.stepper()).to_string()
     }
@@ -240,7 +219,6 @@ impl WebMachine {
     /// Returns the number of triangles and spheres in the scene, followed by the number that the pipeline shows in
     /// time, as JSON. The second number is null if the scene cannot be decimated. The search for the second number can
     /// take some seconds.
-    #[must_use]
     pub fn fitting(&self) -> String {
         self.0.fitting().to_string()
     }
@@ -263,14 +241,12 @@ pub struct WebVolume(volume::Volume);
 #[wasm_bindgen]
 impl WebVolume {
     /// Returns the number of slices, followed by the width and the height of a slice in pixels.
-    #[must_use]
     pub fn size(&self) -> Vec<u32> {
         self.0.size().to_vec()
     }
 
     /// Returns the slice with index `number` as bytes. The value of each colour of a pixel is 0 or 255, because the
     /// display has one bit for each colour.
-    #[must_use]
     pub fn slice(&self, number: u32) -> Vec<u8> {
         self.0.slice(number)
     }

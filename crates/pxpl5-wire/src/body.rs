@@ -64,7 +64,6 @@ impl CommandContent {
 
     /// Returns the region for which the message's commands draw. Returns `None` if the source of the words does not
     /// state the region.
-    #[must_use]
     pub fn place(&self) -> Option<RegionPlace> {
         let place = self.words.place()?;
         Some(RegionPlace { frame_buffer: place.frame_buffer.or(self.frame_buffer), ..place })
@@ -122,7 +121,6 @@ pub enum CopyContent {
 
 impl CopyContent {
     /// Returns the number of ring words for each pixel. The backing store needs the same number of 32-bit words.
-    #[must_use]
     pub const fn words(self) -> u32 {
         match self {
             Self::Colour | Self::Packed => 1,
@@ -132,7 +130,6 @@ impl CopyContent {
 
     /// Returns the ring words of a region. `colours` are in the form 0x00RRGGBB. The function calls `depths` only if
     /// the copy sends depths. `depths` must return 24-bit values.
-    #[must_use]
     pub fn of(self, colours: Arc<[Word]>, depths: impl FnOnce() -> Vec<Word>) -> Arc<[Word]> {
         match self {
             Self::Colour => colours,
@@ -170,7 +167,6 @@ pub const COPY_ACKNOWLEDGEMENT_WORDS: u32 = 4;
 
 impl CommandList {
     /// Returns the total length of all commands in words.
-    #[must_use]
     pub fn words(&self) -> u32 {
         self.runs.iter().map(|run| run.count * run.words_each).sum()
     }
@@ -272,7 +268,6 @@ impl FieldParity {
     }
 
     /// Returns the first line of the field: 0 or 1.
-    #[must_use]
     pub const fn first_line(self) -> u32 {
         self as u32
     }
@@ -320,7 +315,6 @@ pub const COPY_ACKNOWLEDGEMENT: Word = 0xC0_11_ED;
 impl CopyTarget {
     /// Returns the words of the message that notifies a program that this region was copied. The words are:
     /// [`COPY_ACKNOWLEDGEMENT`], number of the region, low word of the picture number, port of the frame buffer.
-    #[must_use]
     pub fn acknowledgement(&self) -> Arc<[Word]> {
         let words = [
             COPY_ACKNOWLEDGEMENT,
@@ -337,13 +331,11 @@ impl CopyTarget {
 pub const SWAP_REQUEST: Word = 0x0005_3A9F;
 
 /// Returns the words of a message that requests buffer `buffer` to be shown from the next retrace on.
-#[must_use]
 pub fn swap_request(buffer: u8) -> Arc<[Word]> {
     [SWAP_REQUEST, Word::from(buffer)].into()
 }
 
 /// Returns the number of the requested buffer if the words are a swap request, else `None`.
-#[must_use]
 pub fn read_swap_request(words: &[Word]) -> Option<u8> {
     match words {
         [SWAP_REQUEST, buffer] => u8::try_from(*buffer).ok(),

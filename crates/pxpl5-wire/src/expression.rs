@@ -20,7 +20,6 @@ impl Linear {
         Self { a: 0, b: 0, c }
     }
 
-    #[must_use]
     pub const fn at(&self, x: i32, y: i32) -> i32 {
         let ax = self.a.wrapping_mul(x);
         ax.wrapping_add(self.b.wrapping_mul(y)).wrapping_add(self.c)
@@ -45,7 +44,6 @@ impl LinearLanes {
     /// # Panics
     /// Panics if `i` is not below [`LANES`].
     #[inline(always)]
-    #[must_use]
     pub const fn get(&self, i: usize) -> Linear {
         Linear { a: self.a[i], b: self.b[i], c: self.c[i] }
     }
@@ -88,7 +86,6 @@ pub struct Quadratic {
 }
 
 impl Quadratic {
-    #[must_use]
     pub const fn at(&self, x: i32, y: i32) -> i64 {
         let px = x as i64;
         let py = y as i64;

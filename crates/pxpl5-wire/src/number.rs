@@ -33,7 +33,6 @@ macro_rules! count_from_zero {
             }
 
             /// Returns the number that is lower by `count`. Returns `None` if the result would be negative.
-            #[must_use]
             pub const fn before(self, count: u64) -> Option<Self> {
                 match self.0.checked_sub(count) {
                     Some(number) => Some(Self(number)),
@@ -49,7 +48,6 @@ macro_rules! count_from_zero {
 
             /// Returns the distance from the number `earlier` to this number. Returns 0 if `earlier` is the greater
             /// number.
-            #[must_use]
             pub const fn since(self, earlier: Self) -> u64 {
                 self.0.saturating_sub(earlier.0)
             }
@@ -64,7 +62,6 @@ macro_rules! count_from_zero {
             }
 
             /// Returns the number as two ring words, the low word first.
-            #[must_use]
             pub const fn to_words(self) -> [Word; 2] {
                 [self.0 as Word, (self.0 >> 32) as Word]
             }
@@ -123,7 +120,6 @@ impl PictureNumber {
 
     /// Returns the number of the period for which a picture is drawn. The result is valid only in pipelines that draw
     /// one picture for every period.
-    #[must_use]
     pub const fn period_drawn_for(self) -> PeriodNumber {
         PeriodNumber(self.0)
     }
@@ -139,7 +135,6 @@ impl ViewNumber {
 
     /// Returns the number of the picture that shows a view. The result is valid only in pipelines that request one view
     /// for every picture.
-    #[must_use]
     pub const fn picture_taken_for(self) -> PictureNumber {
         PictureNumber(self.0)
     }

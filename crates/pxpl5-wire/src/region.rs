@@ -16,13 +16,11 @@ impl Eye {
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
 
     /// Returns the index of the eye: 0 for left, 1 for right.
-    #[must_use]
     #[inline]
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Left => "left",
@@ -39,7 +37,6 @@ pxpl5_sim::parameters::named!(Eye, "eye", Eye::BOTH.map(|eye| (eye.name(), eye))
 pub struct SurfaceId(pub u16);
 
 impl SurfaceId {
-    #[must_use]
     #[inline]
     pub const fn index(self) -> usize {
         self.0 as usize
@@ -77,27 +74,23 @@ impl RegionGrid {
     /// One NTSC field of 640 x 240 in 5 x 2 regions of 128 x 120 (TR94).
     pub const FIELD: Self = Self { width: 640, height: 240, region_width: 128, region_height: 120 };
 
-    #[must_use]
     #[inline]
     pub const fn columns(&self) -> u32 {
         self.width.div_ceil(self.region_width)
     }
 
     /// Returns the number of rows of regions. The regions of the last row can be cut off at the bottom.
-    #[must_use]
     #[inline]
     pub const fn rows(&self) -> u32 {
         self.height.div_ceil(self.region_height)
     }
 
-    #[must_use]
     #[inline]
     pub const fn regions(&self) -> u32 {
         self.columns() * self.rows()
     }
 
     /// Returns left, top, width and height of a region in pixels.
-    #[must_use]
     pub const fn rectangle(&self, region: RegionId) -> [u32; 4] {
         let column = region.0 as u32 % self.columns();
         let row = region.0 as u32 / self.columns();
@@ -110,7 +103,6 @@ impl RegionGrid {
     /// `None` if the grid or the region is invalid. The grid must not be empty or larger than `width` x `height`, and
     /// must contain the region. The region must have at least one pixel, and at most as many pixels as a renderer's
     /// array.
-    #[must_use]
     pub const fn rectangle_within(&self, region: RegionId, width: u32, height: u32) -> Option<[u32; 4]> {
         // Check the grid before any division by its sizes.
         let fits = 0 < self.width && self.width <= width && 0 < self.height && self.height <= height;

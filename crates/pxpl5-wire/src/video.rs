@@ -64,14 +64,12 @@ impl Video {
     }
 
     /// Returns the time of the retrace with which a field begins.
-    #[must_use]
     pub const fn retrace(&self, field: PeriodNumber) -> Time {
         self.field.edge(field.0)
     }
 
     /// Returns the number of the field that is being scanned at `time`. At a retrace, the result is the field that
     /// begins.
-    #[must_use]
     pub const fn field_at(&self, time: Time) -> PeriodNumber {
         let n = self.field.edge_at_or_after(time);
         PeriodNumber(if self.field.edge(n).0 == time.0 { n } else { n - 1 })
@@ -79,14 +77,12 @@ impl Video {
 
     /// Returns the time at which the beam begins line `y` of the video frame in a field. The line begins with its
     /// blanking. Returns `None` if the field does not scan the line.
-    #[must_use]
     pub fn line_start(&self, y: u32, field: PeriodNumber) -> Option<Time> {
         Some(self.line.edge(self.line_number(y, field)?))
     }
 
     /// Returns the time at which the beam is at pixel `x` of line `y` of the video frame in a field. Returns `None` if
     /// the field does not scan the pixel.
-    #[must_use]
     pub fn when(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         if x >= self.width() {
             return None;
@@ -100,7 +96,6 @@ impl Video {
     /// Returns the time at which the beam reaches the first pixel of a region in a field. The region is shown
     /// completely if all its pixels have arrived by this time. Returns `None` for a region outside the video frame, or
     /// for a region without a line in this field.
-    #[must_use]
     pub fn reaches(&self, target: &CopyTarget, field: PeriodNumber) -> Option<Time> {
         let [left, top, _, height] = self.rectangle(target)?;
         (top..top + height).find_map(|row| self.when(left, frame_line(target.lines, row), field))
@@ -108,7 +103,6 @@ impl Video {
 
     /// Returns left, top, width and height of a region, in the pixels and rows of its picture. Returns `None` if the
     /// region does not lie in the video frame or is larger than a renderer's pixel array.
-    #[must_use]
     pub fn rectangle(&self, target: &CopyTarget) -> Option<[u32; 4]> {
         let rows = match target.lines {
             Lines::Frame => self.height(),
@@ -117,13 +111,11 @@ impl Video {
         target.grid.rectangle_within(target.region, self.width(), rows)
     }
 
-    #[must_use]
     pub const fn width(&self) -> u32 {
         self.numbers.visible_pixels as u32
     }
 
     /// Returns the number of visible lines in a video frame.
-    #[must_use]
     pub const fn height(&self) -> u32 {
         self.numbers.visible_lines as u32 * 2
     }
@@ -143,7 +135,6 @@ impl Video {
 }
 
 /// Returns the line of the video frame to which row `row` of a picture belongs.
-#[must_use]
 pub const fn frame_line(lines: Lines, row: u32) -> u32 {
     match lines {
         Lines::Frame => row,

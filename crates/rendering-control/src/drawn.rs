@@ -142,7 +142,6 @@ impl<D: Drawn> RenderingControlConfig<D> {
     }
 
     /// Returns the share of the slave `index`: the triangles and spheres that the slave stores and transforms.
-    #[must_use]
     pub fn share(&self, list: &Arc<pphigs::DisplayList>, index: usize) -> Share {
         Share::new(Arc::clone(list), index, self.slaves.len())
     }

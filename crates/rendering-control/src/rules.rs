@@ -17,13 +17,11 @@ impl Drawing {
     }
 
     /// Returns the frame that contains the drawing, if each frame has `eyes` drawings.
-    #[must_use]
     pub const fn picture(self, eyes: u64) -> PictureNumber {
         PictureNumber(self.0 / eyes)
     }
 
     /// Returns the index of the eye for which this drawing is made, from 0 to `eyes` - 1.
-    #[must_use]
     pub const fn eye(self, eyes: u64) -> u64 {
         self.0 % eyes
     }
@@ -75,7 +73,6 @@ impl Completed {
     /// Let n be the number of the frame's first drawing, where a drawing is the picture of one eye. SEND of the frame
     /// must have finished. TRANSFORM of drawing n - 1, RENDER of drawing n - 2, and COPY of drawing n - 3 must also
     /// have finished. Before that, older drawings still use the bins and the pixel memory.
-    #[must_use]
     pub const fn may_edit(&self, frame: PictureNumber) -> bool {
         let first = Drawing::first_of(frame, self.eyes);
         self.sent > frame.0 && self.transformed >= first.0 && self.buffers_free(first)
@@ -86,7 +83,6 @@ impl Completed {
     /// Let n be the number of the drawing. All slaves must have finished EDIT of its frame, although TR94 only demands
     /// that this EDIT has begun. RENDER of drawing n - 2 and COPY of drawing n - 3 must have finished. This rule is for
     /// the right eye: each slave begins TRANSFORM of the left eye directly after EDIT.
-    #[must_use]
     pub const fn may_transform(&self, drawing: Drawing) -> bool {
         self.edited > drawing.picture(self.eyes).0 && self.buffers_free(drawing)
     }
@@ -99,14 +95,12 @@ impl Completed {
 
     /// Returns true if RENDER of a drawing (the picture of one eye) may begin. All slaves must have finished TRANSFORM
     /// of this drawing, and RENDER of the previous drawing must have finished.
-    #[must_use]
     pub const fn may_render(&self, drawing: Drawing) -> bool {
         self.transformed > drawing.0 && self.rendered >= drawing.0
     }
 
     /// Returns true if the hidden buffer for a drawing is free. The buffer is free when a swap has made the previous
     /// frame visible.
-    #[must_use]
     pub const fn frame_buffer_available(&self, drawing: Drawing) -> bool {
         self.swapped >= drawing.picture(self.eyes).0
     }
@@ -116,13 +110,11 @@ impl Completed {
     ///
     /// Each frame buffer has its own ring port, so the hardware could make two copies at the same time. The rule of
     /// TR94 nevertheless permits only one copy at a time.
-    #[must_use]
     pub const fn may_copy(&self, drawing: Drawing) -> bool {
         self.frame_buffer_available(drawing) && self.copied >= drawing.0
     }
 
     /// Returns true if frame buffers may show a frame. COPY of all drawings of the frame must have finished.
-    #[must_use]
     pub const fn may_swap(&self, frame: PictureNumber) -> bool {
         self.copied >= Drawing::first_of(frame.next(), self.eyes).0
     }

@@ -27,7 +27,6 @@ impl CopySchedule {
     pub const ALL: [(&str, Self); 3] = [("whole", Self::Whole), ("split", Self::Split), ("backup", Self::Backup)];
 
     /// Returns true if the bottom regions are copied later than all top regions.
-    #[must_use]
     pub const fn is_split(self) -> bool {
         matches!(self, Self::Split | Self::Backup)
     }
@@ -48,7 +47,6 @@ pub struct BoundRegion {
 
 impl BoundRegion {
     /// Returns true if the region is in the upper half of the picture.
-    #[must_use]
     pub const fn is_top(&self) -> bool {
         (self.region.0 as u32) < RegionGrid::FIELD.columns()
     }
@@ -92,7 +90,6 @@ impl Binding {
     }
 
     /// Returns all regions, in the order in which they receive a clump.
-    #[must_use]
     pub fn regions(&self) -> &[BoundRegion] {
         &self.regions
     }
@@ -101,7 +98,6 @@ impl Binding {
     ///
     /// A whole copy begins with the left eye. A split copy has only the top half if `top` is true, otherwise only the
     /// bottom half. In a split copy, renderers with an odd index begin with the right eye.
-    #[must_use]
     pub fn copies(&self, renderer: usize, top: bool) -> Vec<BoundRegion> {
         let of_renderer = self.regions.iter().filter(|b| b.renderer == renderer);
         let mut mine: Vec<_> = of_renderer.filter(|b| !self.copy.is_split() || b.is_top() == top).copied().collect();
@@ -111,7 +107,6 @@ impl Binding {
         alternate(mine)
     }
 
-    #[must_use]
     pub const fn renderers(&self) -> usize {
         self.renderers
     }

@@ -10,7 +10,6 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 ///
 /// # Panics
 /// Panics if the denominator is zero.
-#[must_use]
 pub fn sin_cos_of_turn(numerator: i64, denominator: u32) -> (f64, f64) {
     // Split the angle into an octant and a rest. Odd octants run backwards.
     let whole = i64::from(denominator);

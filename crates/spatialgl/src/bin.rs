@@ -91,7 +91,6 @@ impl BinLayout {
 
     /// Returns the SpatialGL paper's code of a point: bit i is set if the equation of plane i is not negative at the
     /// point.
-    #[must_use]
     pub fn code(&self, point: [f64; 3]) -> u32 {
         let bits = self.planes.iter().enumerate().map(|(i, plane)| u32::from(distance(plane, point) >= 0.0) << i);
         bits.fold(0, |code, bit| code | bit)
@@ -100,7 +99,6 @@ impl BinLayout {
     /// Returns the groups of slices, one bit each, that may show a primitive with these corners.
     ///
     /// `extra` pixels are added to the tolerance for a primitive that extends beyond its corners.
-    #[must_use]
     pub fn groups(&self, corners: &[[f64; 3]], binning: Binning, tolerance: BinTolerance, extra: f64) -> u64 {
         let codes = Codes::of(self, corners, tolerance, extra);
         let touched = self.regions.iter().filter(|region| match binning {
@@ -113,7 +111,6 @@ impl BinLayout {
 
     /// Returns the regions that a primitive with these corners may touch, with one bit for each region of the layout.
     /// The test uses all planes of the layout.
-    #[must_use]
     pub fn touched_regions(&self, corners: &[[f64; 3]], tolerance: BinTolerance) -> u64 {
         let codes = Codes::of(self, corners, tolerance, 0.0);
         let touched = self.regions.iter().enumerate().filter(|(_, region)| !codes.misses(region.signs, u32::MAX));

@@ -74,7 +74,6 @@ impl SliceClip {
         Self::Hyperbolic(DEFAULT_HYPERBOLIC_BIAS_PX2),
     ];
 
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Prism => "prism",
@@ -87,7 +86,6 @@ impl SliceClip {
     }
 
     /// Returns the distance of the near and far planes from the slice, in pixels.
-    #[must_use]
     pub fn reach(self, wedge: HalfWedge) -> f64 {
         let face = wedge.radius * wedge.sin;
         match self {
@@ -99,7 +97,6 @@ impl SliceClip {
 
     /// Returns the greatest distance in pixels from the exact wedge at which a slice still shows a point. Bins must
     /// allow for this distance.
-    #[must_use]
     pub fn tolerance(self, wedge: HalfWedge) -> f64 {
         match self {
             Self::Prism => wedge.radius * wedge.tan,
@@ -110,7 +107,6 @@ impl SliceClip {
     }
 
     /// Returns half the thickness of the slice's volume, in pixels, at the horizontal distance u from the axis.
-    #[must_use]
     pub fn half_thickness(self, wedge: HalfWedge, u: f64) -> f64 {
         let exact = u.abs() * wedge.tan;
         match self {
@@ -122,7 +118,6 @@ impl SliceClip {
         }
     }
 
-    #[must_use]
     pub fn volume(self, planes: WedgePlanes, ties: TieRule, wedge: HalfWedge) -> SliceVolume {
         match self {
             Self::Prism => SliceVolume::Frustum,

@@ -79,19 +79,16 @@ pub struct CommandTriangle {
 
 impl CommandBuffer {
     /// Returns the number of recorded vertices, which are already transformed and lit.
-    #[must_use]
     pub const fn vertices(&self) -> usize {
         self.positions.len()
     }
 
     /// Returns the number of triangles, lines and points.
-    #[must_use]
     pub const fn primitives(&self) -> usize {
         self.primitives.len()
     }
 
     /// Returns the colour of pixels without a fragment: red, green and blue.
-    #[must_use]
     pub const fn background(&self) -> [u8; 3] {
         self.background
     }
@@ -104,7 +101,6 @@ impl CommandBuffer {
 
     /// Returns the triangle with this index among all primitives. Returns `None` for a line, a point or an index beyond
     /// the last primitive.
-    #[must_use]
     pub fn triangle(&self, primitive: u32) -> Option<CommandTriangle> {
         let primitive = self.primitives.get(primitive as usize)?;
         let is_triangle = primitive.shape == Shape::Triangle;
@@ -130,7 +126,6 @@ impl CommandBuffer {
     }
 
     /// Returns the positions of the vertices in world coordinates.
-    #[must_use]
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }

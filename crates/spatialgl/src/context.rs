@@ -49,12 +49,10 @@ impl VertexBuffer {
         Ok(Self { vertices })
     }
 
-    #[must_use]
     pub const fn len(&self) -> usize {
         self.vertices.len()
     }
 
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.vertices.is_empty()
     }
@@ -163,7 +161,6 @@ impl DrawContext {
     }
 
     /// Returns the draw calls recorded so far, and starts a new list.
-    #[must_use]
     pub fn present(&mut self) -> CommandBuffer {
         std::mem::take(&mut self.recording)
     }

@@ -3,11 +3,10 @@
 /// The two ends of a triangle's intersection with a plane, and the weights of the triangle's corners at each end.
 pub(crate) type PlaneCurve = ([[f64; 3]; 2], [[f64; 3]; 2]);
 
-/// Returns the two ends of a triangle's intersection with a plane, and the weights of the triangle's corners at each
-/// end. The plane is parallel to the slice, at distance `s`. Returns `None` if the triangle does not cross the plane or
-/// lies in the plane.
-pub(crate) fn plane_curve(corners: [[f64; 3]; 3], s: f64) -> Option<PlaneCurve> {
-    let side = corners.map(|corner| corner[2] - s);
+/// Returns the two ends of a triangle's intersection with its slice, and the weights of the triangle's corners at each
+/// end. Returns `None` if the triangle does not cross the slice or lies in the slice.
+pub(crate) fn plane_curve(corners: [[f64; 3]; 3]) -> Option<PlaneCurve> {
+    let side = corners.map(|corner| corner[2]);
     if side == [0.0; 3] {
         return None;
     }

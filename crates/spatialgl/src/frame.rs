@@ -20,12 +20,10 @@ impl BitPlanes {
         Self { size, slices, words: vec![0; slices as usize * words_of_slice(size)] }
     }
 
-    #[must_use]
     pub const fn size(&self) -> Size {
         self.size
     }
 
-    #[must_use]
     pub const fn slices(&self) -> u32 {
         self.slices
     }
@@ -34,7 +32,6 @@ impl BitPlanes {
     ///
     /// # Panics
     /// Panics if there is no such slice.
-    #[must_use]
     pub fn slice(&self, k: u32) -> &[u32] {
         let words = words_of_slice(self.size);
         &self.words[k as usize * words..][..words]
@@ -54,19 +51,16 @@ impl BitPlanes {
     ///
     /// # Panics
     /// Panics if there is no such slice or pixel.
-    #[must_use]
     pub fn pixel(&self, k: u32, x: u32, y: u32) -> u8 {
         pixel_of_word(self.slice(k)[(y * (self.size[0] / 8) + x / 8) as usize], x % 8)
     }
 
     /// Returns the number of pixels in all slices that are lit in any colour.
-    #[must_use]
     pub fn lit_voxels(&self) -> u64 {
         self.words.iter().map(|word| u64::from((word | word >> 8 | word >> 16).to_le_bytes()[0].count_ones())).sum()
     }
 
     /// Returns a hash of all bits. The hash does not depend on threads, tiles or the order of drawing.
-    #[must_use]
     pub fn hash(&self) -> u64 {
         let lit = (0u64..).zip(&self.words).filter(|(_, word)| **word != 0);
         let sum = lit.fold(0u64, |sum, (at, word)| sum.wrapping_add(mix(at << 32 | u64::from(*word))));

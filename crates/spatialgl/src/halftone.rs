@@ -31,13 +31,11 @@ impl Halftone {
     }
 
     /// Returns the number of rows of the matrix, which is also the number of columns.
-    #[must_use]
     pub const fn size(&self) -> u32 {
         self.size
     }
 
     /// Returns the threshold at pixel (x, y). The bit of a channel is set if the channel's value exceeds the threshold.
-    #[must_use]
     pub fn threshold(&self, x: u32, y: u32) -> u8 {
         self.rows[(y % self.size) as usize][(x % self.size) as usize]
     }

@@ -23,7 +23,6 @@ impl SliceImage {
         Self { size, channels: [0, 1, 2].map(|_| vec![0; pixels]), stencil: vec![0; pixels / 8], depth: Vec::new() }
     }
 
-    #[must_use]
     pub const fn size(&self) -> Size {
         self.size
     }
@@ -91,14 +90,12 @@ impl SliceImage {
     ///
     /// # Panics
     /// Panics if the pixel lies outside the image.
-    #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> [u8; 3] {
         let at = self.at(x, y);
         [0, 1, 2].map(|c| self.channels[c][at])
     }
 
     /// Returns true if a fragment has been drawn on a pixel, and false for pixels outside the image.
-    #[must_use]
     pub fn is_marked(&self, x: u32, y: u32) -> bool {
         let inside = x < self.size[0] && y < self.size[1];
         inside && self.stencil[self.at(x, y) / 8] >> (x % 8) & 1 == 1
@@ -146,7 +143,6 @@ impl SliceImage {
     }
 
     /// Returns the number of pixels on which a fragment has been drawn.
-    #[must_use]
     pub fn marked(&self) -> u64 {
         self.stencil.iter().map(|byte| u64::from(byte.count_ones())).sum()
     }

@@ -18,7 +18,7 @@
 //!
 //! - A display consists of views and slice volumes ([`SpatialDisplay`]). The pipeline uses no other property of a
 //!   display, and the recorded draw calls do not depend on the display. [`SweptDisplay`] is the spinning screen of
-//!   the SpatialGL paper. [`PlaneStack`] and [`FlatDisplay`] show the same draw calls.
+//!   the SpatialGL paper. [`FlatDisplay`] shows the same draw calls.
 //! - The boundary planes of swept slices come from one table in which opposite planes are exact negatives. Neighbouring
 //!   slices therefore compute the same number for a point between them. [`TieRule`] assigns the point to one of the two
 //!   slices.
@@ -82,7 +82,7 @@ pub use bin::{BinLayout, BinRegion, BinTolerance, Binning};
 pub use clip::{DEFAULT_HYPERBOLIC_BIAS_PX2, DEFAULT_OFFSET_PX, HalfWedge, SliceClip};
 pub use command::{Combine, CommandBuffer, CommandTriangle};
 pub use context::{ColouredVertex, DrawContext, Topology, TwoSidedLight, VertexBuffer};
-pub use displays::{FlatDisplay, PlaneStack, Rotation, SweptConfig, SweptDisplay};
+pub use displays::{FlatDisplay, Rotation, SweptConfig, SweptDisplay};
 pub use frame::{BitPlanes, ColourSample, VolumeFrame};
 pub use halftone::Halftone;
 pub use image::SliceImage;

@@ -19,7 +19,6 @@ pub struct Connected {
 
 impl Connected {
     /// Returns the percentage of samples that are shown. The result is 100 if there are no samples.
-    #[must_use]
     pub fn percent(&self) -> f64 {
         if self.samples == 0 { 100.0 } else { 100.0 * self.shown as f64 / self.samples as f64 }
     }
@@ -28,7 +27,6 @@ impl Connected {
 /// Measures how connected the surfaces of a mesh appear on a swept display. Returns `None` if the frame was made
 /// without its colours ([`VolumeConfig::keeps_colours`](crate::VolumeConfig::keeps_colours)), because gaps that the
 /// dither makes would then count as gaps in surfaces.
-#[must_use]
 pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<Connected> {
     let colours = frame.colours.as_ref()?;
     let size = display.target_size();
@@ -49,12 +47,11 @@ pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: 
 
 fn each_curve(view: &SliceView, commands: &CommandBuffer, all: &Bin, mut each: impl FnMut([[f64; 3]; 2])) {
     // Clusters away from the slice are skipped.
-    let middle = view.volume.middle();
     let row = view.view.transpose().z_axis.to_array();
-    for primitive in all.clusters().flat_map(|cluster| cluster.reaching(&row, [middle, middle])) {
+    for primitive in all.clusters().flat_map(|cluster| cluster.reaching(&row, [0.0, 0.0])) {
         let Some(triangle) = commands.triangle(primitive) else { continue };
         let local = triangle.corners.map(|corner| view.local(DVec3::from_array(corner)).to_array());
-        if let Some((ends, _)) = plane_curve(local, middle) {
+        if let Some((ends, _)) = plane_curve(local) {
             each(ends);
         }
     }
@@ -65,7 +62,6 @@ fn each_curve(view: &SliceView, commands: &CommandBuffer, all: &Bin, mut each: i
 /// pattern that all slices share, near 0 for noise.
 ///
 /// Returns `None` for frames without colours, as [`connected`] does, and for volumes without gaps.
-#[must_use]
 pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<f64> {
     let colours = frame.colours.as_ref()?;
     let size = display.target_size();
@@ -164,7 +160,6 @@ fn pixel_of(view: &SliceView, local: [f64; 3], size: [u32; 2]) -> [f64; 2] {
 
 /// Returns, for each ring around the axis, the number of lit pixels in all slices. Rings are `ring` pixels wide, and
 /// distances are measured from the middle column.
-#[must_use]
 pub fn brightness_by_radius(planes: &BitPlanes, ring: u32) -> Vec<u64> {
     let [width, _] = planes.size();
     let radius = width / 2;
@@ -178,7 +173,6 @@ pub fn brightness_by_radius(planes: &BitPlanes, ring: u32) -> Vec<u64> {
 
 /// Returns the radius in pixels around the axis within which no pixel of any slice is lit. Returns `None` if no pixel
 /// is lit.
-#[must_use]
 pub fn innermost_lit_radius(planes: &BitPlanes) -> Option<u32> {
     brightness_by_radius(planes, 1).iter().position(|lit| *lit > 0).map(|radius| radius as u32)
 }
@@ -189,7 +183,6 @@ pub fn innermost_lit_radius(planes: &BitPlanes) -> Option<u32> {
 /// Each column of pixels is tested at two points, one on each side of the axis, at half of the volume's height. The
 /// column belongs to the dead zone if no slice accepts either of the two points. Returns `None` if no slice accepts any
 /// column.
-#[must_use]
 pub fn dead_zone_radius(display: &dyn SpatialDisplay) -> Option<u32> {
     let to_world: Vec<_> = display.views().iter().map(|view| view.view.inverse()).collect();
     let is_shown = |column: &u32| {

@@ -66,7 +66,6 @@ pub struct SliceEye {
 impl Projection {
     /// Returns the eye and shear of a slice. `radius` is the display's radius. `reach` is the distance from the slice
     /// to the near and far planes.
-    #[must_use]
     pub fn eye(&self, slice: u32, radius: f64, reach: f64) -> SliceEye {
         match *self {
             Self::Orthographic => SliceEye { eye: None, shear: [0.0; 2] },
@@ -75,7 +74,6 @@ impl Projection {
         }
     }
 
-    #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Orthographic => "orthographic",
@@ -126,7 +124,6 @@ fn unit(seed: u64, slice: u32, draw: u64) -> f64 {
 impl SliceEye {
     /// Returns the matrix from the slice's coordinates (u, v, s, 1) to clip coordinates. The depth is 0 at the near
     /// plane and 1 at the far plane.
-    #[must_use]
     pub fn clip_matrix(&self, size: Size, reach: f64) -> DMat4 {
         let half = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];
         let [kx, ky] = self.shear;
@@ -153,7 +150,6 @@ impl SliceEye {
     ///
     /// The result equals [`Self::clip_matrix`] followed by the viewport. This function avoids the rounding of a
     /// division by half the image's size and of a multiplication by the same number.
-    #[must_use]
     pub fn window_rows(&self, size: Size, reach: f64) -> [[f64; 4]; 4] {
         let middle = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];
         let [kx, ky] = self.shear;

@@ -48,7 +48,6 @@ impl ClipQuadratic {
 
     /// Returns the quadratic for the plane through three corners (u, v, s). Returns `None` if the plane is
     /// perpendicular to the slice.
-    #[must_use]
     pub fn of_corners(corners: [[f64; 3]; 3], wedge: HalfWedge, bias: f64) -> Option<Self> {
         let [first, second, third] = corners;
         let along = |axis: usize| [second[axis] - first[axis], third[axis] - first[axis]];
@@ -65,7 +64,6 @@ impl ClipQuadratic {
         Some(Self::of_plane(slope, offset, wedge, bias))
     }
 
-    #[must_use]
     pub fn at(&self, u: f64, v: f64) -> f64 {
         self.uu * u * u + self.uv * u * v + self.vv * v * v + self.u * u + self.v * v + self.one
     }

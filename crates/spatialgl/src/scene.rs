@@ -59,7 +59,6 @@ fn draw_sphere(context: &mut DrawContext, sphere: &Sphere) -> Result<(), Setting
 
 /// Returns vertices and triangle indices of a sphere with `rows` x `2 rows` facets. Vertex (a, b) has the polar angle
 /// pi a / rows from +y, and the azimuth pi b / rows from +x to +z.
-#[must_use]
 pub fn tessellated_sphere(centre: DVec3, radius: f64, rows: u32, colour: [u8; 3]) -> (Vec<ColouredVertex>, Vec<u32>) {
     let columns = 2 * rows;
     let mut vertices = Vec::new();

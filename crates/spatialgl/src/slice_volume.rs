@@ -91,8 +91,6 @@ pub enum WedgeTest {
 pub enum SliceVolume {
     /// All points between the near and far planes.
     Frustum,
-    /// A slab low <= s < high parallel to the slice, where s is the distance from the slice in pixels.
-    Slab { low: f64, high: f64 },
     /// A double wedge around the axis y: its planes, and its test.
     Wedge(WedgePlanes, WedgeTest),
     /// The volume |s| <= offset + slope |u|, bounded by clip planes. s is the distance from the slice, and u the
@@ -107,7 +105,6 @@ pub enum SliceVolume {
 
 impl SliceVolume {
     /// Returns the number of times that the recorded commands are replayed for a slice.
-    #[must_use]
     pub const fn passes(&self) -> u32 {
         match self {
             Self::Wedge(_, WedgeTest::UserPlanes(_)) | Self::Taper { .. } => 2,
@@ -116,28 +113,16 @@ impl SliceVolume {
     }
 
     /// Returns true if clip planes reject all points outside the volume before fragments are generated.
-    #[must_use]
     pub const fn clips_before_fragments(&self) -> bool {
-        matches!(self, Self::Wedge(_, WedgeTest::UserPlanes(_)) | Self::Taper { .. } | Self::Slab { .. })
-    }
-
-    /// Returns the signed distance s, in pixels, from the slice to the middle of the volume. The distance is 0 except
-    /// for a slab.
-    pub(crate) const fn middle(&self) -> f64 {
-        match self {
-            Self::Slab { low, high } => (*low + *high) / 2.0,
-            _ => 0.0,
-        }
+        matches!(self, Self::Wedge(_, WedgeTest::UserPlanes(_)) | Self::Taper { .. })
     }
 
     /// Returns the two values of a vertex that the test of the slice volume compares. Both values are linear in space
     /// and can be interpolated.
     #[inline(always)]
-    #[must_use]
     pub(crate) fn attributes(&self, world: [f64; 3], u: f64, s: f64) -> [f64; 2] {
         match self {
             Self::Frustum => [0.0, 0.0],
-            Self::Slab { low, high } => [s - low, high - s],
             Self::Wedge(planes, _) => [along(planes.a, world), along(planes.b, world)],
             Self::Taper { .. } => [u, s],
         }
@@ -146,7 +131,6 @@ impl SliceVolume {
     pub(crate) fn test(&self, pass: u32) -> SampleTest {
         match *self {
             Self::Frustum => SampleTest::All,
-            Self::Slab { .. } => SampleTest::Slab,
             Self::Taper { offset, slope } => SampleTest::Taper { offset, slope, plus: pass == 0 },
             Self::Wedge(planes, test) => match test {
                 WedgeTest::UserPlanes(ties) if pass == 0 => SampleTest::Plus(ties, planes.fraction_bits),
@@ -159,7 +143,6 @@ impl SliceVolume {
     }
 
     /// Returns true if a point belongs to the slice's volume in any pass.
-    #[must_use]
     pub fn contains(&self, world: [f64; 3], u: f64, s: f64) -> bool {
         let [p, q] = self.attributes(world, u, s);
         (0..self.passes()).any(|pass| self.test(pass).accepts(p, q, 1.0))
@@ -176,7 +159,6 @@ fn along(plane: [f64; 2], world: [f64; 3]) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SampleTest {
     All,
-    Slab,
     Taper { offset: f64, slope: f64, plus: bool },
     Plus(TieRule, Option<u32>),
     Minus(TieRule, Option<u32>),
@@ -191,7 +173,6 @@ impl SampleTest {
         let (p, q, w) = self.rounded(p, q, w);
         match self {
             Self::All => true,
-            Self::Slab => p >= 0.0 && q > 0.0,
             Self::Taper { offset, slope, plus } => taper(p, q, w, offset, slope, plus),
             Self::Plus(ties, _) => ties.plus(p, q),
             Self::Minus(ties, _) => ties.minus(p, q),
@@ -203,7 +184,7 @@ impl SampleTest {
 
     pub(crate) const fn fraction_bits(self) -> Option<u32> {
         match self {
-            Self::All | Self::Slab | Self::Taper { .. } => None,
+            Self::All | Self::Taper { .. } => None,
             Self::Plus(_, bits) | Self::Minus(_, bits) | Self::Both(_, bits) => bits,
             Self::Parallel(_, bits) | Self::Hyperbolic(_, bits) => bits,
         }

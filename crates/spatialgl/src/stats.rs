@@ -51,7 +51,6 @@ pub struct VolumeStats {
 
 impl VolumeStats {
     /// Returns the percentage of queried tiles that were occupied. The result is 100 without tiles.
-    #[must_use]
     pub fn tile_occupancy_percent(&self) -> f64 {
         if self.queries == 0 { 100.0 } else { 100.0 * self.tiles_occupied as f64 / self.queries as f64 }
     }

@@ -36,7 +36,6 @@ impl Tiling {
     }
 
     /// Returns the grid of tiles of an image. Without tiles, the grid has one tile that covers the whole image.
-    #[must_use]
     pub fn grid(self, size: Size) -> TileGrid {
         let tile = self.tile.unwrap_or_else(|| size[0].max(size[1]).next_multiple_of(8));
         TileGrid { size, tile, columns: size[0].div_ceil(tile), rows: size[1].div_ceil(tile) }
@@ -53,13 +52,11 @@ pub struct TileGrid {
 }
 
 impl TileGrid {
-    #[must_use]
     pub const fn tiles(&self) -> u32 {
         self.columns * self.rows
     }
 
     /// Returns left, top, right and bottom of a tile in pixels. Right and bottom are exclusive.
-    #[must_use]
     pub fn rectangle(&self, tile: u32) -> [u32; 4] {
         let left = tile % self.columns * self.tile;
         let top = tile / self.columns * self.tile;
@@ -67,7 +64,6 @@ impl TileGrid {
     }
 
     /// Returns the number of words in a tile. A word has eight pixels.
-    #[must_use]
     pub fn words(&self, tile: u32) -> u64 {
         let [left, top, right, bottom] = self.rectangle(tile);
         u64::from((right - left) / 8) * u64::from(bottom - top)

@@ -61,19 +61,16 @@ pub struct VolumeTime {
 
 impl VolumeTime {
     /// Returns the bus time: reading back from the GPU, then sending to the projector.
-    #[must_use]
     pub fn bus_ms(&self) -> f64 {
         self.readback_ms + self.projector_ms
     }
 
     /// Returns the number of volumes per second if processor, GPU and bus work one after the other.
-    #[must_use]
     pub fn serial_hz(&self) -> f64 {
         1e3 / (self.cpu_ms + self.gpu_ms + self.bus_ms())
     }
 
     /// Returns the number of volumes per second if processor, GPU and bus work at the same time on different volumes.
-    #[must_use]
     pub fn overlapped_hz(&self) -> f64 {
         1e3 / self.cpu_ms.max(self.gpu_ms).max(self.bus_ms())
     }
@@ -94,7 +91,6 @@ impl TimeModel {
     }
 
     /// Returns the time of a volume with these counts if occupied tiles are packed and sent.
-    #[must_use]
     pub fn packed(&self, stats: &VolumeStats, size: Size, tile: u32) -> VolumeTime {
         let packing_ms = millions_ms(stats.pixels_packed * stats.samples.max(1), self.timing.texel_mtexels);
         let gpu_ms = self.gpu_ms(stats, size, tile) + packing_ms;
@@ -102,7 +98,6 @@ impl TimeModel {
     }
 
     /// Returns the time of a volume with these counts if all pixels are sent as 32-bit words, without queries.
-    #[must_use]
     pub fn unpacked(&self, stats: &VolumeStats, size: Size) -> VolumeTime {
         let unqueried = VolumeStats { queries: 0, stencil_clears: 0, ..stats.clone() };
         let gpu_ms = self.gpu_ms(&unqueried, size, 0);

@@ -50,14 +50,12 @@ impl SliceView {
     }
 
     /// Converts a point of the world to the coordinates u, v, s of the slice.
-    #[must_use]
     pub fn local(&self, world: DVec3) -> DVec3 {
         self.view.transform_point3(world)
     }
 
     /// Returns true if a point of the world belongs to the slice: between the slice's near and far planes, and in the
     /// slice's volume.
-    #[must_use]
     pub fn accepts(&self, world: DVec3) -> bool {
         let local = self.local(world);
         let clip = self.projection * local.extend(1.0);

@@ -1,4 +1,4 @@
-//! Tests of one recording on three displays, of connectedness (numbered case 28), and of the time model.
+//! Tests of one recording on two displays, of connectedness (numbered case 28), and of the time model.
 
 use crate::support::*;
 use glam::DVec3;
@@ -67,20 +67,6 @@ fn jitter_gives_neighbouring_slices_different_gaps() {
     assert!(along > 0.95 && jittered.abs() < 0.5, "{along} along the normal, {jittered} with jitter");
 }
 
-/// Checks that neighbouring slabs meet without a gap or an overlap. Each sample of a triangle across all slabs is then
-/// in exactly one slab.
-#[test]
-fn a_stack_of_planes_divides_a_triangle_among_its_slabs() {
-    let one = PlaneStack::new([256, 256], 1, 200.0).expect("valid");
-    let many = PlaneStack::new([256, 256], 23, 200.0).expect("valid");
-    let inside = T4.map(|p| p.map(|x| x * 0.8));
-    let samples = both(&one, &recording(&[inside]), &VolumeConfig::paper()).stats;
-    let divided = both(&many, &recording(&[inside]), &VolumeConfig::paper()).stats;
-    assert!(samples.fragments_accepted > 1_000);
-    assert_eq!(divided.fragments_accepted, samples.fragments_accepted);
-    assert!(divided.slices.iter().filter(|slice| slice.accepted > 0).count() > 5);
-}
-
 #[test]
 fn a_flat_screen_shows_the_nearer_of_two_squares() {
     let square = |z: f64, size: f64, colour: [u8; 3]| {
@@ -103,7 +89,7 @@ fn a_flat_screen_shows_the_nearer_of_two_squares() {
     }
 }
 
-/// Checks that one recording can be shown on a swept screen, a stack of planes and a flat screen. The scene is the Mig,
+/// Checks that one recording can be shown on a swept screen and a flat screen. The scene is the Mig,
 /// which has 417 triangles.
 #[test]
 fn a_scene_does_not_depend_on_the_display() {
@@ -112,9 +98,8 @@ fn a_scene_does_not_depend_on_the_display() {
     assert_eq!(commands.primitives(), 417);
     let reach = commands.positions().iter().map(|p| DVec3::from_array(*p).length()).fold(0.0, f64::max);
     assert!((reach - 0.9 * 384.0).abs() < 0.01, "{reach}");
-    let displays: [Box<dyn SpatialDisplay>; 3] = [
+    let displays: [Box<dyn SpatialDisplay>; 2] = [
         Box::new(swept(SliceClip::Hyperbolic(0.25), Projection::Jittered(Jitter::new(1)))),
-        Box::new(PlaneStack::new([768, 768], 60, 768.0).expect("valid")),
         Box::new(FlatDisplay::around([768, 768], 0.6, 0.3, 1536.0, 1024.0).expect("valid")),
     ];
     for display in displays {

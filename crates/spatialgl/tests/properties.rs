@@ -166,7 +166,7 @@ proptest! {
         let side = |p: [f64; 3]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
         prop_assume!(side(c) * side(d) < 0.0);
         let count = |triangles: &[Triangle]| {
-            let display = PlaneStack::new([64, 64], 1, 4.0).expect("valid");
+            let display = Screen::new([64, 64]);
             let frame = volume(&display, &recording(triangles), &kept(VolumeConfig::plain()));
             (frame.stats.fragments_accepted, drawn(&frame).len() as u64)
         };

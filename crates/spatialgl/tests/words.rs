@@ -1,7 +1,8 @@
 //! Tests of the numbered cases 23 and 24: the words that the projector receives.
 
+use crate::support;
 use spatialgl::{
-    Combine, CommandBuffer, OneThread, PlaneStack, SliceImage, SliceRenderer, SliceStats, SliceView, SliceWork, Tiling,
+    Combine, CommandBuffer, OneThread, SliceImage, SliceRenderer, SliceStats, SliceView, SliceWork, Tiling,
     VolumeConfig, render_volume,
 };
 
@@ -20,7 +21,7 @@ impl SliceRenderer for Painted {
 
 /// Draws a slice of 32 x 8 pixels with tiles and without, and returns bytes 0 to 3 of one of its words.
 fn bytes(colours: fn(u32) -> [u8; 3], row: usize, word: usize) -> [u8; 4] {
-    let display = PlaneStack::new([32, 8], 1, 4.0).expect("valid");
+    let display = support::Screen::new([32, 8]);
     let words = [Tiling::PAPER, Tiling::OFF].map(|tiling| {
         let config = VolumeConfig { tiling, ..VolumeConfig::paper() };
         let frame = render_volume(&display, &CommandBuffer::default(), &config, &Painted(colours), &OneThread);

@@ -10,7 +10,6 @@ use pxpl5_sim::mix;
 const INCREMENT: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// Returns 64 random bits for (seed, index): element `index`, from 0, of the SplitMix64 sequence that starts at `seed`.
-#[must_use]
 pub fn bits(seed: u64, index: u64) -> u64 {
     mix(seed.wrapping_add(index.wrapping_mul(INCREMENT)))
 }
@@ -22,7 +21,6 @@ pub(crate) fn stream(seed: u64, name: u64) -> u64 {
 }
 
 /// Converts random bits to a number uniform in [0, 1), using the upper 53 bits.
-#[must_use]
 pub fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1u64 << 53) as f64
 }

@@ -27,7 +27,6 @@ impl Cell {
 
     /// Returns the number of the ring of cells around `self` that contains `other`: 0 for the same cell, 1 for its
     /// eight neighbours.
-    #[must_use]
     pub fn ring(self, other: Self) -> u64 {
         self.x.abs_diff(other.x).max(self.z.abs_diff(other.z))
     }
@@ -65,7 +64,6 @@ pub struct CellAssignment {
 
 impl CellAssignment {
     /// Returns the index of the memory that holds a cell (square of the floor).
-    #[must_use]
     pub fn memory(&self, cell: Cell) -> usize {
         let ring = self.home.ring(cell);
         (0..self.memories - 1).find(|memory| ring <= self.last_ring(*memory)).unwrap_or(self.memories - 1)
@@ -76,7 +74,6 @@ impl CellAssignment {
     ///
     /// The result is the number of inner rings of cells plus 1 + g + g^2 + ... + g^(k-1), where g is
     /// [`CellAssignment::ring_growth`].
-    #[must_use]
     pub fn last_ring(&self, memory: usize) -> u64 {
         let next = |(rings, of_memory): (u64, u64)| {
             (rings.saturating_add(of_memory), of_memory.saturating_mul(self.ring_growth))
@@ -88,7 +85,6 @@ impl CellAssignment {
     ///
     /// The cells of the memory lie outside this border. For a position on or outside the border, the distance is 0. For
     /// memory 0, which begins at the eye, the distance is always 0.
-    #[must_use]
     pub fn distance(&self, place: DVec3, memory: usize) -> f64 {
         if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
     }
@@ -98,7 +94,6 @@ impl CellAssignment {
     /// border, the distance is 0.
     ///
     /// Returns `None` for the last memory (the least often drawn), which has no outer border.
-    #[must_use]
     pub fn to_slower(&self, place: DVec3, memory: usize) -> Option<f64> {
         (memory + 1 < self.memories).then(|| self.inside_block(place, self.last_ring(memory)))
     }
@@ -163,13 +158,11 @@ impl Cells {
     }
 
     /// Returns the current assignment of cells to memories.
-    #[must_use]
     pub const fn assignment(&self) -> &CellAssignment {
         &self.assignment
     }
 
     /// Returns the eye position from which a memory was last drawn, or `None` if it was never drawn.
-    #[must_use]
     pub fn drawn_from(&self, memory: usize) -> Option<DVec3> {
         self.drawn_from.get(memory).copied().flatten()
     }
@@ -178,7 +171,6 @@ impl Cells {
     /// memory is due.
     ///
     /// If distances are measured to occupied cells, the result is infinite for a memory without occupied cells.
-    #[must_use]
     pub fn way(&self, eye: DVec3, memory: usize) -> f64 {
         self.threshold.way(self.distances(eye).get(memory).copied().unwrap_or(0.0))
     }

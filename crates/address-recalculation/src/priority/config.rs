@@ -47,12 +47,10 @@ impl PriorityTiming {
 
     /// Returns the distance from a border within which warping moves vertices, in metres. If the parameter `falloff_m`
     /// is 0, the result is the side of a cell.
-    #[must_use]
     pub const fn falloff_length_m(&self) -> f64 {
         if self.falloff_m == 0.0 { self.cell_m } else { self.falloff_m }
     }
 
-    #[must_use]
     pub fn frame_s(&self) -> f64 {
         1.0 / self.frame_hz
     }

@@ -25,14 +25,12 @@ impl Objects {
     }
 
     /// Returns the index of the memory that holds an object, or `None` before the first frame.
-    #[must_use]
     pub fn memory(&self, object: usize) -> Option<usize> {
         self.objects.get(object).copied().flatten().map(|(memory, _)| memory)
     }
 
     /// Returns two counts since the start: how often objects have changed their memory, and how often objects were
     /// drawn.
-    #[must_use]
     pub const fn counts(&self) -> [u64; 2] {
         [self.moved, self.draws]
     }

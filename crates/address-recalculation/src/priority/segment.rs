@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 /// Largest coordinate, in metres, of a mesh that [`Segmentation::new`] can cut.
 const FARTHEST_M: f64 = 1e6;
 
-const MOST_PIECES: f64 = 1e7;
+const MAX_PIECES: f64 = 1e7;
 
 /// A vertex that a cut has created on the line between two other vertices. Each of these two vertices can itself come
 /// from a cut.
@@ -61,7 +61,6 @@ impl Segmentation {
 
     /// Returns the memory that must hold the uncut mesh. Of the memories whose cells the mesh touches, this memory is
     /// drawn most often. Returns `None` for an empty mesh.
-    #[must_use]
     pub fn fastest_memory(&self, assignment: &CellAssignment) -> Option<usize> {
         self.segments.keys().map(|cell| assignment.memory(*cell)).min()
     }
@@ -84,8 +83,8 @@ fn check(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<(), 
     // Limit the number of pieces before cutting, to bound time and memory.
     let pieces: f64 =
         triangles.iter().map(|triangle| most_pieces(triangle.map(|i| vertices[i as usize]), side_m)).sum();
-    if pieces > MOST_PIECES {
-        let expected = format_args!("at most {MOST_PIECES} pieces");
+    if pieces > MAX_PIECES {
+        let expected = format_args!("at most {MAX_PIECES} pieces");
         return Err(SettingError::value("priority.cell_m", expected, format_args!("up to {pieces:.0}")));
     }
     Ok(())

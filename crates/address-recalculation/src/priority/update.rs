@@ -19,7 +19,6 @@ impl Update {
     }
 
     /// Returns the memories that swap together as a bit mask for the display. Bit k stands for memory k.
-    #[must_use]
     pub fn together_bits(&self) -> u8 {
         (0..).zip(&self.together).map(|(memory, together)| u8::from(*together) << memory).sum()
     }

@@ -76,7 +76,6 @@ pub struct ValidityPeriod {
 
 impl ValidityPeriod {
     /// Returns the shortest of the four durations. After this time the image must be drawn again.
-    #[must_use]
     pub const fn least(&self) -> f64 {
         self.translation_s.min(self.size_s).min(self.animation_s).min(self.turn_s)
     }
@@ -93,7 +92,6 @@ impl Threshold {
 
     /// Returns how far the eye may move, in metres, before the direction of a point is wrong by the threshold.
     /// `distance_m` is the point's distance.
-    #[must_use]
     pub fn way(&self, distance_m: f64) -> f64 {
         match self.translation {
             Translation::Chord => 2.0 * distance_m * libm::sin(self.angle / 2.0),
@@ -105,7 +103,6 @@ impl Threshold {
     /// threshold.
     ///
     /// With [`SizeRule::Sphere`], the result is 0 if the eye is inside the bounding sphere.
-    #[must_use]
     pub fn max_approach(&self, distance_m: f64, radius_m: f64) -> f64 {
         let quarter = std::f64::consts::FRAC_PI_2;
         match self.size {
@@ -124,7 +121,6 @@ impl Threshold {
 
     /// Returns the duration, in seconds, for which the image of an object stays correct while the object rotates at
     /// `turn` rad/s.
-    #[must_use]
     pub fn turn_s(&self, nearest_m: f64, radius_m: f64, turn: f64) -> f64 {
         let sine = nearest_m * libm::sin(self.angle) / (2.0 * radius_m);
         if turn == 0.0 || sine >= 1.0 || radius_m == 0.0 { f64::INFINITY } else { 2.0 / turn.abs() * libm::asin(sine) }
@@ -134,7 +130,6 @@ impl Threshold {
     ///
     /// A rotation of the head never makes an image wrong. If the eye is inside the bounding sphere, the image is wrong
     /// immediately.
-    #[must_use]
     pub fn period(&self, object: &ObjectView) -> ValidityPeriod {
         let nearest = (object.distance_m - object.radius_m).max(0.0);
         let counted = if self.distance == Distance::Nearest { nearest } else { object.distance_m };
@@ -158,7 +153,6 @@ fn time_of(way_m: f64, speed: f64) -> f64 {
 
 /// Returns the index of the least often drawn memory that can hold an image with the validity period `period_s`. Of the
 /// `memories` memories, memory k is drawn every 2^k frames.
-#[must_use]
 pub fn level(period_s: f64, frame_s: f64, memories: usize) -> usize {
     let rests = |k: &usize| f64::from(1_u32 << k) * frame_s <= period_s;
     (0..memories).take_while(|k| *k == 0 || rests(k)).last().unwrap_or(0)

@@ -7,7 +7,6 @@ use glam::DVec3;
 ///
 /// `face` is the axis of the face, a unit vector along x, y or z. The angle is 0 if the viewing axis intersects the
 /// face.
-#[must_use]
 pub fn angle_to_face(view: DVec3, face: DVec3) -> f64 {
     let view = view.normalize();
     if view.abs().max_element() <= view.dot(face) {
@@ -42,7 +41,6 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
 ///
 /// `half_diagonal` is the angle from the picture's middle to its corner, in radians. The head rotates by at most
 /// `fastest_turn` rad/s.
-#[must_use]
 pub fn time_until_visible_s(view: DVec3, face: DVec3, half_diagonal: f64, fastest_turn: f64) -> f64 {
     (angle_to_face(view, face) - half_diagonal).max(0.0) / fastest_turn
 }
@@ -51,7 +49,6 @@ pub fn time_until_visible_s(view: DVec3, face: DVec3, half_diagonal: f64, fastes
 ///
 /// `radius` is the object's angular radius in radians, at most 35 degrees. An update of the whole cube draws a small
 /// primitive this number of times on average.
-#[must_use]
 pub fn mean_faces_touched(radius: f64) -> f64 {
     let edges = 6.0 / std::f64::consts::PI * libm::acos(1.0 / 3.0);
     3.0 - 2.0 * libm::cos(radius) + edges * libm::sin(radius)

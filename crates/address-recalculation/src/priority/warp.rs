@@ -30,7 +30,6 @@ impl Falloff {
 
     /// Returns the fraction of the displacement that applies at `distance_m` from the border. `length_m` is the
     /// distance over which the displacement decreases.
-    #[must_use]
     pub fn weight(self, distance_m: f64, length_m: f64) -> f64 {
         let left = (1.0 - distance_m / length_m).clamp(0.0, 1.0);
         match self {
@@ -70,7 +69,6 @@ impl RegionWarp {
     ///
     /// A vertex on the border moves by the whole displacement. Its direction and depth are then the same in both
     /// memories.
-    #[must_use]
     pub fn moved(&self, vertex: DVec3, to_slower_m: Option<f64>) -> DVec3 {
         to_slower_m.map_or(vertex, |distance| vertex + self.displacement * self.falloff.weight(distance, self.length_m))
     }

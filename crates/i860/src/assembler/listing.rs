@@ -9,7 +9,6 @@ const TEXT_COLUMNS: usize = 30;
 
 impl Program {
     /// Returns the data directive that defines the byte at `address`, or `None` if the byte belongs to an instruction.
-    #[must_use]
     pub fn data_at(&self, address: u32) -> Option<&Data> {
         let after = self.data.partition_point(|data| data.address <= address);
         let data = self.data.get(after.checked_sub(1)?)?;
@@ -25,7 +24,6 @@ impl Program {
     /// assert!(listing.contains("00001000  e4050003  or 3, r0, r5                        1  start: mov 3, r5"));
     /// assert!(listing.contains("table:\n00001008  00000007  .long 0x7"));
     /// ```
-    #[must_use]
     pub fn listing(&self, source: Option<&str>) -> String {
         let source: Vec<&str> = source.unwrap_or_default().lines().collect();
         let mut rows = Rows { text: String::new(), labels: &self.labels, source, line: 0 };

@@ -13,10 +13,10 @@ pub(super) struct Line {
 
 /// Greatest number of lines that macros and repetitions can produce, including lines of skipped bodies. A source can
 /// therefore repeat a line a million times.
-const MOST_STEPS: usize = 1 << 21;
+const MAX_STEPS: usize = 1 << 21;
 /// Greatest size of the expanded text, in bytes. The limit is four times the size of the longest program.
-const MOST_TEXT: usize = 64 << 20;
-const MOST_DEPTH: u32 = 32;
+const MAX_TEXT: usize = 64 << 20;
+const MAX_DEPTH: u32 = 32;
 
 /// The number of lines and bytes that macro expansion can still produce. The budget also records the source line that
 /// has used the most, for the error message.
@@ -31,12 +31,12 @@ struct Budget {
 
 impl Budget {
     const fn new() -> Self {
-        Self { steps: MOST_STEPS, text: MOST_TEXT, current: (0, 0), largest_user: (0, 0) }
+        Self { steps: MAX_STEPS, text: MAX_TEXT, current: (0, 0), largest_user: (0, 0) }
     }
 
     /// Returns the unused budget as one number in bytes. Lines are converted to bytes.
     const fn left(&self) -> usize {
-        self.steps * (MOST_TEXT / MOST_STEPS) + self.text
+        self.steps * (MAX_TEXT / MAX_STEPS) + self.text
     }
 
     fn begin(&mut self, line: usize) {
@@ -64,7 +64,7 @@ type AssemblyFault = (usize, String);
 
 fn spent() -> String {
     format!(
-        "macros and repetitions are written out to more than {MOST_STEPS} lines or {MOST_TEXT} bytes, most of them by this line"
+        "macros and repetitions are written out to more than {MAX_STEPS} lines or {MAX_TEXT} bytes, most of them by this line"
     )
 }
 
@@ -162,8 +162,8 @@ impl Expander<'_> {
         let len = self.body_len(lines, ".rept", ".endr")?;
         let count: usize =
             count.parse().map_err(|_| self.error(lines[0].number, format!(".rept needs a number, found `{count}`")))?;
-        if depth >= MOST_DEPTH {
-            return Err(self.error(lines[0].number, format!("repetitions and macros nest deeper than {MOST_DEPTH}")));
+        if depth >= MAX_DEPTH {
+            return Err(self.error(lines[0].number, format!("repetitions and macros nest deeper than {MAX_DEPTH}")));
         }
         // An empty body needs no repetition, for any count.
         let count = if len == 1 { 0 } else { count };
@@ -190,8 +190,8 @@ impl Expander<'_> {
 
     fn call(&mut self, called: &Macro, name: &str, rest: &str, line: usize, depth: u32) -> Result<(), AssemblyError> {
         let arguments = split(rest);
-        if depth >= MOST_DEPTH {
-            return Err(self.error(line, format!("macro {name} calls itself, or macros nest deeper than {MOST_DEPTH}")));
+        if depth >= MAX_DEPTH {
+            return Err(self.error(line, format!("macro {name} calls itself, or macros nest deeper than {MAX_DEPTH}")));
         }
         // Every parameter needs an argument.
         if arguments.len() != called.parameters.len() {

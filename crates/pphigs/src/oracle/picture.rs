@@ -30,14 +30,12 @@ pub struct Tie<'a> {
 impl IdealPicture {
     /// Returns the image. If several primitives are nearest at a pixel, the image has the colour of the primitive that
     /// comes first in the display list.
-    #[must_use]
     pub const fn image(&self) -> &RgbImage {
         &self.image
     }
 
     /// Returns the 24-bit depth of every pixel, row by row. The depth is 0 at the near plane and [`DEPTH_FARTHEST`] at
     /// an empty pixel.
-    #[must_use]
     pub fn depths(&self) -> &[u32] {
         &self.depths
     }
@@ -52,7 +50,6 @@ impl IdealPicture {
     /// nearest at a pixel, each of their colours is right.
     ///
     /// If `other` has a different size, all its pixels are returned.
-    #[must_use]
     pub fn differences(&self, other: &RgbImage) -> Vec<[u32; 2]> {
         let same_size = other.dimensions() == self.image.dimensions();
         let pixels = other.enumerate_pixels();

@@ -17,7 +17,6 @@ use std::ops::Range;
 /// # Panics
 ///
 /// Panics if the view has no eye.
-#[must_use]
 pub fn ideal_picture(list: &DisplayList, view: &FrameView, eye: usize, picture: &Picture) -> IdealPicture {
     ideal_picture_of(list, |_| true, view, eye, picture)
 }
@@ -27,7 +26,6 @@ pub fn ideal_picture(list: &DisplayList, view: &FrameView, eye: usize, picture: 
 /// # Panics
 ///
 /// Panics if the view has no eye.
-#[must_use]
 pub fn ideal_picture_of(
     list: &DisplayList,
     chosen: impl Fn(usize) -> bool,

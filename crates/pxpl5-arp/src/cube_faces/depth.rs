@@ -23,19 +23,16 @@ impl DepthRange {
         Ok(Self { near_m, far_m })
     }
 
-    #[must_use]
     pub const fn near_m(&self) -> f64 {
         self.near_m
     }
 
-    #[must_use]
     pub const fn far_m(&self) -> f64 {
         self.far_m
     }
 
     /// Returns the coefficients (a, b) of the depth a + b/w, where w is the distance along the face's axis. The depth
     /// is 0 at the near plane and 1 at the far plane.
-    #[must_use]
     pub(crate) fn linear(&self) -> [f64; 2] {
         let scale = self.far_m / (self.far_m - self.near_m);
         [scale, -scale * self.near_m]
@@ -43,7 +40,6 @@ impl DepthRange {
 
     /// Returns the 24-bit depth of a point from its distance along the axis. Returns `None` if the distance is outside
     /// the range.
-    #[must_use]
     pub fn word(&self, distance_m: f64) -> Option<u32> {
         let [a, b] = self.linear();
         let depth = a + b / distance_m;
@@ -51,7 +47,6 @@ impl DepthRange {
     }
 
     /// Returns the distance along the axis, in metres, in the middle of the depth step with the 24-bit depth `word`.
-    #[must_use]
     pub fn distance_m(&self, word: u32) -> f64 {
         let [a, b] = self.linear();
         b / ((f64::from(word) + 0.5) / f64::from(DEPTH_FARTHEST) - a)

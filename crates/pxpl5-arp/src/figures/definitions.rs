@@ -16,7 +16,6 @@ fn definition(id: &'static str, statement: String, value: f64, unit: &'static st
 }
 
 /// Returns all numbers that follow from printed numbers.
-#[must_use]
 pub fn definitions() -> Vec<Definition> {
     let mut all = Vec::new();
     // Statements A4 and A17 follow from the order of the stages: no drawing stage lies between the latch and the light.

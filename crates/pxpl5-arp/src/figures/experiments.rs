@@ -160,7 +160,6 @@ const POINTS: usize = 20_000;
 /// Returns the factor by which priority rendering reduces draws of point objects, relative to drawing all at 60 Hz.
 ///
 /// `speed` is in m/s. The threshold is 90/512 degrees.
-#[must_use]
 pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
     let numbers = PriorityTiming { memories, theta_deg: THETA_DEG, ..PriorityTiming::PAPERS };
     // The image of a point is valid until the walker's movement exceeds the threshold.
@@ -188,7 +187,6 @@ pub struct SizeRow {
 }
 
 /// Returns rows for objects with diameters from 0.1 to 20 times their distance from the eye.
-#[must_use]
 pub fn size_rows() -> Vec<SizeRow> {
     let threshold = Threshold::of_degrees(THETA_DEG);
     let sizes = [0.1, 0.2, 0.5, 1.0, 1.4, 1.5, 1.9, 2.0, 5.0, 10.0, 20.0];
@@ -227,7 +225,6 @@ pub struct SizeLimit {
 /// The interpretations differ in the limited angle. In the first, the threshold limits the change of the angle that the
 /// diameter covers. In the second, the threshold limits the change of the angle that the radius covers. In the third,
 /// twice the threshold limits this change.
-#[must_use]
 pub fn size_limits() -> Vec<SizeLimit> {
     let kinds = [("the diameter's, by theta", 0.5), ("the radius', by theta", 1.0), ("the radius', by 2 theta", 2.0)];
     kinds.map(|(angle, factor)| size_limit(angle, factor)).to_vec()

@@ -39,7 +39,6 @@ impl Situation {
     pub const ALL: [Self; 4] = [Self::Straight, Self::Diagonal, Self::Round, Self::Gallery];
 
     /// Returns the name of the hall and path for table headings.
-    #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
             Self::Straight => "straight, 7 cells",
@@ -94,7 +93,6 @@ pub struct Trial {
 impl Trial {
     /// Returns the error of the update rates of `memories`, relative to table 1 of the paper CPR05: the root mean
     /// square in percent.
-    #[must_use]
     pub fn error_percent(&self, memories: &[usize]) -> f64 {
         let squares = memories.iter().map(|memory| self.miss(*memory).powi(2)).sum::<f64>();
         100.0 * (squares / memories.len() as f64).sqrt()
@@ -240,7 +238,6 @@ impl Interpretations {
     /// With a *cascade*, an update of a memory makes all more often drawn memories due. The ranking has two parts:
     /// rules with a cascade, and rules without. The rank counts only within the part that contains this project's
     /// rules.
-    #[must_use]
     pub fn usual(&self) -> Option<(usize, &RankedRules)> {
         let alike = self.ranked.iter().filter(|ranked| ranked.rules.has_cascade == Rules::USUAL.has_cascade);
         (1..).zip(alike).find(|(_, ranked)| ranked.rules == Rules::USUAL)
@@ -280,7 +277,6 @@ pub struct ThresholdRow {
 
 /// Returns the rows of several thresholds, which are given in pixels or texels. `fitted_cell_m` is the cell side that
 /// fits table 1 of the paper CPR05 at the default threshold.
-#[must_use]
 pub fn threshold_rows(fitted_cell_m: f64) -> Vec<ThresholdRow> {
     let product = fitted_cell_m * PriorityTiming::PAPERS.theta_deg;
     let row = |(threshold, theta_deg): (&'static str, f64)| {

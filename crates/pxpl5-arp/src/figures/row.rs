@@ -3,7 +3,6 @@
 use pxpl5_sim::figures::{Basis, FigureRow, around};
 
 /// Creates a row whose numbers should agree to 1 percent.
-#[must_use]
 pub fn row(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], basis: Basis) -> FigureRow {
     let accepted = around(both[0], 0.01 * both[0].abs());
     let cause = match id {
@@ -19,13 +18,11 @@ pub fn row(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2]
 
 /// Creates a row for a number that cannot be reproduced. `holds` is true if the shape of the simulated curve or table
 /// agrees with the published shape.
-#[must_use]
 pub fn shape(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], holds: bool) -> FigureRow {
     FigureRow { is_met: holds, ..row(id, statement, unit, both, Basis::Shape) }
 }
 
 /// Creates a row that has its own criterion for agreement, such as "less than".
-#[must_use]
 pub fn limit(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], is_met: bool) -> FigureRow {
     FigureRow { is_met, ..row(id, statement, unit, both, Basis::Free) }
 }
@@ -34,7 +31,6 @@ pub fn limit(id: &'static str, statement: &str, unit: &'static str, both: [f64; 
 ///
 /// `within` means that the published number lies in the interval of all interpretations. `shape` means that the number
 /// cannot be reproduced, but the shape of the simulated curve or table agrees with the published shape.
-#[must_use]
 pub const fn verdict(row: &FigureRow) -> &'static str {
     match (row.is_met, row.basis) {
         (false, _) => "**missed**",

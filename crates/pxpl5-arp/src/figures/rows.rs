@@ -11,7 +11,6 @@ use pxpl5_sim::figures::{Basis, FigureRow};
 /// Returns the rows of the experiments E1 to E9. The rows of E1 that need a simulated machine are not included.
 ///
 /// Numbers that follow from printed numbers alone are in [`definitions`](super::definitions()).
-#[must_use]
 pub fn rows(all: &Experiments) -> Vec<FigureRow> {
     let experiments = [
         ("E1", rotation(all)),

@@ -31,7 +31,6 @@ impl Rules {
     ///
     /// In some sets, memory 0 holds 0, 1 or 2 inner rings of cells, and every other memory holds one ring. In other
     /// sets, memory 0 holds 1 inner ring, and the number of rings doubles from memory to memory.
-    #[must_use]
     pub fn all() -> Vec<Self> {
         let flags = [(false, false), (false, true), (true, false), (true, true)];
         let rings = [(0, 1), (1, 1), (2, 1), (1, 2)];
@@ -45,7 +44,6 @@ impl Rules {
         rules.collect()
     }
 
-    #[must_use]
     pub fn text(&self) -> String {
         let rings = if self.ring_growth == 1 { "equal rings" } else { "rings that double" };
         let distance = if self.to_held_cells { "to held cells" } else { "to the block's border" };
@@ -54,7 +52,6 @@ impl Rules {
     }
 
     /// Returns the parameters of the policy with these rules. `cell_m` is the side of a cell in metres.
-    #[must_use]
     pub fn numbers(&self, cell_m: f64) -> PriorityTiming {
         PriorityTiming {
             cell_m,

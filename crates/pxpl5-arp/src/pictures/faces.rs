@@ -15,7 +15,6 @@ const PLACES: [(CubeFace, u32, u32); 6] = [
 ];
 
 /// Returns the six faces unfolded into a cross, in a grid of 4 by 3 faces. Empty texels have the colour `empty`.
-#[must_use]
 pub fn cross(faces: &FaceSet, empty: u32) -> RgbImage {
     let size = faces.texels();
     let mut picture = RgbImage::from_pixel(4 * size, 3 * size, rgb(0));

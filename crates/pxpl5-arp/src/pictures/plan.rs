@@ -53,7 +53,6 @@ fn head(width: f64, height: f64) -> String {
 
 /// Draws the cells seen from above, coloured by memory, with partitions, path, eye and the viewer's cell. The direction
 /// -z is at the top.
-#[must_use]
 pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: DVec3) -> String {
     let side = simulation.settings().numbers.cell_m;
     let cells: BTreeSet<(i64, i64)> = world.cells().map(|cell| (cell.x, cell.z)).collect();
@@ -135,7 +134,6 @@ fn upright_edges(svg: &mut String, world: &World, plan: &Plan) {
 
 /// Draws a row per memory. A rectangle marks each frame in which the memory showed an update or missed the retrace.
 /// Other rectangles mark new assignments of cells.
-#[must_use]
 pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
     let memories = tally.memories.len();
     let step = 8.0;

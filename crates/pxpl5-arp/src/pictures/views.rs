@@ -105,7 +105,6 @@ fn heat(pixels: f64, is_mark: bool) -> Rgb<u8> {
 }
 
 /// Returns half the difference of two pictures. Equal pixels become grey.
-#[must_use]
 pub fn difference(first: &RgbImage, second: &RgbImage) -> RgbImage {
     RgbImage::from_fn(first.width(), first.height(), |x, y| {
         let [a, b] = [first, second].map(|picture| picture.get_pixel(x, y).0.map(i32::from));

@@ -12,7 +12,6 @@ const NEAR_M: f64 = 0.05;
 /// Draws the edges of all triangles. Edges behind a surface are also drawn.
 ///
 /// Edges of the scene are grey. Edges that result from cuts at the borders of cells with side `side_m` are red.
-#[must_use]
 pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, screen: &LensPicture) -> String {
     let [width, height] = [screen.width, screen.height].map(f64::from);
     let focal = width / 2.0 / libm::tan(screen.horizontal_deg.to_radians() / 2.0);

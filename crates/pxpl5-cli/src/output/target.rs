@@ -16,7 +16,7 @@ pub(super) enum Target {
 }
 
 /// Maximum number of links that are followed. A longer chain is treated as a circle.
-const MOST_LINKS: usize = 40;
+const MAX_LINKS: usize = 40;
 
 impl Target {
     pub(super) fn of(path: &Path, place: &Place) -> Result<Self, CliError> {
@@ -34,7 +34,7 @@ impl Target {
 /// Returns the file to which a path leads after all links. This file need not exist, and writing to it changes no link.
 fn behind_links(path: &Path, place: &Place) -> Result<PathBuf, CliError> {
     let mut path = path.to_path_buf();
-    for _ in 0..MOST_LINKS {
+    for _ in 0..MAX_LINKS {
         // The chain ends at a path that is not a link or does not exist.
         let Ok(next) = path.read_link() else { return Ok(path) };
         path = path.parent().unwrap_or(Path::new("")).join(next);

@@ -7,7 +7,7 @@ use pxpl5::sweep::ROWS_FILE;
 use pxpl5::views::page::{PagePicture, PageTable};
 use serde_json::Value;
 
-const MOST_ROWS: usize = 5_000;
+const MAX_ROWS: usize = 5_000;
 
 /// Returns the tables of a results folder, or `None` if the folder holds neither a sweep nor a comparison.
 pub(super) fn of(files: &Files<'_>) -> Result<Option<Vec<PageTable>>, CliError> {
@@ -20,7 +20,7 @@ pub(super) fn of(files: &Files<'_>) -> Result<Option<Vec<PageTable>>, CliError> 
 }
 
 fn sweep(results: &ResultRows) -> PageTable {
-    let shown = results.rows.len().min(MOST_ROWS);
+    let shown = results.rows.len().min(MAX_ROWS);
     let flat: Vec<Vec<(String, String)>> = results.rows[..shown].iter().map(cells).collect();
     let points = results.about.get("points").and_then(Value::as_u64).unwrap_or_default();
     let mut about = vec![format!("{} of {points} points.", results.rows.len())];

@@ -71,7 +71,6 @@ pub(super) fn build(
 
 impl Panel {
     /// Returns the parameters of the panel.
-    #[must_use]
     pub const fn numbers(&self) -> &PanelNumbers {
         &self.numbers
     }

@@ -6,7 +6,7 @@ use pxpl5_wire::REGION_SIZE;
 use pxpl5_wire::display::{PixelLight, ScanOrder};
 
 /// Greatest number of regions in a picture. The region masks of `pxpl5-geometry` have this number of bits.
-const MOST_REGIONS: u64 = 128;
+const MAX_REGIONS: u64 = 128;
 
 const US_PER_S: u64 = 1_000_000;
 
@@ -66,7 +66,6 @@ impl PanelNumbers {
     }
 
     /// Returns the order in which pixels are lit, and the time for which each pixel shines.
-    #[must_use]
     pub const fn light(&self) -> PixelLight {
         let scan = match (self.scan, self.direction) {
             (1, _) => ScanOrder::Global,
@@ -96,8 +95,8 @@ impl PanelNumbers {
         let size = u64::from(REGION_SIZE);
         // Firmware has a mask with one bit for each region, and the mask has a fixed size.
         let regions = self.width.div_ceil(size).saturating_mul(self.height.div_ceil(size));
-        if regions > MOST_REGIONS {
-            let expected = format!("at most {MOST_REGIONS} regions of {size} x {size}, as many as firmware can number");
+        if regions > MAX_REGIONS {
+            let expected = format!("at most {MAX_REGIONS} regions of {size} x {size}, as many as firmware can number");
             return wrong("width", expected, format!("{regions} ({} x {} pixels)", self.width, self.height));
         }
         // A pixel is driven again in the next period, so it cannot shine longer than one period.

@@ -20,7 +20,6 @@ impl Kernel {
     ///
     /// The code has the style of the compiled kernel, and stores the bounding box of each command. Execution begins at
     /// the label `start`. kernels/compiled.s lists the registers.
-    #[must_use]
     pub fn between_source(&self) -> String {
         let own = Self {
             schedule: Schedule::Compiled,
@@ -36,7 +35,6 @@ impl Kernel {
 
     /// Returns the source of two functions: `keepends` records the corners of triangles in two views, and `blend`
     /// interpolates between the matrices of these views.
-    #[must_use]
     pub fn ends_source() -> String {
         // The records have corners only, so their surface does not matter.
         let choices = choices(&[("PHONG", false)]);

@@ -12,7 +12,7 @@ const WRONG_OF_RECEIVER: u32 = DATA + 24;
 const COMPLETE: u32 = DATA + 44;
 const START: u32 = WINDOW + 8;
 
-const MOST_WORDS: u32 = pxpl5_wire::MAX_MESSAGE_WORDS;
+const MAX_WORDS: u32 = pxpl5_wire::MAX_MESSAGE_WORDS;
 
 fn board() -> Processor {
     let mut processor = Processor::new(NODE_ID, 1 << 20, CodeVersion::Compiled, i860::Config::cycle());
@@ -74,11 +74,8 @@ fn messages_are_received_in_order_and_their_buffers_are_freed() {
     for _ in 0..4_000 {
         match below(&mut numbers, 5) {
             0 | 1 => {
-                let count = if numbers.unit() < 0.6 {
-                    1 + below(&mut numbers, 10)
-                } else {
-                    1 + below(&mut numbers, MOST_WORDS)
-                };
+                let count =
+                    if numbers.unit() < 0.6 { 1 + below(&mut numbers, 10) } else { 1 + below(&mut numbers, MAX_WORDS) };
                 let message = (below(&mut numbers, 1 << 16), count, words(&mut numbers, count));
                 if arrive(&mut processor, slot, message.0, message.1, &message.2) {
                     slot += 1;
@@ -133,7 +130,7 @@ fn a_message_is_received_whole_and_its_buffer_is_freed() {
     let mut numbers = SplitMix64::new(11);
     let mut processor = board();
     for n in 0..200 {
-        let count = if n % 3 == 0 { MOST_WORDS - n } else { 1 + n % 20 };
+        let count = if n % 3 == 0 { MAX_WORDS - n } else { 1 + n % 20 };
         let body = words(&mut numbers, count);
         let source = NodeId(below(&mut numbers, 100) as u16);
         let (span, taken) = deliver(&mut processor, source, count, &body).expect("it returns");
@@ -151,7 +148,7 @@ fn a_message_with_a_wrong_length_or_kind_is_refused_and_the_next_message_is_rece
     let mut processor = board();
     for (header, wrong) in [
         (0, 1),
-        (MOST_WORDS + 1, 1),
+        (MAX_WORDS + 1, 1),
         (0xFFFF, 1),
         (1 << 16 | 4, 2),
         (2 << 16 | 4, 2),
@@ -175,7 +172,7 @@ fn a_chain_has_a_descriptor_for_each_message_and_frees_the_previous_chain() {
     for (ticket, count) in (1000..).zip(lengths) {
         let request = |numbers: &mut SplitMix64| {
             let flags = (below(numbers, 3) << 16) | (below(numbers, 2) * HOLD) | (below(numbers, 2) * 2);
-            [below(numbers, 1 << 10), flags, 1 + below(numbers, MOST_WORDS), numbers.bits() as Word]
+            [below(numbers, 1 << 10), flags, 1 + below(numbers, MAX_WORDS), numbers.bits() as Word]
         };
         let requests: Vec<Request> = (0..count).map(|_| request(&mut numbers)).collect();
         let before = [ISSUED, COMPLETE].map(|address| at(&processor, address));
@@ -213,7 +210,7 @@ fn tickets_are_complete_when_a_later_chain_is_built() {
 fn a_chain_without_room_or_with_a_wrong_length_is_not_started() {
     let mut processor = board();
     let message = [1, 0, 5, 0];
-    for (wrong, at_place) in [(0, 0), (MOST_WORDS + 1, 3), (u32::MAX, 5)] {
+    for (wrong, at_place) in [(0, 0), (MAX_WORDS + 1, 3), (u32::MAX, 5)] {
         let mut requests = [message; 6];
         requests[at_place][2] = wrong;
         let (_, refused) = chain(&mut processor, &requests, 1).expect("it returns");

@@ -46,7 +46,6 @@ pub struct BlockBootstrap {
 impl BlockBootstrap {
     /// Resamples a series of finite numbers. Returns `None` for fewer than [`MIN_BOOTSTRAP_VALUES`] numbers, and if
     /// values depend on each other over more than a tenth of the series.
-    #[must_use]
     pub fn of(series: &[f64]) -> Option<Self> {
         if series.len() < MIN_BOOTSTRAP_VALUES {
             return None;
@@ -63,13 +62,11 @@ impl BlockBootstrap {
     }
 
     /// Returns the lengths of the series and of a block, and the number of resampled series.
-    #[must_use]
     pub const fn size(&self) -> BootstrapSize {
         self.size
     }
 
     /// Returns the variance of the resampled means, which estimates the variance of the mean.
-    #[must_use]
     pub fn variance(&self) -> f64 {
         let centre = self.centre();
         self.means.iter().map(|mean| (mean - centre).powi(2)).sum::<f64>() / self.means.len() as f64
@@ -87,7 +84,6 @@ impl BlockBootstrap {
     ///   from the mean is therefore multiplied by two factors. The first is the ratio of Student's t with k - 1 degrees
     ///   of freedom to the normal distribution. The second is the root of k / (k - 1). If a factor shifts the
     ///   percentiles, the distance is a difference of logarithms.
-    #[must_use]
     pub fn interval(&self, mean: f64, confidence: f64) -> (f64, f64) {
         let centre = self.centre();
         let [low, high] = [0.5 - confidence / 2.0, 0.5 + confidence / 2.0].map(|share| self.percentile(share));

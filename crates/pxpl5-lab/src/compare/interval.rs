@@ -24,7 +24,6 @@ impl IntervalMethod {
     pub const ALL: [Self; 4] = [Self::StudentTOfLogarithm, Self::StudentT, Self::MovingBlockBootstrap, Self::None];
 
     /// Returns the name of the method in words, for tables.
-    #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
             Self::None => "no interval",
@@ -93,7 +92,6 @@ impl MeanInterval {
     }
 
     /// Returns the width of the interval, or `None` without an interval.
-    #[must_use]
     pub fn width(&self) -> Option<f64> {
         Some(self.high - self.low).filter(|width| width.is_finite())
     }

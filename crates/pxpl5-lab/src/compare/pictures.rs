@@ -36,7 +36,6 @@ const DISTANCE_M: f32 = 2.0;
 
 /// Returns a scene with a white wall on the left of a vertical edge, and nothing on the right of the edge. The edge
 /// lies straight ahead (along -z). At the start, the viewer faces a direction `yaw_deg` to the left of the edge.
-#[must_use]
 pub fn edge_scene(yaw_deg: f64) -> Scene {
     let vertex =
         |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -DISTANCE_M), normal: Vec3::Z, colour: [255, 255, 255] };
@@ -91,7 +90,6 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
 /// Converts a scanned field to the picture that a turning eye sees, with one row for each line of the field. Each pixel
 /// moves to its position relative to the head at the instant at which the middle of the field is lit. Pixels without
 /// content are black.
-#[must_use]
 pub fn as_seen(picture: &RgbImage, field: PeriodNumber, video: &Video, motion: &dyn Motion) -> RgbImage {
     let view = Hmd::unc();
     let parity = FieldParity::of_field(field).first_line();

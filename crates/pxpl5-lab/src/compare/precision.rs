@@ -31,7 +31,6 @@ pub const MAX_SEEDS: usize = 50;
 impl UntilPrecise {
     /// Returns true if the interval exists and is narrow enough. An interval over the fields of one seed does not
     /// count, because it leaves out the differences between motions of the head.
-    #[must_use]
     pub fn is_reached(&self, error: &MeanInterval) -> bool {
         let is_over_seeds = error.method != IntervalMethod::MovingBlockBootstrap;
         is_over_seeds && error.width().is_some_and(|width| width <= self.greatest_width(error.mean))
@@ -42,7 +41,6 @@ impl UntilPrecise {
     ///
     /// The width falls with the square root of the number of seeds. A step at most doubles the number of seeds, because
     /// the first widths are uncertain.
-    #[must_use]
     pub fn seeds_to_add(&self, error: &MeanInterval, seeds: usize) -> usize {
         if self.is_reached(error) {
             return 0;

@@ -38,7 +38,6 @@ pub struct Predictors {
 
 impl Predictors {
     /// Returns the result of one predictor.
-    #[must_use]
     pub fn of(&self, kind: PredictorKind) -> Option<&PredictorResult> {
         self.each.iter().find(|one| one.kind == kind)
     }
@@ -47,7 +46,6 @@ impl Predictors {
 /// Runs an experiment once with each predictor and without pixels. All other settings stay the same. If the
 /// experiment's own predictor is tuned, each predictor is tuned for the pipeline's prediction interval and the motion.
 /// Returns `None` for an experiment without a head.
-#[must_use]
 pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     let head = experiment.tracked_head()?;
     let showing = head.raster().into();

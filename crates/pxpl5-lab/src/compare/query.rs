@@ -24,14 +24,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Maximum number of fields of a compared run: a little over an hour. A comparison keeps all observations of a run in
 /// memory, because it evaluates the errors of the run in several ways.
-const MOST_FIELDS: u64 = 250_000;
+const MAX_FIELDS: u64 = 250_000;
 
 /// Delay in display periods from which on the evaluation of a row counts as late. Smaller delays are normal, because
 /// due pictures can be several periods apart.
-const MOST_PERIODS_APART: u64 = 4;
+const MAX_PERIODS_APART: u64 = 4;
 
 /// Minimum number of seeds for meaningful confidence intervals.
-pub const LEAST_SEEDS: usize = 5;
+pub const MIN_SEEDS: usize = 5;
 
 /// A comparison to run, with the settings that all rows share. Each row adds its pipeline and a few settings.
 #[derive(Clone, Debug)]
@@ -113,13 +113,13 @@ impl Common<'_> {
 }
 
 impl CompareQuery {
-    /// Creates a comparison of the usual rows with [`LEAST_SEEDS`] seeds. All rows share the settings in `shared`.
+    /// Creates a comparison of the usual rows with [`MIN_SEEDS`] seeds. All rows share the settings in `shared`.
     #[must_use]
     pub fn new(shared: ExperimentFile) -> Self {
         Self {
             shared,
             only: RowChoice::Usual,
-            seeds: (1..=LEAST_SEEDS as u64).collect(),
+            seeds: (1..=MIN_SEEDS as u64).collect(),
             limits: false,
             causes: false,
             predictors: false,
@@ -298,7 +298,7 @@ impl CompareQuery {
         }
         self.check_seeds()?;
         // The run must be longer than the warm-up of every pipeline.
-        let expected = (WARM_UP_PERIODS + 1, MOST_FIELDS);
+        let expected = (WARM_UP_PERIODS + 1, MAX_FIELDS);
         let holds = (expected.0..=expected.1).contains(&plan.fields);
         SettingError::require(holds, "fields", format_args!("{} to {}", expected.0, expected.1), plan.fields)?;
         Ok(plan)
@@ -432,7 +432,6 @@ impl Comparison {
     /// - the row `ideal`, which shows ideal pictures for comparison
     /// - rows whose evaluation begins later than that of most rows
     /// - the row with delayed video, because its error leaves out the delay of the real world
-    #[must_use]
     pub fn best(&self) -> Option<&ComparisonRow> {
         let evaluated =
             self.pipelines.iter().filter(|row| row.was_evaluated() && row.failure.is_none() && row.shows_all());
@@ -443,13 +442,11 @@ impl Comparison {
 
     /// Returns true if the evaluation of `row` begins four or more display periods after
     /// [`Comparison::evaluated_from`].
-    #[must_use]
     pub fn starts_late(&self, row: &ComparisonRow) -> bool {
-        row.window.is_some_and(|window| window.first_period.0 >= self.evaluated_from.0 + MOST_PERIODS_APART)
+        row.window.is_some_and(|window| window.first_period.0 >= self.evaluated_from.0 + MAX_PERIODS_APART)
     }
 
     /// Returns the row with this name, if any.
-    #[must_use]
     pub fn row(&self, pipeline: &str) -> Option<&ComparisonRow> {
         self.pipelines.iter().find(|row| row.pipeline == pipeline)
     }

@@ -184,14 +184,12 @@ impl ComparisonRow {
     }
 
     /// Returns the predictor with the smallest mean error, or `None` if no predictor was evaluated.
-    #[must_use]
     pub fn best_predictor(&self) -> Option<PredictorMean> {
         let evaluated = self.predictors.iter().copied().filter(|one| one.mean_px.is_finite());
         evaluated.min_by(|one, other| one.mean_px.total_cmp(&other.mean_px))
     }
 
     /// Returns true if every picture that was due was shown in time.
-    #[must_use]
     pub fn shows_all(&self) -> bool {
         self.not_shown.unwrap_or(0) == 0
     }
@@ -199,13 +197,11 @@ impl ComparisonRow {
     /// Returns true if the error of the row can be ranked with the errors of other rows. The rows `delayed-video` and
     /// `ideal` are references that cannot be ranked. The error of `delayed-video` leaves out the delay of the real
     /// world, and `ideal` has no pipeline.
-    #[must_use]
     pub fn is_ranked(&self) -> bool {
         ![DELAYED_VIDEO, IDEAL].contains(&self.pipeline.as_str())
     }
 
     /// Returns true if the error of at least one pixel was evaluated.
-    #[must_use]
     pub const fn was_evaluated(&self) -> bool {
         self.error.n > 0
     }

@@ -107,13 +107,11 @@ impl CompareStore {
     }
 
     /// Returns the number of finished rows of an earlier process.
-    #[must_use]
     pub const fn found(&self) -> usize {
         self.found.len()
     }
 
     /// Returns the finished row of an earlier process with this name, if any.
-    #[must_use]
     pub fn row(&self, name: &str) -> Option<&ComparisonRow> {
         self.found.iter().find(|row| row.pipeline == name)
     }

@@ -87,13 +87,11 @@ impl HeadChoice {
     }
 
     /// Returns the head with its tracker and predictor, which all runs of this experiment share.
-    #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)
     }
 
     /// Returns true if the motion of the head is a recording.
-    #[must_use]
     pub fn is_recording(&self) -> bool {
         is_recording(&self.motion)
     }
@@ -103,7 +101,6 @@ impl HeadChoice {
     }
 
     /// Returns the parameters of the tracker, the host's serial port and the predictor.
-    #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         self.numbers.clone()
     }

@@ -195,23 +195,8 @@ impl ExperimentFile {
     }
 }
 
-/// Former and current names of keys. The next version accepts only the current names.
-const RENAMED: [(&str, &str); 6] = [
-    ("head.display", "head.raster"),
-    ("head.judge_at", "head.evaluate_at"),
-    ("motion.path", "head.path"),
-    ("motion.sway", "head.sway"),
-    ("motion.distance", "head.distance"),
-    ("motion.deg_per_s", "head.deg_per_s"),
-];
-
-pub(super) fn renamed(path: &str) -> &str {
-    RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now)
-}
-
 /// Returns all keys except those of machine parameters. The key of a machine parameter is `machine.` followed by a path
 /// of [`MachineConfig::set`].
-#[must_use]
 pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
     let pipelines: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();
     let displays: Vec<&str> = registry.displays().iter().map(|entry| entry.name).collect();
@@ -235,8 +220,8 @@ pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
 
 /// Returns the full path of a key, or `None` for an unknown key. The prefix `machine.` is optional.
 pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
-    // A table `[display]` names its display with the key `preset`. Former names of keys are still accepted.
-    let path = if path == "display.preset" { "display" } else { renamed(path) };
+    // A table `[display]` names its display with the key `preset`.
+    let path = if path == "display.preset" { "display" } else { path };
     if is_key(registry, path) || is_machine_parameter(registry, path) || is_tracking_parameter(path) {
         return Some(path.to_owned());
     }

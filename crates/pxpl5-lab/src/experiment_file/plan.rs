@@ -93,8 +93,6 @@ pub struct Plan {
     pub output: Outputs,
     /// Published figure to compare with, if any.
     pub published: Option<Published>,
-    /// Warnings about settings with former names.
-    pub notes: Vec<String>,
 }
 
 /// Largest seed that TOML can represent.
@@ -132,7 +130,6 @@ impl ExperimentFile {
                 csv: self.flag("output.csv")?.unwrap_or(true),
             },
             published: Published::read(self)?,
-            notes: self.notes.clone(),
         })
     }
 
@@ -267,14 +264,12 @@ impl Plan {
 
     /// Returns all parameters of the machine. With a tracked head, the parameters of the tracker, the host's serial
     /// port and the predictor follow. Their paths begin with `tracking.`.
-    #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(HeadChoice::parameters);
         self.machine.parameters().into_iter().chain(of_head).collect()
     }
 
     /// Returns the parameters with values outside the range that their sources allow.
-    #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(|head| head.head().unsupported_parameters().to_vec());
         out_of_range(&self.machine, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
@@ -283,28 +278,24 @@ impl Plan {
     /// Returns warnings about settings that do not represent the real machine. The warnings concern parameters out of
     /// range, the recording of the head motion, and former names of keys. A warning also appears if executed code was
     /// requested but the times come from a table.
-    #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let of_table = warning_without_code(self.level, &self.machine, self.pipeline.as_ref());
         let of_head = self.head.iter().flat_map(HeadChoice::warnings);
         let of_machine = self.out_of_range().into_iter().map(|parameter| parameter.warning());
-        self.notes.iter().cloned().chain(of_machine).chain(of_table).chain(of_head).collect()
+        of_machine.into_iter().chain(of_table).chain(of_head).collect()
     }
 
     /// Returns the name of the level of detail.
-    #[must_use]
     pub fn level_name(&self) -> String {
         self.level.name().to_owned()
     }
 
     /// Returns the name of the display on which the pipeline shows its pictures.
-    #[must_use]
     pub fn display(&self) -> &'static str {
         self.machine.displays.first().map_or("", |display| display.name())
     }
 
     /// Returns the experiment with its loaded scene, for a run on this computer.
-    #[must_use]
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();
         let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)

@@ -145,18 +145,6 @@ fn an_orbit_keeps_its_distance_from_the_centre_of_the_scene() {
 }
 
 #[test]
-fn a_former_key_has_the_effect_of_the_new_key_and_causes_a_note() {
-    let former = plan(&format!("{RC}[motion]\npath = \"orbit\"\nsway = 0.5\n"));
-    assert_eq!(former, plan(&format!("{RC}[head]\npath = \"orbit\"\nsway = 0.5\n")));
-    let notes = former.warnings();
-    assert!(
-        notes[0].ends_with("motion.path is now head.path; the next version does not accept motion.path"),
-        "{notes:?}"
-    );
-    assert_eq!(notes.len(), 2);
-}
-
-#[test]
 fn a_walk_goes_along_the_path_of_the_scene_and_begins_where_the_scene_does() {
     let text = "pipeline = \"slats\"\nscene = \"gallery\"\nhead.motion = \"walk:1\"\n";
     let walking = plan(text);

@@ -26,7 +26,6 @@ pub struct Settings {
 
 impl Plan {
     /// Returns the effective value of each setting, including defaults.
-    #[must_use]
     pub fn settings(&self) -> Settings {
         let mut all = Settings { values: BTreeMap::new(), remarks: BTreeMap::new() };
         if let Some(title) = &self.title {
@@ -55,7 +54,6 @@ impl Plan {
 
     /// Returns the effective value of each setting, for an experiment file in any folder. Relative file names become
     /// absolute.
-    #[must_use]
     pub fn settings_for_any_folder(&self) -> Settings {
         let mut all = self.settings();
         for (key, is_file) in [("scene", is_file as fn(&str) -> bool), ("head.motion", is_recording)] {
@@ -70,7 +68,6 @@ impl Plan {
 
     /// Returns a hash of the settings that determine the result. The hash excludes the settings of pixels, output
     /// files, and the comparison with a published figure.
-    #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
         // These settings do not change the simulated result.
         let outside = ["title", "pixels", "measure", "output.", "published."];

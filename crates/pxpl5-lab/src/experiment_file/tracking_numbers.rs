@@ -17,7 +17,6 @@ const COMMON: [&str; 3] = ["host", "filter", "gate"];
 ///
 /// Parameters of heads, the measuring rig, the video and the papers' pictures are read-only. They are published facts
 /// for comparison with a model, not settings of a tracked head.
-#[must_use]
 pub fn tracking_parameters() -> Vec<Parameter> {
     let numbers = Tables::PAPERS.all().into_iter().flat_map(|(name, table)| parameters_of(name, table, false));
     let facts = FACTS.into_iter().flat_map(|(name, table)| parameters_of(name, table, true));

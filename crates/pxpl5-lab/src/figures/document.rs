@@ -12,7 +12,6 @@ use pxpl5_sim::figures::{TableColumn, table};
 use std::fmt::Write as _;
 
 /// Returns the text of ACCURACY.md: a table of all figures, and the cause of each missed figure.
-#[must_use]
 pub fn markdown(figures: &Figures, alternatives: &Alternatives) -> String {
     let mut text = String::new();
     let rows = &figures.rows;

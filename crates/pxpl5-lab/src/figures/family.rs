@@ -61,7 +61,6 @@ impl FigureFamily {
     }
 
     /// Returns this family's section of ACCURACY.md.
-    #[must_use]
     pub fn markdown(&self) -> String {
         let shapes = self.rows.iter().filter(|row| row.basis == Basis::Shape).count();
         let mut text = String::new();

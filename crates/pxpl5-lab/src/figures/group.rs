@@ -60,7 +60,6 @@ impl FigureGroup {
     }
 
     /// Returns this group's section of ACCURACY.md.
-    #[must_use]
     pub fn markdown(&self) -> String {
         let missed: Vec<&FigureRow> = self.rows.iter().filter(|row| !row.is_met).collect();
         let mut text = format!(

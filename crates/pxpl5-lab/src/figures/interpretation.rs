@@ -75,13 +75,11 @@ impl Interpretation {
     pub const THEORY: Self = Self { kept: ROOM, finished: FinishedRegions::Store, ..Self::USUAL };
 
     /// Returns the interpretations that differ from `self` in the answer to exactly one question.
-    #[must_use]
     pub fn neighbours(&self) -> Vec<Self> {
         Self::all().into_iter().filter(|other| self.differences(other) == 1).collect()
     }
 
     /// Returns all combinations of answers to the open questions.
-    #[must_use]
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::USUAL];
         all = varied(&all, &MACHINES, |interpretation, machine| Self { machine, ..interpretation });
@@ -110,7 +108,6 @@ impl Interpretation {
     }
 
     /// Returns the answers of `self`, in words, that differ from the answers of `other`.
-    #[must_use]
     pub fn difference(&self, other: &Self) -> String {
         let both = self.answers().into_iter().zip(other.answers());
         both.filter(|(mine, others)| mine != others).map(|(mine, _)| mine).collect::<Vec<_>>().join(", ")
@@ -121,7 +118,6 @@ impl Interpretation {
     }
 
     /// Returns the pipeline Rendering Control with the rules of this interpretation.
-    #[must_use]
     pub const fn pipeline(&self) -> RenderingControl {
         RenderingControl { finished: self.finished, ..RenderingControl::stereo() }
     }
@@ -142,7 +138,6 @@ impl Interpretation {
     }
 
     /// Returns the latency samples of a run in milliseconds, for frames or for eyes. Each latency ends at the swap.
-    #[must_use]
     pub fn latencies_ms<'a>(&self, summary: &'a Summary) -> &'a [f64] {
         match self.samples {
             LatencySamples::FirstEye => &summary.latencies_ms,
@@ -151,7 +146,6 @@ impl Interpretation {
     }
 
     /// Converts a latency in milliseconds to fields, by this interpretation's definition of the unit "field".
-    #[must_use]
     pub fn fields_of(&self, latency_ms: f64, field_ms: f64) -> f64 {
         match self.fields {
             FieldCount::Exact => latency_ms / field_ms,

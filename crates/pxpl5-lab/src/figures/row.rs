@@ -13,7 +13,6 @@ impl Figure {
     /// The model misses the figure if its value lies outside the printed range. If no range is printed, an error of
     /// more than [`MISS_PERCENT`] is a miss. If the paper does not print a condition, the figure is missed only if no
     /// value of this condition reproduces the figure.
-    #[must_use]
     pub fn row(&self, measured: FigureValue) -> FigureRow {
         // A tiny margin absorbs rounding in floating-point arithmetic.
         let allowed = self.spread.unwrap_or(self.value * MISS_PERCENT / 100.0) * (1.0 + 1e-9);
@@ -33,7 +32,6 @@ impl Figure {
 
 /// Returns the mean absolute error in percent over all rows without fitted parameters. A figure without a value counts
 /// as 100 %.
-#[must_use]
 pub fn mean_error_percent(rows: &[FigureRow]) -> f64 {
     let free: Vec<_> = rows.iter().filter(|row| row.basis == Basis::Free).collect();
     let error = |row: &FigureRow| row.error_percent.filter(|error| error.is_finite()).map_or(100.0, f64::abs);

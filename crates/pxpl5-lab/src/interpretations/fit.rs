@@ -88,7 +88,6 @@ impl FigureFit {
     /// The error of the mean has a normal distribution. Its variance has three parts: the printed digits, the error of
     /// a mean of 87 samples, and 2 % for the model. The logarithm of the ratio of the simulated to the published
     /// standard deviation has a normal distribution. The standard deviation of this distribution is 0.25.
-    #[must_use]
     pub fn log_likelihood(&self) -> f64 {
         let of_samples = self.published_sd.map_or(0.0, |sd| sd / SAMPLES.sqrt());
         // Three independent errors of the mean.
@@ -128,7 +127,6 @@ impl Fit {
     }
 
     /// Returns the mean of the absolute errors in percent over all figures except `id`.
-    #[must_use]
     pub fn mean_error_without(&self, id: &str) -> f64 {
         mean_without(&self.figures, Some(id))
     }

@@ -65,7 +65,6 @@ pub struct Spread {
 impl Spread {
     /// Computes the median and percentiles of values, with interpolation between neighbours. NaN values are left out.
     /// Returns `None` if no values remain.
-    #[must_use]
     pub fn of(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         let last = values.len().checked_sub(1)?;
@@ -98,14 +97,12 @@ impl LevelRecord {
 
 impl LevelReport {
     /// Returns the name of this level of detail, for tables and charts.
-    #[must_use]
     pub fn name(&self) -> String {
         let times = if self.times_of_code && self.level != Level::Cycle { ", times of code" } else { "" };
         format!("{}{times}", self.level.name())
     }
 
     /// Returns advice on the use of this level of detail.
-    #[must_use]
     pub const fn advice(&self) -> &'static str {
         match (self.level, self.times_of_code) {
             (Level::Analytic, false) => {

@@ -26,26 +26,22 @@ pub struct Values {
 
 impl Values {
     /// Returns the whole numbers from `from` to `to`, or `None` if there are fewer than two.
-    #[must_use]
     pub fn whole(from: u64, to: u64) -> Option<Self> {
         (to > from).then(|| Self { from: from as f64, step: 1.0, count: to - from + 1 })
     }
 
     /// Returns real numbers from `from` to `to` in [`STEPS`] equal steps, or `None` for an empty range.
-    #[must_use]
     pub fn real(from: f64, to: f64) -> Option<Self> {
         let step = (to - from) / STEPS as f64;
         (step > 0.0 && step.is_finite()).then_some(Self { from, step, count: STEPS + 1 })
     }
 
     /// Returns the value with the index `number`, counted from 0.
-    #[must_use]
     pub fn value(&self, number: u64) -> f64 {
         self.from + self.step * number as f64
     }
 
     /// Returns the greatest value that a search can try.
-    #[must_use]
     pub fn last(&self) -> f64 {
         self.value(self.count - 1)
     }
@@ -55,7 +51,6 @@ impl Values {
     }
 
     /// Formats a value as the text of a setting. Whole numbers have no decimal point.
-    #[must_use]
     pub fn text(&self, value: f64) -> String {
         if self.is_whole() { format!("{value:.0}") } else { format!("{value:?}") }
     }

@@ -23,7 +23,6 @@ pub struct Limit {
 impl Limit {
     /// Returns true if a number of triangles missed the goal. Also returns true if the search ended below
     /// [`CEILING`](super::CEILING) at the last triangle of a model. Otherwise the pipeline has no limit.
-    #[must_use]
     pub const fn has_limit(&self) -> bool {
         self.first_miss.is_some() || self.triangles < super::CEILING
     }
@@ -48,7 +47,7 @@ const LOOK: u32 = 60;
 const TRIANGLES_IN_A_ROW: u32 = 60_000;
 
 /// Minimum number of consecutive scene sizes below the result.
-const LEAST_IN_A_ROW: u32 = 4;
+const MIN_IN_A_ROW: u32 = 4;
 
 /// The tried scene sizes. The boolean is true if the size reached the goal.
 struct Tried<F> {
@@ -215,7 +214,7 @@ fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
 
 /// Returns the number of consecutive sizes to try below `limit`. About as many sizes are tried above `limit`.
 fn in_a_row(limit: u32) -> u32 {
-    (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(LEAST_IN_A_ROW, LOOK)
+    (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(MIN_IN_A_ROW, LOOK)
 }
 
 /// Returns the numbers of triangles to try above the first miss, from the largest down. The numbers are evenly spaced

@@ -12,7 +12,6 @@ impl Sweep {
     /// The first point is always simulated, and no point is interrupted. Repeated calls with the remaining points
     /// therefore reach the end. A row depends only on the file and the point. An error of a point, even a panic, is
     /// stored in the row.
-    #[must_use]
     pub fn rows(&self, points: &[u64], at_most: Duration) -> Vec<(SweepRow, f64)> {
         let begin = Instant::now();
         let mut rows = Vec::new();
@@ -30,7 +29,6 @@ impl Sweep {
 
 impl SweepRow {
     /// Returns true if the point of this row was simulated.
-    #[must_use]
     pub fn is_done(&self) -> bool {
         self.status == Status::Done
     }

@@ -19,14 +19,12 @@ impl Sweep {
     /// Estimates the seconds for each point on one core. If the pipeline has a closed form, the closed form gives the
     /// number of pictures. An invalid point costs almost nothing. Points that differ only in their seed get the same
     /// estimate.
-    #[must_use]
     pub fn costs(&self, points: &[u64]) -> Vec<f64> {
         self.estimates(points).into_iter().map(|estimate| estimate.seconds).collect()
     }
 
     /// Estimates the time in seconds and the memory of each point. The memory includes all observations, which are kept
     /// until the results of the point are measured.
-    #[must_use]
     pub fn estimates(&self, points: &[u64]) -> Vec<Estimate> {
         let mut cached: BTreeMap<String, Estimate> = BTreeMap::new();
         let mut estimates = Vec::with_capacity(points.len());

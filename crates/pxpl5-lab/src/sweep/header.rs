@@ -127,7 +127,6 @@ impl Sweep {
 
 impl SweepSpace {
     /// Returns the axes in the JSON layout of a header.
-    #[must_use]
     pub fn records(&self) -> Vec<AxisRecord> {
         self.axes().iter().map(record).collect()
     }

@@ -58,7 +58,6 @@ impl FileKey {
 ///
 /// The hash covers the scene instead of the bytes of the file, because a glTF file refers to other files. A file
 /// without a model gets the hash of its bytes. A file that cannot be read gets the hash of an empty text.
-#[must_use]
 pub fn hash_of_model(path: &Path) -> Fingerprint {
     let scene = load_placed(path, Placement::AsInFile);
     scene.map_or_else(|_| hash_of_file(path), |scene| Fingerprint::of_scene(&scene))

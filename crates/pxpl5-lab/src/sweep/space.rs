@@ -22,19 +22,16 @@ impl Axis {
     }
 
     /// Returns the number of steps of the axis.
-    #[must_use]
     pub fn len(&self) -> u64 {
         self.values.first().map_or(0, AxisValues::len)
     }
 
     /// Returns true if the axis has no steps. No axis of a [`SweepSpace`] is empty.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Returns the values at a step, counted from 0, with one value for each path.
-    #[must_use]
     pub fn step(&self, n: u64) -> Vec<Value> {
         self.values.iter().map(|values| values.at(n)).collect()
     }
@@ -58,7 +55,6 @@ pub enum AxisValues {
 
 impl AxisValues {
     /// Returns the number of values along the axis.
-    #[must_use]
     pub fn len(&self) -> u64 {
         match self {
             Self::Listed(list) => list.len() as u64,
@@ -67,13 +63,11 @@ impl AxisValues {
     }
 
     /// Returns true if the axis has no values.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Returns the value at a step, counted from 0. Steps beyond the end return the last value.
-    #[must_use]
     pub fn at(&self, n: u64) -> Value {
         let n = n.min(self.len().saturating_sub(1));
         match self {
@@ -140,19 +134,16 @@ impl SweepSpace {
     }
 
     /// Returns the axes of the space. The last axis changes fastest from point to point.
-    #[must_use]
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
     /// Returns the number of points: the product of the numbers of steps of all axes.
-    #[must_use]
     pub const fn points(&self) -> u64 {
         self.points
     }
 
     /// Returns the varied settings with their values at a point.
-    #[must_use]
     pub fn settings(&self, point: u64) -> BTreeMap<String, Value> {
         let mut rest = point;
         let mut settings = BTreeMap::new();
@@ -273,7 +264,6 @@ fn from_step_last(range: &Table) -> Option<[i64; 3]> {
 
 /// Flattens a table into paths and values. A table with the key `from` is a range and stays one value. The key of any
 /// other table becomes part of the path.
-#[must_use]
 pub fn leaves(table: Table) -> Vec<(String, Value)> {
     let mut all = Vec::new();
     for (key, value) in table {

@@ -98,7 +98,6 @@ impl Store {
     }
 
     /// Returns true if the folder has a row for this point.
-    #[must_use]
     pub fn holds(&self, point: u64) -> bool {
         self.rows.holds(point)
     }
@@ -108,7 +107,6 @@ impl Store {
     }
 
     /// Returns the number of finished points in one shard (part of the sweep).
-    #[must_use]
     pub fn finished(&self, shard: Shard) -> u64 {
         self.rows.points().filter(|point| shard.holds(*point)).count() as u64
     }

@@ -95,7 +95,6 @@ impl ArrayInstruction {
         }
     }
 
-    #[must_use]
     pub fn words(&self) -> u32 {
         let mut words = Vec::with_capacity(14);
         self.encode(&mut words);

@@ -45,7 +45,6 @@ impl Operand {
         Self { address: self.address + low, width, ..self }
     }
 
-    #[must_use]
     pub const fn to_bits(self) -> u32 {
         let flags = (self.signed as u32) << 15 | (self.relative as u32) << 14;
         flags | ((self.width as u32 - 1) & 63) << 8 | self.address as u32

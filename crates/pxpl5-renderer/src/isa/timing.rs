@@ -40,7 +40,6 @@ pub const CONTROL_CLOCKS: u32 = 2;
 ///
 /// Each binary digit takes a trial comparison and a subtraction over the bits that the remainder can occupy. The
 /// remainder has 2 bits for the first digit and `j + 3` for digit `j`.
-#[must_use]
 pub const fn square_root_clocks(n: u32) -> u32 {
     // The sum over all digits is 2 (2 + sum of j + 3 for j = 1 .. n - 1).
     match n {
@@ -54,7 +53,6 @@ pub const fn square_root_clocks(n: u32) -> u32 {
 /// For each bit of the second factor, an addition takes one clock for each bit of the first factor and one clock for
 /// the carry. Additions leave out bits beyond the result. If the result has more than `a + b` bits, each further bit
 /// takes one clock.
-#[must_use]
 pub fn multiply_clocks(w: u32, a: u32, b: u32) -> u32 {
     let additions: u32 = (0..b.min(w)).map(|j| (a + 1).min(w - j)).sum();
     additions + w.saturating_sub(a + b)
@@ -63,20 +61,17 @@ pub fn multiply_clocks(w: u32, a: u32, b: u32) -> u32 {
 /// Returns the number of clocks of a division with a quotient of `w` bits.
 ///
 /// Each binary digit takes a comparison over the bits of the divisor and a subtraction over the bits of the remainder.
-#[must_use]
 pub fn divide_clocks(w: u32, a: u32, b: u32) -> u32 {
     (0..w).map(|j| (a - j).max(b) + (a - j)).sum()
 }
 
 impl ArrayInstruction {
     /// Returns the number of clocks for which the instruction occupies the array and its controller.
-    #[must_use]
     pub fn clocks(&self) -> u32 {
         SET_UP_CLOCKS + self.bit_clocks()
     }
 
     /// Returns the number of clocks for which bits move: all clocks except [`SET_UP_CLOCKS`].
-    #[must_use]
     pub fn bit_clocks(&self) -> u32 {
         match *self {
             Self::Evaluate { expression, usage } => evaluate_clocks(&expression, &usage),

@@ -58,11 +58,10 @@ impl Frameless {
         let block_ns = ring.occupancy(self.block * self.block).0 / 1_000;
         let slaves = ports.gps.len().saturating_sub(1).max(1) as u64;
         // The ring sends the blocks of all slaves while one slave transforms.
-        (slave_ns / (slaves * block_ns)).clamp(LEAST_BATCH, MOST_BATCH) as u32
+        (slave_ns / (slaves * block_ns)).clamp(MIN_BATCH, MAX_BATCH) as u32
     }
 
     /// Returns the number of blocks of a picture.
-    #[must_use]
     pub fn blocks(&self) -> u32 {
         self.grid().regions()
     }
@@ -85,8 +84,8 @@ impl Default for Frameless {
 
 /// Smallest and largest number of blocks in a batch (assumed). In smaller batches, the master would be the bottleneck,
 /// because each order takes 24 us. In larger batches, the view would become too old.
-const LEAST_BATCH: u64 = 4;
-const MOST_BATCH: u64 = 64;
+const MIN_BATCH: u64 = 4;
+const MAX_BATCH: u64 = 64;
 
 /// Number of blocks in a batch at the cycle level (assumed; see kernels/order_rules.md in the crate pphigs). The number
 /// is fixed, because the time of the code is unknown in advance.

@@ -42,7 +42,6 @@ impl Jitp {
     }
 
     /// Returns the pipelines of all viewpoints, each without and with racing.
-    #[must_use]
     pub fn all() -> Vec<Self> {
         let viewpoints = [
             Viewpoint::Field,
@@ -270,7 +269,6 @@ impl PictureRules for Jitp {
 }
 
 /// Returns the region of `grid` that contains the pixel in column `x` and line `row`.
-#[must_use]
 pub fn region_at(grid: &RegionGrid, x: u32, row: u32) -> RegionId {
     RegionId((row / grid.region_height * grid.columns() + x / grid.region_width) as u16)
 }

@@ -43,7 +43,6 @@ impl FinishedRegions {
     pub const ALL: [Self; 2] = [Self::Wait, Self::Store];
 
     /// Returns the name of the choice in experiment files.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Wait => "wait",
@@ -53,7 +52,6 @@ impl FinishedRegions {
 
     /// Returns how many finished regions a renderer can store at a time. `room` is the capacity of the backing store in
     /// regions.
-    #[must_use]
     pub const fn stored(self, room: u64) -> u64 {
         match self {
             Self::Wait => 0,

@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::trig;
 
 /// Generates a sphere of `count` triangles. `count` must be even and at least
-/// [`crate::config::LEAST_SPHERE_TRIANGLES`].
+/// [`crate::config::MIN_SPHERE_TRIANGLES`].
 pub(super) fn scene(count: u32) -> Scene {
     // Add the parallels from pole to pole, and join each with the parallel above.
     let rings = rings(count);

@@ -8,7 +8,7 @@ use super::surface::{Surface, is_degenerate};
 
 /// Least cosine of the angle by which a triangle may turn when one of its corners moves. The value allows 78 degrees.
 /// Assumed, 45 to 90 degrees.
-const LEAST_COSINE: f64 = 0.2;
+const MIN_COSINE: f64 = 0.2;
 
 #[derive(Clone, Copy)]
 pub(super) struct Rules {
@@ -245,6 +245,6 @@ impl Decimator {
         }
         let before = self.surface.normal(points);
         let after = self.surface.normal(moved);
-        may_flip_triangles || after.dot(before) > LEAST_COSINE * after.length() * before.length()
+        may_flip_triangles || after.dot(before) > MIN_COSINE * after.length() * before.length()
     }
 }

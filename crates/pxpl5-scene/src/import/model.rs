@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 use hashbrown::HashTable;
 
 use super::mesh::{Fit, area, seen_by, unit};
-use super::polygon::{self, Cut, MOST_CORNERS, has_area};
+use super::polygon::{self, Cut, MAX_CORNERS, has_area};
 use super::{Placement, Source};
 use crate::config::{DEFAULT_COLOUR, MEMORY_FLOOR_BYTES, MEMORY_TIMES_FILE};
 use crate::scene::{Scene, Vertex};
@@ -222,7 +222,7 @@ impl Model {
     ) -> Result<Scene, FileError> {
         if self.too_long > 0 {
             self.warnings.push(format!(
-                "{} with a notch and more than {MOST_CORNERS} corners: the notch is filled",
+                "{} with a notch and more than {MAX_CORNERS} corners: the notch is filled",
                 counted(self.too_long, "polygon")
             ));
         }

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 /// Greatest number of corners of a concave polygon that is cut correctly. Derived: ear cutting needs about 136 bytes
 /// per corner, so the memory stays near [`crate::config::MEMORY_FLOOR_BYTES`].
-pub(super) const MOST_CORNERS: usize = 1 << 15;
+pub(super) const MAX_CORNERS: usize = 1 << 15;
 
 /// Two successive edges count as one line if the sine of the angle between them is at most this number. Assumed, 1e-7
 /// to 1e-4. In single precision, points of a straight line deviate by up to 6e-8.
@@ -17,7 +17,7 @@ pub(super) enum Cut {
     Fan,
     /// The polygon is concave. These triangles cover exactly the polygon and have the same orientation.
     Ears(Vec<[u32; 3]>),
-    /// The polygon is concave and has more than [`MOST_CORNERS`] corners, so it is not cut correctly.
+    /// The polygon is concave and has more than [`MAX_CORNERS`] corners, so it is not cut correctly.
     TooLong,
 }
 
@@ -39,7 +39,7 @@ pub(super) fn cut(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Cut {
         if ring.last().is_none_or(|&before| flat(before) != flat(corner)) {
             ring.push(corner);
         }
-        if ring.len() > MOST_CORNERS {
+        if ring.len() > MAX_CORNERS {
             return Cut::TooLong;
         }
     }

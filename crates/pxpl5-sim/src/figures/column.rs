@@ -42,17 +42,14 @@ pub const DETAILS: TableColumn<FigureRow> = ("other results", |row| {
 });
 
 /// Formats the relative error in percent, or "-" if the published number is 0 or missing.
-#[must_use]
 pub fn error(row: &FigureRow) -> String {
     row.error_percent.map_or_else(|| "-".to_owned(), |error| format!("{error:+.1} %"))
 }
 
-#[must_use]
 pub fn four(value: f64) -> String {
     significant(value, 4)
 }
 
-#[must_use]
 pub fn range([low, high]: [f64; 2]) -> String {
     format!("{} to {}", four(low), four(high))
 }

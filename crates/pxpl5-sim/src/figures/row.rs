@@ -24,7 +24,6 @@ pub enum Basis {
 }
 
 impl Basis {
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Free => "free",
@@ -91,7 +90,6 @@ pub struct FigureRow {
 }
 
 /// Returns the lowest and the highest value that differ from `middle` by at most `half`.
-#[must_use]
 pub const fn around(middle: f64, half: f64) -> [f64; 2] {
     [middle - half, middle + half]
 }
@@ -102,7 +100,6 @@ const ROUNDING: f64 = 0.01;
 impl FigureRow {
     /// Returns the known cause of a difference between model and paper, or a sentence that states that no cause is
     /// known.
-    #[must_use]
     pub const fn cause_or_unknown(&self) -> &'static str {
         if self.cause.is_empty() { "The cause is not known." } else { self.cause }
     }
@@ -161,7 +158,6 @@ impl FigureRow {
     /// The model can reach the interval of the analytic level. The interval is extended on both sides by the distance
     /// between `analytic` and `simulated`. The two levels may differ by this distance at all values of the parameters.
     /// The published value is compared with its printed range, or with its last digit if no range is printed.
-    #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };
         // The margin has the difference between the two levels and the precision of the printed figure.

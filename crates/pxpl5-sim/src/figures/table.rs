@@ -16,7 +16,6 @@ pub fn table<'a, R: 'a>(columns: &[TableColumn<R>], rows: impl IntoIterator<Item
 
 /// Formats a number with at least `digits` significant digits and without trailing zeros. A number that is not finite
 /// gives "none". A magnitude below a millionth counts as a rounding error and gives 0.
-#[must_use]
 pub fn significant(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return "none".to_owned();
@@ -29,6 +28,18 @@ pub fn significant(value: f64, digits: i32) -> String {
     let decimals = (digits - 1 - exponent).clamp(0, 10) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// Replaces each mark `{{name}}` of a text by a value. Ends of lines at the end of a value are left out.
+pub fn filled(text: &str, marks: &[(&str, String)]) -> String {
+    let filled =
+        |text: String, (name, value): &(&str, String)| text.replace(&format!("{{{{{name}}}}}"), value.trim_end());
+    marks.iter().fold(text.to_owned(), filled)
+}
+
+/// Returns rows of cells as lines of a Markdown table.
+pub fn lines<const N: usize>(rows: impl IntoIterator<Item = [String; N]>) -> String {
+    rows.into_iter().map(|cells| format!("| {} |\n", cells.join(" | "))).collect()
 }
 
 #[cfg(test)]

@@ -28,14 +28,12 @@ impl Parameter {
     }
 
     /// Returns true if the value lies within the range that the parameter's table derives from sources.
-    #[must_use]
     pub fn is_in_range(&self) -> bool {
         let (low, high) = self.info.range;
         (low..=high).contains(&self.value)
     }
 
     /// Returns a warning that the value is out of range. The text contains the range and its source.
-    #[must_use]
     pub fn warning(&self) -> String {
         let Self { path, info, value, .. } = self;
         let (low, high) = info.range;
@@ -130,20 +128,17 @@ pub trait PathSettings: Sized + 'static {
     fn was_set(&mut self, _path: &str, _text: &str) {}
 
     /// Returns all numbers with their paths and current values.
-    #[must_use]
     fn numbers(&self) -> Vec<Parameter> {
         self.tables().into_iter().flat_map(|(prefix, table)| Parameter::of_table(prefix, table, false)).collect()
     }
 
     /// Returns all paths that [`PathSettings::set`] accepts.
-    #[must_use]
     fn keys(&self) -> Vec<String> {
         let numbers = self.numbers().into_iter().map(|number| number.path);
         Self::CHOICES.iter().map(|choice| choice.path.to_owned()).chain(numbers).collect()
     }
 
     /// Returns a warning for each number outside the range that its sources allow.
-    #[must_use]
     fn warnings(&self) -> Vec<String> {
         self.numbers().iter().filter(|number| !number.is_in_range()).map(Parameter::warning).collect()
     }

@@ -43,7 +43,6 @@ pub struct ParameterInfo {
 
 impl ParameterInfo {
     /// Returns the range of a parameter that is a whole number. Returns `None` for a real number.
-    #[must_use]
     pub fn whole_range(&self) -> Option<(u64, u64)> {
         match self.range {
             (Value::Whole(low), Value::Whole(high)) => Some((low, high)),
@@ -52,7 +51,6 @@ impl ParameterInfo {
     }
 
     /// Returns the kind, limits and unit of valid values in words, for error messages.
-    #[must_use]
     pub fn expected(&self) -> String {
         let (least, most) = self.limits;
         let kind = if matches!(self.papers, Value::Whole(_)) { "a whole number" } else { "a number" };
@@ -62,7 +60,6 @@ impl ParameterInfo {
 
 /// Creates the error of a table that has no parameter called `name`. The function is public for tables that are written
 /// without the macro `parameter_table!`.
-#[must_use]
 pub fn unknown_parameter(name: &str, infos: &[ParameterInfo]) -> SettingError {
     SettingError::unknown_path("parameter", name, infos.iter().map(|info| info.name))
 }

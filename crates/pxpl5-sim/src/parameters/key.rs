@@ -110,7 +110,6 @@ impl Key {
 
     /// Returns the meaning, the allowed values, the unit and the default in one line. Names that the meaning explains
     /// are not repeated.
-    #[must_use]
     pub fn help(&self) -> String {
         let Self { about, values, unit, default, .. } = self;
         let allowed = match values {
@@ -123,7 +122,6 @@ impl Key {
     }
 
     /// Returns the allowed values in words, for error messages.
-    #[must_use]
     pub fn expected(&self) -> String {
         match self.values {
             KeyValues::Whole(low, high) => with_unit(format!("a whole number from {low} to {high}"), self.unit),
@@ -138,7 +136,6 @@ fn with_unit(text: String, unit: &str) -> String {
     if unit.is_empty() { text } else { format!("{text} {unit}") }
 }
 
-#[must_use]
 pub const fn names<T, const N: usize>(all: &[(&'static str, T); N]) -> [&'static str; N] {
     let mut names = [""; N];
     let mut i = 0;

@@ -5,7 +5,6 @@
 /// the fewest single-letter changes is returned. Returns `None` if there are no candidates.
 ///
 /// Capital and small letters are the same. Words end at punctuation, and similar words count as the same word.
-#[must_use]
 pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let name = &name.to_lowercase();
     candidates.min_by_key(|candidate| {

@@ -10,14 +10,12 @@ pub struct Entry {
 
 impl Entry {
     /// Returns true if the current value lies within the range that the sources allow.
-    #[must_use]
     pub fn is_in_range(&self) -> bool {
         let (low, high) = self.info.range;
         (low..=high).contains(&self.value)
     }
 
     /// Returns true if the current value lies within the limits in which the model works.
-    #[must_use]
     pub fn is_within_limits(&self) -> bool {
         let (least, most) = self.info.limits;
         (least..=most).contains(&self.value)

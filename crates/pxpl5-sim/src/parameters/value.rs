@@ -21,7 +21,6 @@ pub enum Value {
 impl Value {
     /// Returns the value as a whole number. Returns `None` if the value has a fraction, is negative or needs more than
     /// 64 bits.
-    #[must_use]
     pub fn whole(self) -> Option<u64> {
         match self {
             Self::Whole(n) => Some(n),
@@ -30,7 +29,6 @@ impl Value {
     }
 
     /// Returns the value as a real number. Whole numbers above 2^53 are rounded to the nearest real number.
-    #[must_use]
     pub fn real(self) -> f64 {
         match self {
             Self::Whole(n) => n as f64,

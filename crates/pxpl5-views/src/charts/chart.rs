@@ -136,7 +136,6 @@ impl Chart {
     /// # Panics
     ///
     /// Never panics, because a string accepts all output.
-    #[must_use]
     pub fn svg(&self) -> String {
         let measures = self.size.measures(self.series.len());
         let mut text = String::new();

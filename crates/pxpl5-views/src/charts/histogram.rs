@@ -14,7 +14,6 @@ const BINS: usize = 24;
 const STEP: f64 = (WIDTH - LEFT - RIGHT) / BINS as f64;
 
 /// Returns a histogram of latencies in milliseconds, as SVG for a page.
-#[must_use]
 pub fn histogram(values_ms: &[f64]) -> String {
     histogram_element(values_ms).to_string()
 }

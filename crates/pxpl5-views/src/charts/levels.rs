@@ -19,7 +19,6 @@ pub struct SpeedAndError {
 ///
 /// The error covers the published figures that were not used to fit parameters. A line joins the best levels of
 /// modelling: no other level is both faster and more accurate.
-#[must_use]
 pub fn level_chart(levels: &[SpeedAndError]) -> String {
     let axes = ChartAxes {
         title: "Speed against error at each level".to_owned(),

@@ -33,7 +33,6 @@ pub(crate) fn colour_of_part(name: &str) -> &'static str {
 ///
 /// An outline marks the parts that the papers count as latency. The SVG text is empty if the sum of the parts is not
 /// positive.
-#[must_use]
 pub fn part_bar(parts: &[MeanPart]) -> String {
     part_bar_element(parts).map_or_else(String::new, |svg| svg.to_string())
 }

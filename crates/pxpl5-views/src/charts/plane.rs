@@ -26,20 +26,17 @@ pub struct MarkedPoint {
 }
 
 /// Returns an SVG chart of curves with a legend. Both axes begin at 0.
-#[must_use]
 pub fn curve_chart(axes: &ChartAxes, curves: &[Curve]) -> String {
     on_screen(axes, AxisScale::FromZero, curves.iter().map(of_curve).collect())
 }
 
 /// Returns an SVG chart of curves with a legend. The vertical axis is logarithmic. Zero and negative values leave gaps
 /// in the line.
-#[must_use]
 pub fn decade_chart(axes: &ChartAxes, curves: &[Curve]) -> String {
     on_screen(axes, AxisScale::Decades, curves.iter().map(of_curve).collect())
 }
 
 /// Returns an SVG chart of points with confidence intervals and a legend. Both axes begin at 0.
-#[must_use]
 pub fn point_chart(axes: &ChartAxes, points: &[MarkedPoint]) -> String {
     on_screen(axes, AxisScale::FromZero, points.iter().map(of_point).collect())
 }

@@ -18,7 +18,6 @@ td,th{padding:.25rem .6rem;border-bottom:1px solid #ccc;text-align:left;vertical
 const TITLE: &str = "Pixel-Planes 5: results";
 
 /// Returns a page with all experiments. The page needs no external resources.
-#[must_use]
 pub fn html(runs: &[PageRun]) -> String {
     page(std::iter::once(summary(runs)).chain(runs.iter().flat_map(sections)))
 }

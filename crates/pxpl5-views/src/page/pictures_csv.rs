@@ -5,7 +5,6 @@ use csv::{ReaderBuilder, StringRecord};
 /// Returns the values of the column `latency_ps` in milliseconds, from the rows that are `steady` (after the warm-up).
 ///
 /// Returns an empty list for a file without these columns.
-#[must_use]
 pub fn latencies_ms(pictures_csv: &str) -> Vec<f64> {
     let mut reader = ReaderBuilder::new().flexible(true).from_reader(pictures_csv.as_bytes());
     let Ok(names) = reader.headers().cloned() else { return Vec::new() };

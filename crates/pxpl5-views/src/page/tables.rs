@@ -25,7 +25,6 @@ pub struct PageTable {
 }
 
 /// Returns a page with tables. The page needs no external resources.
-#[must_use]
 pub fn html_of_tables(tables: &[PageTable]) -> String {
     page(tables.iter().map(section))
 }

@@ -9,7 +9,6 @@ use csv::WriterBuilder;
 /// let text = pxpl5_views::results::csv_table(["quantity", "value"], rows);
 /// assert_eq!(text, "quantity,value\nupdates_hz,59.94\n\"a, b\",\n");
 /// ```
-#[must_use]
 pub fn csv_table<Row>(columns: impl IntoIterator<Item: AsRef<[u8]>>, rows: impl IntoIterator<Item = Row>) -> String
 where
     Row: IntoIterator<Item: AsRef<[u8]>>,

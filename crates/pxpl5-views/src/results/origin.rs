@@ -5,7 +5,6 @@ use std::fmt::Write;
 
 /// Returns the origin of a report as pairs of key and value: preset, configuration hash, version, commit, level, seed
 /// and experiment. The commit is missing if the program did not state its commit.
-#[must_use]
 pub fn origin(report: &Report) -> Vec<(&'static str, String)> {
     let overrides: Vec<String> = report.overrides.iter().map(|(path, value)| format!("{path}={value}")).collect();
     let mut pairs = vec![
@@ -26,7 +25,6 @@ pub fn origin(report: &Report) -> Vec<(&'static str, String)> {
 }
 
 /// Returns the origin of a report as text. Each line begins with `mark`, a comment marker such as `# `.
-#[must_use]
 pub fn origin_lines(report: &Report, mark: &str) -> String {
     let mut text = String::new();
     for (key, value) in origin(report) {

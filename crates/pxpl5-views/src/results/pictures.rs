@@ -32,7 +32,6 @@ impl Column {
 
 /// Returns the columns in order: first the members of [`PictureTimes`], then the parts of the latency in
 /// [`LATENCY_PARTS`].
-#[must_use]
 pub fn columns() -> Vec<Column> {
     // Identity, state and times of a picture come first.
     let mut columns = vec![
@@ -69,7 +68,6 @@ pub fn columns() -> Vec<Column> {
 
 /// Returns the rows, one for each picture that was begun. Each row has one value per column ([`columns`]), or `None`
 /// for a missing value.
-#[must_use]
 pub fn rows(outcome: &Outcome) -> Vec<Vec<Option<u64>>> {
     let parts: BTreeMap<PictureNumber, LatencyParts> =
         latency_parts(outcome).into_iter().map(|parts| (parts.picture, parts)).collect();
@@ -94,7 +92,6 @@ fn row(times: &PictureTimes, steady: bool, parts: Option<&LatencyParts>) -> Vec<
 }
 
 /// Returns the table of pictures as CSV: a line of names and a line for each picture. Lines end with a line feed.
-#[must_use]
 pub fn csv(outcome: &Outcome) -> String {
     let names = columns().into_iter().map(|column| column.name);
     csv_table(names, rows(outcome).into_iter().map(as_text))
@@ -106,7 +103,6 @@ fn as_text(row: Vec<Option<u64>>) -> Vec<String> {
 
 /// Returns the quantities of a run as CSV. Each line has the name, the value and the definition of one quantity. The
 /// value is empty if the run has no such value.
-#[must_use]
 pub fn quantities_csv(measures: &[Measure], results: &Results) -> String {
     let rows = measures.iter().map(|measure| {
         let value = measure.of(results).map_or_else(String::new, |value| value.to_string());

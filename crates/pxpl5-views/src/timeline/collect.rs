@@ -14,7 +14,7 @@ use std::ops::Range;
 const TOUCHING: u64 = 300;
 
 /// Smallest number of display periods in a drawing, if the user gives no number.
-const LEAST_FIELDS: u64 = 4;
+const MIN_FIELDS: u64 = 4;
 
 impl Timeline {
     /// Returns a timeline of the part of a run that the options select.
@@ -86,8 +86,8 @@ fn periods(
     let begin = chosen.map_or(Time::ZERO, |times| sent_at.or(times.sampled_at).unwrap_or(times.transform_at));
     let first =
         options.first_field.unwrap_or_else(|| display.period_at(begin)).min(PeriodNumber::FIRST.after(run.fields()));
-    let last = chosen.map_or(first.after(LEAST_FIELDS), |times| display.period_at(times.shown_at).after(2));
-    let count = options.fields.unwrap_or_else(|| last.since(first).max(LEAST_FIELDS));
+    let last = chosen.map_or(first.after(MIN_FIELDS), |times| display.period_at(times.shown_at).after(2));
+    let count = options.fields.unwrap_or_else(|| last.since(first).max(MIN_FIELDS));
     first..first.after(count.clamp(1, MAX_FIELDS))
 }
 

@@ -107,7 +107,6 @@ pub struct Timeline {
 
 impl Timeline {
     /// Returns true if a bar belongs to the picture in [`Timeline::picture`].
-    #[must_use]
     pub fn is_chosen(&self, bar: &Bar) -> bool {
         let number = if bar.stage == Stage::Send { self.update } else { self.picture };
         number == Some(bar.picture)

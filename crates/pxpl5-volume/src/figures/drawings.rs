@@ -81,7 +81,6 @@ pub fn drawings(scene: &Scene, workers: &dyn Workers) -> Result<Vec<FigureDrawin
 
 impl FigureDrawing {
     /// Returns all drawings on one sheet, three in a row.
-    #[must_use]
     pub fn sheet(all: &[Self]) -> RgbImage {
         let framed: Vec<RgbImage> = all.iter().map(|drawing| framed(&drawing.picture)).collect();
         grid(&framed, 3)

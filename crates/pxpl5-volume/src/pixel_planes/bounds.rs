@@ -66,7 +66,6 @@ impl SliceBounds {
 
     /// Returns the time that each part of a machine needs for a volume. The machine has these numbers of renderers and
     /// graphics processors, each 1 or more.
-    #[must_use]
     pub fn with(&self, renderers: u64, processors: u64) -> BoundRow {
         let clocks = self.work.clocks + self.copies * RendererTiming::PAPERS.backing_block_clocks;
         let renderer_ms = clocks as f64 / CLOCK_HZ as f64 * 1e3 / renderers.max(1) as f64;

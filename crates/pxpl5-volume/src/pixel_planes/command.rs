@@ -47,7 +47,6 @@ const LARGEST_COEFFICIENT: f64 = (1u64 << 53) as f64;
 impl SliceTriangle {
     /// Creates the command for three corners in the image of a slice. Returns `None` for a triangle without area, or if
     /// the coefficients of its planes have too many bits for the machine.
-    #[must_use]
     pub fn of_corners(corners: [SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> Option<Self> {
         let [a, b, c] = corners.map(|corner| corner.place.map(i64::from));
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -62,7 +61,6 @@ impl SliceTriangle {
     }
 
     /// Returns the array instructions of the command, in the order of execution.
-    #[must_use]
     pub fn program(&self, layout: &Layout) -> Vec<ArrayInstruction> {
         let mut program = vec![ArrayInstruction::EnableAll { label: 0 }];
         let disable = |expression| ArrayInstruction::Evaluate { expression, usage: ExpressionUse::DisableNegative };
@@ -77,13 +75,11 @@ impl SliceTriangle {
     }
 
     /// Returns the number of clocks in which an array executes the command. The number is the same for all operands.
-    #[must_use]
     pub fn clocks(layout: &Layout) -> u32 {
         Self::default().program(layout).iter().map(ArrayInstruction::clocks).sum()
     }
 
     /// Returns the number of ring words of the command.
-    #[must_use]
     pub fn words(layout: &Layout) -> usize {
         let mut words = Vec::new();
         Self::default().encode(layout, &mut words);
@@ -97,7 +93,6 @@ impl SliceTriangle {
 
     /// Returns the largest possible rounding error of the clip function (a hyperbola) at any pixel of an image, in
     /// square pixels. Each of the six coefficients contributes half a unit.
-    #[must_use]
     pub fn clip_rounding_px2([width, height]: Size) -> f64 {
         let [x, y] = [width, height].map(f64::from);
         0.5 * (x * x + x * y + y * y + x + y + 1.0) / f64::from(1 << CLIP_FRACTION_BITS)

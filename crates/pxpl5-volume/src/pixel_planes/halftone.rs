@@ -14,7 +14,6 @@ const THRESHOLD_BITS: u8 = 8;
 /// # Panics
 /// Panics if the layout has no scratch memory. The layout of Rendering Control with Phong shading has 124 bits of
 /// scratch.
-#[must_use]
 pub fn threshold_field(layout: &Layout) -> Operand {
     scratch(layout).part(0, THRESHOLD_BITS)
 }
@@ -24,7 +23,6 @@ pub fn threshold_field(layout: &Layout) -> Operand {
 ///
 /// # Panics
 /// The same as [`threshold_field`].
-#[must_use]
 pub fn lit_field(layout: &Layout, channel: u8) -> Operand {
     scratch(layout).part(THRESHOLD_BITS + channel, 1)
 }
@@ -35,7 +33,6 @@ fn scratch(layout: &Layout) -> Operand {
 
 /// Returns the halftone program. For each channel, the program enables all pixels, disables the pixels with threshold
 /// >= channel, and stores the Enable bit.
-#[must_use]
 pub fn halftone_program(layout: &Layout) -> Vec<ArrayInstruction> {
     let of_channel = |channel: u8| {
         let compared =
@@ -47,13 +44,11 @@ pub fn halftone_program(layout: &Layout) -> Vec<ArrayInstruction> {
 
 /// Returns the number of clocks of the halftone program on an array: 3 x (6 + 12 + 6) = 72, computed from its
 /// instructions.
-#[must_use]
 pub fn halftone_clocks(layout: &Layout) -> u64 {
     halftone_program(layout).iter().map(|instruction| u64::from(instruction.clocks())).sum()
 }
 
 /// Returns the number of words that the halftone program has on the ring: 3 x (1 + 2 + 1) = 12.
-#[must_use]
 pub fn halftone_words(layout: &Layout) -> Vec<Word> {
     let mut words = Vec::new();
     halftone_program(layout).iter().for_each(|instruction| instruction.encode(&mut words));

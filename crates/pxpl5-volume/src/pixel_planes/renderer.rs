@@ -115,13 +115,11 @@ impl PixelPlanesRenderer {
     }
 
     /// Returns the work that these renderers have done so far.
-    #[must_use]
     pub fn work(&self) -> RendererWork {
         *self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Returns the work of the last drawing of each of these slices. The work is zero for a slice that was never drawn.
-    #[must_use]
     pub fn loads(&self, views: &[SliceView]) -> Vec<SliceLoad> {
         let loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);
         views.iter().map(|view| loads.get(&key_of(view)).cloned().unwrap_or_default()).collect()

@@ -27,7 +27,6 @@ pub(super) struct SliceMessages {
 impl SliceTraffic {
     /// Returns the messages for the slices of a volume that a renderer has drawn. Returns `None` if the tiles cannot be
     /// sent (see [`spatialgl::perspecta::volume_messages`]).
-    #[must_use]
     pub fn of(
         renderer: &PixelPlanesRenderer,
         views: &[SliceView],
@@ -55,14 +54,12 @@ impl SliceTraffic {
     }
 
     /// Returns the number of tiles that are sent, summed over all slices.
-    #[must_use]
     pub fn tiles(&self) -> u64 {
         self.slices.iter().flat_map(|slice| &slice.tiles).map(|region| region.len() as u64).sum()
     }
 
     /// Returns the number of regions with at least one tile to send. Each of these regions is copied to the backing
     /// store.
-    #[must_use]
     pub fn copies(&self) -> u64 {
         self.slices.iter().flat_map(|slice| &slice.tiles).filter(|region| !region.is_empty()).count() as u64
     }

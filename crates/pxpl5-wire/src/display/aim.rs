@@ -43,7 +43,6 @@ impl Aim {
 
     /// Returns the instant for which a view is predicted. `shown` has the times at which the display shows the picture
     /// of the view.
-    #[must_use]
     pub fn instant(self, shown: &LightTimes) -> Time {
         match self {
             Self::Middle => Time(shown.first.0.midpoint(shown.last.0)),

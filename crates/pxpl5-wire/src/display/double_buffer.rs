@@ -85,7 +85,6 @@ impl DoubleBuffer {
     }
 
     /// Returns the number of messages that the buffer could not use, and the reason for the first of these messages.
-    #[must_use]
     pub fn faults(&self) -> (u64, Option<&str>) {
         (self.faults, self.first_fault.as_deref())
     }
@@ -142,14 +141,12 @@ impl DoubleBuffer {
 
     /// Returns the picture in the shown buffer. Incomplete regions are included. The picture is black where no region
     /// has arrived.
-    #[must_use]
     pub fn picture(&self) -> RgbImage {
         self.picture_of(&self.buffers[usize::from(self.shown)])
     }
 
     /// Returns the picture that was shown until the last tick of the display's clock. The picture is black where no
     /// region has arrived.
-    #[must_use]
     pub fn scanned_picture(&self) -> RgbImage {
         self.picture_of(&self.scanned)
     }

@@ -34,7 +34,6 @@ pub struct PixelLight {
 impl PixelLight {
     /// Returns the time from the instant at which a pixel starts to shine to the centre of gravity of its brightness.
     /// This time is half of the persistence plus one time constant.
-    #[must_use]
     pub const fn centre(&self) -> Span {
         Span(self.persistence.0 / 2 + self.response.0)
     }
@@ -43,14 +42,12 @@ impl PixelLight {
     ///
     /// The duration is the square root of p^2 + 12 r^2 for a persistence p and a time constant r. A constant brightness
     /// of duration p has the variance p^2 / 12, a first-order lag has the variance r^2, and variances add.
-    #[must_use]
     pub fn width(&self) -> Span {
         let [persistence, response] = [self.persistence, self.response].map(|span| span.0 as f64);
         Span((persistence * persistence + 12.0 * response * response).sqrt().round() as u64)
     }
 
     /// Returns true if each pixel shines only for an instant.
-    #[must_use]
     pub const fn is_instant(&self) -> bool {
         self.persistence.0 == 0 && self.response.0 == 0
     }

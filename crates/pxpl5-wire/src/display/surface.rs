@@ -17,7 +17,6 @@ pub struct Surface {
 impl Surface {
     /// Returns the surfaces of `count` frame buffers of the same size. A single frame buffer shows one picture, and two
     /// frame buffers show the pictures of the two eyes.
-    #[must_use]
     pub fn of_frame_buffers(count: usize, width: u32, height: u32) -> Vec<Self> {
         let titles = if count == 1 { ["frame buffer"; 2] } else { ["left frame buffer", "right frame buffer"] };
         let eyes = Eye::BOTH.into_iter().zip(titles).take(count);
@@ -25,20 +24,17 @@ impl Surface {
     }
 
     /// Returns the grid of regions that covers the surface. Each region has the size of a renderer's pixel array.
-    #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         RegionGrid { width: self.width, height: self.height, region_width: REGION_SIZE, region_height: REGION_SIZE }
     }
 
     /// Returns the letter that stands for the surface in timelines, such as `L`.
-    #[must_use]
     pub fn letter(&self) -> char {
         self.label.chars().next().unwrap_or(' ').to_ascii_uppercase()
     }
 
     /// Returns the name of the surface for legends that are too narrow for the title. For the picture of an eye, the
     /// name is `left eye` or `right eye`. For other surfaces, the name is the label.
-    #[must_use]
     pub fn legend(&self) -> String {
         let is_eye = Eye::BOTH.into_iter().any(|eye| eye.name() == self.label);
         if is_eye { format!("{} eye", self.label) } else { self.label.to_owned() }

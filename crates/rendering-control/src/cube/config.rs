@@ -23,13 +23,11 @@ pub struct Faces {
 
 impl Faces {
     /// Returns the number of texels along an edge of a face.
-    #[must_use]
     pub const fn face_texels(&self) -> u32 {
         self.picture.viewport.grid().width
     }
 
     /// Returns the grid of regions of an update, in which the six faces lie one below the other.
-    #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         region_grid(self.face_texels())
     }

@@ -11,7 +11,6 @@ use std::sync::Arc;
 ///
 /// The argument `ahead` is the view of the eye while the head has its initial orientation. Structures that are fixed to
 /// the head are drawn as for this orientation.
-#[must_use]
 pub fn face_view(ahead: &EyeView, face: CubeFace) -> EyeView {
     let turn = to_face(face);
     EyeView {

@@ -35,7 +35,6 @@ const HEADER: usize = 4;
 impl FaceUpdate {
     /// Returns the two messages that announce the update to its display memory. The messages contain the list of
     /// regions that will arrive, and the swap request.
-    #[must_use]
     pub fn announcement(&self, face_texels: u32, regions: &[RegionId]) -> [Arc<[Word]>; 2] {
         let map = begin_update(face_texels, self.buffer, regions);
         let alone = || swap_request(self.buffer);

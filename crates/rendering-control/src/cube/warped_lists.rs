@@ -19,7 +19,6 @@ const KEPT: usize = 2;
 impl WarpedLists {
     /// Returns the display list with the displaced vertices of an update. Only vertices of structures that the display
     /// memory holds are displaced. Structures that are fixed to the head or moved by an edit stay in place.
-    #[must_use]
     pub fn placed(&self, list: &Arc<DisplayList>, update: &FaceUpdate) -> Arc<DisplayList> {
         let Some(warp) = &update.warp else { return Arc::clone(list) };
         let (number, memory) = (update.number, usize::from(update.memory));

@@ -52,7 +52,7 @@ impl FlatDisplay {
     }
 }
 
-pub(super) fn check_size(size: Size) -> Result<(), SettingError> {
+fn check_size(size: Size) -> Result<(), SettingError> {
     let [width, height] = size;
     SettingError::require((8..=4096).contains(&width), "display.width", "8 to 4096", width)?;
     SettingError::require(width.is_multiple_of(8), "display.width", "a multiple of 8", width)?;

@@ -64,12 +64,10 @@ impl SweptConfig {
     }
 
     /// Returns the radius of the display in pixels, which is half the width of the image.
-    #[must_use]
     pub fn radius(&self) -> f64 {
         f64::from(self.width) / 2.0
     }
 
-    #[must_use]
     pub fn half_wedge(&self) -> HalfWedge {
         HalfWedge::new(self.slices, self.radius())
     }
@@ -113,7 +111,6 @@ impl SweptDisplay {
         Ok(Self { config, views, bins })
     }
 
-    #[must_use]
     pub const fn config(&self) -> &SweptConfig {
         &self.config
     }

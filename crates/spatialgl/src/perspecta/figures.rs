@@ -12,7 +12,6 @@ use pxpl5_sim::parameters::Provenance;
 
 /// Returns the row that compares a figure's computed value with the published value. The values agree if their
 /// difference is at most `half_digit`.
-#[must_use]
 pub fn row(
     id: &'static str,
     statement: &'static str,
@@ -70,7 +69,6 @@ pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
 
 /// Returns the inputs of the model that the SpatialGL paper prints, and the numbers that follow from them by
 /// arithmetic.
-#[must_use]
 pub fn definitions() -> Vec<Definition> {
     let config = PerspectaConfig::PAPERS;
     let mut all = inputs(&config);
@@ -138,7 +136,6 @@ fn doubling() -> Vec<Definition> {
 }
 
 /// Returns the figures that the model computes without drawing: trigonometry, bins, and the thickness of slice volumes.
-#[must_use]
 pub fn formulas() -> Vec<FigureRow> {
     let config = PerspectaConfig::PAPERS;
     let wedge = HalfWedge::new(config.slices as u32, config.width as f64 / 2.0);
@@ -148,7 +145,6 @@ pub fn formulas() -> Vec<FigureRow> {
 }
 
 /// Returns figures that compare the counts of a volume with the SpatialGL paper's statements about "most scenes".
-#[must_use]
 pub fn measured(stats: &VolumeStats) -> Vec<FigureRow> {
     let occupied = stats.tile_occupancy_percent();
     let occupancy = row("P17", "tiles that are not empty, most scenes", "%", (10.0, 0.0), occupied);
@@ -159,7 +155,6 @@ pub fn measured(stats: &VolumeStats) -> Vec<FigureRow> {
 
 /// Returns figures from the packed words of white pixels. P10 is the ten pixels per word of the dense packing. D6 is the
 /// percentage of unused bits in the usual and in the dense packing.
-#[must_use]
 pub fn packing() -> Vec<FigureRow> {
     let white = |pixels: usize| pack_dense(&vec![0b111; pixels]);
     let fits = (1..=32).take_while(|pixels| white(*pixels).len() == 1).count();

@@ -45,7 +45,6 @@ pub(crate) fn read(words: &[Word]) -> Option<StoreMessage<'_>> {
 
 /// Returns the messages of a volume, batch by batch: first the map, then the tiles, slice by slice. Returns `None` if
 /// there are no tiles, if a tile is too large for a message, or if a slice has more than 65,536 tiles.
-#[must_use]
 pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Word]>>> {
     let batches = batch_messages(planes, tiling, planes.slices())?;
     let in_order =
@@ -74,7 +73,6 @@ pub struct TileMessage {
 
 /// Returns the messages of the first `slices` slices, batch by batch. The last batch may have fewer slices. Returns
 /// `None` in the same cases as [`volume_messages`].
-#[must_use]
 pub fn batch_messages(planes: &BitPlanes, tiling: Tiling, slices: u32) -> Option<Vec<BatchMessages>> {
     let tile = tiling.tile?;
     let grid = tiling.grid(planes.size());

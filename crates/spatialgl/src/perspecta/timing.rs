@@ -40,7 +40,6 @@ impl PerspectaConfig {
     ///
     /// # Panics
     /// The function never panics after a successful [`Self::check`].
-    #[must_use]
     pub fn revolution(&self) -> Clock {
         Clock::new(60_000_000_000_000, self.spin_rpm).expect("at most a million revolutions a minute")
     }
@@ -48,7 +47,6 @@ impl PerspectaConfig {
     /// Returns the instant at which strobe (flash) `slice` of a revolution begins, and the duration of the strobe. For
     /// strobe k of N in revolution n, the instant is (n + k / N) / f, for f revolutions per second. The duration is
     /// `lit_percent` of the interval between strobes.
-    #[must_use]
     pub fn strobe(&self, revolution: u64, slice: u64) -> (Time, Span) {
         let begin = self.instant(revolution, slice);
         let interval = self.instant(revolution, slice + 1).since(begin);
@@ -62,13 +60,11 @@ impl PerspectaConfig {
 
     /// Returns the number of volumes per second that an eye sees. There are two volumes per revolution, because the
     /// screen passes every plane twice (figure D2).
-    #[must_use]
     pub fn volume_hz(&self) -> f64 {
         2.0 * self.spin_rpm as f64 / 60.0
     }
 
     /// Returns the number of strobes (flashes) per second: slices times revolutions per second.
-    #[must_use]
     pub fn strobe_hz(&self) -> f64 {
         self.slices as f64 * self.spin_rpm as f64 / 60.0
     }

@@ -67,7 +67,6 @@ impl Camera {
     }
 
     /// Returns the position of a world point in the picture, in pixels from the top left.
-    #[must_use]
     pub fn project(&self, world: [f64; 3]) -> [f64; 2] {
         let [right, up, back] = self.axes().map(|axis| dot(axis, world));
         let scale = self.focal / (self.distance - back);
@@ -121,7 +120,6 @@ impl PictureLight {
 
     /// Returns the sum of the light over the picture for each channel. The unit is the light of one lit pixel in one
     /// strobe (flash).
-    #[must_use]
     pub fn total(&self) -> [f64; 3] {
         let mut sums = [0.0; 3];
         for pixel in &self.sums {
@@ -133,7 +131,6 @@ impl PictureLight {
     }
 
     /// Returns the exposure at which a fraction `share` (0 to 1) of the lit picture pixels stays below white.
-    #[must_use]
     pub fn exposure(&self, share: f64) -> f64 {
         let lit = self.sums.iter().map(|pixel| pixel[0].max(pixel[1]).max(pixel[2])).filter(|value| *value > 0);
         let mut lit: Vec<u64> = lit.collect();
@@ -147,7 +144,6 @@ impl PictureLight {
 
     /// Returns the picture. `exposure` is the brightness, in steps of 1/255, that one lit pixel gives in one strobe
     /// (flash).
-    #[must_use]
     pub fn picture(&self, exposure: f64) -> RgbImage {
         let mut picture = RgbImage::new(self.size[0], self.size[1]);
         for (pixel, sums) in picture.pixels_mut().zip(&self.sums) {

@@ -58,8 +58,7 @@ impl SliceTransform {
             Shape::Point(size) => self.square(world(a), size / 2.0, colour(a), draw),
             Shape::Line(width) => {
                 // A line needs the position at which it crosses the slice.
-                let middle = self.volume.middle();
-                let off = [a, b].map(|i| self.local(world(i))[2] - middle);
+                let off = [a, b].map(|i| self.local(world(i))[2]);
                 let ends = [a, b].map(|i| self.corner(world(i), colour(i)));
                 line(&ends[0], &ends[1], crossing(off), width / 2.0 * self.magnification, draw);
             }

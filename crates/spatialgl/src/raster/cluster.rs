@@ -95,7 +95,6 @@ impl Bin {
         Self { primitives, balls, each }
     }
 
-    #[must_use]
     pub fn primitives(&self) -> &[u32] {
         &self.primitives
     }

@@ -25,7 +25,7 @@ pub(super) fn draw(work: SliceWork<'_>, transform: &SliceTransform, image: &mut 
         let local = primitive.vertices.map(|i| transform.local(work.commands.positions[i as usize]));
         let colours = primitive.vertices.map(|i| work.commands.colours[i as usize]);
         // Only triangles that cross the slice have a curve.
-        let Some((ends, weights)) = plane_curve(local, transform.volume.middle()) else { continue };
+        let Some((ends, weights)) = plane_curve(local) else { continue };
         let point = |i: usize| {
             let Place { x, y, w, .. } = transform.place(ends[i]);
             let colour = [0, 1, 2].map(|c| (0..3).map(|corner| weights[i][corner] * colours[corner][c]).sum());

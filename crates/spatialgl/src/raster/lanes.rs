@@ -44,7 +44,6 @@ pub(super) fn draw(setup: &Setup, mode: Mode, image: &mut SliceImage) -> Fragmen
     // Each test gets its own copy of the loops, so that the test is inlined.
     match mode.test {
         SampleTest::All => rows(setup, mode, image, |_, _, _| true),
-        SampleTest::Slab => rows(setup, mode, image, |p, q, _| (p >= 0.0) & (q > 0.0)),
         SampleTest::Taper { offset, slope, plus } => {
             rows(setup, mode, image, |u, s, w| taper(u, s, w, offset, slope, plus))
         }

@@ -1,6 +1,6 @@
 //! The triangles of the hard cases, and functions that draw them.
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 use spatialgl::*;
 
 pub(crate) type Triangle = [[f64; 3]; 3];
@@ -15,6 +15,37 @@ pub(crate) const T8: Triangle = [[0.1, -20.0, 5.0], [0.3, -20.0, 6.0], [0.2, 20.
 /// The eye and shear of the numbered case 9.
 pub(crate) const ASIDE: Projection =
     Projection::Perspective { eye: [100.0, -150.0], distance: 1536.0, shear: [0.05, 0.1] };
+
+/// A flat screen without hidden surfaces, whose pixels have one bit for each colour.
+pub(crate) struct Screen(Size, [SliceView; 1]);
+
+impl Screen {
+    pub(crate) fn new(size: Size) -> Self {
+        let [width, height] = size.map(f64::from);
+        // Depth 0 is at z = 4, and depth 1 at z = -4.
+        let scale = DMat4::from_scale(DVec3::new(2.0 / width, 2.0 / height, -1.0 / 8.0));
+        let projection = DMat4::from_translation(DVec3::new(0.0, 0.0, 0.5)) * scale;
+        Self(size, [SliceView::new(DMat4::IDENTITY, projection, SliceVolume::Frustum, size)])
+    }
+}
+
+impl SpatialDisplay for Screen {
+    fn views(&self) -> &[SliceView] {
+        &self.1
+    }
+
+    fn target_size(&self) -> Size {
+        self.0
+    }
+
+    fn pixel_format(&self) -> PixelFormat {
+        PixelFormat::Rgb1
+    }
+
+    fn shows(&self, _: DVec3) -> bool {
+        true
+    }
+}
 
 /// Returns a recording of draw calls for white triangles.
 pub(crate) fn recording(triangles: &[Triangle]) -> CommandBuffer {

@@ -40,7 +40,6 @@ impl GrowingRecording {
     }
 
     /// Returns a copy of the samples received so far.
-    #[must_use]
     pub fn recorded(&self) -> Recording {
         self.recording().clone()
     }

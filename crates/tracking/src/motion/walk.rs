@@ -17,7 +17,7 @@ const AHEAD_M: f64 = 1.5;
 
 /// Least distance between two successive corners of a path, m. At a smaller distance, rounding errors would falsify the
 /// direction from one corner to the next.
-const LEAST_LEG_M: f64 = 1e-3;
+const MIN_LEG_M: f64 = 1e-3;
 
 /// A head that walks at constant speed along a closed path. The head is at the first corner at time 0. The head looks
 /// at a point of the path ahead. After [`Self::with_glances`] the head also looks around.
@@ -49,7 +49,7 @@ impl Walk {
         let mut ways = vec![0.0];
         for (i, corner) in corners.iter().enumerate() {
             let leg = corner.distance(corners[(i + 1) % corners.len()]);
-            check("leg of the path", leg, LEAST_LEG_M, 1e7)?;
+            check("leg of the path", leg, MIN_LEG_M, 1e7)?;
             ways.push(ways[i] + leg);
         }
         Ok(Self { corners: corners.into(), ways, m_per_s, glances: None })
@@ -64,14 +64,12 @@ impl Walk {
     }
 
     /// Returns the length of the closed path, m.
-    #[must_use]
     pub fn length_m(&self) -> f64 {
         self.ways[self.corners.len()]
     }
 
     /// Returns the position (m) at a distance along the path from the first corner. A negative distance, or a distance
     /// longer than the closed path, wraps around.
-    #[must_use]
     pub fn place(&self, way_m: f64) -> DVec3 {
         let way = rounded(way_m, self.length_m());
         // Find the straight part of the path, and the fraction of this part.

@@ -12,9 +12,9 @@ use crate::error::check;
 use crate::tracker::TrackerConfig;
 
 /// Least position noise that a Kalman filter may assume, m. With a noise of 0 the covariance matrix would be singular.
-const LEAST_NOISE_M: f64 = 1e-6;
+const MIN_NOISE_M: f64 = 1e-6;
 /// Least orientation noise that a Kalman filter may assume, degrees.
-const LEAST_NOISE_DEG: f64 = 1e-4;
+const MIN_NOISE_DEG: f64 = 1e-4;
 
 /// A prediction method, which computes the head's pose at a requested instant from earlier reports of the tracker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -132,8 +132,8 @@ impl PredictorConfig {
             position_baseline: filter.baseline as u32,
             orientation_baseline: filter.baseline as u32,
             // A tracker without noise would make the covariance singular.
-            position_noise_m: tracker.position_noise_m.max(LEAST_NOISE_M),
-            orientation_noise_deg: tracker.orientation_noise_deg.max(LEAST_NOISE_DEG),
+            position_noise_m: tracker.position_noise_m.max(MIN_NOISE_M),
+            orientation_noise_deg: tracker.orientation_noise_deg.max(MIN_NOISE_DEG),
             position_jerk: filter.position_jerk,
             orientation_jerk: filter.orientation_jerk,
             horizon_ps: table::ms_to_ps(filter.horizon),
@@ -158,8 +158,8 @@ impl PredictorConfig {
     }
 
     fn check(&self) -> Result<(), SettingError> {
-        check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
-        check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
+        check("position noise, m", self.position_noise_m, MIN_NOISE_M, 10.0)?;
+        check("orientation noise, deg", self.orientation_noise_deg, MIN_NOISE_DEG, 90.0)?;
         [self.position_baseline, self.orientation_baseline].into_iter().try_for_each(|b| self.filter(b).check())?;
         self.gate.check()?;
         Ok(())

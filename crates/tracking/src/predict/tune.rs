@@ -18,7 +18,7 @@ const SETTLING_S: u64 = 1;
 
 /// Greatest number of reports on which a filter is tuned. A 120 Hz tracker sends this number in `TRAINING_S` seconds. A
 /// tracker with a higher rate reaches the limit in less time.
-const MOST_REPORTS: usize = 12_000;
+const MAX_REPORTS: usize = 12_000;
 
 /// Seed of the tracker's noise when a filter is tuned. If the noise of the evaluated run has the same seed, the tuning
 /// uses the next seed.
@@ -137,8 +137,7 @@ impl TrainingData {
         let until_ps = motion.moves_until_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);
         let settling_ps = (SETTLING_S * PS_PER_S).min(until_ps / 2);
         let in_time = |report: &TrackerReport| report.measured_ps.saturating_add(interval_ps) <= until_ps;
-        let reports: Vec<TrackerReport> =
-            tracker.reports(motion, seed).take_while(in_time).take(MOST_REPORTS).collect();
+        let reports: Vec<TrackerReport> = tracker.reports(motion, seed).take_while(in_time).take(MAX_REPORTS).collect();
         let settled = reports.partition_point(|report| report.measured_ps < settling_ps);
         let last = reports.get(settled..)?.last()?;
         let seconds = crate::time::seconds(last.measured_ps.saturating_add(interval_ps));

@@ -130,13 +130,11 @@ impl Measurement {
 
     /// Returns the greatest difference between the two measured total latencies, ps. For detection by crossing, this
     /// difference is one report interval, plus the time from the retrace until the beam passes the photodiode.
-    #[must_use]
     pub fn bound_ps(&self) -> u64 {
         self.tracking_bound_ps + self.rendering_bound_ps
     }
 
     /// Returns the mean total latency on the oscilloscope minus the mean total latency by time stamps, seconds.
-    #[must_use]
     pub fn outside_less_inside_s(&self) -> f64 {
         self.outside.total.mean - self.inside.total.mean
     }
@@ -146,7 +144,6 @@ impl Measurement {
     /// interval (detection by crossing). The outside rendering latency may exceed the inside rendering latency by at
     /// most the time from the retrace until the beam passes the photodiode. The outside rendering latency may be
     /// smaller only if the pipeline counts frames as shown during the scan.
-    #[must_use]
     pub fn agrees(&self) -> bool {
         let tracking_s = self.outside.tracking.mean - self.inside.tracking.mean;
         let rendering_s = self.outside.rendering.mean - self.inside.rendering.mean;
@@ -185,7 +182,6 @@ impl Oscilloscope {
     /// Finds the passes of the pendulum in the traces. Each step of the host's D/A output gives one pass. The instant
     /// of the lowest point lies before this step. After this step, the screen changes to the same level (high for light
     /// frames). Returns `None` if the screen lacks one of these changes.
-    #[must_use]
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {
         let passes = self.dac.edges().iter().map(|step| {
             let light = self.screen.edges().iter().find(|edge| edge.t_ps >= step.t_ps && edge.high == step.high)?;

@@ -5,7 +5,7 @@ use crate::error::{check, contradiction};
 
 /// Greatest allowed probability of a random fault. With a higher probability the tracker would report too rarely for
 /// any run.
-const MOST_LIKELY: f64 = 0.99;
+const MAX_PROBABILITY: f64 = 0.99;
 
 /// A fault to inject into a tracker. Several faults can be combined. If two random faults hit one report, the first in
 /// the list applies.
@@ -64,5 +64,5 @@ impl TrackerFault {
 }
 
 fn check_probability(probability: f64) -> Result<(), SettingError> {
-    check("probability of a fault", probability, 0.0, MOST_LIKELY)
+    check("probability of a fault", probability, 0.0, MAX_PROBABILITY)
 }

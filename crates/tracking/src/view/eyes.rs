@@ -34,13 +34,11 @@ pub struct View {
 
 impl Hmd {
     /// Returns the matrices of the left and the right eye for this pose of the head.
-    #[must_use]
     pub fn stereo(&self, head: &Pose) -> [View; 2] {
         [EyePoint::Left, EyePoint::Right].map(|eye| self.view(eye, head))
     }
 
     /// Returns the matrices of a single picture, seen from the point between the eyes, for this pose of the head.
-    #[must_use]
     pub fn mono(&self, head: &Pose) -> View {
         self.view(EyePoint::Centre, head)
     }

@@ -141,14 +141,12 @@ impl Hmd {
     }
 
     /// Returns the numbers of the display, all within their ranges.
-    #[must_use]
     pub const fn config(&self) -> &HmdConfig {
         &self.config
     }
 
     /// Returns the focal length: the distance from the eye to the flat picture, in pixels. A direction at 45 degrees to
     /// the optical axis meets the picture at this distance from the middle.
-    #[must_use]
     pub const fn focal_px(&self) -> f64 {
         self.focal_px
     }
@@ -156,13 +154,11 @@ impl Hmd {
     /// Returns the disparity, in pixels, of a point `depth_m` metres ahead: eye separation x focal length / depth. In
     /// the left picture the point is farther to the right than in the right picture, by this distance. The formula is
     /// for parallel axes.
-    #[must_use]
     pub fn disparity_px(&self, depth_m: f64) -> f64 {
         self.config.eye_separation_m * self.focal_px / depth_m
     }
 
     /// Returns the middle of the picture, px from its upper left corner.
-    #[must_use]
     pub fn centre_px(&self) -> DVec2 {
         DVec2::new(self.config.width_px.into(), self.config.height_px.into()) / 2.0
     }

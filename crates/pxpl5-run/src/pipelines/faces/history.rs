@@ -27,14 +27,12 @@ pub struct FaceHistory {
 impl FaceHistory {
     /// Returns the history of the cube faces of a run, from the records in memory. Returns `None` if the run's display
     /// does not accept cube faces.
-    #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         Self::held(outcome.record())
     }
 
     /// Returns the history from the records of a run that has ended or is in progress. Returns `None` if the run's
     /// display does not accept cube faces.
-    #[must_use]
     pub fn held(record: &Record) -> Option<Self> {
         let display = display(record)?;
         // Only the pipelines of this module attach requests.
@@ -51,20 +49,17 @@ impl FaceHistory {
     }
 
     /// Returns the number of display memories.
-    #[must_use]
     pub const fn n_memories(&self) -> usize {
         self.memories.len()
     }
 
     /// Returns the update that a display memory shows in a period. Returns `None` before the memory's first update.
-    #[must_use]
     pub fn memory_at(&self, memory: usize, period: PeriodNumber) -> Option<&ShownUpdate> {
         let shown = self.memory(memory);
         shown[..shown.partition_point(|shown| shown.from <= period)].last()
     }
 
     /// Returns all updates that a display memory has shown, in order.
-    #[must_use]
     pub fn memory(&self, memory: usize) -> &[ShownUpdate] {
         self.memories.get(memory).map_or(&[], Vec::as_slice)
     }
@@ -86,14 +81,12 @@ pub(crate) fn display(record: &Record) -> Option<&AddressRecalculationPipeline> 
 
 impl OrientationTiming {
     /// Returns the orientation timing of a run, or `None` if the run's display does not accept cube faces.
-    #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         Self::of_run(&outcome.final_results())
     }
 
     /// Returns the orientation timing of a run that has ended or is in progress. Returns `None` if the run's display
     /// does not accept cube faces.
-    #[must_use]
     pub fn of_run(results: &FinalResults<'_>) -> Option<Self> {
         Self::of_record(results.record, results.aim)
     }
@@ -114,21 +107,18 @@ pub(super) fn middle_pixel(record: &Record, period: PeriodNumber) -> Option<[u32
 impl Outcome {
     /// Returns the display memories of a display with cube faces, in the order of decreasing update rate. The slice is
     /// empty for any other display.
-    #[must_use]
     pub fn display_memories(&self) -> &[DisplayMemory] {
         display(self.record()).map_or(&[], |display| display.memories(Eye::Left))
     }
 
     /// Returns the requested updates of display memories that were not discarded, in order. The list is empty for a
     /// pipeline without cube faces.
-    #[must_use]
     pub fn requested_updates(&self) -> Vec<RequestedUpdate> {
         self.record().attached().map_or_else(Vec::new, RequestedUpdates::all)
     }
 
     /// Returns the rotation latency of the middle pixel of every field, beginning with the first field that has a
     /// rotation latency. The list is empty without a tracked head, or if the display does not accept cube faces.
-    #[must_use]
     pub fn rotation_latencies(&self) -> Vec<RotationLatency> {
         let run = self.final_results();
         run.rotation_latencies(PeriodNumber::FIRST.until(run.until))
@@ -138,7 +128,6 @@ impl Outcome {
 impl FinalResults<'_> {
     /// Returns the rotation latency of the middle pixel of each of the fields `fields`. Fields without a latency are
     /// left out. The results of the fields must be final.
-    #[must_use]
     pub fn rotation_latencies(&self, fields: impl Iterator<Item = PeriodNumber>) -> Vec<RotationLatency> {
         let Some((latched, head)) = OrientationTiming::of_run(self).zip(self.head) else { return Vec::new() };
         let of_field = |field| {

@@ -45,14 +45,12 @@ impl OrientationTiming {
     }
 
     /// Returns the time at which the orientation from a report is in the register.
-    #[must_use]
     pub fn loaded(&self, report: Time) -> Time {
         report + self.link
     }
 
     /// Returns the time at which a pixel's orientation is latched. Returns `None` for a pixel that the field does not
     /// scan.
-    #[must_use]
     pub fn latches(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         self.scan.latches(self.latch, x, y, field)
     }
@@ -101,7 +99,6 @@ impl OrientationTiming {
     /// orientation was predicted.
     ///
     /// Before the first report, the host has the head's initial pose. Returns `None` before an orientation is loaded.
-    #[must_use]
     pub fn orientation_of_pixel(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<(Time, Time)> {
         let latched = self.latches(x, y, field)?;
         if let Some(schedule) = self.schedule {
@@ -115,7 +112,6 @@ impl OrientationTiming {
 
     /// Returns the parts of the time from the measurement of an orientation until a pixel is lit. Returns `None` before
     /// the first report.
-    #[must_use]
     pub fn latency(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<RotationLatency> {
         let latched = self.latches(x, y, field)?;
         let (reports_until, _) = self.orientation_of_pixel(head, x, y, field)?;
@@ -158,7 +154,6 @@ pub struct RotationLatency {
 
 impl RotationLatency {
     /// Returns the parts with their names, in order of time.
-    #[must_use]
     pub const fn parts(&self) -> [(&'static str, Span); 5] {
         [
             ("tracker", self.tracker),
@@ -170,7 +165,6 @@ impl RotationLatency {
     }
 
     /// Returns the sum of all parts.
-    #[must_use]
     pub fn total(&self) -> Span {
         self.parts().iter().map(|(_, span)| *span).sum()
     }

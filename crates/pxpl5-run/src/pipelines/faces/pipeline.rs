@@ -83,7 +83,6 @@ pub enum FaceLens {
 
 impl FaceLens {
     /// Converts a lens. Returns `None` for a lens that is defined by a table.
-    #[must_use]
     pub fn of(lens: Lens) -> Option<Self> {
         match lens {
             Lens::Flat => Some(Self::OfDisplay),
@@ -94,7 +93,6 @@ impl FaceLens {
     }
 
     /// Returns the lens, or `None` for the lens of the display.
-    #[must_use]
     pub fn lens(self) -> Option<Lens> {
         match self {
             Self::OfDisplay => None,

@@ -42,7 +42,6 @@ impl RequestedUpdates {
     }
 
     /// Returns all updates that were not discarded, in order.
-    #[must_use]
     pub fn all(&self) -> Vec<RequestedUpdate> {
         self.held().notes.iter().map(|(_, note)| note.clone()).collect()
     }

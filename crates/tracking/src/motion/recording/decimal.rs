@@ -1,5 +1,5 @@
 /// Greatest number of digits in a time stamp. Nanoseconds since 1970 have only 19 digits.
-const MOST_DIGITS: usize = 30;
+const MAX_DIGITS: usize = 30;
 
 /// Parses a decimal number exactly and rounds it to a multiple of 10^-`places`. For seconds, 12 places give
 /// picoseconds. A time stamp with 10 digits before the decimal point keeps all 9 digits after the point, which an `f64`
@@ -17,7 +17,7 @@ pub(super) fn scaled(text: &str, places: i32) -> Option<i128> {
     // Join the digits around the point. The exponent accounts for the digits after the point.
     let digits = format!("{whole}{fraction}");
     let significant = digits.trim_start_matches('0');
-    if digits.is_empty() || !digits.bytes().all(|b| b.is_ascii_digit()) || significant.len() > MOST_DIGITS {
+    if digits.is_empty() || !digits.bytes().all(|b| b.is_ascii_digit()) || significant.len() > MAX_DIGITS {
         return None;
     }
     let number: i128 = if significant.is_empty() { 0 } else { significant.parse().ok()? };

@@ -1,32 +1,32 @@
 //! Measures how host time and simulated latency grow with the size of scenes and machines.
+//!
+//! Prints docs/scaling.md: `cargo run --release --example scaling > docs/scaling.md`.
 
-use crate::limit::test_scene;
-use crate::{Workstation, parallel};
-use pxpl5_machine::MachineConfig;
-use pxpl5_measure::Measured;
-use pxpl5_run::{Experiment, ExperimentError, Pixels, RenderingControl, Statistics, TestScene};
-use pxpl5_scene::builtin;
-use serde::Serialize;
+use pxpl5::limit::test_scene;
+use pxpl5::{
+    Experiment, ExperimentError, MachineConfig, Measured, Pixels, RenderingControl, Statistics, TestScene, Workstation,
+    in_parallel, scene::builtin,
+};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
 /// Size and result of one run. If no frame was shown, `frames` and all members below it are zero.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Point {
+#[derive(Default)]
+struct Point {
     /// Number of triangles and spheres in the scene.
-    pub primitives: usize,
+    primitives: usize,
     /// Number of graphics processors, including the master.
-    pub n_gps: usize,
+    n_gps: usize,
     /// Number of renderers, each of 128 x 128 pixels.
-    pub n_renderers: usize,
+    n_renderers: usize,
     /// Number of complete stereo frames shown during the run.
-    pub frames: usize,
+    frames: usize,
     /// Host time per simulated frame in milliseconds, without pixels: the fastest of three runs.
-    pub host_ms: f64,
+    host_ms: f64,
     /// Mean latency of a frame in display fields.
-    pub latency_fields: f64,
+    latency_fields: f64,
     /// Frames per second of simulated time, or 0 for fewer than two frames.
-    pub updates_hz: f64,
+    updates_hz: f64,
 }
 
 /// Triangles in the test scenes for a machine of 50 graphics processors (GPs) and 5 renderers.
@@ -99,7 +99,7 @@ fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, E
 /// # Errors
 ///
 /// Returns the first [`ExperimentError`].
-pub fn by_triangles() -> Result<Vec<Point>, ExperimentError> {
+fn by_triangles() -> Result<Vec<Point>, ExperimentError> {
     TRIANGLES.into_iter().map(|triangles| run(triangles, 50, 5)).collect()
 }
 
@@ -108,24 +108,23 @@ pub fn by_triangles() -> Result<Vec<Point>, ExperimentError> {
 /// # Errors
 ///
 /// Returns the first [`ExperimentError`].
-pub fn by_machine() -> Result<Vec<Point>, ExperimentError> {
+fn by_machine() -> Result<Vec<Point>, ExperimentError> {
     let all = SCENES.into_iter().flat_map(|scene| MACHINES.map(|machine| (scene, machine)));
     all.map(|(triangles, (n_gps, n_renderers))| run(triangles, n_gps, n_renderers)).collect()
 }
 
 /// Result of an application scene on a machine preset. The papers do not state which machine drew the scene.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Application {
+struct Application {
     /// Name of the built-in scene.
-    pub scene: &'static str,
+    scene: &'static str,
     /// Name of the machine's preset.
-    pub machine: &'static str,
+    machine: &'static str,
     /// Mean and standard deviation of the latency in fields, over the frames of all seeds.
-    pub latency_fields: [f64; 2],
+    latency_fields: [f64; 2],
     /// Frames per second of simulated time.
-    pub updates_hz: f64,
+    updates_hz: f64,
     /// Number of frames of all seeds after the warm-up.
-    pub frames: usize,
+    frames: usize,
 }
 
 const SEEDS: u64 = 30;
@@ -137,7 +136,7 @@ const FIELDS: u64 = 616;
 /// # Errors
 ///
 /// Returns the first [`ExperimentError`].
-pub fn applications() -> Result<Vec<Application>, ExperimentError> {
+fn applications() -> Result<Vec<Application>, ExperimentError> {
     let mut all = Vec::new();
     for scene in ["mig", "molecules", "head"] {
         for machine in ["small-hmd", "medium", "large"] {
@@ -155,7 +154,7 @@ fn application(scene: &'static str, machine: &'static str) -> Result<Application
     let mut latencies = Vec::new();
     let mut hz = 0.0;
     // Pool the latencies of all seeds, and average their rates.
-    for outcome in parallel::map(&seeds, |seed| run_seed(&experiment, *seed)) {
+    for outcome in in_parallel(&seeds, |seed| run_seed(&experiment, *seed)) {
         let (of_seed, updates_hz) = outcome.map_err(ExperimentError::Stopped)?;
         latencies.extend(of_seed);
         hz += updates_hz / SEEDS as f64;
@@ -174,8 +173,7 @@ fn run_seed(experiment: &Experiment, seed: u64) -> Result<(Vec<f64>, f64), Strin
 }
 
 /// Returns the exponent of a power law fitted to points: the slope of a straight line through their logarithms.
-#[must_use]
-pub fn exponent(points: &[(f64, f64)]) -> f64 {
+fn exponent(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     let n = logs.len() as f64;
     let mean_x = logs.iter().map(|p| p.0).sum::<f64>() / n;
@@ -185,10 +183,9 @@ pub fn exponent(points: &[(f64, f64)]) -> f64 {
 }
 
 /// Returns the text of docs/scaling.md: tables, exponents and a chart.
-#[must_use]
-pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Application]) -> String {
+fn markdown(triangles: &[Point], machines: &[Point], applications: &[Application]) -> String {
     let mut text = format!(
-        "# Growth\n\nThe command `pxpl5 levels --scaling docs/scaling.md` generates this file. All runs use Rendering Control in stereo. Each\n\
+        "# Growth\n\nThe example `scaling` generates this file. All runs use Rendering Control in stereo. Each\n\
          triangle covers 18 pixels, and the runs compute no pixels. The GPs have 1 GB of memory instead of 8 MB. The host time is\n\
          the computing time of the simulation, the fastest of three runs on one computer.\n\n\
          ## Triangles, on 50 GPs and 5 renderers\n\n\
@@ -293,11 +290,7 @@ fn chart(text: &mut String, points: &[Point]) {
     );
 }
 
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_exponent_of_a_power_law_is_found_from_its_points() {
-        let points: Vec<_> = (1..20).map(|i| (f64::from(i), 3.0 * f64::from(i).powf(1.5))).collect();
-        assert!((super::exponent(&points) - 1.5).abs() < 1e-9);
-    }
+fn main() -> Result<(), ExperimentError> {
+    print!("{}", markdown(&by_triangles()?, &by_machine()?, &applications()?));
+    Ok(())
 }

@@ -1,0 +1,83 @@
+//! Runs an experiment within its budget.
+
+use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
+use crate::error::CliError;
+use crate::estimate::RunWork;
+use crate::scenes;
+use crate::terminal::{progress, warn};
+use crate::too_heavy::too_heavy;
+use pxpl5::{
+    ExperimentError, KeptRecords, Observation, Optimization, Outcome, PeriodNumber, Plan, Traffic, Workstation,
+};
+
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct How<'a> {
+    pub(crate) threads: Option<u64>,
+    pub(crate) without: &'a [Optimization],
+    pub(crate) keep: KeptRecords,
+    /// Records every message of the ring, for a trace.
+    pub(crate) traffic: bool,
+    pub(crate) budget: BudgetArgs,
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug)]
+pub(crate) struct Simulated {
+    pub(crate) outcome: Outcome,
+    pub(crate) too_short: Option<CliError>,
+}
+
+impl Simulated {
+    pub(crate) fn of(run: Result<Outcome, ExperimentError>) -> Result<Self, CliError> {
+        match run {
+            Ok(outcome) => Ok(Self { outcome, too_short: None }),
+            Err(error) => {
+                let too_short = CliError::failure(&error);
+                match error {
+                    ExperimentError::TooShort { partial, .. } => {
+                        Ok(Self { outcome: *partial, too_short: Some(too_short) })
+                    }
+                    other => Err(other.into()),
+                }
+            }
+        }
+    }
+
+    /// Returns the outcome of the run. Fails if the run was too short for statistics.
+    pub(crate) fn long_enough(self) -> Result<Outcome, CliError> {
+        self.too_short.map_or(Ok(self.outcome), Err)
+    }
+}
+
+/// Bytes in memory for each event of the trace while the file is made (measured, rounded up).
+const EVENT_BYTES: f64 = 200.0;
+
+/// Returns the memory that the trace of the records so far will take, in bytes. A message is an event of two ports.
+fn trace_bytes(observation: &Observation) -> f64 {
+    let of_traffic =
+        |traffic: &Traffic| 2 * traffic.transfers.len() + traffic.busy_channels.len() + traffic.fifo_changes.len();
+    observation
+        .traffic
+        .as_deref()
+        .map_or(0.0, |traffic| EVENT_BYTES * (observation.records() + of_traffic(traffic)) as f64)
+}
+
+pub(crate) fn simulate(plan: &Plan, how: How<'_>) -> Result<Simulated, CliError> {
+    let scene = scenes::load(plan, how.quiet)?;
+    how.budget.admit(&RunWork::of(plan, &scene, how.keep == KeptRecords::Everything))?;
+    warn(too_heavy(plan, &scene, plan.fields).as_slice(), how.quiet);
+    let host = how.threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
+    let experiment = plan.experiment(scene).host(host).keep(how.keep).record_traffic(how.traffic);
+    let experiment = how.without.iter().fold(experiment, |experiment, saving| experiment.without(*saving));
+    // The run stops at these fields to extrapolate its cost early.
+    let stops = EARLY_CHECK_FIELDS.map(|field| PeriodNumber::FIRST.after(field));
+    let bar = progress(plan.fields, "fields", how.quiet);
+    let watch = how.budget.watch(plan.fields);
+    let outcome = experiment.run_stopping(&stops, |field, machine| {
+        let done = field.since(PeriodNumber::FIRST);
+        bar.set_position(done);
+        watch.check(done, trace_bytes(machine.record().observation())).map_err(ExperimentError::Stopped)
+    });
+    bar.finish_and_clear();
+    Simulated::of(outcome)
+}
