@@ -5,6 +5,7 @@
 //! that a kernel needs for each structure. The kernels nevertheless read parameters that the simulator computes. The
 //! parameters of the code and of the simulator are equal in every word (tests/begin.rs).
 
+use crate::code::{Programs, kept};
 use crate::cost::TransformCost;
 use crate::layout::{BEGIN_CODE, BIN_TABLE, MESSAGE, MODELS, MODELS_END, PARAMETERS, SPHERE_PARAMETERS, STACK};
 use crate::list::{DisplayList, Share};
@@ -20,7 +21,7 @@ use pxpl5_geometry::sphere_kernel::{SPHERE_VIEW_WORDS, SphereKernel};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 use pxpl5_wire::Word;
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, Mutex};
 
 const MAX_STRUCTURES: u32 = (MODELS_END - MODELS) / MATRIX_BYTES;
 const MATRIX_BYTES: u32 = 64;
@@ -57,7 +58,7 @@ impl Work for EditWork<'_> {
             processor.write(MESSAGE, &words.collect::<Vec<Word>>())?;
             let count = edits.len() as u32;
             let registers = [(16, MESSAGE), (17, count), (18, MODELS)];
-            span += processor.call(&PROGRAM, "edit", &registers, BUDGET * u64::from(count + 1))?;
+            span += processor.call(&program(false), "edit", &registers, BUDGET * u64::from(count + 1))?;
         }
         Ok(span)
     }
@@ -121,7 +122,7 @@ impl Work for PassStartWork {
                 // Reset the beginnings of the bins. The actual table depends on the sizes of the bins. The simulator
                 // writes this table before the kernel runs.
                 let registers = [(16, MESSAGE), (17, self.bins), (19, BIN_TABLE)];
-                span += processor.call(&PROGRAM, "reset", &registers, BUDGET)?;
+                span += processor.call(&program(self.list.is_single), "reset", &registers, BUDGET)?;
             }
             for place in self.begun(placed) {
                 span += place.run_code(&self.list, processor)?;
@@ -155,7 +156,7 @@ impl PlacedStructure {
         let spheres = self.prepare_spheres(processor)?;
         let data = [(16, to_eye), (17, model), (18, projection), (19, light)];
         let registers = [data.as_slice(), &[(2, STACK), (20, PARAMETERS), (21, culls), (22, spheres)]].concat();
-        processor.call(&PROGRAM, "place", &registers, BUDGET)
+        processor.call(&program(list.is_single), "place", &registers, BUDGET)
     }
 }
 
@@ -177,13 +178,13 @@ impl PlacedStructure {
     }
 }
 
-#[cfg(test)]
-pub(crate) fn program() -> Arc<Program> {
-    Arc::clone(&PROGRAM)
+/// Returns the program, which for the lists of Slats places structures without the eye's position.
+pub(crate) fn program(single: bool) -> Arc<Program> {
+    static PROGRAMS: Programs<bool> = LazyLock::new(Mutex::default);
+    kept(&PROGRAMS, single, |single| {
+        match i860::assemble("place", BEGIN_CODE, &pxpl5_geometry::kernel::place_source(single)) {
+            Ok(program) => program,
+            Err(errors) => unreachable!("it is assembled by the tests: {errors}"),
+        }
+    })
 }
-
-static PROGRAM: LazyLock<Arc<Program>> =
-    LazyLock::new(|| match i860::assemble("place", BEGIN_CODE, &pxpl5_geometry::kernel::place_source()) {
-        Ok(program) => Arc::new(program),
-        Err(errors) => unreachable!("it is assembled by the tests: {errors}"),
-    });

@@ -250,7 +250,9 @@ impl Pass {
         processor: &mut Processor,
         context: u8,
     ) -> Result<Option<[KernelOutput; 2]>, ProcessorFault> {
-        let kernel = self.kernel(processor.version()).filter(Kernel::can_serve_both_eyes);
+        // Compiled code for both eyes has other planes than the list of another pipeline.
+        let fits = |kernel: &Kernel| self.share().list().is_single == (kernel.schedule == Schedule::Compiled);
+        let kernel = self.kernel(processor.version()).filter(Kernel::can_serve_both_eyes).filter(fits);
         let (Some(kernel), Some(other)) = (kernel, right.kernel(processor.version())) else { return Ok(None) };
         if kernel != other {
             return Ok(None);
@@ -273,7 +275,8 @@ impl Pass {
 
     /// Executes the triangle kernel for both eyes. Returns the time, and the addresses for the next output of each eye.
     ///
-    /// A structure that only one eye can draw is transformed for this eye alone.
+    /// For a structure that only one eye can draw, the code also computes the other eye's output from the same view, and
+    /// this output is discarded.
     fn run_triangles_for_both(
         &self,
         right: &Self,
@@ -286,36 +289,26 @@ impl Pass {
         let (of_left, of_right) = (self.placed(), right.placed());
         for places in of_left.iter().zip(of_right.iter()).map(|(left, right)| [left, right]) {
             let held = self.share().held_places(&places[0].structure.triangles);
-            if held.is_empty() {
-                continue;
-            }
-            // If both eyes can draw the structure, one call transforms it for both.
             let transforms = places.map(|place| place.transform.as_ref());
-            let both_eyes = transforms.iter().all(Option::is_some);
-            let kernel = Kernel { culls: places[0].structure.culling != Culling::None, both_eyes, ..kernel };
+            let Some(any) = transforms[0].or(transforms[1]).filter(|_| !held.is_empty()) else { continue };
+            let kernel = Kernel { culls: places[0].structure.culling != Culling::None, both_eyes: true, ..kernel };
             let program = program(kernel, false);
             let clipper = program.symbol("clipper").unwrap_or_default();
             let blocks = [PARAMETERS, RIGHT_PARAMETERS];
             // Each eye has a parameter block.
             for ((place, transform), block) in places.iter().zip(transforms).zip(blocks) {
-                let Some(transform) = transform else { continue };
+                let transform = transform.unwrap_or(any);
                 processor.write(block, &kernel.parameters(transform, &place.light, &heads, clipper))?;
             }
             let first = DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES;
             let count = held.len() as u32;
-            if both_eyes {
-                let call =
-                    Call { first, count, next: Next { table: next[1].command, ..next[0] }, parameters: blocks[0] };
-                let registers = [call.registers().as_slice(), &[(21, blocks[1])]].concat();
-                span += processor.call(&program, "start", &registers, 2 * budget(count))?;
-                (next[0].command, next[1].command) = (processor.register(18), processor.register(19));
-                continue;
-            }
-            // Otherwise, each eye that can draw the structure needs a separate call.
-            for eye in (0..2).filter(|eye| transforms[*eye].is_some()) {
-                let call = Call { first, count, next: next[eye], parameters: blocks[eye] };
-                span += call.run(processor, &program, "start", None)?;
-                next[eye] = next[eye].left(processor, false);
+            let call = Call { first, count, next: Next { table: next[1].command, ..next[0] }, parameters: blocks[0] };
+            let registers = [call.registers().as_slice(), &[(21, blocks[1])]].concat();
+            span += processor.call(&program, "start", &registers, 2 * budget(count))?;
+            for ((next, transform), register) in next.iter_mut().zip(transforms).zip([18, 19]) {
+                if transform.is_some() {
+                    next.command = processor.register(register);
+                }
             }
         }
         Ok((span, next))

@@ -303,6 +303,16 @@ impl RegionWords {
         let list = self.pass.share().list();
         let picture = self.pass.picture();
         let mut stats = SetupStats::default();
+        if transform.is_single() {
+            for entry in entries {
+                let triangle = list.triangle(entry.triangle as usize);
+                let of_piece = pick(entry, |sink| {
+                    transform.single_precision(&triangle, &mut stats, |_, expressions| sink(expressions));
+                });
+                encoder.encode(&of_piece.map_or(NOWHERE, gouraud_triangle), out.words());
+            }
+            return;
+        }
         let light = place.light_of_corners(picture.shading);
         let vertices = place.vertices(list, transform);
         let mut batches = SetupBatches {

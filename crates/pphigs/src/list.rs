@@ -50,6 +50,8 @@ pub struct DisplayList {
     /// True if surfaces have no highlight. A highlight needs one direction to the eye for the whole picture, which the
     /// face of a cube does not have.
     pub is_matte: bool,
+    /// True if the compiled program of Slats draws the list, with planes in single precision.
+    pub is_single: bool,
     /// Cache of placed structures, which all graphics processors share. Code that changes the list must empty this
     /// cache.
     pub recent: RecentViews,

@@ -71,7 +71,8 @@ fn place(
     };
     let view = ViewTransform { model_view: product(&to_eye, &model), projection: eye.projection };
     let light = Light { direction: turned(&to_eye, list.towards_light), ambient: list.ambient, diffuse: list.diffuse };
-    let transform = Transform::new(&view, viewport, structure.culling).ok();
+    let new = if list.is_single { Transform::in_single_precision } else { Transform::new };
+    let transform = new(&view, viewport, structure.culling).ok();
     PlacedStructure {
         transform,
         light,

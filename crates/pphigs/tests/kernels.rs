@@ -196,19 +196,22 @@ fn the_clipper_writes_the_native_words_and_bins_of_triangles_all_around_the_eye(
     assert!(flattened > 0, "steep planes are among them");
 }
 
-/// Returns two eyes with some distance between them and slightly different view directions.
-fn two_eyes(left: &ViewTransform) -> [ViewTransform; 2] {
-    let aside = Mat4::from_translation(Vec3::new(-0.4, 0.01, 0.0)) * Mat4::from_rotation_y(0.04);
-    [*left, ViewTransform { model_view: aside * left.model_view, projection: left.projection }]
+/// Returns two eyes with some distance between them, and with equal or slightly different view directions.
+fn two_eyes(left: &ViewTransform, parallel: bool) -> [ViewTransform; 2] {
+    let mut model_view = left.model_view;
+    if parallel {
+        model_view.w_axis.x -= 0.4;
+    } else {
+        model_view = Mat4::from_translation(Vec3::new(-0.4, 0.01, 0.0)) * Mat4::from_rotation_y(0.04) * model_view;
+    }
+    [*left, ViewTransform { model_view, projection: left.projection }]
 }
 
-fn assert_same_words_for_both_eyes(kernel: Kernel, left: &ViewTransform, viewport: Viewport, input: &[Triangle]) {
-    let kernel = Kernel { both_eyes: true, ..kernel };
-    let views = two_eyes(left);
-    let mut bench = Bench::for_both_eyes(kernel, &views, viewport, Config::functional(), input);
+fn assert_same_words_for_both_eyes(kernel: Kernel, views: &[ViewTransform; 2], viewport: Viewport, input: &[Triangle]) {
+    let mut bench = Bench::for_both_eyes(kernel, views, viewport, Config::functional(), input);
     bench.run();
     let made = bench.commands_of_both();
-    for (eye, (found, view)) in made.iter().zip(&views).enumerate() {
+    for (eye, (found, view)) in made.iter().zip(views).enumerate() {
         let expected = native(kernel, view, viewport, input).0.commands;
         for (n, (found, expected)) in found.iter().zip(&expected).enumerate() {
             assert_eq!(found, expected, "command {n} of eye {eye}, {kernel:?}");
@@ -231,12 +234,13 @@ fn the_kernels_of_both_eyes_write_the_native_words_of_each_eye() {
                 let (view, around) = around_the_eye(seed, seed == 21, *viewport);
                 let input = [mixture(), at_the_planes()].concat();
                 for (view, input) in [(kernel::view(), input), (view, around)] {
-                    for culls in [false, true] {
-                        let kernel = Kernel { culls, ..kernel };
-                        let seen = seen_by_both(kernel, &view, *viewport, &input);
+                    for (culls, parallel) in [(false, true), (true, true), (false, false), (true, false)] {
+                        let kernel = Kernel { culls, both_eyes: true, ..kernel };
+                        let views = two_eyes(&view, parallel);
+                        let seen = seen_by_both(kernel, &views, *viewport, &input);
                         assert!(seen.len() > 300, "{} of {}", seen.len(), input.len());
                         for count in [1, 25, 26, 27, 52, 53, seen.len()] {
-                            assert_same_words_for_both_eyes(kernel, &view, *viewport, &seen[..count.min(seen.len())]);
+                            assert_same_words_for_both_eyes(kernel, &views, *viewport, &seen[..count.min(seen.len())]);
                         }
                     }
                 }
@@ -246,8 +250,7 @@ fn the_kernels_of_both_eyes_write_the_native_words_of_each_eye() {
 }
 
 /// Returns the triangles that have no piece outside the picture, for either eye.
-fn seen_by_both(kernel: Kernel, left: &ViewTransform, viewport: Viewport, input: &[Triangle]) -> Vec<Triangle> {
-    let views = two_eyes(left);
+fn seen_by_both(kernel: Kernel, views: &[ViewTransform; 2], viewport: Viewport, input: &[Triangle]) -> Vec<Triangle> {
     let is_seen = |triangle: &&Triangle| {
         views.iter().all(|view| {
             let (_, stats) = native(kernel, view, viewport, std::slice::from_ref(*triangle));

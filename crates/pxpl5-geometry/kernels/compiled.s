@@ -130,108 +130,6 @@ SAVE   = 0        // return address
         .macro  steep
         .endm
 
-.if BOTH_EYES
-// The main loop for both eyes (slats_rules.md).
-//
-// Registers on entry in addition to parameters.s: r19 address for command words of the right eye, r21 parameter block
-// of the right eye. r18 and r20 belong to the left eye. On return: r18 and r19 are the addresses after the last command
-// of each eye.
-
-// ---- stack frame: the right eye's structures follow the left eye's structures, which also have the surface for both
-// eyes
-BEYOND  = 4       // 2 if a corner is outside the left eye's guard band, plus 1 for the right eye's guard band
-EYE     = 144     // bytes from the structures of the left eye to the structures of the right eye
-PLACES  = 384     // address of the structures of an eye
-SURFACES = 388    // offset of the surfaces from these structures
-
-        .macro  firstcorner to
-        ld.l    PLACES(r2), \to
-        nop
-        .endm
-        .macro  surfaceof k
-        ld.l    SURFACES(r2), r10
-        nop
-        adds    8*\k, r10, r10
-        .endm
-
-// Exchange the commands and the parameter blocks of the eyes.
-        .macro  othereye
-        mov     r18, r7
-        mov     r19, r18
-        mov     r7, r19
-        mov     r20, r7
-        mov     r21, r20
-        mov     r7, r21
-        .endm
-
-        .align  32
-start:  st.l    r1, SAVE(r2)
-next:   mov     r16, r5
-        adds    CORNERS, r2, r6
-        mov     3, r4
-        mov     r0, r23
-each:   call    corner
-        adds    -1, r4, r4
-        adds    VERTEX_BYTES, r5, r5
-        btne    r0, r4, each
-        st.l    r23, BEYOND(r2)
-        surfaces
-        adds    CORNERS, r2, r7
-        st.l    r7, PLACES(r2)
-        mov     C_SURFACE, r7
-        st.l    r7, SURFACES(r2)
-        mov     2, r3
-eye:    ld.l    BEYOND(r2), r7
-        nop
-        and     r3, r7, r7
-        btne    r0, r7, clip
-        set_up  done
-done:   othereye
-        ld.l    PLACES(r2), r7
-        ld.l    SURFACES(r2), r8
-        adds    EYE, r7, r7
-        st.l    r7, PLACES(r2)
-        adds    -EYE, r8, r8
-        st.l    r8, SURFACES(r2)
-        adds    -1, r3, r3
-        btne    r0, r3, eye
-        adds    -1, r17, r17
-        adds    LIST_STEP, r16, r16
-        nextorclip
-
-// ---- corner: stores the vertex at r5 in the structures of both eyes. The left eye's structure is at r6, which
-// advances to the next structure. r23 gets the eyes whose guard band does not contain the vertex.
-corner: fld.l   0(r5), f4
-        fld.l   4(r5), f5
-        fld.l   8(r5), f6
-        mov     2, r3
-view:   fld.l   P_ORIGIN(r20), f8
-        fld.l   P_ORIGIN+4(r20), f9
-        fsub.ss f4, f8, f16                 // relative to the eye
-        fld.l   P_ORIGIN+8(r20), f10
-        fsub.ss f5, f9, f17
-        fld.l   P_ROWS(r20), f8
-        fld.l   P_ROWS+4(r20), f9
-        fsub.ss f6, f10, f18
-        clipped 0, f20
-        clipped 1, f21
-        clipped 2, f22
-        clipped 3, f23
-        guarded
-        placed
-        fsub.dd f12, f10, f12
-        fst.d   f12, C_DEPTH(r6)
-turn:   mov     r20, r7
-        mov     r21, r20
-        mov     r7, r21
-        adds    EYE, r6, r6
-        adds    -1, r3, r3
-        btne    r0, r3, view
-        bri     r1
-        adds    C_BYTES-2*EYE, r6, r6
-beyond: br      turn
-        or      r3, r23, r23
-.else
 // The corners of a triangle are computed for one eye.
 
         .macro  firstcorner to
@@ -426,5 +324,4 @@ corner: projected
         mov     1, r7
 beyond: bri    r1
         mov     r0, r7
-.endif
 .endif

@@ -50,10 +50,14 @@ P_TIE_OUT   = 224         // -8.5: the same for an edge that does not own its pi
 // Words: instruction heads of the command (enable, edge, depth compare, depth load, three components, colour).
 P_HEADS     = 232
 P_THREE_HALVES = 264      // 1.5, double
-// Singles: rows x, y, z of normals from the world to the eye, in units of the command's normal; the fourth number of a
-// row is unused.
+// Singles: rows x, y, z of normals from the world to the eye, in units of the command's normal. Constants of single.s
+// follow each row and the direction towards the light.
 P_EYE       = 272
-P_LIGHT     = 320         // direction towards the light in the coordinates of the normals; (unused)
+P_BAND      = 284         // the guard band of single.s in subpixels
+P_NEAR_S    = 300         // near in depth units
+P_THIRTY_SECOND = 316     // 1 / 32
+P_FIELD_ROUND = 332       // 1.5 * 2^23 plus the subpixels above the first line of the field
+P_LIGHT     = 320         // direction towards the light in the coordinates of the normals
 P_AMBIENT   = 336         // fraction of the colour that is visible in shadow
 P_DIFFUSE   = 340         // fraction that is added if the light falls at a right angle
 P_ONE       = 344         // 1.0

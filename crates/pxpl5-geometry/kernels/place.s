@@ -10,7 +10,7 @@
 //          ambient part; diffuse part), r20 parameter block, r21 not 0 if triangles that face away are not drawn, r22
 //          parameter block of spheres, or 0 if there are no spheres or the projection cannot show them, r2 stack.
 //          Computes the words that depend on the view of a structure. The structure's matrix to the eye must have an
-//          inverse.
+//          inverse. For single.s, the matrix of triangles is not relative to the eye.
 
 MATRIX_BYTES = 64
 
@@ -227,12 +227,14 @@ axis:   fst.d   f0, VECTOR(r2)
         st.l    r8, VECTOR+4(r7)
         mov     3, r8
         btne    r8, r4, along
+.if !SINGLE
         fld.d   ORIGIN(r2), f8
         fst.d   f8, VECTOR(r2)
         fld.d   ORIGIN+8(r2), f8
         fst.d   f8, VECTOR+8(r2)
         fld.d   ORIGIN+16(r2), f8
         fst.d   f8, VECTOR+16(r2)
+.endif
 along:  call    times
         adds    EYE, r2, r5
         fld.d   PRODUCT(r2), f8
@@ -352,6 +354,11 @@ placed: bte     r0, r22, left
         call    lens
         nop
 left:   ld.l    SAVE(r2), r1
+.if SINGLE
+        st.l    r0, P_ORIGIN(r20)           // triangles are not relative to the eye
+        st.l    r0, P_ORIGIN+4(r20)
+        st.l    r0, P_ORIGIN+8(r20)
+.endif
         nop
         bri     r1
         adds    FRAME, r2, r2

@@ -17,6 +17,9 @@ edge:   fld.d   C_X(r10), f8
         fxfr    f22, r13
         ftrunc.sd f17, f22
         fxfr    f22, r14
+.if SINGLE
+        adds    r13, r13, r13               // a row of the field has two lines
+.endif
         st.l    r13, 4(r12)
         subs    r0, r14, r14
         st.l    r14, 0(r12)
@@ -38,6 +41,48 @@ tied:   fld.d   P_SIXTEENTH(r20), f12
         bri     r1
         st.l    r13, 8(r12)
 
+.if SINGLE
+// ---- plane through the values at r10 of the corners r7, r8 and r9, in single precision, stored at r11
+plane:  adds    r10, r7, r12
+        fld.l   0(r12), f16
+        adds    r10, r8, r12
+        fld.l   0(r12), f18
+        adds    r10, r9, r12
+        fld.l   0(r12), f20
+        fld.l   DY2(r2), f8
+        fsub.ss f18, f16, f18
+        fld.l   DY1(r2), f9
+        fsub.ss f20, f16, f20
+        fld.l   DX1(r2), f10
+        fmul.ss f18, f8, f22
+        fld.l   DX2(r2), f11
+        fmul.ss f20, f9, f24
+        fld.l   PERPIX(r2), f12
+        fsub.ss f22, f24, f22
+        fld.l   PERROW(r2), f13
+        fmul.ss f22, f12, f22               // slope along x
+        fmul.ss f20, f10, f24
+        fmul.ss f18, f11, f26
+        fld.l   P_ROUND52_S(r20), f28
+        fsub.ss f24, f26, f24
+        fld.l   TOX(r2), f14
+        fmul.ss f24, f13, f24               // slope along y
+        fld.l   TOY(r2), f15
+        fadd.sd f22, f28, f8
+        fmul.ss f22, f14, f22
+        fxfr    f8, r12
+        fadd.ss f16, f22, f16
+        st.l    r12, 0(r11)
+        fadd.sd f24, f28, f10
+        fmul.ss f24, f15, f24
+        fxfr    f10, r13
+        fadd.ss f16, f24, f16               // value at pixel (0, 0)
+        st.l    r13, 4(r11)
+        fadd.sd f16, f28, f12
+        fxfr    f12, r12
+        bri     r1
+        st.l    r12, 8(r11)
+.else
 // ---- plane through the values at r10 of the corners r7, r8 and r9, stored at r11
 plane:  adds    r10, r7, r12
         fld.d   0(r12), f16
@@ -92,3 +137,4 @@ plane:  adds    r10, r7, r12
         subs    r12, r13, r12
         bri     r1
         st.l    r12, 8(r11)
+.endif

@@ -27,7 +27,9 @@ pub use between::{ENDS_VIEW_WORDS, ENDS_WORDS};
 
 use crate::newton::ROUND_DOUBLE;
 use crate::transform::Turn;
-use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip, light, screen};
+use crate::{
+    DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip, light, screen, single,
+};
 use glam::Vec3;
 use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid, Word};
 
@@ -100,6 +102,8 @@ pub struct Kernel {
     pub keeps_boxes: bool,
     /// True if one pass over the triangles makes the commands of both eyes (kernels/slats_rules.md).
     ///
+    /// Compiled code for both eyes computes planes in single precision, like [`Transform::in_single_precision`].
+    ///
     /// Register 19 then holds the address for the right eye's commands, and register 21 the address of the right eye's
     /// parameter block. Requires [`Kernel::can_serve_both_eyes`].
     pub both_eyes: bool,
@@ -138,6 +142,7 @@ const BINS: &str = include_str!("../kernels/bins.s");
 const VERTICES: &str = include_str!("../kernels/vertices.s");
 const VERTICES_END: &str = include_str!("../kernels/vertices_end.s");
 
+const SINGLE: [&str; 4] = [NEWTON, SCALAR, include_str!("../kernels/single.s"), SCALAR_FUNCTIONS];
 const COMPILED: [&str; 5] = [NEWTON, SCALAR, include_str!("../kernels/compiled.s"), SCALAR_FUNCTIONS, BINS];
 
 const DUAL: [&str; 7] = [
@@ -177,6 +182,11 @@ impl Kernel {
             && self.list == KernelList::Triangles
             && !self.binned
             && !self.keeps_boxes
+            && (self.schedule == Schedule::Dual || self.picture == KernelPicture::Field)
+    }
+
+    fn is_single(&self) -> bool {
+        self.both_eyes && self.schedule == Schedule::Compiled
     }
 
     /// Returns the source in i860 assembly. Execution begins at the label `start`.
@@ -188,6 +198,7 @@ impl Kernel {
         let common = [&choices, PARAMETERS, include_str!("../kernels/list.s"), PICTURE];
         let own: &[&str] = match self.schedule {
             Schedule::Straight => &[NEWTON, include_str!("../kernels/straight.s"), BINS],
+            Schedule::Compiled if self.both_eyes => &SINGLE,
             Schedule::Compiled => &COMPILED,
             // Rarely used code comes last. So the bins use other cache sets than the end of the second loop.
             Schedule::Dual if self.both_eyes => &[DUAL.as_slice(), &RIGHT_EYE].concat(),
@@ -200,7 +211,7 @@ impl Kernel {
     ///
     /// [The parameters](Self::parameters) of the kernel contain the address of the clipper.
     pub fn clipper_source(&self) -> String {
-        let choices = Self { schedule: Schedule::Compiled, ..*self }.choices(false);
+        let choices = Self { schedule: Schedule::Compiled, both_eyes: false, ..*self }.choices(false);
         let clipper = include_str!("../kernels/clipper.s");
         [&choices, PARAMETERS, PICTURE, NEWTON, SCALAR, clipper, SCALAR_FUNCTIONS, BINS].join("\n")
     }
@@ -220,6 +231,7 @@ impl Kernel {
             ("BOXES", self.keeps_boxes),
             ("CULLED", self.culls),
             ("BOTH_EYES", self.both_eyes),
+            ("SINGLE", self.is_single()),
             ("DUAL", self.schedule == Schedule::Dual),
             ("BETWEEN", between),
         ])
@@ -265,6 +277,11 @@ impl Kernel {
         words.singles(364, &[ROUND_SINGLE - 16.0 * line as f32]);
         words.doubles(368, &[ROUND_DOUBLE + f64::from(DEPTH_NEAR), 16.0 * ROUND_DOUBLE]);
         words.singles(384, &[2.0 * ROUND_SINGLE + 8.0]);
+        let first_line = 16.0 * transform.viewport.first_line() as f32;
+        let of_single = [single::BAND, DEPTH_NEAR as f32, 1.0 / 32.0, ROUND_SINGLE + first_line];
+        for (word, at) in of_single.into_iter().zip([284, 300, 316, 332]) {
+            words.singles(at, &[word]);
+        }
         words.doubles(440, &[16.0, -16.0]);
         words.singles(456, &[screen::DEPTH_SCALE, 1.0 / 16.0, ROUND_DOUBLE as f32, TWO_18]);
         words.integers(472, &culled(transform.dropped));
@@ -381,10 +398,11 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
 /// and `place`.
 ///
 /// The code at `place` writes all parameters that depend on a view or a light, for [`Kernel::parameters`] and for
-/// [`crate::sphere_kernel`].
-pub fn place_source() -> String {
+/// [`crate::sphere_kernel`]. `single` selects the parameters of single.s.
+pub fn place_source(single: bool) -> String {
+    let choices = choices(&[("SINGLE", single)]);
     let [spheres, place] = [include_str!("../kernels/sphere_parameters.s"), include_str!("../kernels/place.s")];
-    [PARAMETERS, spheres, NEWTON, place].join("\n")
+    [&choices, PARAMETERS, spheres, NEWTON, place].join("\n")
 }
 
 /// Returns a row of the matrix that rotates normals, scaled to the units of normals in renderer commands.

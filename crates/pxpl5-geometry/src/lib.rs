@@ -95,6 +95,7 @@ mod outline;
 mod plane;
 mod regions;
 mod screen;
+mod single;
 mod sphere;
 pub mod sphere_kernel;
 mod sphere_setup;

@@ -45,6 +45,8 @@ pub struct Transform {
     pub(crate) binner: Binner,
     /// Winding on the screen of the triangles that are not drawn. `None` if all triangles are drawn.
     pub(crate) dropped: Option<Turn>,
+    /// True if planes are computed in single precision ([`Self::in_single_precision`]).
+    pub(crate) is_single: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -223,7 +225,13 @@ impl Transform {
                 Culling::Back if is_mirrored(view) => Some(Turn::Counterclockwise),
                 Culling::Back => Some(Turn::Clockwise),
             },
+            is_single: false,
         })
+    }
+
+    /// Returns true if planes are computed in single precision ([`Self::in_single_precision`]).
+    pub const fn is_single(&self) -> bool {
+        self.is_single
     }
 
     pub const fn viewport(&self) -> &Viewport {
@@ -238,6 +246,11 @@ impl Transform {
     #[inline]
     pub fn bin(&self, positions: &[Vec3; 3], stats: &mut SetupStats, mut sink: impl FnMut(RegionMask)) {
         stats.triangles += 1;
+        if self.is_single
+            && let Some(touch) = self.single_touch(positions)
+        {
+            return touch.count(stats).into_iter().for_each(sink);
+        }
         let clip = positions.map(|p| self.to_clip.point(p));
         if clip.iter().all(|c| self.guard.contains(*c)) {
             let corners = clip.map(|c| self.to_screen.snap(c));
@@ -369,6 +382,10 @@ impl Transform {
         let mut whole = whole?;
         whole.outline.regions = regions;
         Some(whole)
+    }
+
+    pub(crate) fn touch_snapped(&self, corners: [Snapped; 3]) -> Touch {
+        self.touch(Assembled::clockwise(corners).as_ref())
     }
 
     /// Returns the regions that a triangle touches. The triangle must be inside the guard band. `whole` is `None` if

@@ -69,6 +69,9 @@ impl Transform {
     /// Transforms a vertex from its world position to the screen.
     #[inline(always)]
     pub fn screen_vertex(&self, position: Vec3) -> ScreenVertex {
+        if self.is_single {
+            return ScreenVertex(self.single_vertex(position).unwrap_or(NOT_INSIDE));
+        }
         let clip = self.to_clip.point(position);
         ScreenVertex(if self.guard.contains(clip) { self.to_screen.snap(clip) } else { NOT_INSIDE })
     }
@@ -76,7 +79,7 @@ impl Transform {
     /// Transforms many vertices from their world positions to the screen, several at a time.
     pub fn screen_vertices(&self, positions: &[Vec3]) -> Vec<ScreenVertex> {
         let mut out = Vec::with_capacity(positions.len());
-        let (lanes, rest) = positions.as_chunks();
+        let (lanes, rest) = if self.is_single { (&[][..], positions) } else { positions.as_chunks() };
         append_lanes(lanes, &self.to_clip, self.guard, &self.to_screen, &mut out);
         out.extend(rest.iter().map(|position| self.screen_vertex(*position)));
         out

@@ -186,7 +186,10 @@ impl FromWorld {
     }
 
     pub(crate) fn to_clip(projection: &Columns, model_view: &Columns) -> Self {
-        let origin = model_view.origin();
+        Self::relative_to(model_view.origin(), projection, model_view)
+    }
+
+    pub(crate) fn relative_to(origin: Vec3, projection: &Columns, model_view: &Columns) -> Self {
         let [x, y, z] = origin.to_array().map(f64::from);
         let axes_and_eye = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [x, y, z, 1.0]];
         let columns = axes_and_eye.map(|v| projection.times(model_view.times(v)).map(|v| v as f32));

@@ -46,6 +46,7 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, ExperimentError> {
         diffuse: light.diffuse,
         background: light.background,
         is_matte: false,
+        is_single: false,
         recent: RecentViews::default(),
     };
     Ok(list.with_vertices_in_order())

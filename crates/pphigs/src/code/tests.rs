@@ -45,6 +45,7 @@ fn no_two_programs_of_a_board_lie_in_the_same_place() {
     for kernel in kernels().filter(Kernel::can_serve_both_eyes) {
         let program = program(Kernel { both_eyes: true, ..kernel }, true);
         assert!(end(&program) <= SORT_CODE, "{kernel:?} for both eyes ends at {:#x}", end(&program));
+        assert!(program.warnings.is_empty(), "{kernel:?} for both eyes: {:?}", program.warnings);
     }
     for kernel in kernels() {
         for program in [program(kernel, true), interpolating::program(kernel)] {
@@ -60,11 +61,13 @@ fn no_two_programs_of_a_board_lie_in_the_same_place() {
     assert!(windows.base == WINDOWS_CODE && end(&windows) <= WINDOWS, "{:#x}", end(&windows));
     let order = ordering::program();
     assert!(order.base == ORDER_CODE && end(&order) <= ORDER_HEAD, "{:#x}", end(&order));
-    let begin = begin::program();
-    for program in [&*sort, &*token, &*windows, &*order, &*begin] {
+    let [begin, of_slats] = BOTH.map(begin::program);
+    for program in [&*sort, &*token, &*windows, &*order, &*begin, &*of_slats] {
         assert!(program.warnings.is_empty(), "{:?}", program.warnings);
     }
-    assert!(begin.base == BEGIN_CODE && end(&begin) <= SPHERE_CODE, "{:#x}", end(&begin));
+    for begin in [begin, of_slats] {
+        assert!(begin.base == BEGIN_CODE && end(&begin) <= SPHERE_CODE, "{:#x}", end(&begin));
+    }
     let spheres = SURFACES.into_iter().flat_map(|surface| PICTURES.map(|picture| (surface, picture)));
     let kernel = |(surface, picture)| BOTH.map(|keeps_boxes| SphereKernel { surface, picture, keeps_boxes });
     for kernel in spheres.flat_map(kernel) {

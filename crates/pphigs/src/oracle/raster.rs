@@ -3,7 +3,7 @@ use crate::oracle::shade::{Paint, Surface, component, normal};
 use crate::oracle::sphere::SpherePoint;
 use crate::oracle::widths::Widths;
 use crate::{DisplayList, FrameView, Picture, PlacedStructure, Shading, place_all, shade};
-use pxpl5_geometry::{Outline, RegionMask, SetupStats, Transform};
+use pxpl5_geometry::{GouraudTriangle, Outline, RegionMask, SetupStats, Transform};
 use pxpl5_wire::Linear;
 use pxpl5_wire::format::SUBPIXEL_BITS;
 use std::ops::Range;
@@ -69,13 +69,18 @@ impl Raster<'_> {
         // needed here.
         let mut stats = SetupStats::default();
         let light = place.light_of_corners(self.picture.shading);
+        let mut lit = |outline: &Outline, planes: &GouraudTriangle| {
+            self.inside(outline, &planes.edges, |x, y| {
+                let paint = || Paint::Lit(planes.rgb.map(|plane| component(&plane, x, y)));
+                buffer.draw([x, y], number, self.depth(&planes.z, x, y), paint);
+            });
+        };
         match self.picture.shading {
+            Shading::Gouraud | Shading::Precomputed if transform.is_single() => {
+                transform.single_precision(&triangle, &mut stats, |seen, planes| lit(&seen.outline, &planes));
+            }
             Shading::Gouraud | Shading::Precomputed => transform.gouraud(&triangle, light, &mut stats, |seen| {
-                let planes = seen.gouraud(viewport, &mut SetupStats::default());
-                self.inside(&seen.outline, &planes.edges, |x, y| {
-                    let paint = || Paint::Lit(planes.rgb.map(|plane| component(&plane, x, y)));
-                    buffer.draw([x, y], number, self.depth(&planes.z, x, y), paint);
-                });
+                lit(&seen.outline, &seen.gouraud(viewport, &mut SetupStats::default()));
             }),
             Shading::Phong => transform.phong(&triangle, &mut stats, |seen| {
                 let planes = seen.phong(viewport, &mut SetupStats::default());

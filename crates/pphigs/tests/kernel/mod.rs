@@ -11,7 +11,7 @@ use i860::{Config, Cpu, Profile, Program, Ram, RunEnd, linear, link};
 use pxpl5_geometry::kernel::{
     Heads, Kernel, KernelList, KernelPicture, KernelSurface, Schedule, display_list_words, vertex_words,
 };
-use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
+use pxpl5_geometry::{Culling, GouraudTriangle, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 use pxpl5_renderer::{Command, Layout};
 use pxpl5_sim::SplitMix64;
 use std::collections::BTreeMap;
@@ -158,19 +158,23 @@ pub(crate) fn native(
     viewport: Viewport,
     triangles: &[Triangle],
 ) -> (Output, SetupStats) {
-    let transform = Transform::new(view, viewport, culling(kernel)).expect("finite");
+    let transform = transform(kernel, view, viewport);
     let light = if kernel.surface == KernelSurface::Precomputed { Light::NONE } else { light() };
     let mut stats = SetupStats::default();
     let mut flattened = SetupStats::default();
     let mut output = Output { commands: Vec::new(), regions: Vec::new() };
     for triangle in triangles {
         let mut found = Vec::new();
+        let gouraud = |t: GouraudTriangle| {
+            Command::Triangle(pxpl5_renderer::TriangleCommand { edges: t.edges, depth: t.z, colour: t.rgb })
+        };
         match kernel.surface {
+            KernelSurface::Precomputed if transform.is_single() => {
+                transform.single_precision(triangle, &mut stats, |screen, t| found.push((gouraud(t), screen.outline)));
+            }
             KernelSurface::Gouraud | KernelSurface::Precomputed => {
                 transform.gouraud(triangle, &light, &mut stats, |screen| {
-                    let t = screen.gouraud(&viewport, &mut flattened);
-                    let command = pxpl5_renderer::TriangleCommand { edges: t.edges, depth: t.z, colour: t.rgb };
-                    found.push((Command::Triangle(command), screen.outline));
+                    found.push((gouraud(screen.gouraud(&viewport, &mut flattened)), screen.outline));
                 })
             }
             KernelSurface::Phong => transform.phong(triangle, &mut stats, |screen| {
@@ -187,6 +191,13 @@ pub(crate) fn native(
         }
     }
     (output, SetupStats { flattened_planes: flattened.flattened_planes, ..stats })
+}
+
+/// Returns the native transform whose words equal the kernel's words.
+fn transform(kernel: Kernel, view: &ViewTransform, viewport: Viewport) -> Transform {
+    let is_single = kernel.both_eyes && kernel.schedule == Schedule::Compiled;
+    let new = if is_single { Transform::in_single_precision } else { Transform::new };
+    new(view, viewport, culling(kernel)).expect("finite")
 }
 
 fn culling(kernel: Kernel) -> Culling {
@@ -253,7 +264,7 @@ impl Bench {
     ) -> Bench {
         let data: Vec<u32> = triangles.iter().flat_map(display_list_words).collect();
         let mut bench = Bench::over(kernel, &views[0], viewport, config, &data, triangles.len());
-        let right = Transform::new(&views[1], viewport, culling(kernel)).expect("finite");
+        let right = transform(kernel, &views[1], viewport);
         let clipper = bench.program.symbol("clipper").expect("clipper");
         let parameters = kernel.parameters(&right, &light(), &heads(kernel.surface), clipper);
         bench.ram.load_words(RIGHT_PARAMETERS, &parameters).expect("fits");
@@ -288,7 +299,7 @@ impl Bench {
         let mut ram = Ram::new(0, MEMORY);
         let program = program(kernel);
         ram.load(CODE, &program.bytes).expect("fits");
-        let transform = Transform::new(view, viewport, culling(kernel)).expect("finite");
+        let transform = transform(kernel, view, viewport);
         let clipper = program.symbol("clipper").expect("clipper");
         let parameters = kernel.parameters(&transform, &light(), &heads(kernel.surface), clipper);
         ram.load_words(PARAMETERS, &parameters).expect("fits");
