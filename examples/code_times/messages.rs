@@ -70,7 +70,7 @@ fn commands(list: CommandList) -> (u32, Body) {
 }
 
 pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Traffic, ExperimentError> {
-    let mut rig = Rig::new(version, scene, BOARDS)?;
+    let mut rig = Rig::new((version, of), scene, BOARDS)?;
     let mut traffic = Traffic::default();
     for number in 0..VIEWS {
         let view = rig.view(number);

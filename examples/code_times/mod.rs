@@ -156,8 +156,10 @@ fn parts(of: CodeUse, share: &Share) -> Vec<Share> {
 /// Returns [`ExperimentError::Scene`] when a scene is not found or the code does not terminate.
 pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, ExperimentError> {
     // The clipper is measured one eye after the other. A pass for both eyes always clips the same fractions, which
-    // leaves the equations underdetermined.
-    let cut = measured(of, Rig::of_list(version, "full-screen:30", 1, beyond_the_guard_band)?, false, sample)?;
+    // leaves the equations underdetermined, unless it clips all triangles.
+    let cut = Rig::of_list((version, of), "full-screen:30", 1, beyond_the_guard_band)?;
+    let together = cut.share.list().is_single;
+    let cut = measured(of, cut, together, sample)?;
     // Triangles, spheres and the beginning of a pass are measured in separate runs.
     let scenes: Vec<Vec<Sample>> =
         SCENES.iter().map(|scene| samples(version, of, scene, BOARDS)).collect::<Result<_, _>>()?;
@@ -263,22 +265,23 @@ fn fault(error: ProcessorFault) -> ExperimentError {
 }
 
 impl Rig {
-    fn new(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
-        Self::of_list(version, scene, boards, |list| list)
+    fn new(code: (CodeVersion, CodeUse), scene: &str, boards: usize) -> Result<Self, ExperimentError> {
+        Self::of_list(code, scene, boards, |list| list)
     }
 
-    fn of_triangles(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
-        Self::of_list(version, scene, boards, without_spheres)
+    fn of_triangles(code: (CodeVersion, CodeUse), scene: &str, boards: usize) -> Result<Self, ExperimentError> {
+        Self::of_list(code, scene, boards, without_spheres)
     }
 
     fn of_list(
-        version: CodeVersion,
+        (version, of): (CodeVersion, CodeUse),
         scene: &str,
         boards: usize,
         part: impl Fn(DisplayList) -> DisplayList,
     ) -> Result<Self, ExperimentError> {
         let scene = Arc::new(builtin(scene)?);
-        let list = Arc::new(part(display_list(&scene)?));
+        let is_single = (version, of) == (CodeVersion::Compiled, CodeUse::Slats);
+        let list = Arc::new(part(DisplayList { is_single, ..display_list(&scene)? }));
         let (views, _) = views(&scene, 1, Hmd::unc(), 2);
         let share = Share::new(list, 0, boards);
         // The board holds its share of the display list in memory, as in a run.
@@ -293,12 +296,12 @@ impl Rig {
 }
 
 fn samples(version: CodeVersion, of: CodeUse, scene: &str, boards: usize) -> Result<Vec<Sample>, ExperimentError> {
-    measured(of, Rig::of_triangles(version, scene, boards)?, true, sample)
+    measured(of, Rig::of_triangles((version, of), scene, boards)?, true, sample)
 }
 
 /// Returns one sample for each pass over a scene's spheres. The result is empty if the scene has no spheres.
 fn sphere_samples(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Vec<SphereSample>, ExperimentError> {
-    let rig = Rig::new(version, scene, BOARDS)?;
+    let rig = Rig::new((version, of), scene, BOARDS)?;
     if rig.share.counts().spheres == 0 { Ok(Vec::new()) } else { measured(of, rig, true, sphere_sample) }
 }
 
@@ -337,12 +340,16 @@ fn measured<const N: usize>(
 
 /// Replaces each triangle by a larger right-angled triangle that reaches beyond the guard band. At the distance d from
 /// the viewer, both legs have a length of 4 ([`CLIPPED_M`] d + 0.5 m). The 0.5 m allow for the positions of the eyes.
+///
+/// The program of Slats clips a triangle only at the near plane, so the last corner then lies behind the viewer.
 fn beyond_the_guard_band(mut list: DisplayList) -> DisplayList {
+    let is_single = list.is_single;
     for triangle in list.positions.chunks_exact_mut(3) {
         for (corner, [x, y]) in triangle.iter_mut().zip([[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]]) {
             let half = CLIPPED_M * -corner.z + 0.5;
             (corner.x, corner.y) = (x * half, y * half);
         }
+        triangle[2].z *= if is_single { -1.0 } else { 1.0 };
     }
     list
 }
@@ -373,7 +380,7 @@ struct PassBeginning {
 fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<PassBeginning, ExperimentError> {
     // Measure the scene three times: whole, without spheres, and with more empty structures. The differences give the
     // cost of each part.
-    let rig = |part: fn(DisplayList) -> DisplayList| Rig::of_list(version, scene, BOARDS, part);
+    let rig = |part: fn(DisplayList) -> DisplayList| Rig::of_list((version, of), scene, BOARDS, part);
     let whole = rig(|list| list)?;
     let TransformCost { structures, sphere_views, .. } = TransformCost::beginning(&whole.share.list().structures);
     let whole_ns = beginning_ns(of, whole)?;
@@ -398,10 +405,15 @@ fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
         for eyes in eyes {
             let beginning = rig.share.beginning(&view, eyes, picture(of));
             // The triangles of the previous pass fill the caches, as in a real frame.
-            eyes.iter().try_for_each(|eye| {
-                let pass = rig.share.transform(&view, *eye, picture(of));
-                pass.run_code(&mut rig.processor, *eye as u8).map(|_| ()).map_err(fault)
-            })?;
+            let passes: Vec<_> = eyes.iter().map(|eye| rig.share.transform(&view, *eye, picture(of))).collect();
+            match &passes[..] {
+                [left, right] if rig.share.list().is_single => {
+                    left.run_code_for_both(right, &mut rig.processor, 0).map_err(fault)?;
+                }
+                _ => passes.iter().zip(*eyes).try_for_each(|(pass, eye)| {
+                    pass.run_code(&mut rig.processor, *eye as u8).map(|_| ()).map_err(fault)
+                })?,
+            }
             let span = beginning.by_code(&GpTiming::PAPERS, &mut rig.processor).map_err(fault)?;
             all_ns += span.0 as f64 / 1e3;
         }

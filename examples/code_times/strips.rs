@@ -1,6 +1,6 @@
 //! Measures the processor times of just-in-time pixels and frameless rendering by executing their code.
 
-use super::{ExperimentError, Rig, fault, mean};
+use super::{CodeUse, ExperimentError, Rig, fault, mean};
 use pphigs::{
     MemoryPart, Picture, PrimitiveCounts, RegionBinning, Shading, StripInterpolation, TriangleEndsRecorder,
     WindowSearchWork, assemble_order,
@@ -88,7 +88,7 @@ struct Measured {
 }
 
 fn measured(version: CodeVersion, boards: usize) -> Result<Measured, ExperimentError> {
-    let mut rig = Rig::of_triangles(version, SCENE, boards)?;
+    let mut rig = Rig::of_triangles((version, CodeUse::Pphigs), SCENE, boards)?;
     let triangles = f64::from(rig.share.counts().triangles);
     // Strips without entries give the cost of a search. All other strips give the cost of entries.
     let rows = searches(&mut rig).map_err(fault)?;
@@ -171,7 +171,7 @@ fn views(rig: &Rig) -> [pphigs::FrameView; 2] {
 
 /// Returns the nanoseconds to assemble each kind of order. A first execution loads the code into the caches.
 fn order_ns(version: CodeVersion) -> Result<[f64; 4], ExperimentError> {
-    let mut rig = Rig::of_triangles(version, SCENE, SMALLER)?;
+    let mut rig = Rig::of_triangles((version, CodeUse::Pphigs), SCENE, SMALLER)?;
     let mut times = [0.0; 4];
     for (time, (words, head)) in times.iter_mut().zip(ORDERS) {
         for _ in 0..2 {

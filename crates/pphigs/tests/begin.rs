@@ -80,6 +80,8 @@ fn the_code_fills_parameter_blocks_as_the_native_firmware_does() {
     for n in 0..3000 {
         let culls = n % 2 == 1;
         let list = list(if culls { Culling::Back } else { Culling::None }, numbers.vector(1.0));
+        // The program of Slats has other matrices.
+        let list = DisplayList { is_single: n % 4 < 2, ..list };
         let view = view(&mut numbers, n);
         let viewport = Viewport::FRAME;
         let kernel = Kernel::for_picture(Schedule::Compiled, KernelSurface::Phong, &viewport, true).expect("a frame");
@@ -109,7 +111,7 @@ fn the_code_fills_the_parameter_block_of_spheres_as_the_native_firmware_does() {
     let mut numbers = Numbers(SplitMix64::new(35));
     let mut processor = board();
     for n in 0..1000 {
-        let list = list(Culling::None, numbers.vector(1.0));
+        let list = DisplayList { is_single: n % 2 == 1, ..list(Culling::None, numbers.vector(1.0)) };
         let view = view(&mut numbers, n);
         let viewport = Viewport::field(FieldParity::Odd);
         let kernel = SphereKernel::for_picture(KernelSurface::Phong, &viewport).expect("a field");

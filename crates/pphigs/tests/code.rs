@@ -76,6 +76,12 @@ fn picture(viewport: Viewport, shading: Shading, binning: RegionBinning) -> Pict
     Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: true }
 }
 
+/// Returns the only share of a list. The compiled program of Slats draws it in single precision.
+fn share_for_slats(triangles: u32, version: CodeVersion) -> Share {
+    let is_single = version == CodeVersion::Compiled;
+    Share::new(Arc::new(DisplayList { is_single, ..(*list(triangles)).clone() }), 0, 1)
+}
+
 fn board(version: CodeVersion, share: &Share) -> Processor {
     let mut processor = Processor::new(NodeId(1), MEMORY, version, i860::Config::cycle());
     share.install(&mut processor).expect("it fits");
@@ -299,9 +305,9 @@ fn a_context_larger_than_the_memory_is_refused() {
 /// more time, because this code does not stay in the cache.
 #[test]
 fn one_pass_for_both_eyes_writes_the_native_words_of_each_eye() {
-    let share = Share::new(list(90), 0, 1);
     let picture = picture(Viewport::field(FieldParity::Odd), Shading::Precomputed, RegionBinning::All);
     for version in [CodeVersion::Compiled, CodeVersion::Scheduled] {
+        let share = share_for_slats(90, version);
         let mut processor = board(version, &share);
         for clump in share.clumps(30) {
             let [left, right] = [0, 1].map(|eye| clump.transform(&view(), eye, picture));
@@ -327,9 +333,9 @@ fn one_pass_for_both_eyes_writes_the_native_words_of_each_eye() {
 fn a_structure_that_the_left_eye_cannot_draw_is_drawn_for_the_right_eye() {
     let mut view = view();
     view.eyes[0].head_to_eye.w_axis.x = f32::NAN;
-    let share = Share::new(list(30), 0, 1);
     let picture = picture(Viewport::field(FieldParity::Even), Shading::Precomputed, RegionBinning::All);
     for version in [CodeVersion::Compiled, CodeVersion::Scheduled] {
+        let share = share_for_slats(30, version);
         let mut processor = board(version, &share);
         let [left, right] = [0, 1].map(|eye| share.transform(&view, eye, picture));
         let made = left.run_code_for_both(&right, &mut processor, 0).expect("it returns").expect("there is code");

@@ -4,19 +4,25 @@ use crate::support::native::Piece;
 use crate::support::{HEIGHT, WIDTH, at_pixel, pixel_view};
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;
-use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
+use pxpl5_geometry::{Culling, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 
 /// Counts how often each pixel is drawn.
 fn draw(view: &ViewTransform, triangles: &[[Vec3; 3]]) -> (Vec<u8>, SetupStats) {
-    let transform = Transform::new(view, Viewport::FRAME, Culling::None).expect("a finite view");
+    draw_by(&Transform::new(view, Viewport::FRAME, Culling::None).expect("a finite view"), triangles)
+}
+
+/// The same by the program of Slats.
+fn draw_singly(view: &ViewTransform, triangles: &[[Vec3; 3]]) -> (Vec<u8>, SetupStats) {
+    draw_by(&Transform::in_single_precision(view, Viewport::FRAME, Culling::None).expect("a finite view"), triangles)
+}
+
+fn draw_by(transform: &Transform, triangles: &[[Vec3; 3]]) -> (Vec<u8>, SetupStats) {
     let mut counts = vec![0_u8; (WIDTH * HEIGHT) as usize];
     let mut stats = SetupStats::default();
     for positions in triangles {
         let triangle = Triangle { positions: *positions, normals: [Vec3::Z; 3], colours: [[0; 3]; 3] };
-        let mut pieces = Vec::new();
-        transform.gouraud(&triangle, &Light::NONE, &mut stats, |t| pieces.push(t));
-        for piece in pieces {
-            Piece::new(piece, &mut stats).pixels(|x, y| counts[(y * WIDTH + x) as usize] += 1);
+        for piece in Piece::of(transform, &triangle, &mut stats) {
+            piece.pixels(|x, y| counts[(y * WIDTH + x) as usize] += 1);
         }
     }
     (counts, stats)
@@ -62,8 +68,26 @@ proptest! {
                 rim.push(at_pixel(x, y, 1.0 + place as f32 / 32.0));
             }
         }
-        let (counts, stats) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
-        prop_assert!(counts.iter().all(|&n| n == 1), "{stats:?}");
+        for draw in [draw, draw_singly] {
+            let (counts, stats) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
+            prop_assert!(counts.iter().all(|&n| n == 1), "{stats:?}");
+        }
+    }
+
+    /// Corners beyond the guard band are limited by the program of Slats, and clipped by the other code.
+    #[test]
+    fn a_fan_with_corners_beyond_the_guard_band_covers_the_screen_exactly_once(
+        hub in on_screen(), turn in 0.0..1.0_f32, bands in prop_oneof![0.5..4.0_f32, 4.0..1e5_f32], count in 5..12_usize,
+    ) {
+        let hub = at_pixel(hub[0] as f32 * 0.5, hub[1] as f32 * 0.5, 1.0);
+        let rim: Vec<Vec3> = (0..count).map(|n| {
+            let (sine, cosine) = ((n as f32 + turn) / count as f32 * std::f32::consts::TAU).sin_cos();
+            // Every third corner lies on the screen's border, near the hub.
+            let reach = if n % 3 == 2 { 0.2 } else { bands };
+            at_pixel(320.0 + reach * 4096.0 * cosine, 240.0 + reach * 4096.0 * sine, 1.0)
+        }).collect();
+        let (counts, stats) = draw_singly(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
+        prop_assert!(stats.clipped == 0 && counts.iter().all(|&n| n == 1), "{stats:?}");
     }
 
     #[test]
@@ -139,9 +163,11 @@ fn triangles_with_corners_a_million_pixels_off_the_screen_share_their_edge() {
     let rim = [[-1.0, -0.9], [1.0, -1.1], [0.8, 1.0], [-0.7, 1.0]];
     let rim = rim.map(|[x, y]| at_pixel(320.0 + x * 1e6, 240.0 + y * 1e6, 1.0));
     let hub = at_pixel(300.25, 200.75, 1.0);
-    let (counts, stats) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
-    assert_eq!(stats.clipped, 4);
-    assert!(counts.iter().all(|&n| n == 1));
+    for (draw, clipped) in [(draw as fn(&_, &_) -> _, 4), (draw_singly, 0)] {
+        let (counts, stats) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
+        assert_eq!(stats.clipped, clipped);
+        assert!(counts.iter().all(|&n| n == 1));
+    }
 }
 
 #[test]

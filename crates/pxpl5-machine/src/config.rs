@@ -1,7 +1,9 @@
 use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
-use pxpl5_sim::parameters::{self, Parameter, ParameterTable, SettingError, Value, table_at};
+use pxpl5_sim::parameters::{
+    self, Parameter, ParameterInfo, ParameterTable, Provenance, SettingError, Value, table_at,
+};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::DisplayConfig;
 use pxpl5_wire::{NodeId, PeriodNumber};
@@ -140,7 +142,15 @@ impl MachineConfig {
     /// Returns all parameters in the order of the boards.
     pub fn parameters(&self) -> Vec<Parameter> {
         let all = self.tables().into_iter();
-        all.flat_map(|(path, table)| Parameter::of_table(path, table, path == i860::CHIP_PATH)).collect()
+        let all = all.flat_map(|(path, table)| Parameter::of_table(path, table, path == i860::CHIP_PATH));
+        all.map(|mut parameter| {
+            let name = parameter.path.strip_prefix("gp.");
+            if let Some(source) = name.and_then(|name| GpTiming::source_of(name, parameter.value)) {
+                parameter.info = ParameterInfo { provenance: Provenance::Derived, source, ..parameter.info };
+            }
+            parameter
+        })
+        .collect()
     }
 
     /// Returns the parameters that differ from the preset, by path.

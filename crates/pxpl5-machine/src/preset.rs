@@ -100,13 +100,23 @@ impl MachineConfig {
     }
 
     /// Returns this machine with the times per primitive that the i860 code needs, instead of published or fitted
-    /// times.
+    /// times. The machine `slats` has these times already.
     ///
     /// `of` is the pipeline whose code is used. A machine without a code version gets the times of compiled code.
     #[must_use]
     pub fn with_times_of_code(self, of: CodeUse) -> Self {
         let gp = self.gp.of_code(self.code.unwrap_or(CodeVersion::Compiled), of);
         Self { gp, ..self }
+    }
+
+    /// Returns this machine with published or fitted times per primitive. Only the machines of Slats whose times come
+    /// from i860 code change.
+    #[must_use]
+    pub fn with_times_of_papers(self) -> Self {
+        let of_code = [GpTiming::SLATS_1994, GpTiming::SLATS_OPTIMISED];
+        let fitted = [GpTiming::SLATS_FITTED, GpTiming::SLATS_FITTED.optimised()];
+        let of_papers = of_code.iter().zip(fitted).find(|(code, _)| **code == self.gp);
+        Self { gp: of_papers.map_or(self.gp, |(_, gp)| gp), ..self }
     }
 
     fn from_preset(preset: &Preset) -> Self {

@@ -15,6 +15,7 @@ use crate::preparation::Preparation;
 use crate::registry::{DisplayEntry, PipelineEntry};
 use crate::scene_views::{hmd_on, poses, views};
 use crate::views::{FrameStarts, ReportTimes};
+use pphigs::DisplayList;
 use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Machine, MachineConfig};
 use pxpl5_sim::parameters::SettingError;
@@ -70,7 +71,8 @@ impl Experiment {
         let eyes = self.pipeline.eyes();
         let period = config.host.view_period_ns * 1_000;
         let scene = self.pipeline.prepare(&self.scene, machine)?;
-        let list = Arc::new(display_list_for(&scene, self.pipeline.shading())?);
+        let list = display_list_for(&scene, self.pipeline.shading())?;
+        let list = Arc::new(DisplayList { is_single: self.pipeline.is_single(config), ..list });
         let (views, wanted) = views(&scene, self.seed, hmd, eyes);
         let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
         let starts = frame_starts(config.host, self.seed);

@@ -121,6 +121,11 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         Shading::Gouraud
     }
 
+    /// Returns true if triangles are drawn by the compiled program of Slats, with planes in single precision.
+    fn is_single(&self, _: &MachineConfig) -> bool {
+        false
+    }
+
     /// Returns the kind of i860 code that the pipeline uses, which determines the times of the code. The default is the
     /// code of the graphics library PPHIGS.
     fn code_use(&self) -> CodeUse {

@@ -190,6 +190,17 @@ fn far_off_screen(random: &mut Random) -> Vec3 {
     at_pixel(x, y, 1.0)
 }
 
+/// Returns a fan whose rim lies some guard bands of 4,096 px from pixel (0, 0), at several distances from the eye.
+fn beyond_the_band(name: &'static str, bands: f32) -> Case {
+    let mut random = Random::new(16);
+    let hub = at_pixel(300.25, 200.75, 1.0);
+    let corners: [[f32; 2]; 8] =
+        [[-1.0, -1.0], [0.25, -1.0], [1.0, -1.0], [1.0, 0.5], [1.0, 1.0], [-0.5, 1.0], [-1.0, 1.0], [-1.0, 0.25]];
+    let rim = corners.map(|[x, y]| at_pixel(x * bands * 4096.0, y * bands * 4096.0, random.between(0.5, 4.0)));
+    let triangles = (0..rim.len()).map(|n| coloured(&mut random, [hub, rim[n], rim[(n + 1) % rim.len()]]));
+    tiling(name, triangles.collect())
+}
+
 fn depth_range() -> Case {
     let triangles = many(11, 60, |r| {
         let place = [r.between(50.0, 590.0), r.between(50.0, 430.0)];
@@ -298,4 +309,11 @@ pub fn all() -> Vec<Case> {
         placed("10^6 from the origin", 14, 1.0, Vec3::new(1e6, -1e6, 1e6)),
         degenerate(),
     ]
+}
+
+/// Returns the families that are drawn by the program of Slats: all families, and corners beyond the guard band.
+pub fn single() -> Vec<Case> {
+    let [one, two, four] = [("corners at 1 guard band", 1.0), ("at 2 guard bands", 2.0), ("at 4 guard bands", 4.0)]
+        .map(|(name, bands)| beyond_the_band(name, bands));
+    all().into_iter().chain([one, two, four]).collect()
 }

@@ -5,7 +5,7 @@ use super::exact::ExactTriangle;
 use super::native::Piece;
 use super::snapped::Snapped;
 use super::{HEIGHT, WIDTH};
-use pxpl5_geometry::{Culling, DEPTH_FAR, DEPTH_NEAR, Light, SetupStats, Transform, Viewport};
+use pxpl5_geometry::{Culling, DEPTH_FAR, DEPTH_NEAR, SetupStats, Transform, Viewport};
 use std::ops::RangeInclusive;
 
 /// Finer and coarser grids with which the formats are tested, in bits of subpixels.
@@ -79,15 +79,15 @@ fn pixels() -> impl Iterator<Item = (i32, i32)> {
     (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y)))
 }
 
-/// Draws a case with the pipeline and with exact geometry, and counts the differences.
-pub fn measure(case: &Case) -> Row {
-    let transform = Transform::new(&case.view, Viewport::FRAME, Culling::None).expect("finite views");
+/// Draws a case with the pipeline and with exact geometry, and counts the differences. `single` selects the program of
+/// Slats.
+pub fn measure(case: &Case, single: bool) -> Row {
+    let new = if single { Transform::in_single_precision } else { Transform::new };
+    let transform = new(&case.view, Viewport::FRAME, Culling::None).expect("finite views");
     let mut row = Row { triangles: case.triangles.len(), ..Row::default() };
     let [mut drawn, mut wanted, mut own] = [Counts::new(), Counts::new(), Counts::new()];
     for triangle in &case.triangles {
-        let mut pieces = Vec::new();
-        transform.gouraud(triangle, &Light::NONE, &mut row.stats, |t| pieces.push(t));
-        let pieces: Vec<Piece> = pieces.into_iter().map(|t| Piece::new(t, &mut row.stats)).collect();
+        let pieces = Piece::of(&transform, triangle, &mut row.stats);
         let exact = ExactTriangle::new(&case.view, triangle);
         row.compare(&pieces, exact.as_ref(), [&mut drawn, &mut wanted, &mut own]);
     }

@@ -1,7 +1,9 @@
 //! Evaluation of the pipeline's expressions at pixels, in the renderer's formats.
 
 use super::{HEIGHT, WIDTH};
-use pxpl5_geometry::{GouraudTriangle, RegionMask, ScreenTriangle, SetupStats, VertexColours, Viewport};
+use pxpl5_geometry::{
+    GouraudTriangle, Light, RegionMask, ScreenTriangle, SetupStats, Transform, Triangle, VertexColours, Viewport,
+};
 use pxpl5_wire::{RegionGrid, RegionId, format};
 use std::ops::Range;
 
@@ -24,6 +26,18 @@ impl Piece {
     pub fn new(screen: ScreenTriangle<VertexColours>, stats: &mut SetupStats) -> Self {
         let planes = screen.gouraud(&Viewport::FRAME, stats);
         Self { screen, planes }
+    }
+
+    /// Returns the pieces of a triangle.
+    pub fn of(transform: &Transform, triangle: &Triangle, stats: &mut SetupStats) -> Vec<Self> {
+        let mut pieces = Vec::new();
+        if transform.is_single() {
+            transform.single_precision(triangle, stats, |screen, planes| pieces.push(Self { screen, planes }));
+            return pieces;
+        }
+        let mut screen = Vec::new();
+        transform.gouraud(triangle, &Light::NONE, stats, |t| screen.push(t));
+        screen.into_iter().map(|t| Self::new(t, stats)).collect()
     }
 
     pub fn regions(&self) -> RegionMask {

@@ -9,6 +9,7 @@ use std::fmt::Write;
 use std::thread::ScopedJoinHandle;
 
 const HEAD: &str = include_str!("numerics_head.md");
+const SINGLE: &str = include_str!("numerics_single.md");
 const FORMATS: &str = include_str!("numerics_formats.md");
 
 fn short(v: f64) -> String {
@@ -98,6 +99,8 @@ fn heading(out: &mut String, title: &str, columns: &[&str]) {
 
 pub struct Measured {
     pub triangles: Vec<(Case, Row)>,
+    /// The same by the program of Slats.
+    pub single: Vec<(Case, Row)>,
     pub spheres: Vec<(SphereCase, SphereRow)>,
     pub fights: Vec<Fight>,
 }
@@ -107,14 +110,17 @@ impl Measured {
     pub fn all() -> Self {
         std::thread::scope(|scope| {
             let fights = scope.spawn(fighting::all);
-            let triangles: Vec<_> =
-                cases::all().into_iter().map(|case| scope.spawn(move || (case.clone(), measure(&case)))).collect();
+            let [triangles, single] = [(cases::all(), false), (cases::single(), true)].map(|(cases, single)| {
+                let measured = |case: Case| scope.spawn(move || (case.clone(), measure(&case, single)));
+                cases.into_iter().map(measured).collect::<Vec<_>>()
+            });
             let spheres: Vec<_> = spheres::all()
                 .into_iter()
                 .map(|case| scope.spawn(move || (case.clone(), spheres::measure(&case))))
                 .collect();
             Self {
                 triangles: joined(triangles),
+                single: joined(single),
                 spheres: joined(spheres),
                 fights: fights.join().expect("no measurement panics"),
             }
@@ -130,7 +136,9 @@ fn joined<T>(threads: Vec<ScopedJoinHandle<'_, T>>) -> Vec<T> {
 pub fn text(measured: &Measured) -> String {
     let rows = &measured.triangles;
     let mut out = HEAD.to_string();
-    triangles(&mut out, rows);
+    triangles(&mut out, "Triangles: the pipeline against exact geometry", rows);
+    triangles(&mut out, "Triangles by the program of Slats", &measured.single);
+    out.push_str(SINGLE);
     fights(&mut out, &measured.fights);
     all_spheres(&mut out, &measured.spheres);
     grids(&mut out, rows);
@@ -140,7 +148,7 @@ pub fn text(measured: &Measured) -> String {
     out
 }
 
-fn triangles(out: &mut String, rows: &[(Case, Row)]) {
+fn triangles(out: &mut String, title: &str, rows: &[(Case, Row)]) {
     let columns = [
         "case",
         "triangles",
@@ -155,7 +163,7 @@ fn triangles(out: &mut String, rows: &[(Case, Row)]) {
         "overlaps",
         "counted",
     ];
-    heading(out, "Triangles: the pipeline against exact geometry", &columns);
+    heading(out, title, &columns);
     rows.iter().for_each(|(case, row)| pipeline_row(out, case, row));
 }
 

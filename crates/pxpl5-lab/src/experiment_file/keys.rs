@@ -155,10 +155,10 @@ const COMMON: &[Key] = &[
     ),
     Key::new(
         "machine.times",
-        "times of primitives in the table: papers (published or fitted), or code (those of the i860 code)",
+        "times of primitives in the table: papers (published or fitted) or code (those of the i860 code); without it, code \
+                    for the presets slats and slats-optimised, and papers for the others",
         KeyValues::Names(&const { names(&super::plan::TIMES) }),
-    )
-    .with_default("papers"),
+    ),
     Key::new("measure", "list of the quantities that go into tables and sweep rows", KeyValues::ANY),
     Key::new("output.pictures", "write the last pictures as PNG", KeyValues::Flag).with_default("true"),
     Key::new("output.timeline", "write a timeline as SVG", KeyValues::Flag).with_default("true"),

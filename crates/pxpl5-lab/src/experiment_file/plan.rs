@@ -194,8 +194,10 @@ impl ExperimentFile {
         if let Some(code) = self.choice("machine.code", &CODES)? {
             machine.code = code;
         }
-        if self.choice("machine.times", &TIMES)? == Some(true) {
-            machine = machine.with_times_of_code(pipeline.code_use());
+        match self.choice("machine.times", &TIMES)? {
+            Some(true) => machine = machine.with_times_of_code(pipeline.code_use()),
+            Some(false) => machine = machine.with_times_of_papers(),
+            None => {}
         }
         // Remember the adapted machine to detect parameters that are set twice.
         let adapted = machine.clone();

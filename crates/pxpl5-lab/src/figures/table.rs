@@ -184,7 +184,7 @@ pub const FIGURES: [Figure; 26] = [
         "most triangles without the COPY optimisation",
         (110.0, "triangles", None),
         "limit of full-screen:N on slats",
-        Basis::Fitted("gp.triangle_ns of slats"),
+        FREE,
     ),
     figure(
         "13",

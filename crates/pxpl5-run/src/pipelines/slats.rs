@@ -161,6 +161,11 @@ impl Pipeline for Slats {
         self.lighting.shading()
     }
 
+    fn is_single(&self, config: &MachineConfig) -> bool {
+        let is_compiled = config.code.unwrap_or(CodeVersion::Compiled) == CodeVersion::Compiled;
+        is_compiled && self.binning == RegionBinning::All && self.lighting == SlatsLighting::Precomputed
+    }
+
     fn code_use(&self) -> CodeUse {
         match self.lighting {
             SlatsLighting::Precomputed => CodeUse::Slats,

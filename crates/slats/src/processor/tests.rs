@@ -57,7 +57,7 @@ impl Rig {
             structures: vec![structure],
             ..DisplayList::default()
         };
-        let mut board = GpBoard::new(BOARD, GpTiming::SLATS_1994, CYCLE);
+        let mut board = GpBoard::new(BOARD, GpTiming::SLATS_FITTED, CYCLE);
         let gp = board.handle_for(Priority::Foreground);
         let binding = config.check().expect("a renderer for each region");
         for (priority, program) in processor(&gp, &config, &binding, Share::new(Arc::new(list), 0, 1), 0) {
@@ -167,7 +167,7 @@ fn the_next_clump_is_prepared_while_the_previous_one_is_drained() {
     rig.run_to(accepting + 2_000, accepting);
     let time = rig.bench.sent().nth(of_first).map(|(time, _)| time);
     let work = Span::from_ns(2 * SECOND as u64 * 30_000);
-    assert_eq!(time, Some(us(accepting) + work + Span::from_ns(GpTiming::SLATS_1994.message_ns) + CYCLE));
+    assert_eq!(time, Some(us(accepting) + work + Span::from_ns(GpTiming::SLATS_FITTED.message_ns) + CYCLE));
 }
 
 /// Returns the times at which the processor ordered copies of bottom regions.
@@ -186,7 +186,7 @@ fn bottom_regions_are_copied_after_the_last_top_region_and_the_retrace() {
     let acknowledge = |rig: &mut Rig, count| {
         (0..count).for_each(|_| rig.deliver(Body::Words([COPY_ACKNOWLEDGEMENT, 0, 0, 0].into())));
     };
-    let message = GpTiming::SLATS_1994.message_ns / 1_000;
+    let message = GpTiming::SLATS_FITTED.message_ns / 1_000;
     // Late case: the last acknowledgement arrives 3 ms after the retrace at 40 ms.
     let mut rig = Rig::new(CopySchedule::Split, 3);
     rig.run_to(30_000, 0);
