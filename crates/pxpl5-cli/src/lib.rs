@@ -212,12 +212,12 @@ mod tests {
     use super::*;
     use clap::CommandFactory;
 
-    /// Returns the command lines in a text that begin with `pxpl5`, each split into words. A backslash at the end of a
-    /// line joins the line with the next line.
+    /// Returns the command lines in a text that begin with `pxpl5`, also after a prompt, each split into words. A
+    /// backslash at the end of a line joins the line with the next line.
     fn commands(text: &str) -> Vec<Vec<String>> {
         let joined = text.split("\\\n").map(str::trim).collect::<Vec<_>>().join(" ");
-        let lines = joined.lines().map(str::trim).filter(|line| line.starts_with("pxpl5"));
-        lines.map(words).collect()
+        let lines = joined.lines().map(|line| line.trim().trim_start_matches("$ "));
+        lines.filter(|line| line.starts_with("pxpl5 ")).map(words).collect()
     }
 
     /// Splits a command line into words. Removes quotes, comments, redirections, and an explanation after three spaces.
@@ -252,6 +252,14 @@ mod tests {
     fn every_command_in_the_documents_is_accepted() {
         for (page, least) in [
             (include_str!("../../../docs/sweeps.md"), 1),
+            (include_str!("../../../docs/results.md"), 0),
+            (include_str!("../../../docs/guide/first-run.md"), 0),
+            (include_str!("../../../docs/guide/machine.md"), 1),
+            (include_str!("../../../docs/guide/pipelines.md"), 1),
+            (include_str!("../../../docs/guide/own-model.md"), 1),
+            (include_str!("../../../docs/guide/own-display.md"), 0),
+            (include_str!("../../../docs/guide/counted-pictures.md"), 1),
+            (include_str!("../../../docs/guide/trackers.md"), 1),
             (include_str!("../../../docs/guide/experiment-files.md"), 3),
             (include_str!("../../../docs/guide/clusters.md"), 4),
             (include_str!("../../../docs/guide/compare.md"), 0),
