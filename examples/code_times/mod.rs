@@ -40,7 +40,7 @@
 mod messages;
 mod strips;
 
-pub use strips::{StripTimes, strip_times};
+pub(crate) use strips::strip_times;
 
 use glam::Mat4;
 use pphigs::{
@@ -87,32 +87,32 @@ const MEMORY: u64 = 8 << 20;
 
 /// Times of primitives in nanoseconds, measured by executing i860 code.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CodeTimes {
+pub(crate) struct CodeTimes {
     /// Time to transform an unclipped triangle, averaged over each scene and then over the scenes.
-    pub triangle_ns: f64,
+    pub(crate) triangle_ns: f64,
     /// Smallest and largest mean time per triangle among the scenes.
-    pub triangle_range_ns: [f64; 2],
+    pub(crate) triangle_range_ns: [f64; 2],
     /// Time to transform a sphere, averaged over each scene and then over the scenes.
-    pub sphere_ns: f64,
+    pub(crate) sphere_ns: f64,
     /// Time to write one entry into a bin.
-    pub entry_ns: f64,
+    pub(crate) entry_ns: f64,
     /// Additional time of a clipped triangle: the time to cut it and to process all resulting triangles except one.
-    pub guard_ns: f64,
+    pub(crate) guard_ns: f64,
     /// Time to begin a pass over the display list, without its structures, averaged over each scene and then over the
     /// scenes.
-    pub pass_ns: f64,
+    pub(crate) pass_ns: f64,
     /// Time to transform one more structure for one eye, averaged over each scene and then over the scenes.
-    pub structure_ns: f64,
+    pub(crate) structure_ns: f64,
     /// Additional time per eye for a structure that contains spheres: the mean over the scenes with spheres.
-    pub sphere_view_ns: f64,
+    pub(crate) sphere_view_ns: f64,
     /// Time of one more edit (matrix replacement) in a message.
-    pub edit_ns: f64,
+    pub(crate) edit_ns: f64,
     /// Time to send one bin entry, for a slave that has the token.
-    pub token_entry_ns: f64,
+    pub(crate) token_entry_ns: f64,
     /// Time to process a message, or a chain of messages, averaged over each scene and then over the scenes.
-    pub message_ns: f64,
+    pub(crate) message_ns: f64,
     /// Smallest and largest mean time per message among the scenes.
-    pub message_range_ns: [f64; 2],
+    pub(crate) message_range_ns: [f64; 2],
 }
 
 /// Number of iterations of [`CodeTimes::improve`]. Each iteration leaves only a small fraction of the previous error.
@@ -154,7 +154,7 @@ fn parts(of: CodeUse, share: &Share) -> Vec<Share> {
 /// # Errors
 ///
 /// Returns [`ExperimentError::Scene`] when a scene is not found or the code does not terminate.
-pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, ExperimentError> {
+pub(crate) fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, ExperimentError> {
     // The clipper is measured one eye after the other. A pass for both eyes always clips the same fractions, which
     // leaves the equations underdetermined, unless it clips all triangles.
     let cut = Rig::of_list((version, of), "full-screen:30", 1, beyond_the_guard_band)?;

@@ -29,24 +29,24 @@ const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 
 /// Times in nanoseconds of the search for triangles in strips, and of the interpolation between two head poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StripTimes {
+pub(crate) struct StripTimes {
     /// Time to compare one triangle's bounding box with a strip that the box does not touch.
-    pub box_ns: f64,
+    pub(crate) box_ns: f64,
     /// Additional time of a bin entry for a triangle that touches one of the five windows (128 pixels wide) of a strip.
     /// The time includes the search and the transfer of the entry, and the comparison with nearby triangles that miss
     /// the strip.
-    pub entry_ns: f64,
+    pub(crate) entry_ns: f64,
     /// Time to create and send the five windows (128 pixels wide) of a strip without triangles.
-    pub windows_ns: f64,
+    pub(crate) windows_ns: f64,
     /// Time to compute a triangle's positions on the screen for two successive head poses.
-    pub ends_ns: f64,
+    pub(crate) ends_ns: f64,
     /// Time to skip one triangle that is not near a strip, during interpolation between two head poses.
-    pub passed_ns: f64,
+    pub(crate) passed_ns: f64,
     /// Additional time to interpolate one triangle that is near a strip: on the screen, and in eye space.
-    pub interpolated_ns: [f64; 2],
+    pub(crate) interpolated_ns: [f64; 2],
     /// Times to assemble four kinds of orders: a strip, a strip with a head pose, blocks of pixels, and a field that is
     /// interpolated between two head poses.
-    pub order_ns: [f64; 4],
+    pub(crate) order_ns: [f64; 4],
 }
 
 /// Measures the times of one version of the i860 code.
@@ -54,7 +54,7 @@ pub struct StripTimes {
 /// # Errors
 ///
 /// Returns [`ExperimentError::Scene`] when the code does not terminate.
-pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> {
+pub(crate) fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> {
     let [whole, smaller] = [measured(version, 1)?, measured(version, SMALLER)?];
     let more = whole.triangles - smaller.triangles;
     // The difference between the whole scene and a smaller share gives the time of one triangle.

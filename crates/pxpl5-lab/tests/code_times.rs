@@ -1,6 +1,6 @@
 //! Tests that the timing table's constants equal the times of the executed code.
 
-#[allow(dead_code, reason = "the example gp_timing uses the rest")]
+#[allow(dead_code, unused_imports, reason = "the example gp_timing uses the rest")]
 #[path = "../../../examples/code_times/mod.rs"]
 mod code_times;
 
