@@ -1,10 +1,8 @@
-//! Output files, of which either all appear under their final names, or none.
+//! Output files, which are written under temporary names and then renamed.
 
-mod batch;
 mod target;
 
 use crate::error::CliError;
-use batch::Batch;
 use image::RgbImage;
 use pxpl5::lab::manifest::{MANIFEST_FILE, Manifest};
 use pxpl5::sweep::ROWS_FILE;
@@ -12,23 +10,20 @@ use pxpl5::views::png_bytes;
 use pxpl5::views::results::{origin, origin_lines};
 use pxpl5::views::timeline::TimelineOptions;
 use pxpl5::{Outcome, Report};
-use std::fs::{self, File};
-use std::io;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use target::{Place, Target};
+use tempfile::NamedTempFile;
 
+/// Files of one folder, which are kept in memory until [`OutputFolder::commit`].
 #[derive(Debug)]
 pub(crate) struct OutputFolder {
     path: PathBuf,
     place: Place,
-    /// Folders that were created for this output: the output folder and its missing parents, outermost first.
-    made: Vec<PathBuf>,
-    batch: Batch,
+    files: Vec<(Target, Vec<u8>)>,
     listing: Listing,
 }
-
-/// Maximum number of attempts to create a folder, because other processes may remove the folder again.
-const MAX_TRIES: u32 = 100;
 
 /// The relation of the written files to the manifest in the folder. A manifest is the list of a run's files.
 #[derive(Debug)]
@@ -64,115 +59,98 @@ impl OutputFolder {
     /// Checks that the folder is writable before the simulation begins, because a simulation may take hours. Folders
     /// that were created for the check are removed again, so that an interrupted run leaves no empty folder.
     fn begin(path: &Path, place: Place, listing: Listing) -> Result<Self, CliError> {
-        let batch = Batch::new(place.clone());
-        let mut folder = Self { path: path.to_path_buf(), place, made: Vec::new(), batch, listing };
-        // A temporary file shows whether the folder is writable.
-        folder.in_folder(|batch| batch.try_in(path))?;
-        if let Some(_lock) = folder.lock() {
-            batch::remove_leftover_files(path);
+        let missing = path.ancestors().take_while(|part| !part.as_os_str().is_empty() && !part.exists());
+        let missing: Vec<&Path> = missing.collect();
+        let tried = fs::create_dir_all(path).and_then(|()| temporary(path)).map(drop);
+        for folder in missing {
+            let _ = fs::remove_dir(folder);
         }
-        // The folder is created again when files are written.
-        folder.unmake();
-        Ok(folder)
-    }
-
-    /// Executes `what` on the output files while the folder is locked. The lock prevents other processes from removing
-    /// or changing the folder.
-    fn in_folder(&mut self, mut what: impl FnMut(&mut Batch) -> io::Result<()>) -> Result<(), CliError> {
-        // Another process may remove the folder between its creation and the write.
-        let mut tries = 0;
-        loop {
-            self.make()?;
-            let lock = self.lock();
-            let done = what(&mut self.batch);
-            drop(lock);
-            tries += 1;
-            match done {
-                // Another process that has created the folder may remove it while it is empty.
-                Err(error) if error.kind() == io::ErrorKind::NotFound && tries < MAX_TRIES => {}
-                Err(error) => return Err(self.place.refused(&self.path, &error)),
-                Ok(()) => return Ok(()),
-            }
-        }
+        tried.map_err(|error| place.refused(path, &error))?;
+        Ok(Self { path: path.to_path_buf(), place, files: Vec::new(), listing })
     }
 
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    fn make(&mut self) -> Result<(), CliError> {
-        let missing = self.path.ancestors().take_while(|part| !part.as_os_str().is_empty() && !part.exists());
-        let mut made: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
-        made.reverse();
-        self.made.extend(made);
-        fs::create_dir_all(&self.path).map_err(|error| self.place.refused(&self.path, &error))
-    }
-
-    fn unmake(&mut self) {
-        for folder in self.made.drain(..).rev() {
-            let _ = fs::remove_dir(folder);
-        }
-    }
-
-    /// Locks the folder against other processes. Returns `None` on a file system without locks, so that results are
-    /// written without this protection.
-    fn lock(&self) -> Option<File> {
-        let folder = File::open(&self.path).ok()?;
-        folder.lock().ok()?;
-        Some(folder)
-    }
-
-    /// Writes a file under a temporary name. If `name` is a device, a pipe or a link to one of these, only
-    /// [`OutputFolder::commit`] writes the bytes. Fails if `name` is a folder.
+    /// Adds a file, which [`OutputFolder::commit`] writes. Fails if `name` is a folder.
     pub(crate) fn put(&mut self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
         let target = Target::of(&self.path.join(name), &self.place)?;
         if let (Listing::Own(manifest) | Listing::Added(manifest), Target::File(_)) = (&mut self.listing, &target) {
             manifest.add(name, bytes);
         }
-        self.put_target(&target, bytes)
-    }
-
-    fn put_target(&mut self, target: &Target, bytes: &[u8]) -> Result<(), CliError> {
-        self.in_folder(|batch| batch.put(target, bytes))
-    }
-
-    /// Renames all files to their final names. Processes that commit to the same folder take turns. After an error,
-    /// each file has its previous contents.
-    pub(crate) fn commit(mut self) -> Result<(), CliError> {
-        self.make()?;
-        let _lock = self.lock();
-        self.put_manifest()?;
-        self.batch.commit()?;
-        self.made.clear();
+        self.files.push((target, bytes.to_vec()));
         Ok(())
+    }
+
+    /// Writes all files under temporary names, then to devices, pipes and standard output, and then renames the files.
+    /// Until the renames, every file has its previous contents.
+    pub(crate) fn commit(mut self) -> Result<(), CliError> {
+        fs::create_dir_all(&self.path).map_err(|error| self.place.refused(&self.path, &error))?;
+        let gone = self.put_manifest()?;
+        let refused = |path: &Path, error: &io::Error| self.place.refused(path, error);
+        let mut staged = Vec::new();
+        for (target, bytes) in &self.files {
+            if let Target::File(name) = target {
+                staged.push((name, written(name, bytes).map_err(|error| refused(name, &error))?));
+            }
+        }
+        for (target, bytes) in &self.files {
+            match target {
+                Target::File(_) => {}
+                Target::StandardOutput => crate::terminal::print_bytes(bytes)?,
+                Target::Through(path) => {
+                    let opened = OpenOptions::new().write(true).open(path);
+                    opened.and_then(|mut file| file.write_all(bytes)).map_err(|error| refused(path, &error))?;
+                }
+            }
+        }
+        for (name, file) in staged {
+            file.persist(name).map_err(|error| refused(name, &error.error))?;
+        }
+        // Files of the previous run that the new run does not have.
+        gone.iter().try_for_each(|path| fs::remove_file(path).map_err(|error| refused(path, &error)))
     }
 
     /// Adds the manifest as the first file to be renamed. After a crash between two renames, the hashes in the manifest
-    /// show which files belong to the new run.
-    fn put_manifest(&mut self) -> Result<(), CliError> {
+    /// show which files belong to the new run. Returns the files of the previous run that a new run must delete.
+    fn put_manifest(&mut self) -> Result<Vec<PathBuf>, CliError> {
         // A new run replaces the previous manifest; derived files extend it.
-        let manifest = match &mut self.listing {
-            Listing::None => return Ok(()),
+        let (manifest, gone) = match &mut self.listing {
+            Listing::None => return Ok(Vec::new()),
             Listing::Own(manifest) => {
-                if let Some(before) = before(&self.path)? {
-                    let gone = manifest.replace(&before, &self.path);
-                    gone.into_iter().for_each(|path| self.batch.remove_on_commit(path));
-                }
-                manifest.clone()
+                let before = before(&self.path)?;
+                let gone = before.map(|before| manifest.replace(&before, &self.path));
+                (manifest.clone(), gone.unwrap_or_default())
             }
             Listing::Added(added) => {
-                let Some(mut manifest) = Manifest::read(&self.path)? else { return Ok(()) };
+                let Some(mut manifest) = Manifest::read(&self.path)? else { return Ok(Vec::new()) };
                 manifest.add_all(added);
-                manifest
+                (manifest, Vec::new())
             }
         };
         let target = Target::of(&self.path.join(MANIFEST_FILE), &self.place)?;
-        let put = self.batch.put(&target, manifest.to_text().as_bytes());
-        put.map_err(|error| self.place.refused(&self.path, &error))?;
-        // The manifest must get its name before all other files.
-        self.batch.rename_last_file_first();
-        Ok(())
+        self.files.insert(0, (target, manifest.to_text().into_bytes()));
+        Ok(gone)
     }
+}
+
+/// Creates a file with the permissions of new files, which is deleted unless it is renamed.
+fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+    tempfile::Builder::new().prefix(".pxpl5-").suffix(".tmp").make_in(folder, |path| File::create_new(path))
+}
+
+/// Writes a temporary file beside `name`, with the permissions of the file that it will replace.
+fn written(name: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
+    let mut file = temporary(folder_of(name))?;
+    file.write_all(bytes)?;
+    match name.symlink_metadata() {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        Err(error) => return Err(error),
+        Ok(found) if !found.is_file() => return Err(io::Error::other("it is no longer a regular file")),
+        Ok(found) => fs::set_permissions(file.path(), found.permissions())?,
+    }
+    Ok(file)
 }
 
 /// Returns the manifest of the run that will be replaced, or `None` if the folder has no manifest. Fails if the folder
@@ -195,23 +173,12 @@ fn added_to(folder: &Path, results: &Path) -> Listing {
     }
 }
 
-/// Without a commit, removes the temporary files and all empty folders that were created for these files.
-impl Drop for OutputFolder {
-    fn drop(&mut self) {
-        self.batch.discard();
-        self.unmake();
-    }
-}
-
 /// A single output file, written completely or not at all. The bytes for a device or pipe are written into the device
 /// or pipe, which is never replaced.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     target: Target,
-    /// Bytes for a target that exists and is not a regular file, such as a device or a pipe.
-    batch: Batch,
-    /// Folder of the output file. `None` if the target is not a regular file.
-    folder: Option<OutputFolder>,
+    folder: OutputFolder,
 }
 
 impl OutputFile {
@@ -234,15 +201,14 @@ impl OutputFile {
         }
         let place = Place::file(option, path);
         let target = Target::of(path, &place)?;
-        let folder = match &target {
-            Target::File(name) => {
-                let folder = folder_of(name);
-                let listing = results.map_or(Listing::None, |results| added_to(folder, results));
-                Some(OutputFolder::begin(folder, place.clone(), listing)?)
-            }
-            Target::Through(_) | Target::StandardOutput => None,
+        let folder = if let Target::File(name) = &target {
+            let folder = folder_of(name);
+            let listing = results.map_or(Listing::None, |results| added_to(folder, results));
+            OutputFolder::begin(folder, place, listing)?
+        } else {
+            OutputFolder { path: PathBuf::from("."), place, files: Vec::new(), listing: Listing::None }
         };
-        Ok(Self { target, batch: Batch::new(place), folder })
+        Ok(Self { target, folder })
     }
 
     /// Returns true if the output goes to standard output, so that the command must print nothing else.
@@ -253,16 +219,11 @@ impl OutputFile {
     /// Writes the file and then renames the file to its final name. After an error, a regular file has its previous
     /// contents.
     pub(crate) fn write(mut self, bytes: &[u8]) -> Result<(), CliError> {
-        let Some(mut folder) = self.folder.take() else {
-            // A stream is written by `commit`.
-            let _ = self.batch.put(&self.target, bytes);
-            return self.batch.commit();
-        };
-        if let (Listing::Added(manifest), Target::File(path)) = (&mut folder.listing, &self.target) {
+        if let (Listing::Added(manifest), Target::File(path)) = (&mut self.folder.listing, &self.target) {
             manifest.add(&path.file_name().unwrap_or_default().to_string_lossy(), bytes);
         }
-        folder.put_target(&self.target, bytes)?;
-        folder.commit()
+        self.folder.files.push((self.target, bytes.to_vec()));
+        self.folder.commit()
     }
 }
 
