@@ -68,7 +68,7 @@ fn script(commands: Option<String>, file: Option<PathBuf>) -> Result<Option<Vec<
     let text = match file {
         None => commands,
         Some(path) => {
-            let failed = |error: &dyn Display| CliError::failure(format!("{}: {error}", path.display()));
+            let failed = |error: &dyn Display| CliError::usage(format!("{}: {error}", path.display()));
             let bytes = std::fs::read(&path).map_err(|error| failed(&error))?;
             Some(text_of(&bytes).map_err(|error| failed(&error))?.to_owned())
         }

@@ -67,12 +67,12 @@ fn report(path: &Path) -> Result<Value, CliError> {
     } else {
         std::fs::read(path).map_err(|error| error.to_string())
     };
-    let bytes = read.map_err(|error| CliError::failure(format!("{name}: {error}; expected a {REPORT_FILE}")))?;
+    let bytes = read.map_err(|error| CliError::usage(format!("{name}: {error}; expected a {REPORT_FILE}")))?;
     let report: Value =
-        serde_json::from_slice(&bytes).map_err(|error| CliError::failure(format!("{name}: {error}")))?;
+        serde_json::from_slice(&bytes).map_err(|error| CliError::usage(format!("{name}: {error}")))?;
     match report["schema"].as_str() {
         Some(schema) if schema.starts_with("pxpl5-report/") => Ok(report),
-        found => Err(CliError::failure(format!(
+        found => Err(CliError::usage(format!(
             "{name}: expected the schema pxpl5-report, found {}; `pxpl5 run --out` writes it",
             found.unwrap_or("none")
         ))),
@@ -99,7 +99,7 @@ fn pictures(a: &Path, b: &Path) -> Result<Vec<PictureDifference>, CliError> {
 
 fn picture(name: &str, files: [(&Path, Vec<u8>); 2]) -> Result<PictureDifference, CliError> {
     let decoded = files.map(|(folder, bytes)| {
-        let refused = |error| CliError::failure(format!("{}: {error}", folder.join(name).display()));
+        let refused = |error| CliError::usage(format!("{}: {error}", folder.join(name).display()));
         image::load_from_memory(&bytes).map(image::DynamicImage::into_rgb8).map_err(refused)
     });
     let [a, b] = decoded;

@@ -3,7 +3,7 @@
 use pxpl5::{ExperimentError, FileError, FileErrorKind, SettingError, SettingErrorKind, StudyError};
 use std::fmt::{self, Display};
 
-/// Exit code for a wrong command line or experiment file.
+/// Exit code for a wrong command line or a wrong file.
 const USAGE: u8 = 2;
 /// Exit code of a valid command that could not finish its work.
 const FAILURE: u8 = 1;
@@ -40,7 +40,7 @@ impl CliError {
 pub struct CommandError(CliError);
 
 impl CommandError {
-    /// Returns the exit code of the command: 1 for a failure, 2 for a wrong command line or experiment file.
+    /// Returns the exit code of the command: 1 for a failure, 2 for a wrong command line or a wrong file.
     pub const fn exit_code(&self) -> u8 {
         self.0.code
     }
@@ -64,7 +64,6 @@ impl From<SettingError> for CliError {
     fn from(error: SettingError) -> Self {
         let code = match error.kind {
             SettingErrorKind::File(kind) => code_of(kind),
-            SettingErrorKind::Scene => FAILURE,
             _ => USAGE,
         };
         Self { code, message: error.to_string() }
@@ -84,9 +83,9 @@ impl From<FileError> for CliError {
 const fn code_of(kind: FileErrorKind) -> u8 {
     match kind {
         FileErrorKind::Locked => BUSY,
-        // These errors count as wrong usage, because the user can choose another folder.
-        FileErrorKind::Occupied | FileErrorKind::Unfinished => USAGE,
-        _ => FAILURE,
+        FileErrorKind::Unwritable => FAILURE,
+        // The user can give another file or choose another folder.
+        _ => USAGE,
     }
 }
 
@@ -103,7 +102,10 @@ impl From<StudyError> for CliError {
 impl From<ExperimentError> for CliError {
     fn from(error: ExperimentError) -> Self {
         match &error {
-            ExperimentError::Config(_) => Self::usage(error),
+            ExperimentError::Config(_)
+            | ExperimentError::Recording(_)
+            | ExperimentError::Level
+            | ExperimentError::Scene(_) => Self::usage(error),
             ExperimentError::Run { .. } => Self::failure(format!("{error}; nothing was written. {}", advice(&error))),
             _ => Self::failure(error),
         }

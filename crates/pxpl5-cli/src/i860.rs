@@ -111,9 +111,9 @@ impl Warnings {
 pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     match args.command {
         Command::Asm { file, base, output, warnings } => asm(&file, base, output.as_deref(), &warnings),
-        Command::Disasm { file, base } => print(&listing(base, &words_of(&read(&file).map_err(CliError::failure)?))),
+        Command::Disasm { file, base } => print(&listing(base, &words_of(&read(&file).map_err(CliError::usage)?))),
         Command::Run { file, base, entry, stop, budget, memory, show, json, quiet, warnings } => {
-            let program = load(&file, base).map_err(CliError::failure)?;
+            let program = load(&file, base).map_err(CliError::usage)?;
             warnings.print(&program);
             let options = RunOptions { entry, stop, budget, memory, show, json, quiet };
             let (report, result) = execute(&program, &options).map_err(CliError::failure)?;
@@ -122,7 +122,7 @@ pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
             result.map_err(CliError::failure)
         }
         Command::Vectors { file, json, show } => {
-            let (report, failed) = check_vectors(&file, json, show).map_err(CliError::failure)?;
+            let (report, failed) = check_vectors(&file, json, show).map_err(CliError::usage)?;
             print(&report)?;
             if failed == 0 { Ok(()) } else { Err(CliError::failure(format!("{failed} vectors failed"))) }
         }
@@ -154,7 +154,7 @@ fn assembled(file: &Path, base: u32) -> Result<(Program, String), String> {
 }
 
 fn asm(file: &Path, base: u32, output: Option<&Path>, warnings: &Warnings) -> Result<(), CliError> {
-    let (program, source) = assembled(file, base).map_err(CliError::failure)?;
+    let (program, source) = assembled(file, base).map_err(CliError::usage)?;
     warnings.print(&program);
     match output {
         Some(path) => OutputFile::open(path, "-o")?.write(&program.bytes),

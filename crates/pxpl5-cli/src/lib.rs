@@ -7,7 +7,7 @@
 //!
 //! - 0: success
 //! - 1: failure
-//! - 2: wrong command line or experiment file
+//! - 2: wrong command line or file
 //! - 75: another process is writing into the folder of a sweep
 //!
 //! Results go to standard output, all other messages to standard error.
@@ -79,7 +79,7 @@ const EXAMPLES: &str = "Examples:
   pxpl5 run --pipeline rendering-control --scene bunny.ply --gps 24 --out out/bunny
   pxpl5 run experiments/figure-04.toml --set seed=7 --json
 
-Exit codes: 0 success, 1 failure, 2 wrong command line or experiment file, 75 another process writes to the folder.";
+Exit codes: 0 success, 1 failure, 2 wrong command line or file, 75 another process writes to the folder.";
 
 #[derive(Subcommand, Debug)]
 enum Command {

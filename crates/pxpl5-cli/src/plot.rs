@@ -149,7 +149,7 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
 
 fn no_rows(folder: &Path) -> CliError {
     let folder = folder.display();
-    CliError::failure(format!(
+    CliError::usage(format!(
         "{folder}: neither rows.jsonl nor comparison.json; expected what `pxpl5 sweep --out` or `pxpl5 compare --out` writes"
     ))
 }

@@ -39,7 +39,7 @@ pub(crate) fn of(folder: &Path) -> Result<Option<ResultRows>, CliError> {
         let path = folder.join(name);
         // An unlisted file belongs to another run.
         if path.is_file() && manifest.as_ref().is_none_or(|manifest| manifest.lists(name)) {
-            let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
+            let problem = |what: String| CliError::usage(format!("{}: {what}", path.display()));
             let listed = manifest.as_ref().map(|manifest| manifest.read_file(folder, name)).transpose()?.flatten();
             let bytes = listed.map_or_else(|| fs::read(&path), Ok).map_err(|error| problem(error.to_string()))?;
             let text = text_of(&bytes).map_err(|error| problem(error.to_string()))?;
@@ -55,7 +55,7 @@ fn unfinished(folder: &Path) -> Result<Option<ResultRows>, CliError> {
     if !path.is_file() {
         return Ok(None);
     }
-    let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
+    let problem = |what: String| CliError::usage(format!("{}: {what}", path.display()));
     let bytes = fs::read(&path).map_err(|error| problem(error.to_string()))?;
     stored_comparison(text_of(&bytes).map_err(|error| problem(error.to_string()))?).map(Some).map_err(problem)
 }

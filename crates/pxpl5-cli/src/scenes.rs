@@ -33,9 +33,8 @@ pub(crate) fn run(args: ScenesArgs) -> Result<(), CliError> {
         let scenes: Vec<_> = scene::names().iter().map(|(name, about)| json!({"name": name, "about": about})).collect();
         return print(&format!("{:#}\n", json!({"schema": "pxpl5-scenes/1", "scenes": scenes})));
     }
-    let gltf = if cfg!(feature = "gltf") { ", .gltf, .glb" } else { "; in a build with --features gltf: .gltf, .glb" };
     let lines: String = scene::names().iter().map(|(name, about)| format!("{name:<15} {about}\n")).collect();
     print(&format!(
-        "{lines}\nA model file (.ply, .obj, .stl, .pdb{gltf}) can replace a built-in scene: pxpl5 run --scene FILE\n"
+        "{lines}\nA model file (.ply, .obj, .stl, .gltf, .glb, .pdb) can replace a built-in scene: pxpl5 run --scene FILE\n"
     ))
 }

@@ -18,8 +18,7 @@ pub(crate) struct SettingArgs {
     file: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineOptions,
-    /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .stl, .pdb, or .gltf and .glb in a build with
-    /// --features gltf.
+    /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .stl, .gltf, .glb or .pdb.
     #[arg(long, value_name = "NAME|FILE")]
     scene: Option<String>,
     /// Decimate the scene to at most N primitives, keeping its shape.

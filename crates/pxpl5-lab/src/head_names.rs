@@ -122,6 +122,10 @@ pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + S
         }
         ("walk", _) => return Err(no_path(text)),
         _ if is_recording(text) => Arc::new(recording(Path::new(text), replay)?),
+        // A path of a file with another ending is no mistyped name.
+        _ if Path::new(text).extension().is_some_and(|end| end.to_string_lossy().contains(char::is_alphabetic)) => {
+            return Err(number(text, "a recording whose name ends in .csv, .txt, .tum or .jsonl"));
+        }
         _ => {
             return Err(unknown("motion", text, listed("still pan slide sine pendulum synthetic walk"), MOTIONS));
         }

@@ -47,7 +47,7 @@ impl Motion {
         for (field, column) in &columns {
             chosen.map(field, column).map_err(wrong_setting)?;
         }
-        let format = RecordingFormat { columns: chosen, axes: None };
+        let format = RecordingFormat { columns: chosen, ..RecordingFormat::default() };
         let recording =
             Recording::read_as(text.as_slice(), &format).map_err(|error| wrong_setting(format!("{about}: {error}")))?;
         let moving = Arc::new(recording.ending(end_named(end)?));

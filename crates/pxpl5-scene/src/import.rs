@@ -2,7 +2,6 @@
 
 #[cfg(feature = "files")]
 mod files;
-#[cfg(feature = "gltf")]
 mod gltf;
 mod mesh;
 mod model;
@@ -67,7 +66,7 @@ pub enum Format {
     Stl,
     /// glTF 2.0 file, as JSON (`.gltf`) or binary (`.glb`). The triangles, strips and fans of the default scene are
     /// read, with the transforms of their nodes. Colours are the base colours of materials times the colours of
-    /// vertices. Textures, skins, morph targets and animations are not read. The format needs the feature `gltf`.
+    /// vertices. Textures, skins, morph targets and animations are not read.
     Gltf,
     /// Protein Data Bank file. The `ATOM` and `HETATM` records of its first model become spheres. If an atom has
     /// alternate locations, only the first is used.
@@ -207,14 +206,7 @@ fn read(
         Format::Ply => Content::Mesh(ply::read(&source)?),
         Format::Obj => Content::Mesh(obj::read(&source)?),
         Format::Stl => Content::Mesh(stl::read(&source)?),
-        #[cfg(feature = "gltf")]
         Format::Gltf => Content::Mesh(gltf::read(&source)?),
-        #[cfg(not(feature = "gltf"))]
-        Format::Gltf => {
-            let expected = "a program with the feature gltf for glTF files";
-            let found = "one built without gltf; build it with --features gltf";
-            return Err(FileError::new(FileErrorKind::UnknownFormat, expected, found).in_file(name));
-        }
         Format::Pdb => Content::Scene(Box::new(pdb::read(&source, placement)?)),
     })
 }

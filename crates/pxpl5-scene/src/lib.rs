@@ -12,7 +12,7 @@
 //! - A [`Scene`] is a display list of spheres and indexed triangles. Each vertex has a normal and a colour. A
 //!   *structure* is a named part of the display list with one model matrix. An [`Edit`] is a new model matrix for a
 //!   structure. [`Scene::edits_at`] returns the edits of a frame for structures with a motion of their own.
-//! - [`from_bytes`] reads PLY, OBJ, STL and PDB models, and with the feature `gltf` also glTF models. The models are
+//! - [`from_bytes`] reads PLY, OBJ, STL, glTF and PDB models. The models are
 //!   fitted into the default view. No input makes [`from_bytes`] panic. `load` reads a file of the host and needs the
 //!   feature `files`. Without this feature, the crate makes no calls to the operating system and can be compiled for a
 //!   browser.

@@ -123,6 +123,27 @@ fn binary_faces_first(encoding: &str, word: fn(u32) -> [u8; 4]) -> Vec<u8> {
 }
 
 #[test]
+fn rows_of_ply_may_continue_on_the_next_line_and_blank_lines_and_zeros_mean_nothing() {
+    let text = ascii_ply(&ELEMENTS);
+    let plain = ply(&text);
+    for text in [
+        text.replace("1 0 0\n", "1\n0 0\n"),
+        text.replace("3 0 2 1\n", "3\n0 2\n\n1\n"),
+        text.replace("1.0\n", "1.0\n\n"),
+        text.replace('\n', "\n\n").replace("end_header\n\n", "end_header\n"),
+        text.clone() + "\0\0\0\0",
+        text.replace("vertex_indices", "indices"),
+        text.replace("vertex_indices", "vertex_indexes").replace("3 0 2 1\n", "3 0 2 1 \n"),
+    ] {
+        assert_eq!(ply(&text), plain, "{text}");
+    }
+    let error = read(Format::Ply, text.replace("1 0 0\n", "1 0\n")).expect_err("a short row").to_string();
+    assert_eq!(error, "test: line 11: expected a row of \"vertex\" (x y z), found \"1 0\"");
+    let blank = text.replace("1.0\n", "1.0\n\n").replace("1 0 0\n", "1 q 0\n");
+    assert!(read(Format::Ply, blank).expect_err("no number").to_string().contains("line 12"));
+}
+
+#[test]
 fn in_binary_ply_files_faces_may_precede_the_vertices() {
     let plain = ply(ascii_ply(&ELEMENTS));
     assert_eq!(ply(binary_faces_first("binary_little_endian", u32::to_le_bytes)), plain);
@@ -399,6 +420,10 @@ fn colours_of_obj_vertices_may_be_fractions_or_bytes() {
     assert_eq!(of(&with(["1 0 0", "0 0.5 0", "0 0 1.0", "1 1 1"])), expected);
     assert_eq!(of(&with(["255 0 0", "0 128 0", "0 0 255", "255 255 255"])), expected);
     assert_eq!(of(&with(["1.0 0 0 1", "0 5e-1 0 1", "0 0 1 1", "1 1 1 1"])), expected);
+    // One component above 1 does not make bytes of fractions.
+    let orange = "1.02 0.5 0";
+    assert_eq!(of(&with([orange; 4])), [[255, 128, 0]; 4]);
+    assert_eq!(of(&with(["255.0 0 0", "0 128.0 0", "0 0 255.0", "255 255 255"])), expected);
     // A fourth number alone is a weight and not a colour. A point without a colour is grey, even if other points have
     // colours.
     assert!(of(&with(["1", "1", "1.0", "0.5"])).iter().all(|colour| *colour == DEFAULT_COLOUR));
@@ -536,6 +561,30 @@ fn missing_element_columns_are_replaced_by_the_names_of_atoms() {
         ("HETATM", " K  ", "K", 2.75),
         ("HETATM", "MN  ", "MN", 2.00),
         ("HETATM", " I1 ", "LIG", 1.98),
+        // Ions, as simulation programs name them.
+        ("ATOM", "SOD ", "SOD", 2.27),
+        ("ATOM", " NA ", "SOD", 2.27),
+        ("ATOM", "POT ", "POT", 2.75),
+        ("ATOM", "CLA ", "CLA", 1.75),
+        ("ATOM", "CAL ", "CAL", 2.00),
+        ("HETATM", " CAL", "LIG", c),
+        ("ATOM", "LIT ", "LIT", 1.82),
+        ("ATOM", "RUB ", "RUB", 3.03),
+        ("ATOM", "CES ", "CES", 3.43),
+        ("ATOM", "ZN2 ", "ZN2", 1.39),
+        ("ATOM", "NA+ ", "NA+", 2.27),
+        ("ATOM", "Na+ ", "Na+", 2.27),
+        ("ATOM", "Cl- ", "Cl-", 1.75),
+        ("ATOM", "K+  ", "K+", 2.75),
+        // Chlorophyll has the name of an ion.
+        ("HETATM", "MG  ", "CLA", 1.73),
+        ("HETATM", " NA ", "CLA", n),
+        // Names of residues in force fields, with names of atoms from column 13 on.
+        ("ATOM", "CA  ", "HSD", c),
+        ("ATOM", "NE2 ", "HIP", n),
+        ("ATOM", "CE  ", "LYN", c),
+        ("ATOM", "CE  ", "MSE", c),
+        ("ATOM", "OD2 ", "ASH", o),
         // Copper and mercury are not in the table, so they are drawn as all other elements.
         ("HETATM", "CU  ", "CU", 1.80),
         ("HETATM", "HG  ", "HG", 1.80),
@@ -544,6 +593,26 @@ fn missing_element_columns_are_replaced_by_the_names_of_atoms() {
         assert!((found - radius).abs() < 1e-4, "{record} {name:?} {residue}: {found} for {radius}");
     }
     assert_eq!(drawn(&atom("HETATM", "CU  ", "CU")).1, [255, 20, 147], "copper is no sulphur");
+}
+
+/// A file with the name `N` in column 13 begins all names there, so `CD` and `NA` of an unknown residue are no metals.
+#[test]
+fn names_that_all_begin_in_column_13_do_not_tell_the_length_of_the_symbol() {
+    for (name, radius) in [("CA  ", 1.70), ("CD  ", 1.70), ("NE  ", 1.55), ("CL  ", 1.75), ("ZN  ", 1.39)] {
+        let file = atom("ATOM", "N   ", "UNK") + &atom("ATOM", name, "UNK");
+        let scene = read(Format::Pdb, file).expect("two atoms");
+        let [nitrogen, atom] = scene.spheres() else { panic!("two spheres") };
+        assert!((atom.radius / nitrogen.radius * 1.55 - radius).abs() < 1e-4, "{name}");
+    }
+}
+
+#[test]
+fn a_second_model_or_an_end_ends_the_first_model() {
+    let one = atom("ATOM", " CA ", "VAL");
+    for between in ["MODEL        2\n", "END\n", "ENDMDL\nMODEL        2\n", "ENDMDL\n"] {
+        let scene = read(Format::Pdb, format!("MODEL        1\n{one}{between}{one}END\n")).expect("a model");
+        assert_eq!(scene.spheres().len(), 1, "{between:?}");
+    }
 }
 
 #[test]

@@ -331,6 +331,10 @@ fn a_buffer_is_read_from_a_file_beside_the_model_and_from_no_other_folder() {
         load_placed(&path, Placement::AsInFile).map(|scene| scene.triangles().len()).map_err(|error| error.to_string())
     };
     assert_eq!(load("a%20b.bin"), Ok(2));
+    for name in ["10%.bin", "50%20.bin", "%zz.bin"] {
+        std::fs::write(folder.join("inner").join(name), &writer.binary).expect("written");
+        assert_eq!(load(name), Ok(2), "{name}");
+    }
     for uri in ["../outer.bin", "%2e%2e/outer.bin", "/etc/hostname", "https://example.org/a.bin", "file:a%20b.bin", ""]
     {
         let error = load(uri).expect_err("refused");
@@ -355,6 +359,82 @@ fn unread_parts_cause_a_warning() {
     for what in ["1 primitive: points and lines", "1 texture: not read", "1 skin: not applied"] {
         assert!(warnings.contains(what), "{warnings}");
     }
+}
+
+/// Changes that a file may have without a change of its picture.
+#[test]
+fn unused_parts_of_a_file_may_have_any_form() {
+    let (writer, good) = square();
+    let expected = scene(&writer.binary(&good));
+    for extras in [json!(42), json!("text"), json!([1, "a"]), json!(true), Value::Null, json!({"a": {}})] {
+        let mut document = good.clone();
+        for part in ["/asset", "/scenes/0", "/nodes/0", "/meshes/0", "/meshes/0/primitives/0", "/accessors/0"] {
+            document.pointer_mut(part).expect("a part")["extras"] = extras.clone();
+        }
+        document["extras"] = extras;
+        assert_eq!(scene(&writer.binary(&document)), expected);
+    }
+    for (part, value) in [
+        ("/scenes", json!([{"nodes": [0]}, {"name": 7}])),
+        ("/skins", json!({})),
+        ("/cameras", json!([{}])),
+        ("/images", json!("none")),
+        ("/nodes", json!([{"mesh": 0}, {"mesh": "none", "rotation": 7}])),
+        ("/scene", json!(0.0)),
+        ("/nodes/0/mesh", json!(0.0)),
+        ("/accessors/0/count", json!(4.0)),
+        ("/accessors/0/componentType", json!(5126.0)),
+        ("/accessors/0/name", json!({})),
+        ("/extensionsUsed", Value::Null),
+    ] {
+        let mut document = good.clone();
+        let (above, name) = part.rsplit_once('/').expect("a path");
+        document.pointer_mut(above).expect("a part")[name] = value;
+        assert_eq!(scene(&writer.binary(&document)), expected, "{part}");
+    }
+    // The default scene may be another one, and the first scene need not have nodes.
+    let mut document = good.clone();
+    document["scenes"] = json!([{"name": "empty"}, {"nodes": [0]}]);
+    document["scene"] = 1.into();
+    assert_eq!(scene(&writer.binary(&document)), expected);
+    // Animations are counted, whatever they contain.
+    document["animations"] = json!([{"channels": [{"target": {"path": "weights"}, "sampler": 0}], "samplers": []}]);
+    assert_eq!(scene(&writer.binary(&document)).warnings(), ["1 animation: not read"]);
+    // Names in another encoding, base64 without padding, and JSON that is padded with zeros.
+    let text = document.to_string().replace("\"empty\"", "\"\u{fffd}\"");
+    let latin1: Vec<u8> = text.split('\u{fffd}').map(str::as_bytes).collect::<Vec<_>>().join(&0xfc);
+    let mut file = binary_file("", &writer.binary);
+    file.splice(20..20, [&latin1[..], &[0; 4][latin1.len() % 4..]].concat());
+    let length =
+        (file.len() as u32, latin1.len().next_multiple_of(4) as u32 + if latin1.len() % 4 == 0 { 4 } else { 0 });
+    file[8..12].copy_from_slice(&length.0.to_le_bytes());
+    file[12..16].copy_from_slice(&length.1.to_le_bytes());
+    assert_eq!(scene(&file).triangles(), expected.triangles());
+    let mut unpadded = writer.binary.clone();
+    unpadded.push(0);
+    let writer = Writer { binary: unpadded, ..writer };
+    let text = String::from_utf8(writer.text(good)).expect("text");
+    assert!(text.contains("==") && scene(text.replace("==", "").as_bytes()) == expected);
+}
+
+#[test]
+fn extensions_that_are_not_read_cause_a_warning_with_their_names() {
+    let (writer, good) = square();
+    let mut document = good.clone();
+    document["extensionsUsed"] =
+        json!(["EXT_mesh_gpu_instancing", "KHR_materials_unlit", "KHR_draco_mesh_compression"]);
+    document["nodes"][0]["extensions"] = json!({"VENDOR_hidden": {}});
+    let warnings = scene(&writer.binary(&document)).warnings().join("\n");
+    for name in ["EXT_mesh_gpu_instancing", "VENDOR_hidden"] {
+        assert!(warnings.contains(&format!("the extension {name} is not read")), "{warnings}");
+    }
+    assert_eq!(warnings.lines().count(), 2, "{warnings}");
+    // The older way to state a colour is read.
+    let mut document = good;
+    document["meshes"][0]["primitives"][0]["material"] = 0.into();
+    let red = json!({"diffuseFactor": [1.0, 0.0, 0.0, 1.0]});
+    document["materials"] = json!([{"extensions": {"KHR_materials_pbrSpecularGlossiness": red}}]);
+    assert!(scene(&writer.binary(&document)).vertices().iter().all(|vertex| vertex.colour == [255, 0, 0]));
 }
 
 #[test]
@@ -394,21 +474,36 @@ fn errors_name_the_part_of_the_file() {
         );
     }
     refused(&|d| d["extensionsRequired"] = json!(["VENDOR_x"]), &["extensionsRequired[0]", "VENDOR_x"]);
-    refused(&|d| d["asset"]["version"] = "1.0".into(), &["asset.version: expected 2.0, found \"1.0\""]);
+    refused(&|d| d["asset"]["version"] = "1.0".into(), &["asset.version: expected glTF 2.0, found glTF \"1.0\""]);
+    for version in [json!("1.0"), json!(1.0), json!("1")] {
+        // In glTF 1.0 the lists are objects.
+        refused(
+            &|d| {
+                d["asset"] = json!({"version": version});
+                d["nodes"] = json!({"a": {}});
+            },
+            &["asset.version: expected glTF 2.0, found glTF \"1"],
+        );
+    }
+    refused(&|d| d["asset"] = Value::Null, &["asset.version: expected glTF 2.0, found no version"]);
+    refused(&|d| d["nodes"][0]["mesh"] = json!(0.5), &["nodes[0]: expected the form of glTF 2.0, found", "0.5"]);
     refused(&|d| d["scene"] = 7.into(), &["scene: expected a scene with the index 7, found 1 scenes"]);
     refused(&|d| d["scenes"][0]["nodes"] = json!([9]), &["nodes[9]: expected a node with this index, found 1 nodes"]);
-    refused(&|d| d["nodes"][0]["mesh"] = 3.into(), &["meshes[3]: expected a mesh with this index, found 1 meshes"]);
+    refused(
+        &|d| d["nodes"][0]["mesh"] = 3.into(),
+        &["meshes[3]: expected an item of meshes with this index, found 1 meshes"],
+    );
     refused(&|d| d["nodes"][0]["children"] = json!([0]), &["nodes[0]: expected a node with at most one parent"]);
     refused(&|d| d["nodes"][0]["rotation"] = json!([0, 0, 0, 0]), &["nodes[0].rotation"]);
     let primitive = |d: &mut Value, key: &str, value: Value| d["meshes"][0]["primitives"][0][key] = value;
-    refused(&|d| primitive(d, "indices", 8.into()), &["accessors[8]: expected an accessor with this index"]);
+    refused(&|d| primitive(d, "indices", 8.into()), &["accessors[8]: expected an item of accessors with this index"]);
     refused(&|d| primitive(d, "material", 2.into()), &["meshes[0].primitives[0].material", "index 2, found 0"]);
     refused(&|d| primitive(d, "mode", 7.into()), &["meshes[0].primitives[0].mode: expected 0 to 6"]);
     refused(&|d| d["accessors"][2]["count"] = 5.into(), &["three corners for each triangle, found 5 corners"]);
     refused(&|d| d["accessors"][0]["count"] = 3.into(), &["attributes.NORMAL: expected 3 items", "found 4"]);
     refused(&|d| d["accessors"][0]["count"] = u64::MAX.into(), &["accessors[0]: expected", "items of 12 bytes"]);
     refused(&|d| d["accessors"][0]["byteOffset"] = 4.into(), &["accessors[0]: expected 4 items of 12 bytes"]);
-    refused(&|d| d["accessors"][0]["bufferView"] = 6.into(), &["bufferViews[6]: expected a buffer view"]);
+    refused(&|d| d["accessors"][0]["bufferView"] = 6.into(), &["bufferViews[6]: expected an item of bufferViews"]);
     refused(
         &|d| d["accessors"][0]["type"] = "VEC2".into(),
         &["accessors[0].type: expected one with [3] numbers, found"],
@@ -461,7 +556,7 @@ fn errors_of_the_gltf_container_name_the_byte_or_line() {
         assert!(error.contains(expected), "{error:?} has no {expected:?}");
     }
     let error = message(b"{\n\"asset\": {\"version\": \"2.0\"},\n\"nodes\": 7}");
-    assert!(error.contains("line 3: expected the JSON of glTF 2.0, found invalid type"), "{error}");
+    assert!(error.contains("nodes: expected the form of glTF 2.0, found invalid type"), "{error}");
     // Without the binary chunk, no buffer has bytes.
     let error = message(document.to_string().as_bytes());
     assert!(

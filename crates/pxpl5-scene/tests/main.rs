@@ -10,7 +10,6 @@ mod scenes;
 // Files.
 mod foreign;
 mod fuzz;
-#[cfg(feature = "gltf")]
 mod gltf;
 mod import;
 mod stl;

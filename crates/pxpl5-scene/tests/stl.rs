@@ -72,6 +72,32 @@ fn a_binary_file_whose_header_begins_like_text_is_binary() {
 }
 
 #[test]
+fn bytes_after_the_last_binary_triangle_give_a_warning() {
+    for header in ["x", "solid", "solid facet normal"] {
+        let scene = read([&binary(header, &TWO)[..], b"x"].concat()).expect("it is sound");
+        assert_eq!((scene.triangles().len(), scene.warnings().len()), (2, 1), "{header}");
+        assert!(scene.warnings()[0].contains("1 byte after the last triangle"), "{:?}", scene.warnings());
+    }
+}
+
+#[test]
+fn words_of_text_may_be_separated_by_any_white_space() {
+    let good = text(&TWO, "\n");
+    for text in [
+        good.split_whitespace().collect::<Vec<_>>().join(" "),
+        good.replace(" a name with spaces", "").split_whitespace().collect::<Vec<_>>().join("\n"),
+        good.replace("vertex", "vertex\n"),
+        good.replace("loop\n", "loop "),
+        good.replace("facet normal 0 0 nan", "facet\tnormal\x0c"),
+        good.replace("endloop", "end loop").replace("endfacet", "end facet").replace("endsolid", "end solid"),
+        good.replace("a name with spaces", "a solid facet"),
+        good.clone() + "\0\0\0",
+    ] {
+        assert_is_two(text);
+    }
+}
+
+#[test]
 fn attributes_of_binary_triangles_give_a_warning() {
     let mut file = binary("colours", &TWO);
     *file.last_mut().expect("it has bytes") = 1;
@@ -87,10 +113,13 @@ fn errors_state_the_position_and_the_expected_value() {
     for (file, expected) in [
         (
             good.replace("outer loop", "inner loop").into_bytes(),
-            "line 3: expected \"outer loop\", found \"    inner loop\"",
+            "line 3: expected \"outer loop\", found \"inner loop\"",
         ),
         (good.replace("vertex 1 0e0 0", "vertex 1 q 0").into_bytes(), "line 5: expected a number for y, found \"q\""),
-        (good.replace("vertex 1 0e0 0", "vertex 1 0").into_bytes(), "line 5: expected a number for z, found \"\""),
+        (
+            good.replace("vertex 1 0e0 0", "vertex 1 0").into_bytes(),
+            "line 6: expected a number for z, found \"vertex\"",
+        ),
         (good.replace("vertex 1 0e0 0", "vertex 1 inf 0").into_bytes(), "line 5: expected a coordinate between"),
         (
             good.replacen("    endloop", "      vertex 1 1 1", 1).into_bytes(),
@@ -99,7 +128,7 @@ fn errors_state_the_position_and_the_expected_value() {
         (b"solid x\nendsolid x\n".to_vec(), "expected at least one triangle, found none"),
         (binary("x", &[]), "expected at least one triangle, found none"),
         (whole[..whole.len() - 1].to_vec(), "byte 84: expected 2 triangles in 184 bytes, found 183 bytes"),
-        ([&whole[..], b"more"].concat(), "byte 184: expected the end of the file behind the last triangle"),
+        ([&binary("x", &[])[..], b"more"].concat(), "byte 84: expected the end of the file behind the last triangle"),
         (b"hello".to_vec(), "byte 0: expected text that begins with \"solid\", or a binary header of 84 bytes"),
         (nan, "byte 96: expected a coordinate between -1e15 and 1e15, found NaN"),
     ] {

@@ -17,7 +17,7 @@ pub use from_fn::{FnMotion, from_fn};
 pub use growing::GrowingRecording;
 pub use pan::Pan;
 pub use pendulum::Pendulum;
-pub use recording::{Axes, Columns, End, Recording, RecordingFormat};
+pub use recording::{Axes, Columns, End, Jumps, Recording, RecordingFormat};
 pub use shifted::AdvancedMotion;
 pub use sinusoid::Sinusoid;
 pub use slide::Slide;

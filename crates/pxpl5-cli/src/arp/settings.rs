@@ -120,7 +120,7 @@ impl WalkArgs {
         if let Some(path) = &self.file {
             let place = path.display().to_string();
             let bytes =
-                std::fs::read(path).map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
+                std::fs::read(path).map_err(|error| CliError::usage(format!("{place}: cannot be read: {error}")))?;
             let text = text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
             let file = toml::from_str(text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
             // Settings of the file come first, so that later settings override them.
@@ -153,7 +153,7 @@ impl WalkArgs {
 }
 
 fn read_lens(path: &Path, plan: &WalkPlan) -> Result<Lens, CliError> {
-    let failed = |error: &dyn std::fmt::Display| CliError::failure(format!("{}: {error}", path.display()));
+    let failed = |error: &dyn std::fmt::Display| CliError::usage(format!("{}: {error}", path.display()));
     let file = File::open(path).map_err(|error| failed(&error))?;
     Lens::read(BufReader::new(file), &plan.picture()).map_err(|error| failed(&error))
 }

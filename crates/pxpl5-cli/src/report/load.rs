@@ -25,7 +25,7 @@ const REPORT: &str = "report.json";
 
 fn no_report(path: &Path, found: &str) -> CliError {
     let path = path.display();
-    CliError::failure(format!("{path}: {found}; expected what `pxpl5 run --out` or `pxpl5 demo` writes"))
+    CliError::usage(format!("{path}: {found}; expected what `pxpl5 run --out` or `pxpl5 demo` writes"))
 }
 
 fn demo_run(files: &Files<'_>, entry: &Value) -> PageRun {

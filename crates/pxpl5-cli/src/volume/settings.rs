@@ -22,8 +22,8 @@ use std::sync::Arc;
 /// The scene of a volume, and the settings that differ from the paper's settings.
 #[derive(Args, Debug)]
 pub(super) struct VolumeSettingArgs {
-    /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .stl, .pdb, or .gltf and .glb in a build
-    /// with --features gltf. The scene is centred on the axis, its farthest corner at 0.9 of the display's radius.
+    /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .stl, .gltf, .glb or
+    /// .pdb. The scene is centred on the axis, its farthest corner at 0.9 of the display's radius.
     #[arg(long, value_name = "NAME|FILE", default_value = "mig")]
     scene: String,
     /// Decimate the scene to at most N primitives, keeping its shape.

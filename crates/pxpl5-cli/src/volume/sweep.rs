@@ -82,7 +82,7 @@ impl VolumeSweep {
     fn load(path: &Path, sets: &[String], threads: Threads, budget: BudgetArgs) -> Result<Self, CliError> {
         let place = path.display().to_string();
         let bytes =
-            std::fs::read(path).map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
+            std::fs::read(path).map_err(|error| CliError::usage(format!("{place}: cannot be read: {error}")))?;
         let text = text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
         let mut file: Table = toml::from_str(text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
         let title = file.remove("title").map(|title| plain(&title));

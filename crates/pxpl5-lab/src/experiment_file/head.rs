@@ -10,7 +10,7 @@ use pxpl5_sim::parameters::Parameter;
 use pxpl5_sim::parameters::SettingError;
 use std::sync::Arc;
 use toml::Value;
-use tracking::motion::{Axes, Columns, End, RecordingFormat};
+use tracking::motion::{Axes, Columns, End, Jumps, RecordingFormat};
 use tracking::predict::PredictorConfig;
 
 /// The tracked head of an experiment, with the names of its motion, tracker and predictor.
@@ -126,6 +126,9 @@ impl HeadChoice {
             let Replay { format, end } = &self.replay;
             all.push(("head.end".to_owned(), Value::from(end.name())));
             all.extend(format.axes.map(|axes| ("head.axes".to_owned(), Value::from(axes.name()))));
+            if format.jumps != Jumps::default() {
+                all.push(("head.jumps".to_owned(), Value::from(format.jumps.name())));
+            }
             let columns = format.columns.iter();
             all.extend(columns.map(|(field, column)| (format!("{COLUMNS}{field}"), Value::from(column))));
         }
@@ -162,12 +165,14 @@ fn replay(file: &ExperimentFile) -> Result<Replay, SettingError> {
             columns.map(field, &plain(&setting.value)).map_err(|error| refused(file, path, &error))?;
         }
     }
-    let format = RecordingFormat { columns, axes: file.choice("head.axes", &Axes::NAMES)? };
+    let jumps = file.choice("head.jumps", &Jumps::NAMES)?.unwrap_or_default();
+    let format = RecordingFormat { columns, axes: file.choice("head.axes", &Axes::NAMES)?, jumps };
     Ok(Replay { format, end: file.choice("head.end", &End::NAMES)?.unwrap_or_default() })
 }
 
 fn refuse_recording_keys(file: &ExperimentFile, motion: &str) -> Result<(), SettingError> {
-    let is_of_recordings = |path: &str| ["head.end", "head.axes"].contains(&path) || path.starts_with(COLUMNS);
+    let is_of_recordings =
+        |path: &str| ["head.end", "head.axes", "head.jumps"].contains(&path) || path.starts_with(COLUMNS);
     match file.settings.iter().find(|(path, _)| is_of_recordings(path) && !is_recording(motion)) {
         Some((path, setting)) => Err(wrong(path, setting, "nothing: head.motion is no recording")),
         None => Ok(()),

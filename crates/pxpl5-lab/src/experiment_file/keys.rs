@@ -8,7 +8,7 @@ use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Aim, Every, FIELDS_RANGE, HeadPlace, Level, Pixels, Registry, Reprojection};
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, names};
-use tracking::motion::{Axes, Columns, End};
+use tracking::motion::{Axes, Columns, End, Jumps};
 
 /// A key of an experiment file, with an explanation for the user.
 #[derive(Clone, Debug)]
@@ -80,6 +80,12 @@ const COMMON: &[Key] = &[
     ),
     Key::new("head.axes", "axes of a recording", KeyValues::Names(&const { names(&Axes::NAMES) }))
         .with_default("by the file format"),
+    Key::new(
+        "head.jumps",
+        "lines of a recording in which the head moves faster than 8 m/s or turns faster than 2,000 deg/s",
+        KeyValues::Names(&const { names(&Jumps::NAMES) }),
+    )
+    .with_default("keep, with a warning"),
     Key::new("head.tracker", crate::head_names::TRACKERS, KeyValues::ANY),
     Key::new("head.predict", "none, velocity, acceleration or kalman", KeyValues::ANY),
     Key::new(

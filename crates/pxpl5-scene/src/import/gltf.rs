@@ -1,7 +1,8 @@
-//! Reader of glTF 2.0 files. The library gltf-json parses the JSON. This module follows the nodes of the scene, and
-//! reads the primitives of their meshes.
+//! Reader of glTF 2.0 files. It follows the nodes of the scene, and reads the primitives of their meshes.
 //!
-//! Indices and positions in buffers are checked when they are used, so that no file causes a panic.
+//! Indices and positions in buffers are checked when they are used, so that no file causes a panic. The existing
+//! libraries gltf and gltf-json are not used: one panics at an index beyond a list, and the other refuses a file for a
+//! part that is never drawn.
 
 mod buffers;
 mod container;
@@ -10,72 +11,67 @@ mod document;
 mod host;
 mod numbers;
 
+use std::collections::BTreeSet;
+
 use glam::{DMat3, DMat4, DQuat, DVec3};
-use gltf_json::accessor::ComponentType;
-use gltf_json::mesh::{Mode, Primitive, Semantic};
-use gltf_json::validation::Checked;
-use gltf_json::{Node, Root};
 use pxpl5_sim::parameters::FileError;
 
 use self::buffers::Buffers;
 use self::container::Chunks;
-use self::document::{COMPRESSION, Document};
-use self::numbers::Numbers;
+use self::document::{
+    COMPRESSION, Document, Extensions, Material, Mesh, Node, Primitive, Root, SceneNodes, Whole, parsed,
+};
+use self::numbers::{ComponentType, Numbers};
 use super::Source;
 use super::model::{Model, Places, counted, direction, push_with_slow_growth};
 use crate::config::{DEFAULT_COLOUR, MAX_COORDINATE};
 
-/// Extensions that a file may require although the importer does not read them. All but one of these extensions change
-/// only materials, textures and lights. `KHR_mesh_quantization` allows other types of numbers, which the importer can
-/// read.
-const HARMLESS: [&str; 6] = [
+/// Extensions that need no warning, and that a file may even require. They concern only materials, textures, lights and
+/// descriptions. `KHR_mesh_quantization` allows other types of numbers, which the importer can read.
+const HARMLESS: [&str; 9] = [
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     "KHR_texture_basisu",
     "KHR_lights_punctual",
+    "KHR_xmp_json_ld",
+    "KHR_animation_pointer",
     "EXT_texture_webp",
     "EXT_texture_avif",
+    "EXT_lights_image_based",
 ];
 const HARMLESS_PREFIX: &str = "KHR_materials_";
+
+fn is_harmless(extension: &str) -> bool {
+    HARMLESS.contains(&extension) || extension.starts_with(HARMLESS_PREFIX)
+}
 
 pub(super) fn read(source: &Source<'_>) -> Result<Model, FileError> {
     let mut model = Model::new(Places::Single(Vec::new()));
     let chunks = Chunks::of(source)?;
     let parsed_bytes = chunks.parsed_bytes();
     model.check_reading_bytes(source, parsed_bytes)?;
-    let root = chunks.parse(source)?;
-    check_version(source, &root)?;
+    let text = chunks.text();
+    let root = chunks.parse(source, &text)?;
     check_extensions(source, &root)?;
-    let buffers = Buffers::of(source, &root, chunks.binary);
+    let buffers = Buffers::of(source, root.list("buffers"), chunks.binary);
     model.more_file_bytes = buffers.file_bytes;
     let held = parsed_bytes.saturating_add(buffers.decoded_bytes);
+    let extensions = root.names("extensionsUsed").collect();
     let document = Document { source, root, buffers };
-    let mut reader = Reader { document: &document, held, model, skipped: 0, skinned: 0, has_targets: false };
+    let mut reader =
+        Reader { document: &document, held, model, skipped: 0, skinned: 0, has_targets: false, extensions };
     reader.scene()?;
     Ok(reader.finished())
 }
 
-fn check_version(source: &Source<'_>, root: &Root) -> Result<(), FileError> {
-    let needed = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
-    match needed.as_str() {
-        "2.0" => Ok(()),
-        // A file of a later version 2.x that states no minimum version can be read as 2.0.
-        later if later.starts_with("2.") && root.asset.min_version.is_none() => Ok(()),
-        other => Err(source.part("asset.version", "2.0", super::source::excerpt(other))),
-    }
-}
-
 fn check_extensions(source: &Source<'_>, root: &Root) -> Result<(), FileError> {
-    for (number, name) in root.extensions_required.iter().enumerate() {
-        if HARMLESS.contains(&name.as_str()) || name.starts_with(HARMLESS_PREFIX) {
-            continue;
-        }
+    for (number, name) in root.names("extensionsRequired").enumerate().filter(|(_, name)| !is_harmless(name)) {
         let expected = match COMPRESSION.contains(&name.as_str()) {
             true => "a mesh without compression (other programs can decompress the file)",
             false => "an extension of materials, textures or lights, or KHR_mesh_quantization",
         };
         let part = format!("extensionsRequired[{number}]");
-        return Err(source.part(part, expected, super::source::excerpt(name)));
+        return Err(source.part(part, expected, super::source::excerpt(&name)));
     }
     Ok(())
 }
@@ -95,6 +91,8 @@ struct Reader<'a> {
     /// Number of nodes whose meshes are deformed by a skin.
     skinned: usize,
     has_targets: bool,
+    /// Names of the extensions that the file announces, and of those of the nodes and primitives that are drawn.
+    extensions: BTreeSet<String>,
 }
 
 impl<'a> Reader<'a> {
@@ -104,17 +102,21 @@ impl<'a> Reader<'a> {
     /// parent are read.
     fn scene(&mut self) -> Result<(), FileError> {
         let Document { source, root, .. } = self.document;
-        let number = root.scene.map_or(0, |scene| scene.value());
-        let roots: Vec<usize> = match root.scenes.get(number) {
-            Some(scene) => scene.nodes.iter().map(|node| node.value()).collect(),
+        let (scenes, nodes) = (root.list("scenes"), root.list("nodes"));
+        let number = root.scene.map_or(0, |scene| scene.0);
+        let roots: Vec<usize> = match scenes.get(number) {
+            Some(text) => {
+                let scene: SceneNodes = parsed(source, &format!("scenes[{number}]"), text)?;
+                scene.nodes.into_iter().flatten().map(|node| node.0).collect()
+            }
             None if root.scene.is_some() => {
-                let found = format!("{} scenes", root.scenes.len());
+                let found = format!("{} scenes", scenes.len());
                 return Err(source.part("scene", format!("a scene with the index {number}"), found));
             }
-            None => roots_of(&root.nodes),
+            None => self.roots_of(nodes.len())?,
         };
         // Each node waits at most once, so the list of waiting nodes is not longer than the list of nodes.
-        let mut visited = vec![false; root.nodes.len()];
+        let mut visited = vec![false; nodes.len()];
         let mut visit = |number: usize| match visited.get_mut(number).map(|node| std::mem::replace(node, true)) {
             Some(false) => Ok(number),
             // Nodes form trees. A node with two parents could otherwise multiply the model, and a circle of nodes would
@@ -124,7 +126,7 @@ impl<'a> Reader<'a> {
                 Err(source.part(format!("nodes[{number}]"), "a node with at most one parent", found))
             }
             None => {
-                let found = format!("{} nodes", root.nodes.len());
+                let found = format!("{} nodes", nodes.len());
                 Err(source.part(format!("nodes[{number}]"), "a node with this index", found))
             }
         };
@@ -134,54 +136,71 @@ impl<'a> Reader<'a> {
             waiting.push((visit(root)?, DMat4::IDENTITY));
         }
         while let Some((number, parent)) = waiting.pop() {
-            let node = &root.nodes[number];
-            let to_world = parent * transform(source, number, node)?;
+            let node: Node = parsed(source, &format!("nodes[{number}]"), nodes[number])?;
+            let to_world = parent * transform(source, number, &node)?;
             for child in node.children.iter().flatten().rev() {
-                waiting.push((visit(child.value())?, to_world));
+                waiting.push((visit(child.0)?, to_world));
             }
             self.node(node, to_world)?;
         }
         Ok(())
     }
 
-    fn node(&mut self, node: &Node, to_world: DMat4) -> Result<(), FileError> {
-        let Document { source, root, .. } = self.document;
-        let Some(number) = node.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
-        let Some(mesh) = root.meshes.get(number) else {
-            let found = format!("{} meshes", root.meshes.len());
-            return Err(source.part(format!("meshes[{number}]"), "a mesh with this index", found));
-        };
+    /// Returns the indices of all nodes without a parent.
+    fn roots_of(&self, count: usize) -> Result<Vec<usize>, FileError> {
+        let mut is_child = vec![false; count];
+        for number in 0..count {
+            let node: Node = self.document.object("nodes", number)?;
+            for child in node.children.into_iter().flatten() {
+                if let Some(is_child) = is_child.get_mut(child.0) {
+                    *is_child = true;
+                }
+            }
+        }
+        Ok((0..count).filter(|&node| !is_child[node]).collect())
+    }
+
+    fn node(&mut self, node: Node, to_world: DMat4) -> Result<(), FileError> {
+        let Some(number) = node.mesh.map(|mesh| mesh.0) else { return Ok(()) };
+        self.note(node.extensions);
+        let mesh: Mesh<'_> = self.document.object("meshes", number)?;
         // The joints of a skin determine the place of a mesh, and the node of the mesh does not. Without joints the
         // mesh stays as it is.
         let to_world = if node.skin.is_some() { DMat4::IDENTITY } else { to_world };
         self.skinned += usize::from(node.skin.is_some());
-        for (of_mesh, primitive) in mesh.primitives.iter().enumerate() {
-            self.has_targets |= primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty());
-            self.primitive(&format!("meshes[{number}].primitives[{of_mesh}]"), primitive, to_world)?;
+        for (of_mesh, text) in mesh.primitives.iter().flatten().enumerate() {
+            let part = format!("meshes[{number}].primitives[{of_mesh}]");
+            let primitive: Primitive<'_> = parsed(self.document.source, &part, text)?;
+            self.has_targets |= primitive.targets.is_some_and(|targets| targets.get().contains('{'));
+            self.primitive(&part, primitive, to_world)?;
         }
         Ok(())
     }
 
-    fn primitive(&mut self, part: &str, primitive: &Primitive, to_world: DMat4) -> Result<(), FileError> {
+    fn note(&mut self, extensions: Extensions) {
+        self.extensions.extend(extensions.into_iter().flatten().map(|(name, _)| name));
+    }
+
+    fn primitive(&mut self, part: &str, primitive: Primitive<'_>, to_world: DMat4) -> Result<(), FileError> {
         let document = self.document;
-        let mode = match primitive.mode {
-            Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
-            Checked::Valid(_) => {
+        let mode = match primitive.mode.map_or(4, |mode| mode.0) {
+            0..=3 => {
                 self.skipped += 1;
                 return Ok(());
             }
-            Checked::Invalid => {
-                return Err(document.source.part(format!("{part}.mode"), "0 to 6", "another number"));
-            }
+            4 => Mode::Triangles,
+            5 => Mode::TriangleStrip,
+            6 => Mode::TriangleFan,
+            other => return Err(document.source.part(format!("{part}.mode"), "0 to 6", other)),
         };
-        let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
-        let Some(positions) = attribute(Semantic::Positions) else {
+        self.note(primitive.extensions);
+        let Some(positions) = primitive.attributes.positions else {
             return Err(document.source.part(format!("{part}.attributes"), "POSITION", document.none()));
         };
         let positions = self.numbers(positions, &[3], &OF_VECTORS)?;
         let normals =
-            attribute(Semantic::Normals).map(|normals| self.numbers(normals, &[3], &OF_VECTORS)).transpose()?;
-        let colours = attribute(Semantic::Colors(0)).map(|colours| self.numbers(colours, &[3, 4], &OF_VECTORS));
+            primitive.attributes.normals.map(|normals| self.numbers(normals, &[3], &OF_VECTORS)).transpose()?;
+        let colours = primitive.attributes.colours.map(|colours| self.numbers(colours, &[3, 4], &OF_VECTORS));
         let colours = colours.transpose()?;
         for (name, other) in [("NORMAL", &normals), ("COLOR_0", &colours)] {
             if let Some(other) = other.as_ref().filter(|other| other.count != positions.count) {
@@ -190,8 +209,8 @@ impl<'a> Reader<'a> {
                 return Err(document.source.part(format!("{part}.attributes.{name}"), expected, found));
             }
         }
-        let indices = primitive.indices.map(|indices| self.numbers(indices.value(), &[1], &OF_INDICES)).transpose()?;
-        let base = self.base_colour(part, primitive, colours.is_some())?;
+        let indices = primitive.indices.map(|indices| self.numbers(indices, &[1], &OF_INDICES)).transpose()?;
+        let base = self.base_colour(part, primitive.material, colours.is_some())?;
         let vertices = PrimitiveVertices { positions, normals, colours, base, to_world, part };
         let corners = Corners { indices, vertices: vertices.positions.count, mode };
         // Check that there is memory for the whole primitive before any part of the primitive is added.
@@ -214,11 +233,11 @@ impl<'a> Reader<'a> {
     /// Fails if the accessor does not exist, has no bytes, or does not have one of the allowed types.
     fn numbers(
         &self,
-        accessor: usize,
+        accessor: Whole,
         components: &[usize],
         kinds: &[ComponentType],
     ) -> Result<Numbers<'a>, FileError> {
-        Numbers::of(self.document, accessor, components, kinds)
+        Numbers::of(self.document, accessor.0, components, kinds)
     }
 
     /// Adds a glTF primitive that has normals: all its vertices, and the triangles between these vertices.
@@ -292,18 +311,22 @@ impl<'a> Reader<'a> {
 
     /// Returns the base colour of a primitive in linear light. `None` stands for [`DEFAULT_COLOUR`], the colour of a
     /// primitive without a material and without colours of its vertices.
-    fn base_colour(&self, part: &str, primitive: &Primitive, has_colours: bool) -> Result<Option<[f64; 3]>, FileError> {
-        let materials = &self.document.root.materials;
-        let Some(number) = primitive.material.map(|material| material.value()) else {
+    fn base_colour(
+        &self,
+        part: &str,
+        material: Option<Whole>,
+        has_colours: bool,
+    ) -> Result<Option<[f64; 3]>, FileError> {
+        let Some(Whole(number)) = material else {
             return Ok(has_colours.then_some([1.0; 3]));
         };
-        let Some(material) = materials.get(number) else {
-            let found = format!("{} materials", materials.len());
+        let count = self.document.root.list("materials").len();
+        if number >= count {
             let expected = format!("a material with the index {number}");
-            return Err(self.document.source.part(format!("{part}.material"), expected, found));
-        };
-        let [red, green, blue, _] = material.pbr_metallic_roughness.base_color_factor.0;
-        Ok(Some([red.into(), green.into(), blue.into()]))
+            return Err(self.document.source.part(format!("{part}.material"), expected, format!("{count} materials")));
+        }
+        let material: Material = self.document.object("materials", number)?;
+        Ok(Some(material.base_colour()))
     }
 
     fn finished(mut self) -> Model {
@@ -314,10 +337,18 @@ impl<'a> Reader<'a> {
             }
         };
         warn(self.skipped, "primitive", "points and lines are not read");
-        warn(root.textures.len(), "texture", "not read, so surfaces have the colours of materials and vertices");
+        warn(
+            root.list("textures").len(),
+            "texture",
+            "not read, so surfaces have the colours of materials and vertices",
+        );
         warn(self.skinned, "skin", "not applied, so the mesh has the pose in which it was made");
-        warn(root.animations.len(), "animation", "not read");
+        warn(root.list("animations").len(), "animation", "not read");
         warn(usize::from(self.has_targets), "mesh with morph targets", "the targets are not read");
+        for name in self.extensions.iter().filter(|name| !is_harmless(name) && !COMPRESSION.contains(&name.as_str())) {
+            let warning = format!("the extension {name} is not read: other programs may draw the model differently");
+            self.model.warnings.push(warning);
+        }
         self.model
     }
 }
@@ -325,31 +356,20 @@ impl<'a> Reader<'a> {
 /// Number of bytes of a point with its normal and its colour.
 const BYTES_OF_POINT: usize = 2 * size_of::<glam::Vec3>() + 3;
 
-fn roots_of(nodes: &[Node]) -> Vec<usize> {
-    let mut is_child = vec![false; nodes.len()];
-    for child in nodes.iter().flat_map(|node| node.children.iter().flatten()) {
-        if let Some(is_child) = is_child.get_mut(child.value()) {
-            *is_child = true;
-        }
-    }
-    (0..nodes.len()).filter(|&node| !is_child[node]).collect()
-}
-
 /// Returns the transform from a node to its parent.
 fn transform(source: &Source<'_>, number: usize, node: &Node) -> Result<DMat4, FileError> {
     if let Some(matrix) = node.matrix {
-        return Ok(DMat4::from_cols_array(&matrix.map(f64::from)));
+        return Ok(DMat4::from_cols_array(&matrix));
     }
-    let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
-    let scale = node.scale.map_or(DVec3::ONE, vector);
-    let translation = node.translation.map_or(DVec3::ZERO, vector);
+    let scale = node.scale.map_or(DVec3::ONE, DVec3::from_array);
+    let translation = node.translation.map_or(DVec3::ZERO, DVec3::from_array);
     let rotation = match node.rotation {
         None => DQuat::IDENTITY,
         Some(rotation) => {
-            let quaternion = DQuat::from_array(rotation.0.map(f64::from));
+            let quaternion = DQuat::from_array(rotation);
             if quaternion.length_squared() == 0.0 {
                 let part = format!("nodes[{number}].rotation");
-                return Err(source.part(part, "a quaternion of length 1", format!("{:?}", rotation.0)));
+                return Err(source.part(part, "a quaternion of length 1", format!("{rotation:?}")));
             }
             quaternion.normalize()
         }
@@ -411,6 +431,14 @@ fn encoded(linear: f64) -> u8 {
     let linear = linear.clamp(0.0, 1.0);
     let part = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 };
     (part * 255.0 + 0.5) as u8
+}
+
+/// The way in which the corners of a primitive make triangles.
+#[derive(Clone, Copy)]
+enum Mode {
+    Triangles,
+    TriangleStrip,
+    TriangleFan,
 }
 
 /// The corners of the triangles of a glTF primitive (a part of a mesh).

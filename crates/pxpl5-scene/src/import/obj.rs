@@ -46,9 +46,10 @@ struct Counts {
     points: usize,
     normals: usize,
     triangles: usize,
-    /// Largest component of any colour in the file. The value shows whether colours are fractions up to 1 or bytes up
-    /// to 255.
+    /// Largest component of any colour in the file.
     brightest: f64,
+    /// True if a component of a colour is not a whole number.
+    has_fractions: bool,
     has_materials: bool,
 }
 
@@ -62,9 +63,13 @@ impl Counts {
             match words.next() {
                 Some(b"v") => {
                     counts.points += 1;
-                    // Three coordinates come first. The largest colour component shows the scale of all colours.
-                    let colour = words.skip(3).take(3).filter_map(|word| text(word).parse().ok());
-                    counts.brightest = colour.fold(counts.brightest, f64::max);
+                    // Three coordinates come first. All colours together show the scale of each colour.
+                    let mut parts = words.skip(3).take(3).filter_map(|word| text(word).parse::<f64>().ok());
+                    let colour = [parts.next(), parts.next(), parts.next()];
+                    for part in colour.into_iter().flatten().filter(|_| colour[2].is_some()) {
+                        counts.brightest = counts.brightest.max(part);
+                        counts.has_fractions |= part.fract() != 0.0;
+                    }
                 }
                 Some(b"vn") => counts.normals += 1,
                 // A face of n corners is cut into n - 2 triangles.
@@ -241,7 +246,8 @@ impl<'a> Reader<'a> {
         let found = [words.next(), words.next(), words.next()];
         let colour = match found {
             [Some(red), Some(green), Some(blue)] => {
-                let full = if self.counts.brightest > 1.0 { 1.0 } else { 255.0 };
+                // Colours are bytes only if all are whole numbers. One fraction above 1 does not make them bytes.
+                let full = if self.counts.brightest > 1.0 && !self.counts.has_fractions { 1.0 } else { 255.0 };
                 let mut colour = [0; 3];
                 for (part, (name, word)) in colour.iter_mut().zip([("red", red), ("green", green), ("blue", blue)]) {
                     *part = (self.number(at, name, word)? * full + 0.5) as u8;

@@ -5,7 +5,7 @@ mod row;
 
 use pxpl5_sim::parameters::FileError;
 use std::io::{Cursor, ErrorKind};
-use std::str::FromStr;
+use std::str::{FromStr, SplitAsciiWhitespace};
 
 use glam::{DVec3, Vec3};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -76,6 +76,26 @@ struct Rows<'a> {
     coloured: Vertices,
 }
 
+/// The words of a row in a text file. The row continues on the next line until it has all its numbers.
+struct Words<'w, 'a> {
+    rows: &'w mut Rows<'a>,
+    /// Words of the current line that are not read yet.
+    line: SplitAsciiWhitespace<'a>,
+}
+
+impl<'a> Iterator for Words<'_, 'a> {
+    type Item = &'a str;
+
+    fn next(&mut self) -> Option<&'a str> {
+        loop {
+            match self.line.next() {
+                None if self.rows.next_line() => self.line = self.rows.text.split_ascii_whitespace(),
+                word => return word,
+            }
+        }
+    }
+}
+
 /// Greatest length of a list in a file without vertices.
 const LIST: usize = 1 << 16;
 /// Number of items by which each vertex of a file raises the greatest length of a list. Assumed: if every triangle of a
@@ -107,7 +127,10 @@ fn header_of(bytes: &[u8]) -> (String, usize, u8) {
         byte if byte.is_ascii() => char::from(byte),
         _ => '_',
     };
-    (bytes[begin..behind].iter().map(plain).collect(), behind, end)
+    let header: String = bytes[begin..behind].iter().map(plain).collect();
+    // A blank line becomes a comment, so that the lines after it keep their numbers.
+    let lines = header.split_inclusive('\n').map(|line| if line.trim().is_empty() { "comment -\n" } else { line });
+    (lines.collect(), behind, end)
 }
 
 impl<'a> Rows<'a> {
@@ -165,7 +188,10 @@ impl<'a> Rows<'a> {
         let parser = Parser::<E>::new();
         let row = match self.header.encoding {
             Encoding::Ascii => {
-                self.next_line(element)?;
+                if !self.next_line() {
+                    return Err(self.source.truncated(at, row_of(element), "the end of the file"));
+                }
+                let at = FilePlace::Line(self.line - 1);
                 return Ok((at, self.ascii_row(at, element)?));
             }
             Encoding::BinaryLittleEndian => parser.read_little_endian_element(&mut self.cursor, element),
@@ -182,11 +208,13 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Parses the numbers of one line. The parser of the PLY library is not used, because it accepts neither `.5` nor
-    /// `nan`.
-    fn ascii_row<E: PropertyAccess>(&self, at: FilePlace, element: &ElementDef) -> Result<E, FileError> {
-        let wrong = || self.source.syntax(at, row_of(element), excerpt(self.text));
-        let mut words = self.text.split_ascii_whitespace();
+    /// Parses the numbers of a row, which may continue on the next lines. The parser of the PLY library is not used,
+    /// because it accepts neither `.5` nor `nan`.
+    fn ascii_row<E: PropertyAccess>(&mut self, at: FilePlace, element: &ElementDef) -> Result<E, FileError> {
+        let (source, first_line) = (self.source, self.text);
+        let wrong = || source.syntax(at, row_of(element), excerpt(first_line));
+        let begin = self.line;
+        let mut words = Words { line: self.text.split_ascii_whitespace(), rows: self };
         let mut row = E::new();
         for (name, property) in &element.properties {
             // A list begins with its length.
@@ -194,30 +222,32 @@ impl<'a> Rows<'a> {
                 PropertyType::Scalar(kind) => words.next().and_then(|word| scalar(kind, word)),
                 PropertyType::List(_, kind) => {
                     let length = words.next().and_then(|word| word.parse().ok()).ok_or_else(wrong)?;
-                    self.check_list(at, length)?;
+                    words.rows.check_list(at, length)?;
                     list(kind, &mut words, length)
                 }
             };
             if row.set_property(name, value.ok_or_else(wrong)?) == PropertyAccessResult::UnsupportedType {
                 let found = format!("the property {name:?} of type {:?}", property.data_type);
-                return Err(self.source.syntax(at, row_of(element), found));
+                return Err(source.syntax(at, row_of(element), found));
             }
         }
         // A row must not have more numbers than properties.
-        match words.next() {
+        match words.line.next() {
             None => Ok(row),
-            Some(surplus) => Err(self.source.syntax(at, format!("the end of {}", row_of(element)), excerpt(surplus))),
+            // The first line has too few numbers, and the next line is not their continuation.
+            Some(_) if words.rows.line > begin => Err(wrong()),
+            Some(surplus) => Err(source.syntax(at, format!("the end of {}", row_of(element)), excerpt(surplus))),
         }
     }
 
-    fn next_line(&mut self, element: &ElementDef) -> Result<(), FileError> {
+    /// Reads the next line that is not blank. Returns false at the end of the file.
+    fn next_line(&mut self) -> bool {
         loop {
             // The line extends to the next line end, or to the end of the file.
             let begin = self.cursor.position() as usize;
             let rest = &self.source.bytes[begin..];
             if rest.is_empty() {
-                let at = self.place();
-                return Err(self.source.truncated(at, row_of(element), "the end of the file"));
+                return false;
             }
             let length = rest.iter().position(|&byte| byte == self.end).map_or(rest.len(), |end| end + 1);
             self.cursor.set_position((begin + length) as u64);
@@ -225,7 +255,7 @@ impl<'a> Rows<'a> {
             let line = rest[..length].trim_ascii();
             if !line.is_empty() {
                 self.text = text(line);
-                return Ok(());
+                return true;
             }
         }
     }
@@ -271,7 +301,7 @@ impl<'a> Rows<'a> {
                 mesh.normals.push(if normal.is_finite() { direction(normal) } else { Vec3::ZERO });
             }
             if has_colours {
-                mesh.colours.push(row.colour);
+                mesh.colours.push(row.colour());
             }
         }
         Ok(())
@@ -291,7 +321,7 @@ impl<'a> Rows<'a> {
             mesh.check_reading(self.source, row.len() - 2)?;
             // Add triangles that all share the first corner. If the polygon is concave, replace them.
             let fan = mesh.triangles.len();
-            let colour = has_colours.then_some(row.colour);
+            let colour = has_colours.then(|| row.colour());
             let first = self.vertex(at, &row, 0, colour, mesh)?;
             let mut before = self.vertex(at, &row, 1, colour, mesh)?;
             for n in 2..row.len() {
@@ -366,7 +396,8 @@ impl<'a> Rows<'a> {
 
     fn check_end(&self) -> Result<(), FileError> {
         let rest = &self.source.bytes[self.cursor.position() as usize..];
-        if rest.iter().all(u8::is_ascii_whitespace) {
+        // Some programs pad a file with zeros.
+        if rest.iter().all(|byte| byte.is_ascii_whitespace() || *byte == 0) {
             return Ok(());
         }
         let expected = "the end of the file after the last row that the header announces";

@@ -11,7 +11,6 @@ pub(crate) struct Source<'a> {
     pub(crate) name: &'a str,
     pub(crate) bytes: &'a [u8],
     /// Folder of the file, in which files that belong to the model are searched. `None` if there is no file.
-    #[cfg_attr(not(feature = "gltf"), expect(dead_code, reason = "only a glTF model refers to other files"))]
     pub(crate) folder: Option<&'a Path>,
 }
 
@@ -30,7 +29,7 @@ impl<'a> Source<'a> {
     /// Returns all lines with their numbers, counted from 1, without a byte order mark (U+FEFF). Lines may end in LF,
     /// CR LF or CR alone. The lines are bytes, because comments and names may have any encoding.
     pub(crate) fn lines(&self) -> impl Iterator<Item = (u64, &'a [u8])> + Clone {
-        let text = self.bytes.strip_prefix(MARK).unwrap_or(self.bytes);
+        let text = without_padding(self.bytes.strip_prefix(MARK).unwrap_or(self.bytes));
         let end = if text.contains(&b'\n') { b'\n' } else { b'\r' };
         let text = text.strip_suffix(&[end]).unwrap_or(text);
         (1..).zip(text.split(move |byte| *byte == end).map(|line| line.strip_suffix(b"\r").unwrap_or(line)))
@@ -49,7 +48,6 @@ impl<'a> Source<'a> {
     }
 
     /// Returns an error for a part of a glTF file. `part` is the path of this part in the file's JSON.
-    #[cfg(feature = "gltf")]
     pub(crate) fn part(&self, part: impl Display, expected: impl Display, found: impl Display) -> FileError {
         self.error(FileErrorKind::Syntax, part, expected, found)
     }
@@ -88,6 +86,11 @@ impl<'a> Source<'a> {
 
 /// The byte order mark U+FEFF in UTF-8.
 pub(crate) const MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Returns the bytes without the zeros with which some programs pad a file to a round length.
+pub(crate) fn without_padding(bytes: &[u8]) -> &[u8] {
+    &bytes[..bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1)]
+}
 
 /// Returns a word of a file as text. If the word is not UTF-8, the result is a character that occurs in no number.
 pub(crate) fn text(word: &[u8]) -> &str {

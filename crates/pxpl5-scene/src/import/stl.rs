@@ -8,7 +8,7 @@ use pxpl5_sim::parameters::FileError;
 
 use super::Source;
 use super::model::{Model, Places, counted, push_with_slow_growth};
-use super::source::{MARK, excerpt, is_not_a_number, text};
+use super::source::{MARK, excerpt, is_not_a_number, text, without_padding};
 use crate::error::FilePlace;
 
 /// Number of bytes before the first triangle of a binary file: a header of 80 bytes and the number of triangles.
@@ -17,24 +17,24 @@ const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
 pub(super) fn read(source: &Source<'_>) -> Result<Model, FileError> {
+    let found = source.bytes.len() as u64;
     match announced_bytes(source.bytes) {
-        // Some programs begin the header of a binary file with `solid`, so only the length of the file shows the
-        // format.
-        Some(bytes) if bytes == source.bytes.len() as u64 => read_binary(source),
-        _ if begins_as_text(source.bytes) => read_text(source),
-        Some(bytes) if bytes > source.bytes.len() as u64 => {
+        // Some programs begin the header of a binary file with `solid`. Such a file has a length that fits.
+        Some(bytes) if bytes == found => read_binary(source, bytes),
+        _ if is_text(source.bytes) => read_text(source),
+        // A few more bytes than announced do no harm, but a count of 0 is wrong then.
+        Some(bytes) if bytes < found && bytes > HEADER as u64 => read_binary(source, bytes),
+        Some(bytes) if bytes > found => {
             let expected = format!("{} triangles in {bytes} bytes", (bytes - HEADER as u64) / TRIANGLE as u64);
-            let found = format!("{} bytes", source.bytes.len());
-            Err(source.truncated(FilePlace::Byte(HEADER as u64), expected, found))
+            Err(source.truncated(FilePlace::Byte(HEADER as u64), expected, format!("{found} bytes")))
         }
         Some(bytes) => {
             let expected = "the end of the file behind the last triangle that the header announces";
-            let found = format!("{} more bytes", source.bytes.len() as u64 - bytes);
-            Err(source.syntax(FilePlace::Byte(bytes), expected, found))
+            Err(source.syntax(FilePlace::Byte(bytes), expected, format!("{} more bytes", found - bytes)))
         }
         None => {
             let expected = format!("text that begins with \"solid\", or a binary header of {HEADER} bytes");
-            Err(source.syntax(FilePlace::Byte(0), expected, format!("{} other bytes", source.bytes.len())))
+            Err(source.syntax(FilePlace::Byte(0), expected, format!("{found} other bytes")))
         }
     }
 }
@@ -45,9 +45,14 @@ fn announced_bytes(bytes: &[u8]) -> Option<u64> {
     Some(HEADER as u64 + u64::from(u32::from_le_bytes(count)) * TRIANGLE as u64)
 }
 
-fn begins_as_text(bytes: &[u8]) -> bool {
-    let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes).trim_ascii_start();
-    bytes.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
+/// Returns true for a file that begins with the word `solid` and has no zero bytes where a binary file has its count.
+fn is_text(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(MARK).unwrap_or(bytes).trim_ascii_start();
+    let begins = text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    begins
+        && !bytes
+            .get(HEADER - 4..HEADER)
+            .is_some_and(|count| count.contains(&0) && without_padding(bytes).len() > HEADER)
 }
 
 /// Adds a triangle with three new vertices. Each of these vertices later gets the normal of the triangle.
@@ -57,8 +62,9 @@ fn push_flat(model: &mut Model, corners: [[f64; 3]; 3]) {
     push_with_slow_growth(&mut model.triangles, [first, first + 1, first + 2]);
 }
 
-fn read_binary(source: &Source<'_>) -> Result<Model, FileError> {
-    let triangles = source.bytes[HEADER..].chunks_exact(TRIANGLE);
+/// Reads a binary file whose triangles end at byte `end`.
+fn read_binary(source: &Source<'_>, end: u64) -> Result<Model, FileError> {
+    let triangles = source.bytes[HEADER..end as usize].chunks_exact(TRIANGLE);
     let mut model = Model::new(Places::Single(Vec::new()));
     model.places.reserve_exact(3 * triangles.len());
     model.triangles.reserve_exact(triangles.len());
@@ -82,81 +88,126 @@ fn read_binary(source: &Source<'_>) -> Result<Model, FileError> {
         let what = counted(with_attributes, "triangle");
         model.warnings.push(format!("attributes of {what} are not read: some programs write colours there"));
     }
+    if end < source.bytes.len() as u64 {
+        let what = counted(source.bytes.len() - end as usize, "byte");
+        model.warnings.push(format!("{what} after the last triangle that the header announces: not read"));
+    }
     Ok(model)
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Expects {
-    Solid,
-    Facet,
-    Loop,
-    Vertex(usize),
-    EndLoop,
-    EndFacet,
+/// The words of a text file from a position on. Words may be separated by any white space.
+#[derive(Clone, Copy)]
+struct Words<'a> {
+    rest: &'a [u8],
+    line: u64,
+    /// Byte that ends a line.
+    end: u8,
 }
 
-impl Expects {
-    const fn describe(self) -> &'static str {
-        match self {
-            Self::Solid => "\"solid\"",
-            Self::Facet => "\"facet normal x y z\" or \"endsolid\"",
-            Self::Loop => "\"outer loop\"",
-            Self::Vertex(_) => "\"vertex x y z\"",
-            Self::EndLoop => "\"endloop\" after three vertices",
-            Self::EndFacet => "\"endfacet\"",
+impl<'a> Words<'a> {
+    fn of(source: &Source<'a>) -> Self {
+        let rest = without_padding(source.bytes.strip_prefix(MARK).unwrap_or(source.bytes));
+        Self { rest, line: 1, end: if rest.contains(&b'\n') { b'\n' } else { b'\r' } }
+    }
+
+    /// Moves to the next word and returns it. It is empty at the end of the file.
+    fn next(&mut self) -> &'a [u8] {
+        self.skip_space();
+        let length = self.rest.iter().position(u8::is_ascii_whitespace).unwrap_or(self.rest.len());
+        let word;
+        (word, self.rest) = self.rest.split_at(length);
+        word
+    }
+
+    fn skip_space(&mut self) {
+        let length = self.rest.iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(self.rest.len());
+        self.line += self.rest[..length].iter().filter(|byte| **byte == self.end).count() as u64;
+        self.rest = &self.rest[length..];
+    }
+
+    /// Skips these words if they come next, in upper or lower case.
+    fn takes(&mut self, words: &[&str]) -> bool {
+        let mut ahead = *self;
+        let are_next = words.iter().all(|word| ahead.next().eq_ignore_ascii_case(word.as_bytes()));
+        if are_next {
+            *self = ahead;
         }
+        are_next
+    }
+
+    fn expect(&mut self, source: &Source<'_>, words: [&[&str]; 2], expected: &str) -> Result<(), FileError> {
+        if words.into_iter().any(|words| self.takes(words)) {
+            return Ok(());
+        }
+        self.skip_space();
+        let at = FilePlace::Line(self.line);
+        if self.rest.is_empty() {
+            return Err(source.truncated(at, expected, "the end of the file"));
+        }
+        let line = self.rest.split(|byte| *byte == self.end).next().unwrap_or_default();
+        Err(source.syntax(at, expected, excerpt(&String::from_utf8_lossy(line))))
+    }
+
+    /// Skips the rest of a line up to a facet or a solid. Names of solids may have any words.
+    fn skip_name(&mut self) {
+        let mut ahead = *self;
+        let is_keyword = |mut at: Self| at.takes(&["facet", "normal"]) || at.takes_solid();
+        while !is_keyword(*self) && !ahead.next().is_empty() && ahead.line == self.line {
+            *self = ahead;
+        }
+    }
+
+    /// Skips the word that begins or ends a solid.
+    fn takes_solid(&mut self) -> bool {
+        self.takes(&["solid"]) || self.takes(&["endsolid"]) || self.takes(&["end", "solid"])
     }
 }
 
 fn read_text(source: &Source<'_>) -> Result<Model, FileError> {
     let mut model = Model::new(Places::Double(Vec::new()));
-    let mut expects = Expects::Solid;
-    let mut corners = [[0.0; 3]; 3];
-    let mut last = 1;
-    for (number, line) in source.lines() {
-        let at = FilePlace::Line(number);
-        last = number;
-        let words: [&[u8]; 5] = {
-            let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-            std::array::from_fn(|_| words.next().unwrap_or_default())
-        };
-        if words[0].is_empty() {
+    let mut words = Words::of(source);
+    loop {
+        if words.takes_solid() {
+            words.skip_name();
             continue;
         }
-        let is = |n: usize, word: &str| words[n].eq_ignore_ascii_case(word.as_bytes());
-        expects = match expects {
-            Expects::Solid if is(0, "solid") => Expects::Facet,
-            // The numbers of the normal are not used. NaN is common there.
-            Expects::Facet if is(0, "facet") => Expects::Loop,
-            Expects::Facet if is(0, "endsolid") => Expects::Solid,
-            Expects::Loop if is(0, "outer") && is(1, "loop") => Expects::Vertex(0),
-            Expects::Vertex(n) if is(0, "vertex") => {
-                corners[n] = source.coordinates(at, vertex(source, at, [words[1], words[2], words[3]])?)?;
-                if n == 2 { Expects::EndLoop } else { Expects::Vertex(n + 1) }
+        words.skip_space();
+        // The last `endsolid` may be missing, but no triangle may be cut.
+        if words.rest.is_empty() {
+            return Ok(model);
+        }
+        words.expect(source, [&["facet", "normal"], &["facet"]], "\"facet normal x y z\" or \"endsolid\"")?;
+        // The numbers of the normal are not used. NaN is common there.
+        (0..3).for_each(|_| {
+            let mut ahead = words;
+            if !ahead.next().eq_ignore_ascii_case(b"outer") {
+                words = ahead;
             }
-            Expects::EndLoop if is(0, "endloop") => Expects::EndFacet,
-            Expects::EndFacet if is(0, "endfacet") => {
-                push_flat(&mut model, corners);
-                Expects::Facet
-            }
-            _ => return Err(source.syntax(at, expects.describe(), excerpt(&String::from_utf8_lossy(line)))),
-        };
+        });
+        words.expect(source, [&["outer", "loop"]; 2], "\"outer loop\"")?;
+        let mut corners = [[0.0; 3]; 3];
+        for corner in &mut corners {
+            words.expect(source, [&["vertex"]; 2], "\"vertex x y z\"")?;
+            let place = vertex(source, &mut words)?;
+            *corner = source.coordinates(FilePlace::Line(words.line), place)?;
+        }
+        words.expect(source, [&["endloop"], &["end", "loop"]], "\"endloop\" after three vertices")?;
+        words.expect(source, [&["endfacet"], &["end", "facet"]], "\"endfacet\"")?;
+        push_flat(&mut model, corners);
     }
-    // The last `endsolid` may be missing, but no triangle may be cut.
-    if !matches!(expects, Expects::Solid | Expects::Facet) {
-        return Err(source.truncated(FilePlace::Line(last), expects.describe(), "the end of the file"));
-    }
-    Ok(model)
 }
 
-fn vertex(source: &Source<'_>, at: FilePlace, words: [&[u8]; 3]) -> Result<[f64; 3], FileError> {
+fn vertex(source: &Source<'_>, words: &mut Words<'_>) -> Result<[f64; 3], FileError> {
     let mut place = [0.0; 3];
-    for ((number, word), axis) in place.iter_mut().zip(words).zip(["x", "y", "z"]) {
-        let word = text(word);
+    for (number, axis) in place.iter_mut().zip(["x", "y", "z"]) {
+        let word = text(words.next());
         *number = match word.parse() {
             _ if is_not_a_number(word) => f64::NAN,
             Ok(number) => number,
-            Err(_) => return Err(source.syntax(at, format!("a number for {axis}"), excerpt(word))),
+            Err(_) => {
+                let at = FilePlace::Line(words.line);
+                return Err(source.syntax(at, format!("a number for {axis}"), excerpt(word)));
+            }
         };
     }
     Ok(place)

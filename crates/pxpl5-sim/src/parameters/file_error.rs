@@ -25,8 +25,10 @@ pub struct FileError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FileErrorKind {
-    /// The operating system reports an error: the file is missing, cannot be read or written, or the disk failed.
+    /// The file is missing or cannot be read.
     Unreadable,
+    /// The operating system does not write the file or make the folder, or it cannot read it again.
+    Unwritable,
     /// The path leads to a directory, a device or a pipe instead of a file.
     NotAFile,
     /// The program cannot read files of this format, or was built without the reader for this format.
@@ -78,10 +80,10 @@ impl FileError {
         Self::new(kind, "", reason)
     }
 
-    /// Returns a function that converts an [`io::Error`] to the error of a file. `doing` describes the failed
+    /// Returns a function that converts an [`io::Error`] to the error of a file of results. `doing` describes the failed
     /// operation.
     pub fn io(file: &Path, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
-        move |error| Self::because(FileErrorKind::Unreadable, format_args!("{doing}: {error}")).in_file(file.display())
+        move |error| Self::because(FileErrorKind::Unwritable, format_args!("{doing}: {error}")).in_file(file.display())
     }
 
     #[must_use]

@@ -39,6 +39,9 @@ const GAP_TIMES: u64 = 5;
 /// which no interpolation can reconstruct.
 const GAP_S: f64 = 0.2;
 
+/// Number of samples up to which a recording may be a list of a few poses, far apart in time. Assumed.
+const FEW_SAMPLES: usize = 10;
+
 type Sample = (u64, Pose);
 
 /// The behaviour of the replayed head after the last sample of a recording.
@@ -73,7 +76,32 @@ pub struct RecordingFormat {
     pub columns: Columns,
     /// Convention for the coordinate axes of the file. `None` selects the usual convention of the file's format.
     pub axes: Option<Axes>,
+    /// Treatment of lines in which the head moves faster than a head can.
+    pub jumps: Jumps,
 }
+
+/// The treatment of lines in which the head moves faster than 8 m/s or turns faster than 2,000 degrees per second.
+/// Trackers write such lines when they lose the head.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Jumps {
+    /// All lines are used. [`Motion::warnings`] reports the lines.
+    #[default]
+    Keep,
+    /// The lines are left out, together with lines whose quaternion is zero and with lines that repeat such a pose.
+    LeaveOut,
+}
+
+impl Jumps {
+    /// Both treatments with their names in experiment files.
+    pub const NAMES: [(&'static str, Self); 2] = [("keep", Self::Keep), ("leave-out", Self::LeaveOut)];
+
+    /// Returns the name of this treatment in experiment files.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(_, jumps)| *jumps == self).map_or("", |(name, _)| name)
+    }
+}
+
+pxpl5_sim::parameters::named!(Jumps, "treatment of jumps", Jumps::NAMES);
 
 /// A replayed recording of head poses.
 ///
@@ -95,12 +123,13 @@ impl Recording {
     ///
     /// | file | first line | time | quaternion | axes |
     /// |---|---|---|---|---|
-    /// | own | `time_s,x,y,z,qw,qx,qy,qz` | seconds, unchanged | real part first | [`Axes::OpenGl`] |
+    /// | own | `time_s,x,y,z,qw,qx,qy,qz` in any order | seconds, unchanged | by name | [`Axes::OpenGl`] |
     /// | EuRoC | `#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],...` and any more columns | nanoseconds, from the first line | real part first | [`Axes::Euroc`] |
-    /// | TUM | eight numbers separated by spaces, after comments (`#`) | seconds, from the first line | real part last | [`Axes::Optical`] |
+    /// | TUM | eight numbers separated by spaces, after comments (`#`) or the names `timestamp tx ty tz qx qy qz qw` | seconds, from the first line | real part last | [`Axes::Optical`] |
     /// | pose log | a header with `predicted_display_time`, `position_x`, ..., `orientation_w` in any order, or a line of JSON with these names | nanoseconds unless the name ends in `_us`, `_ms` or `_s`, from the first line | by name | [`Axes::OpenGl`], as in OpenXR |
     ///
-    /// Positions are in metres. Quaternions rotate the head's axes into the world's axes.
+    /// Names of columns may be written in any case, with any separator and among other columns. Positions are in metres
+    /// unless the name ends in `_mm` or `_cm`. Quaternions rotate the head's axes into the world's axes.
     ///
     /// # Errors
     ///
@@ -127,7 +156,7 @@ impl Recording {
         }
         // UTF-16 was rejected above. Comments may have any encoding, so invalid UTF-8 is replaced.
         let text = String::from_utf8_lossy(&bytes);
-        read::samples(&text, &format.columns, format.axes).map(Self::of_samples)
+        read::samples(&text, format).map(Self::of_samples)
     }
 
     /// Creates a recording from samples: ascending times in seconds, each with the pose at this time.
@@ -155,9 +184,14 @@ impl Recording {
     }
 
     fn of_samples(samples: read::Samples) -> Self {
-        let read::Samples { samples, repeated } = samples;
-        let gaps = gaps(&samples);
-        let warnings = repeated.into_iter().chain(gap_warning(&gaps)).collect();
+        let read::Samples { samples, mut warnings } = samples;
+        let usual_ps = usual_ps(&samples);
+        let gaps = gaps(&samples, usual_ps);
+        warnings.extend(gap_warning(&gaps));
+        if samples.len() > FEW_SAMPLES && span_s(0, usual_ps) > GAP_S {
+            let seconds = span_s(0, usual_ps);
+            warnings.push(format!("poses are {seconds} s apart, longer than a gap: is the unit of time right?"));
+        }
         Self { samples, end: End::default(), gaps, warnings }
     }
 
@@ -245,20 +279,21 @@ impl Motion for Recording {
     }
 }
 
-/// Returns the gaps of a recording. A gap lies between successive samples that are much farther apart in time than the
-/// median of all successive samples.
-fn gaps(samples: &[Sample]) -> Vec<(u64, u64)> {
-    let spans = || samples.windows(2).map(|pair| (pair[0].0, pair[1].0));
-    let mut lengths: Vec<u64> = spans().map(|(from_ps, to_ps)| to_ps - from_ps).collect();
-    if lengths.is_empty() {
-        return Vec::new();
-    }
+/// Returns the median time between two samples, in picoseconds. It is 0 for a single sample.
+fn usual_ps(samples: &[Sample]) -> u64 {
+    let mut lengths: Vec<u64> = samples.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
     let middle = lengths.len() / 2;
-    let usual_ps = *lengths.select_nth_unstable(middle).1;
+    if lengths.is_empty() { 0 } else { *lengths.select_nth_unstable(middle).1 }
+}
+
+/// Returns the gaps of a recording. A gap lies between successive samples that are much farther apart in time than
+/// `usual_ps`. The time before the first sample can be a gap, too.
+fn gaps(samples: &[Sample], usual_ps: u64) -> Vec<(u64, u64)> {
     let is_gap = |(from_ps, to_ps): &(u64, u64)| {
         to_ps - from_ps > usual_ps.saturating_mul(GAP_TIMES) && span_s(*from_ps, *to_ps) > GAP_S
     };
-    spans().filter(is_gap).collect()
+    let first = samples.first().map(|(first_ps, _)| (0, *first_ps));
+    first.into_iter().chain(samples.windows(2).map(|pair| (pair[0].0, pair[1].0))).filter(is_gap).collect()
 }
 
 const GAPS_LISTED: usize = 3;

@@ -2,12 +2,13 @@
 
 use pxpl5_sim::parameters::FileError;
 use std::borrow::Cow;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, Path};
 
 use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use gltf_json::Root;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use serde_json::value::RawValue;
 
+use super::document::{Buffer, parsed};
 #[cfg(feature = "files")]
 use super::host::read_file;
 use crate::config::MAX_FILE_BYTES;
@@ -25,22 +26,44 @@ pub(super) struct Buffers<'a> {
 /// The expected and the found content of a buffer that cannot be read.
 type ErrorText = [String; 2];
 
+/// Decoder of base64. Padding may be missing, because not all programs write it.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &base64::alphabet::STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true),
+);
+
 impl<'a> Buffers<'a> {
-    pub(super) fn of(source: &Source<'a>, root: &Root, binary: Option<&'a [u8]>) -> Self {
-        let mut all = Self { buffers: Vec::with_capacity(root.buffers.len()), file_bytes: 0, decoded_bytes: 0 };
-        for (number, buffer) in root.buffers.iter().enumerate() {
-            let bytes = match (&buffer.uri, binary) {
-                (Some(uri), _) => all.of_uri(source, uri),
-                (None, Some(binary)) if number == 0 => Ok(Cow::Borrowed(binary)),
-                (None, _) => Err(["a uri, or the binary chunk for the first buffer".to_owned(), "neither".to_owned()]),
+    pub(super) fn of(source: &Source<'a>, buffers: &[&RawValue], binary: Option<&'a [u8]>) -> Self {
+        let mut all = Self { buffers: Vec::with_capacity(buffers.len()), file_bytes: 0, decoded_bytes: 0 };
+        for (number, text) in buffers.iter().enumerate() {
+            let bytes = match parsed::<Buffer>(source, "", text) {
+                Ok(buffer) => all.of_buffer(source, &buffer, binary.filter(|_| number == 0)),
+                Err(error) => Err([error.expected.into(), error.found.into()]),
             };
-            let announced = buffer.byte_length.0;
-            all.buffers.push(bytes.and_then(|bytes| match bytes.len() as u64 >= announced {
-                true => Ok(bytes),
-                false => Err([format!("{announced} bytes"), format!("{} bytes", bytes.len())]),
-            }));
+            all.buffers.push(bytes);
         }
         all
+    }
+
+    fn of_buffer(
+        &mut self,
+        source: &Source<'_>,
+        buffer: &Buffer,
+        binary: Option<&'a [u8]>,
+    ) -> Result<Cow<'a, [u8]>, ErrorText> {
+        let bytes = match (&buffer.uri, binary) {
+            (Some(uri), _) => self.of_uri(source, uri)?,
+            (None, Some(binary)) => Cow::Borrowed(binary),
+            (None, None) => {
+                return Err(["a uri, or the binary chunk for the first buffer".to_owned(), "neither".to_owned()]);
+            }
+        };
+        match bytes.len() >= buffer.byte_length.0 {
+            true => Ok(bytes),
+            false => Err([format!("{} bytes", buffer.byte_length.0), format!("{} bytes", bytes.len())]),
+        }
     }
 
     pub(super) fn get(&self, source: &Source<'_>, number: usize) -> Result<&[u8], FileError> {
@@ -58,18 +81,24 @@ impl<'a> Buffers<'a> {
         if let Some(data) = uri.strip_prefix("data:") {
             let expected = || "data in base64 after \";base64,\"".to_owned();
             let (_, encoded) = data.split_once(";base64,").ok_or_else(|| [expected(), excerpt(uri)])?;
-            let decoded = STANDARD.decode(encoded).map_err(|error| [expected(), error.to_string()])?;
+            let decoded = BASE64.decode(encoded).map_err(|error| [expected(), error.to_string()])?;
             self.decoded_bytes += decoded.len();
             return Ok(Cow::Owned(decoded));
         }
-        let path = path_of(uri).ok_or_else(|| {
-            ["data inside the file, or a relative path below the folder of the model".to_owned(), excerpt(uri)]
-        })?;
+        let decoded = percent_decoded(uri).unwrap_or_else(|| uri.to_owned());
+        if !stays_below_its_folder(&decoded) {
+            let expected = "data inside the file, or a relative path below the folder of the model";
+            return Err([expected.to_owned(), excerpt(uri)]);
+        }
         let Some(folder) = source.folder else {
             return Err(["data inside the file, because the model has no folder".to_owned(), excerpt(uri)]);
         };
-        let bytes = read_file(&folder.join(&path), MAX_FILE_BYTES.saturating_sub(self.file_bytes as u64))
-            .map_err(|found| [format!("a readable file {}", path.display()), found])?;
+        // Some programs write the name of the file as it is, although it contains `%` or `\`.
+        let written = [uri.to_owned(), uri.replace('\\', "/")].into_iter().filter(|name| stays_below_its_folder(name));
+        let exists = std::iter::once(decoded.clone()).chain(written).find(|name| folder.join(name).exists());
+        let path = folder.join(exists.as_ref().unwrap_or(&decoded));
+        let bytes = read_file(&path, MAX_FILE_BYTES.saturating_sub(self.file_bytes as u64))
+            .map_err(|found| [format!("a readable file {decoded}"), found])?;
         self.file_bytes += bytes.len();
         Ok(Cow::Owned(bytes))
     }
@@ -79,13 +108,12 @@ fn excerpt(uri: &str) -> String {
     crate::import::source::excerpt(uri)
 }
 
-/// Returns the relative path that a URI states. `None` for an absolute path, for a path that leaves its folder, and for
-/// a URI with a scheme, such as `https:`.
-fn path_of(uri: &str) -> Option<PathBuf> {
-    let decoded = percent_decoded(uri)?;
-    let path = Path::new(&decoded);
-    let stays_below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    (stays_below && !decoded.is_empty() && !decoded.contains([':', '\\'])).then(|| path.to_owned())
+/// Returns false for an absolute path, for a path that leaves its folder, and for a URI with a scheme, such as `https:`.
+fn stays_below_its_folder(name: &str) -> bool {
+    let mut parts = Path::new(name).components();
+    parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
+        && !name.is_empty()
+        && !name.contains([':', '\0'])
 }
 
 /// Replaces `%` and two hexadecimal digits by the byte with this hexadecimal number.
@@ -98,11 +126,10 @@ fn percent_decoded(uri: &str) -> Option<String> {
                 let mut digit = || char::from(rest.next()?).to_digit(16);
                 bytes.push((digit()? * 16 + digit()?) as u8);
             }
-            b'\0' => return None,
             _ => bytes.push(byte),
         }
     }
-    String::from_utf8(bytes).ok().filter(|text| !text.contains('\0'))
+    String::from_utf8(bytes).ok()
 }
 
 #[cfg(not(feature = "files"))]

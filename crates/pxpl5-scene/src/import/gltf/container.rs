@@ -1,11 +1,14 @@
 //! The outer structure of a glTF file: the chunks of a binary file, and the memory that its JSON takes after parsing.
 
-use gltf_json::Root;
-use pxpl5_sim::parameters::FileError;
+use std::borrow::Cow;
 
+use pxpl5_sim::parameters::FileError;
+use serde_json::Value;
+
+use super::document::Root;
 use crate::error::FilePlace;
 use crate::import::Source;
-use crate::import::source::MARK;
+use crate::import::source::{MARK, excerpt, without_padding};
 
 const MAGIC: &[u8] = b"glTF";
 /// Number of bytes of the header of a binary file: magic number, version and length.
@@ -49,69 +52,71 @@ impl<'a> Chunks<'a> {
         Ok(Self { json, binary, is_text: false })
     }
 
-    /// Parses the JSON.
+    /// Returns the JSON as text. Bytes that are not UTF-8 occur only in names, so they are replaced.
+    pub(super) fn text(&self) -> Cow<'a, str> {
+        String::from_utf8_lossy(without_padding(self.json))
+    }
+
+    /// Parses the lists of the JSON, but not their items.
     ///
     /// # Errors
     ///
-    /// Fails for JSON that is not glTF, and for JSON that would take too much memory for the size of the file.
-    pub(super) fn parse(&self, source: &Source<'_>) -> Result<Root, FileError> {
-        Root::from_slice(self.json).map_err(|error| {
-            // The library adds the position to its message. The `at` of our error states this position already.
-            let message = error.to_string();
-            let message = message.split(" at line ").next().unwrap_or_default();
-            let found: String = message.chars().take(200).collect();
-            let at = match self.is_text {
-                true => FilePlace::Line(error.line() as u64),
-                false => FilePlace::Byte((HEADER + CHUNK) as u64),
-            };
-            source.syntax(at, "the JSON of glTF 2.0", found)
-        })
+    /// Fails for JSON that is not glTF 2.0.
+    pub(super) fn parse<'t>(&self, source: &Source<'_>, text: &'t str) -> Result<Root<'t>, FileError> {
+        let asset: Head = serde_json::from_str(text).map_err(|error| self.json_fault(source, &error))?;
+        asset.check_version(source)?;
+        let parts = serde_json::from_str(text).map_err(|error| self.json_fault(source, &error))?;
+        Root::of(source, &parts)
     }
 
-    /// Returns the greatest number of bytes that the JSON takes after parsing.
-    ///
-    /// An item with a few bytes in the file can take hundreds of bytes after parsing. The items are therefore counted
-    /// before parsing, so that a small file cannot exhaust the memory.
+    fn json_fault(&self, source: &Source<'_>, error: &serde_json::Error) -> FileError {
+        // The library adds the position to its message. The `at` of our error states this position already.
+        let message = error.to_string();
+        let message = message.split(" at line ").next().unwrap_or_default();
+        let found: String = message.chars().take(200).collect();
+        let at = match self.is_text {
+            true => FilePlace::Line(error.line() as u64),
+            false => FilePlace::Byte((HEADER + CHUNK) as u64),
+        };
+        source.syntax(at, "the JSON of glTF 2.0", found)
+    }
+
+    /// Returns the greatest number of bytes that the JSON takes after parsing. A list keeps the text of each item, so
+    /// each comma and each bracket may stand for an item.
     pub(super) fn parsed_bytes(&self) -> usize {
-        let [mut objects, mut texts, mut numbers] = [0_usize; 3];
-        let mut bytes = self.json.iter();
-        while let Some(byte) = bytes.next() {
-            match byte {
-                b'"' => {
-                    texts += 1;
-                    // Skip the text, in which a backslash hides a quotation mark.
-                    while let Some(byte) = bytes.next() {
-                        match byte {
-                            b'\\' => drop(bytes.next()),
-                            b'"' => break,
-                            _ => {}
-                        }
-                    }
-                }
-                // A text before a colon is a key, which takes no memory.
-                b':' => texts = texts.saturating_sub(1),
-                b'{' => objects += 1,
-                b',' | b'[' => numbers += 1,
-                _ => {}
-            }
-        }
-        let of = |count: usize, bytes: usize| count.saturating_mul(bytes);
-        let lists = of(texts, TEXT_BYTES).saturating_add(of(numbers, NUMBER_BYTES));
-        self.json.len().saturating_add(of(objects, OBJECT_BYTES)).saturating_add(lists)
+        let items = self.json.iter().filter(|byte| matches!(byte, b',' | b'[')).count();
+        self.json.len().saturating_add(items.saturating_mul(ITEM_BYTES))
     }
 }
 
-/// Greatest number of bytes that a JSON object takes after parsing. The largest objects in a list are nodes and
-/// materials. A growing list takes up to three times the size of its items.
-const OBJECT_BYTES: usize = 3 * max(size_of::<gltf_json::Node>(), size_of::<gltf_json::Material>());
-/// Greatest number of bytes that a text takes in a growing list, in addition to its characters.
-const TEXT_BYTES: usize = 3 * size_of::<String>();
-/// Greatest number of bytes that an index or a number takes in a growing list. The largest numbers in memory are the
-/// limits of an accessor, because the parser stores each limit as a JSON value.
-const NUMBER_BYTES: usize = 3 * size_of::<gltf_json::Value>();
+/// Greatest number of bytes that an item takes in a list. A growing list takes up to three times the size of its items.
+const ITEM_BYTES: usize = 3 * size_of::<&serde_json::value::RawValue>();
 
-const fn max(a: usize, b: usize) -> usize {
-    if a > b { a } else { b }
+/// The first part of a file that is read. A file of another version may have another form.
+#[derive(serde::Deserialize)]
+struct Head {
+    asset: Option<Asset>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Asset {
+    version: Option<Value>,
+    min_version: Option<Value>,
+}
+
+impl Head {
+    fn check_version(self, source: &Source<'_>) -> Result<(), FileError> {
+        let text = |version: Option<Value>| version.map(|v| v.as_str().map_or_else(|| v.to_string(), str::to_owned));
+        let (version, least) = self.asset.map_or((None, None), |asset| (text(asset.version), text(asset.min_version)));
+        match least.as_deref().or(version.as_deref()) {
+            Some("2.0" | "2") => Ok(()),
+            // A file of a later version 2.x that states no minimum version can be read as 2.0.
+            Some(later) if later.starts_with("2.") && least.is_none() => Ok(()),
+            Some(other) => Err(source.part("asset.version", "glTF 2.0", format_args!("glTF {}", excerpt(other)))),
+            None => Err(source.part("asset.version", "glTF 2.0", "no version")),
+        }
+    }
 }
 
 fn word(source: &Source<'_>, at: usize, what: &str) -> Result<u32, FileError> {

@@ -1,11 +1,36 @@
 //! Numbers of an accessor, which describes an array of vectors or indices in a buffer of a glTF file. A sparse accessor
 //! also has a list of items that replace items of the array.
 
-use gltf_json::accessor::{Accessor, ComponentType, Type};
-use gltf_json::validation::Checked;
 use pxpl5_sim::parameters::FileError;
 
-use super::document::Document;
+use super::document::{Accessor, Document, View, Whole};
+
+/// The type of the numbers of an accessor. A file states it by a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ComponentType {
+    I8 = 5120,
+    U8,
+    I16,
+    U16,
+    U32 = 5125,
+    F32,
+}
+
+impl ComponentType {
+    const ALL: [Self; 6] = [Self::I8, Self::U8, Self::I16, Self::U16, Self::U32, Self::F32];
+
+    fn of(number: Whole) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| *kind as usize == number.0)
+    }
+
+    const fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+}
 
 /// Items of one type at equal distances in a buffer.
 #[derive(Clone, Copy)]
@@ -61,35 +86,25 @@ impl<'a> Numbers<'a> {
     ) -> Result<Self, FileError> {
         let part = |name: &str| format!("accessors[{index}]{name}");
         let fail = |name: &str, expected: String, found: String| Err(document.source.part(part(name), expected, found));
-        let Some(accessor) = document.root.accessors.get(index) else {
-            return fail("", "an accessor with this index".into(), count(document.root.accessors.len(), "accessors"));
-        };
+        let accessor: Accessor = document.object("accessors", index)?;
         // Check the types of the numbers.
-        let kind = match accessor.component_type {
-            Checked::Valid(kind) if kinds.contains(&kind.0) => kind.0,
-            Checked::Valid(kind) => {
-                return fail(".componentType", format!("one of {kinds:?}"), format!("{:?}", kind.0));
-            }
-            Checked::Invalid => return fail(".componentType", format!("one of {kinds:?}"), "another number".into()),
+        let kind = match ComponentType::of(accessor.component_type) {
+            Some(kind) if kinds.contains(&kind) => kind,
+            Some(kind) => return fail(".componentType", format!("one of {kinds:?}"), format!("{kind:?}")),
+            None => return fail(".componentType", format!("one of {kinds:?}"), "another number".into()),
         };
-        let of_item = match accessor.type_ {
-            Checked::Valid(kind) => components_of(kind),
-            Checked::Invalid => 0,
-        };
+        let of_item = components_of(&accessor.shape);
         if !components.contains(&of_item) {
             return fail(".type", format!("one with {components:?} numbers"), format!("one with {of_item}"));
         }
         // Find the positions of the items in the buffer.
-        let length = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
+        let length = accessor.count.0;
         let item = (kind, of_item * kind.size());
         let base = match accessor.buffer_view {
-            Some(view) => {
-                let offset = accessor.byte_offset.unwrap_or_default().0;
-                Some(items(document, &part(""), view.value(), offset, length, item)?)
-            }
+            Some(view) => Some(items(document, &part(""), (view, accessor.byte_offset), length, item)?),
             None => None,
         };
-        let sparse = sparse(document, accessor, &part(".sparse"), length, item)?;
+        let sparse = sparse(document, &accessor, &part(".sparse"), length, item)?;
         if base.is_none() && sparse.is_none() {
             return fail(".bufferView", "a buffer view".into(), document.none());
         }
@@ -134,24 +149,17 @@ impl<'a> Numbers<'a> {
 fn items<'a>(
     document: &'a Document<'_>,
     part: &str,
-    view: usize,
-    offset: u64,
+    (Whole(view), Whole(offset)): (Whole, Whole),
     count: usize,
     (kind, bytes_of_item): (ComponentType, usize),
 ) -> Result<Items<'a>, FileError> {
     let fail = |part: String, expected: String, found: String| Err(document.source.part(part, expected, found));
-    let Some(described) = document.root.buffer_views.get(view) else {
-        let found = self::count(document.root.buffer_views.len(), "buffer views");
-        return fail(format!("bufferViews[{view}]"), "a buffer view with this index".into(), found);
-    };
-    let buffer = document.buffers.get(document.source, described.buffer.value())?;
+    let described: View = document.object("bufferViews", view)?;
+    let buffer = document.buffers.get(document.source, described.buffer.0)?;
     // The bytes of the view within its buffer.
-    let begin = described.byte_offset.unwrap_or_default().0;
-    let end = begin.checked_add(described.byte_length.0);
-    let range = usize::try_from(begin).ok().zip(end.and_then(|end| usize::try_from(end).ok()));
-    let Some(bytes) = range.and_then(|(begin, end)| buffer.get(begin..end)) else {
-        let expected =
-            format!("{} bytes at byte {begin} of buffer {}", described.byte_length.0, described.buffer.value());
+    let (begin, length) = (described.byte_offset.0, described.byte_length.0);
+    let Some(bytes) = begin.checked_add(length).and_then(|end| buffer.get(begin..end)) else {
+        let expected = format!("{length} bytes at byte {begin} of buffer {}", described.buffer.0);
         return fail(format!("bufferViews[{view}]"), expected, format!("a buffer of {} bytes", buffer.len()));
     };
     // The items within the view. Without a stride, or with a stride of 0, they have no space between them.
@@ -161,7 +169,7 @@ fn items<'a>(
         None => Some(0),
         Some(steps) => steps.checked_mul(stride).and_then(|bytes| bytes.checked_add(bytes_of_item)),
     };
-    let from = usize::try_from(offset).ok().and_then(|offset| bytes.get(offset..));
+    let from = bytes.get(offset..);
     match (from, need) {
         (Some(bytes), Some(need)) if need <= bytes.len() => Ok(Items { bytes, stride, kind }),
         _ => {
@@ -180,18 +188,15 @@ fn sparse<'a>(
     item: (ComponentType, usize),
 ) -> Result<Option<(Items<'a>, Items<'a>, usize)>, FileError> {
     let Some(sparse) = &accessor.sparse else { return Ok(None) };
-    let count = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
-    let Checked::Valid(kind) = sparse.indices.component_type else {
+    let count = sparse.count.0;
+    let Some(kind) = ComponentType::of(sparse.indices.component_type) else {
         let expected = "an unsigned type of 1, 2 or 4 bytes";
         return Err(document.source.part(format!("{part}.indices.componentType"), expected, "another number"));
     };
-    let of_indices = (kind.0, kind.0.size());
-    let at = format!("{part}.indices");
-    let indices =
-        items(document, &at, sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0, count, of_indices)?;
-    let values = &sparse.values;
-    let at = format!("{part}.values");
-    let values = items(document, &at, values.buffer_view.value(), values.byte_offset.0, count, item)?;
+    let place = (sparse.indices.buffer_view, sparse.indices.byte_offset);
+    let indices = items(document, &format!("{part}.indices"), place, count, (kind, kind.size()))?;
+    let place = (sparse.values.buffer_view, sparse.values.byte_offset);
+    let values = items(document, &format!("{part}.values"), place, count, item)?;
     let mut least = 0;
     for i in 0..count {
         let index = indices.number(i, 0) as usize;
@@ -204,14 +209,13 @@ fn sparse<'a>(
     Ok(Some((indices, values, count)))
 }
 
-const fn components_of(kind: Type) -> usize {
-    match kind {
-        Type::Scalar => 1,
-        Type::Vec2 => 2,
-        Type::Vec3 => 3,
-        Type::Vec4 | Type::Mat2 => 4,
-        Type::Mat3 => 9,
-        Type::Mat4 => 16,
+fn components_of(shape: &str) -> usize {
+    match shape {
+        "SCALAR" => 1,
+        "VEC2" => 2,
+        "VEC3" => 3,
+        "VEC4" => 4,
+        _ => 0,
     }
 }
 
@@ -224,8 +228,4 @@ fn normalizing_factor(kind: ComponentType) -> f64 {
         ComponentType::U32 => 1.0 / f64::from(u32::MAX),
         ComponentType::F32 => 1.0,
     }
-}
-
-fn count(count: usize, noun: &str) -> String {
-    format!("{count} {noun}")
 }

@@ -11,29 +11,49 @@ pub(super) fn has_colours(element: &ElementDef) -> bool {
     COLOURS.as_flattened().iter().any(|name| element.properties.contains_key(*name))
 }
 
-/// Sets one component of a colour from a property, which is an integer from 0 to 255 or a fraction from 0 to 1.
-fn set_colour(colour: &mut [u8; 3], name: &str, property: &Property) -> PropertyAccessResult {
-    let Some(part) = COLOURS.iter().find_map(|names| names.iter().position(|candidate| *candidate == name)) else {
-        return PropertyAccessResult::Ignored;
-    };
-    colour[part] = match (property, number(property)) {
-        (Property::Float(_) | Property::Double(_), Some(value)) => (value * 255.0 + 0.5) as u8,
-        (_, Some(value)) => value as u8,
-        (_, None) => return PropertyAccessResult::UnsupportedType,
-    };
-    PropertyAccessResult::Set
+/// The colour of a row. Its components are integers from 0 to 255 or fractions from 0 to 1.
+#[derive(Default)]
+struct Colour {
+    parts: Option<[f64; 3]>,
+    are_fractions: bool,
+}
+
+impl Colour {
+    fn set(&mut self, name: &str, property: &Property) -> PropertyAccessResult {
+        let Some(part) = COLOURS.iter().find_map(|names| names.iter().position(|candidate| *candidate == name)) else {
+            return PropertyAccessResult::Ignored;
+        };
+        let Some(value) = number(property) else { return PropertyAccessResult::UnsupportedType };
+        self.are_fractions |= matches!(property, Property::Float(_) | Property::Double(_));
+        self.parts.get_or_insert([0.0; 3])[part] = value;
+        PropertyAccessResult::Set
+    }
+
+    /// Returns the colour as bytes. Floating-point numbers stand for bytes if all are whole and one is above 1.
+    fn bytes(&self) -> [u8; 3] {
+        let Some(parts) = self.parts else { return DEFAULT_COLOUR };
+        let are_bytes = parts.iter().all(|part| part.fract() == 0.0) && parts.iter().any(|part| *part > 1.0);
+        let full = if self.are_fractions && !are_bytes { 255.0 } else { 1.0 };
+        parts.map(|part| (part * full + 0.5) as u8)
+    }
 }
 
 /// The properties of a vertex that the reader uses.
 pub(super) struct VertexRow {
     pub(super) position: [f64; 3],
     pub(super) normal: [f64; 3],
-    pub(super) colour: [u8; 3],
+    colour: Colour,
+}
+
+impl VertexRow {
+    pub(super) fn colour(&self) -> [u8; 3] {
+        self.colour.bytes()
+    }
 }
 
 impl PropertyAccess for VertexRow {
     fn new() -> Self {
-        Self { position: [0.0; 3], normal: [0.0; 3], colour: DEFAULT_COLOUR }
+        Self { position: [0.0; 3], normal: [0.0; 3], colour: Colour::default() }
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
@@ -44,7 +64,7 @@ impl PropertyAccess for VertexRow {
             "nx" => &mut self.normal[0],
             "ny" => &mut self.normal[1],
             "nz" => &mut self.normal[2],
-            _ => return set_colour(&mut self.colour, name, &property),
+            _ => return self.colour.set(name, &property),
         };
         let Some(value) = number(&property) else {
             return PropertyAccessResult::UnsupportedType;
@@ -72,32 +92,42 @@ fn number(property: &Property) -> Option<f64> {
 /// would multiply the memory.
 pub(super) struct FaceRow {
     corners: Property,
-    pub(super) colour: [u8; 3],
+    has_corners: bool,
+    colour: Colour,
 }
 
 impl PropertyAccess for FaceRow {
     fn new() -> Self {
-        Self { corners: Property::ListUChar(Vec::new()), colour: DEFAULT_COLOUR }
+        Self { corners: Property::ListUChar(Vec::new()), has_corners: false, colour: Colour::default() }
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        if !matches!(name, "vertex_indices" | "vertex_index") {
-            return set_colour(&mut self.colour, name, &property);
-        }
+        // Without the usual names, the first list of integers has the corners.
+        let is_named = matches!(name, "vertex_indices" | "vertex_index");
         match property {
             Property::ListChar(_)
             | Property::ListUChar(_)
             | Property::ListShort(_)
             | Property::ListUShort(_)
             | Property::ListInt(_)
-            | Property::ListUInt(_) => self.corners = property,
-            _ => return PropertyAccessResult::UnsupportedType,
+            | Property::ListUInt(_) => {
+                if is_named || !self.has_corners {
+                    self.corners = property;
+                    self.has_corners = true;
+                }
+            }
+            _ if is_named => return PropertyAccessResult::UnsupportedType,
+            _ => return self.colour.set(name, &property),
         }
         PropertyAccessResult::Set
     }
 }
 
 impl FaceRow {
+    pub(super) fn colour(&self) -> [u8; 3] {
+        self.colour.bytes()
+    }
+
     pub(super) fn len(&self) -> usize {
         match &self.corners {
             Property::ListChar(list) => list.len(),

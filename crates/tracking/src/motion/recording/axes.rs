@@ -20,14 +20,21 @@ pub enum Axes {
     Euroc,
     /// The axes of robotics (ROS REP 103). Head: looks along +x, y left, z up. World: z up.
     Robot,
+    /// The left-handed axes of Unity. Head: x right, y up, looks along +z. World: y up.
+    Unity,
 }
 
 pxpl5_sim::parameters::named!(Axes, "convention for axes", Axes::NAMES);
 
 impl Axes {
     /// Every axis convention with its name in experiment files.
-    pub const NAMES: [(&'static str, Self); 4] =
-        [("opengl", Self::OpenGl), ("optical", Self::Optical), ("euroc", Self::Euroc), ("robot", Self::Robot)];
+    pub const NAMES: [(&'static str, Self); 5] = [
+        ("opengl", Self::OpenGl),
+        ("optical", Self::Optical),
+        ("euroc", Self::Euroc),
+        ("robot", Self::Robot),
+        ("unity", Self::Unity),
+    ];
 
     /// Returns the name of the convention in experiment files and on the command line.
     pub fn name(self) -> &'static str {
@@ -37,7 +44,7 @@ impl Axes {
     /// Returns the rotation W of [`Axes`], from the recorded world's axes to this crate's world axes.
     fn of_world(self) -> DQuat {
         match self {
-            Self::OpenGl => DQuat::IDENTITY,
+            Self::OpenGl | Self::Unity => DQuat::IDENTITY,
             // The recorded axes are east, north, up: x stays, up becomes y, and north becomes -z.
             Self::Optical | Self::Euroc | Self::Robot => from_images(DVec3::X, DVec3::NEG_Z, DVec3::Y),
         }
@@ -46,7 +53,7 @@ impl Axes {
     /// Returns the rotation B of [`Axes`], from this crate's head axes (right, up, back) to the recorded head axes.
     fn of_head(self) -> DQuat {
         match self {
-            Self::OpenGl => DQuat::IDENTITY,
+            Self::OpenGl | Self::Unity => DQuat::IDENTITY,
             Self::Optical => from_images(DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z),
             Self::Euroc => from_images(DVec3::Y, DVec3::X, DVec3::NEG_Z),
             Self::Robot => from_images(DVec3::NEG_Y, DVec3::Z, DVec3::NEG_X),
@@ -54,8 +61,15 @@ impl Axes {
     }
 
     pub(super) fn convert(self, recorded: Pose) -> Pose {
-        if self == Self::OpenGl {
-            return recorded;
+        match self {
+            Self::OpenGl => return recorded,
+            // A mirror in z makes the axes right-handed. Turns about z stay, and all others change their direction.
+            Self::Unity => {
+                let (p, q) = (recorded.position, recorded.orientation);
+                let orientation = DQuat::from_xyzw(-q.x, -q.y, q.z, q.w);
+                return Pose { position: DVec3::new(p.x, p.y, -p.z), orientation };
+            }
+            _ => {}
         }
         let world = self.of_world();
         Pose {
@@ -81,6 +95,20 @@ mod tests {
         (Axes::Euroc, [DVec3::Y, DVec3::X, DVec3::Z], DVec3::Z),
         (Axes::Robot, [DVec3::NEG_Y, DVec3::Z, DVec3::X], DVec3::Z),
     ];
+
+    /// In Unity a positive turn about y, which is up, is to the right, and a positive turn about x is down.
+    #[test]
+    fn a_left_handed_recording_becomes_right_handed() {
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let turned = |x: f64, y: f64| {
+            let recorded = Pose { position: DVec3::Z, orientation: DQuat::from_xyzw(x, y, 0.0, half) };
+            let Pose { position, orientation } = Axes::Unity.convert(recorded);
+            assert_eq!(position, DVec3::NEG_Z, "a metre ahead");
+            orientation * DVec3::NEG_Z
+        };
+        assert!(turned(0.0, half).distance(DVec3::X) < 1e-15, "right");
+        assert!(turned(half, 0.0).distance(DVec3::NEG_Y) < 1e-15, "down");
+    }
 
     #[test]
     fn converting_the_axes_of_a_recording_keeps_right_up_and_ahead() {

@@ -2,14 +2,15 @@ use pxpl5_sim::parameters::{FileError, FileErrorKind, SettingError};
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
-const EXPECTED: &str = "t (or t_ms, t_us, t_ns), x, y, z (or x_mm, y_mm, z_mm), qw, qx, qy and qz, each with the name or number of a column";
+const EXPECTED: &str = "t (or t_ms, t_us, t_ns), x, y, z (or x_cm, x_mm and so on), qw, qx, qy and qz, each with the name or number of a column";
 
 /// A mapping from the quantities of a sample to the columns of a text file. A column is given by its name in the header
 /// or by its number from 1.
 ///
 /// The name of a quantity states its unit. `t` is in seconds, and `t_ms`, `t_us` and `t_ns` are in milliseconds,
-/// microseconds and nanoseconds. `x`, `y` and `z` are in metres, and `x_mm`, `y_mm` and `z_mm` in millimetres. `qw`,
-/// `qx`, `qy` and `qz` form the quaternion that rotates head axes into world axes, with real part `qw`.
+/// microseconds and nanoseconds. `x`, `y` and `z` are in metres, `x_cm` and so on in centimetres, and `x_mm` and so on in
+/// millimetres. `qw`, `qx`, `qy` and `qz` form the quaternion that rotates head axes into world axes, with real part
+/// `qw`. A minus before a column, as in `z=-pz`, changes the sign of its numbers. Left-handed logs need such signs.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Columns {
     /// Mapped quantities with their columns, in the order in which the user gave them.
@@ -29,7 +30,7 @@ const fn field(name: &'static str, slot: usize, places: i32) -> Field {
     Field { name, slot, places }
 }
 
-static FIELDS: [Field; 14] = [
+static FIELDS: [Field; 17] = [
     field("t", 0, 0),
     field("t_ms", 0, 3),
     field("t_us", 0, 6),
@@ -37,6 +38,9 @@ static FIELDS: [Field; 14] = [
     field("x", 1, 0),
     field("y", 2, 0),
     field("z", 3, 0),
+    field("x_cm", 1, 2),
+    field("y_cm", 2, 2),
+    field("z_cm", 3, 2),
     field("x_mm", 1, 3),
     field("y_mm", 2, 3),
     field("z_mm", 3, 3),
@@ -52,6 +56,8 @@ pub(super) struct Column {
     pub(super) index: usize,
     pub(super) name: String,
     pub(super) places: i32,
+    /// True if the numbers of the file have the opposite sign.
+    pub(super) is_negated: bool,
 }
 
 impl Columns {
@@ -100,7 +106,7 @@ impl Columns {
 
     /// Returns true if every column is given by its number. The file then needs no header.
     pub(super) fn are_numbers(&self) -> bool {
-        self.given.iter().all(|(_, column)| number(column).is_some())
+        self.given.iter().all(|(_, column)| number(column.trim_start_matches('-')).is_some())
     }
 
     /// Returns the mapped columns of a file with the header `header`, in the order time, x, y, z, qw, qx, qy, qz. An
@@ -109,12 +115,14 @@ impl Columns {
         // Find each mapped column by its name in the header, or by its number.
         let mut found: [Option<Column>; 8] = Default::default();
         for (field, wanted) in &self.given {
-            let named = header.iter().position(|name| name == wanted);
-            let index = named.or_else(|| number(wanted)).ok_or_else(|| {
-                let expected = format!("a column `{wanted}` for {}", field.name);
-                of_line(line, expected, header.join(", "))
-            })?;
-            found[field.slot] = Some(Column { index, name: wanted.clone(), places: field.places });
+            let index_of = |wanted: &str| header.iter().position(|name| *name == wanted).or_else(|| number(wanted));
+            let opposite = || Some((index_of(wanted.strip_prefix('-')?.trim_start())?, true));
+            let (index, is_negated) =
+                index_of(wanted).map(|index| (index, false)).or_else(opposite).ok_or_else(|| {
+                    let expected = format!("a column `{wanted}` for {}", field.name);
+                    of_line(line, expected, header.join(", "))
+                })?;
+            found[field.slot] = Some(Column { index, name: wanted.clone(), places: field.places, is_negated });
         }
         // Every value of a sample needs a column. Without a column for a value, the mapping is incomplete.
         let all: Vec<Column> = found.into_iter().flatten().collect();

@@ -1,12 +1,33 @@
-//! Reader of pose logs as OpenXR programs write them: predicted display time, position and orientation, as CSV or as
-//! one JSON object per line.
+//! Columns that are found by their names, in any order, and pose logs as OpenXR programs write them: as CSV or as one
+//! JSON object per line.
 
 use pxpl5_sim::parameters::FileError;
 use serde_json::Value;
 
+use super::axes::Axes;
 use super::columns::{Column, of_line};
 
-/// Column names without units, in the order of a sample: time, x, y, z, qw, qx, qy, qz.
+/// Names of the time with the decimal places of their unit where the name does not state it. The time of OpenXR counts
+/// nanoseconds.
+const TIMES: [(&str, i32); 4] = [("predicted_display_time", 9), ("time", 0), ("timestamp", 0), ("t", 0)];
+
+/// Beginnings of the names of x, y and z, and the axes of files with these names.
+const POSITIONS: [(&str, Axes); 6] = [
+    ("position_", Axes::OpenGl),
+    ("pos_", Axes::OpenGl),
+    ("p_rs_r_", Axes::Euroc),
+    ("t", Axes::Optical),
+    ("p", Axes::OpenGl),
+    ("", Axes::OpenGl),
+];
+
+/// Beginnings of the names of w, x, y and z of the quaternion.
+const ORIENTATIONS: [&str; 8] = ["orientation_", "rotation_", "rot_", "quaternion_", "quat_", "q_rs_", "q_", "q"];
+
+/// Units in names with the decimal places that they mean, as in `time_ms` and `x [mm]`.
+const UNITS: [(&str, i32); 7] = [("ns", 9), ("us", 6), ("ms", 3), ("s", 0), ("mm", 3), ("cm", 2), ("m", 0)];
+
+/// Parts of the names of a complete header, for errors.
 const NAMES: [&str; 8] = [
     "predicted_display_time",
     "position_x",
@@ -18,13 +39,7 @@ const NAMES: [&str; 8] = [
     "orientation_z",
 ];
 
-/// Suffixes of the names of time columns, with the decimal places of their units. For example, `_ns` has 9 places,
-/// because a nanosecond is 10^-9 s. A time column without suffix is in nanoseconds, as an `XrTime` of OpenXR.
-const UNITS: [(&str, i32); 4] = [("_ns", 9), ("_us", 6), ("_ms", 3), ("_s", 0)];
-
-const NANOSECONDS: i32 = 9;
-
-/// Returns a column name in lower case with `_` between words: `pose.position.x` and `posePositionX` become
+/// Returns a column name in lower case with `_` between words: `pose.position.x` and `headPositionX` become
 /// `position_x`.
 fn normal(name: &str) -> String {
     let mut words = String::new();
@@ -36,46 +51,74 @@ fn normal(name: &str) -> String {
         words.push(if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '_' });
         before = letter;
     }
-    let bare = words.trim_matches('_');
-    bare.strip_prefix("pose_").unwrap_or(bare).to_owned()
+    let mut bare = words.trim_matches('_');
+    while let Some(rest) = ["pose_", "head_", "hmd_"].iter().find_map(|begin| bare.strip_prefix(begin)) {
+        bare = rest;
+    }
+    bare.to_owned()
 }
 
-/// Returns the index of a column name in [`NAMES`] and the number of decimal places of the column's unit. Returns
-/// `None` for an unknown name.
-fn slot(name: &str) -> Option<(usize, i32)> {
-    let normal = normal(name);
-    if let Some(slot) = NAMES.iter().position(|candidate| *candidate == normal) {
-        return Some((slot, if slot == 0 { NANOSECONDS } else { 0 }));
+/// Returns a column name without its unit, and the decimal places of this unit.
+fn without_unit(name: &str) -> (String, Option<i32>) {
+    let places = |unit: &str| UNITS.iter().find(|(known, _)| *known == unit).map(|(_, places)| *places);
+    if let Some((bare, unit)) = name.split_once(['[', '(']) {
+        return (normal(bare), places(unit.trim_end_matches([']', ')']).trim()));
     }
-    let unit = UNITS.iter().find(|(unit, _)| normal.strip_suffix(unit) == Some(NAMES[0]));
-    unit.map(|(_, places)| (0, *places))
+    let name = normal(name);
+    match name.rsplit_once('_').map(|(bare, unit)| (bare, places(unit))) {
+        Some((bare, Some(places))) => (bare.to_owned(), Some(places)),
+        _ => (name, None),
+    }
 }
 
-/// Returns true if a header belongs to a pose log: it has a predicted display time, or a position and an orientation.
-pub(super) fn is_header(header: &[&str]) -> bool {
-    let has =
-        |begin: &str| header.iter().any(|name| slot(name).is_some_and(|(slot, _)| NAMES[slot].starts_with(begin)));
-    has("predicted") || (has("position") && has("orientation"))
+/// The eight columns of a file whose header names them, and the axes that their names imply.
+pub(super) struct Named {
+    pub(super) columns: [Column; 8],
+    pub(super) axes: Axes,
+    /// True if the time counts from the beginning of the run and not from the first line (`time_s`).
+    pub(super) counts_from_run: bool,
 }
 
-/// Returns the eight columns of a pose log in the order of [`NAMES`]. The header can contain these columns in any
-/// order, among other columns.
-pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], FileError> {
-    let mut found: [Option<Column>; 8] = Default::default();
-    for (index, name) in header.iter().enumerate() {
-        if let Some((slot, places)) = slot(name)
-            && found[slot].is_none()
-        {
-            found[slot] = Some(Column { index, name: (*name).to_owned(), places });
-        }
+/// Finds the columns of a header by their names. The columns may have any order, among other columns. Returns `None`
+/// if the names are unknown.
+///
+/// # Errors
+///
+/// Fails if the header belongs to a pose log and lacks a column.
+pub(super) fn named(line: u64, header: &[&str]) -> Result<Option<Named>, FileError> {
+    let names: Vec<(String, Option<i32>)> = header.iter().map(|name| without_unit(name)).collect();
+    let column = |wanted: &str, places: i32| {
+        let index = names.iter().position(|(name, _)| name == wanted)?;
+        Some(Column {
+            index,
+            name: header[index].to_owned(),
+            places: names[index].1.unwrap_or(places),
+            is_negated: false,
+        })
+    };
+    let group = |begin: &str, ends: &[&str]| ends.iter().map(|end| column(&format!("{begin}{end}"), 0)).collect();
+    let time = TIMES.iter().find_map(|(name, places)| column(name, *places));
+    let position: Option<(Vec<Column>, Axes)> =
+        POSITIONS.iter().find_map(|(begin, axes)| Some((group(begin, &["x", "y", "z"])?, *axes)));
+    let orientation: Option<Vec<Column>> = ORIENTATIONS.iter().find_map(|begin| group(begin, &["w", "x", "y", "z"]));
+    if let (Some(time), Some((position, axes)), Some(orientation)) = (&time, &position, &orientation) {
+        let all: Vec<Column> = [time].into_iter().chain(position).chain(orientation).cloned().collect();
+        let counts_from_run = *axes == Axes::OpenGl && normal(&time.name) == "time_s";
+        let columns = all.try_into().expect("one, three and four columns");
+        return Ok(Some(Named { columns, axes: *axes, counts_from_run }));
     }
-    let missing: Vec<&str> =
-        NAMES.iter().zip(&found).filter(|(_, column)| column.is_none()).map(|(name, _)| *name).collect();
-    if !missing.is_empty() {
-        let found = format!("{} without {}", header.join(", "), missing.join(", "));
-        return Err(of_line(line, "all columns of a pose log", found));
+    // A pose log has the predicted display time, or a part of the position and of the orientation.
+    let has = |begin: &str| names.iter().any(|(name, _)| name.starts_with(begin));
+    if !(has("predicted_display_time") || has("position_") && has("orientation_")) {
+        return Ok(None);
     }
-    Ok(found.map(|column| column.expect("none is missing")))
+    let is_missing = |name: &&str| match *name {
+        "predicted_display_time" => time.is_none(),
+        name => column(name, 0).is_none(),
+    };
+    let missing: Vec<&str> = NAMES.into_iter().filter(|name| is_missing(&name)).collect();
+    let found = format!("{} without {}", header.join(", "), missing.join(", "));
+    Err(of_line(line, "all columns of a pose log", found))
 }
 
 /// Returns true if a file has one JSON object per line. Only the first line of the file is checked.
@@ -91,7 +134,8 @@ pub(super) fn json_fields(line: u64, text: &str) -> Result<([String; 8], Column)
     let mut all = Vec::new();
     flatten("", &value, &mut all);
     let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
-    let columns = columns(line, &names)?;
+    let named = named(line, &names)?;
+    let columns = named.ok_or_else(|| of_line(line, "all columns of a pose log", names.join(", ")))?.columns;
     let fields = columns.each_ref().map(|column| all[column.index].1.clone());
     let [time, ..] = columns;
     Ok((fields, time))
@@ -116,6 +160,7 @@ pub(super) fn json_columns(time: &Column) -> [Column; 8] {
         index,
         name: if index == 0 { time.name.clone() } else { NAMES[index].to_owned() },
         places: if index == 0 { time.places } else { 0 },
+        is_negated: false,
     })
 }
 

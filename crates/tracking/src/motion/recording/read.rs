@@ -6,7 +6,8 @@ use super::axes::Axes;
 use super::columns::{Column, Columns, of_line};
 use super::decimal::scaled;
 use super::pose_log;
-use super::{FARTHEST_M, FASTEST, LATEST_S, Sample};
+use super::pose_log::Named;
+use super::{FARTHEST_M, FASTEST, Jumps, LATEST_S, RecordingFormat, Sample};
 use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{PS_PER_S, span_s};
@@ -29,6 +30,16 @@ const TUM_ORDER: [usize; 8] = [0, 1, 2, 3, 7, 4, 5, 6];
 /// Greatest difference between the length of a recorded quaternion and 1. Rounding to four decimals causes a much
 /// smaller difference.
 const LENGTH_TOLERANCE: f64 = 1e-2;
+
+/// Fastest movement of a head between two samples, m/s: twice the fastest of four real recordings. Assumed, 5 to 20.
+const MOST_M_PER_S: f64 = 8.0;
+/// Fastest turn of a head between two samples, rad/s: 2,000 degrees, twice the fastest of four real recordings.
+/// Assumed, 1,000 to 4,000 degrees.
+const MOST_RAD_PER_S: f64 = 2_000.0 / PER_RAD;
+const PER_RAD: f64 = 180.0 / std::f64::consts::PI;
+/// Noise of a tracker. A shorter way shows no speed, because two samples may be only microseconds apart. Assumed.
+const NOISE_M: f64 = 0.002;
+const NOISE_RAD: f64 = 0.5 / PER_RAD;
 
 struct Layout {
     /// Character between two columns, or `None` if white space separates the columns.
@@ -63,21 +74,22 @@ fn bare(field: &str) -> &str {
 
 pub(super) struct Samples {
     pub(super) samples: Vec<Sample>,
-    /// Warning about samples that were left out because their time stamps equal the time stamp of the preceding sample.
-    pub(super) repeated: Option<String>,
+    /// Warnings about samples that were left out, and about samples that no head can reach.
+    pub(super) warnings: Vec<String>,
 }
 
-pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Samples, FileError> {
+pub(super) fn samples(text: &str, format: &RecordingFormat) -> Result<Samples, FileError> {
+    let columns = &format.columns;
     // Number the lines from 1, and drop a byte order mark and empty lines.
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
     let lines = lines.map(|(text, number)| Line { number, text: text.trim() }).filter(|line| !line.text.is_empty());
     let lines: Vec<Line<'_>> = lines.collect();
     if columns.is_empty() && lines.first().is_some_and(|first| pose_log::is_json(first.text)) {
-        return of_json(&lines, axes);
+        return of_json(&lines, format);
     }
     // Take the layout from the mapping, or recognize it from the first lines.
     let layout = if columns.is_empty() { recognised(&lines)? } else { mapped(&lines, columns)? };
-    collect(&lines, &layout, axes)
+    collect(&lines, &layout, format)
 }
 
 /// Checks the samples that a program supplies, by the same rules as the lines of a file in this crate's own format.
@@ -97,10 +109,10 @@ pub(super) fn given_samples(given: impl IntoIterator<Item = (f64, Pose)>) -> Res
         from_first: false,
         begins_after: 0,
     };
-    collect(&lines, &layout, None)
+    collect(&lines, &layout, &RecordingFormat::default())
 }
 
-fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, FileError> {
+fn of_json(lines: &[Line<'_>], format: &RecordingFormat) -> Result<Samples, FileError> {
     let read = lines.iter().map(|line| Ok((line.number, pose_log::json_fields(line.number, line.text)?)));
     let read: Vec<(u64, ([String; 8], Column))> = read.collect::<Result<_, FileError>>()?;
     let time = &read.first().ok_or_else(no_sample)?.1.1;
@@ -115,15 +127,20 @@ fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, FileError>
         from_first: true,
         begins_after: 0,
     };
-    collect(&lines, &layout, axes)
+    collect(&lines, &layout, format)
 }
 
-fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Samples, FileError> {
-    let axes = axes.unwrap_or(layout.axes);
+fn collect(lines: &[Line<'_>], layout: &Layout, format: &RecordingFormat) -> Result<Samples, FileError> {
+    let axes = format.axes.unwrap_or(layout.axes);
     let mut first_ps = None;
     let mut samples: Vec<Sample> = Vec::new();
     let mut repeated = Repeated::default();
+    let mut fast = Fast::of(format.jumps);
     for line in lines.iter().filter(|line| line.number > layout.begins_after && !line.text.starts_with('#')) {
+        if fast.leaves_out() && layout.has_no_pose(line) {
+            fast.add(line, "no pose".to_owned());
+            continue;
+        }
         let (stamp_ps, pose) = layout.sample(line)?;
         let origin_ps = if layout.from_first { *first_ps.get_or_insert(stamp_ps) } else { 0 };
         let t_ps = layout.time(line, stamp_ps - origin_ps, samples.last())?;
@@ -134,12 +151,12 @@ fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Sa
             continue;
         }
         let sample = (t_ps, axes.convert(pose));
-        if let Some(before) = samples.last() {
-            check_speed(line, before, &sample)?;
+        if fast.keeps(line, &mut samples, &sample)? {
+            samples.push(sample);
         }
-        samples.push(sample);
     }
-    if samples.is_empty() { Err(no_sample()) } else { Ok(Samples { samples, repeated: repeated.warning() }) }
+    let warnings = repeated.warning().into_iter().chain(fast.warning(samples.len())).collect();
+    if samples.is_empty() { Err(no_sample()) } else { Ok(Samples { samples, warnings }) }
 }
 
 #[derive(Default)]
@@ -166,50 +183,109 @@ impl Repeated {
     }
 }
 
-fn check_speed(line: &Line<'_>, (before_ps, before): &Sample, (t_ps, pose): &Sample) -> Result<(), FileError> {
-    let seconds = span_s(*before_ps, *t_ps);
-    let moved = (pose.position - before.position).length() / seconds;
-    let turned = rotation::difference(before.orientation, pose.orientation).length() / seconds;
-    let too_fast = [(moved, "m/s"), (turned, "rad/s")].into_iter().find(|(found, _)| *found > FASTEST);
-    too_fast.map_or(Ok(()), |(found, unit)| {
-        let expected = format!("at most {FASTEST:e} m/s and {FASTEST:e} rad/s from the line before");
-        Err(out_of_range(format_args!("line {}", line.number), expected, format_args!("{found:e} {unit}")))
-    })
+/// The lines in which the head moves faster than a head can.
+struct Fast {
+    jumps: Jumps,
+    count: usize,
+    /// The first such line, and its speed.
+    first: Option<(u64, String)>,
+    /// Pose of the line before, if this line was left out.
+    left_out: Option<Pose>,
+}
+
+impl Fast {
+    fn of(jumps: Jumps) -> Self {
+        Self { jumps, count: 0, first: None, left_out: None }
+    }
+
+    fn leaves_out(&self) -> bool {
+        self.jumps == Jumps::LeaveOut
+    }
+
+    fn add(&mut self, line: &Line<'_>, speed: String) {
+        self.count += 1;
+        self.first.get_or_insert((line.number, speed));
+    }
+
+    /// Returns true if a sample becomes a part of the recording.
+    ///
+    /// # Errors
+    ///
+    /// Fails for a speed that no recording has, unless such samples are left out.
+    fn keeps(&mut self, line: &Line<'_>, samples: &mut Vec<Sample>, sample: &Sample) -> Result<bool, FileError> {
+        let Some((before_ps, before)) = samples.last() else { return Ok(true) };
+        let seconds = span_s(*before_ps, sample.0);
+        let moved_m = (sample.1.position - before.position).length();
+        let turned = rotation::difference(before.orientation, sample.1.orientation).length();
+        let speeds =
+            [(moved_m, MOST_M_PER_S, NOISE_M, "m/s", 1.0), (turned, MOST_RAD_PER_S, NOISE_RAD, "deg/s", PER_RAD)];
+        let fast = speeds.into_iter().find(|(way, most, noise, ..)| *way > most * seconds && way > noise);
+        // A tracker that has lost the head repeats its pose, and after some time this pose is no longer too fast.
+        let is_lost = self.left_out == Some(sample.1);
+        if fast.is_none() && !is_lost {
+            self.left_out = None;
+            return Ok(true);
+        }
+        if let Some((way, _, _, unit, per)) = fast {
+            self.add(line, format!("{:.0} {unit}", way * per / seconds));
+        } else {
+            self.count += 1;
+        }
+        if !self.leaves_out() {
+            let too_fast = [(moved_m / seconds, "m/s"), (turned / seconds, "rad/s")]
+                .into_iter()
+                .find(|(found, _)| *found > FASTEST);
+            return too_fast.map_or(Ok(true), |(found, unit)| {
+                let expected = format!("at most {FASTEST:e} m/s and {FASTEST:e} rad/s from the line before");
+                Err(out_of_range(format_args!("line {}", line.number), expected, format_args!("{found:e} {unit}")))
+            });
+        }
+        // Zeros at the beginning are the lost poses, and not the poses after them.
+        let zero = Pose { position: DVec3::ZERO, ..*before };
+        if samples.iter().all(|(_, pose)| *pose == zero) {
+            samples.clear();
+            return Ok(true);
+        }
+        self.left_out = Some(sample.1);
+        Ok(false)
+    }
+
+    fn warning(&self, kept: usize) -> Option<String> {
+        let (line, speed) = self.first.as_ref()?;
+        let count = match self.count {
+            1 => format!("line {line}: the head moves too fast ({speed})"),
+            count => format!("{count} lines in which the head moves too fast, first line {line} ({speed})"),
+        };
+        let done = match self.jumps {
+            Jumps::LeaveOut => "left out",
+            Jumps::Keep => "a head stays below 8 m/s and 2,000 deg/s; head.jumps = \"leave-out\" leaves such lines out",
+        };
+        let units = if 10 * self.count > kept { "; are positions in metres and times in seconds?" } else { "" };
+        Some(format!("{count}: {done}{units}"))
+    }
 }
 
 fn recognised(lines: &[Line<'_>]) -> Result<Layout, FileError> {
     let first = lines.first().ok_or_else(no_sample)?;
     let header: Vec<&str> = first.text.trim_start_matches('#').split(',').map(bare).collect();
-    // Case 1: this crate's own header.
-    if header == OWN {
-        let columns = in_order(&OWN, [0, 1, 2, 3, 4, 5, 6, 7], 0);
-        let axes = Axes::OpenGl;
-        let begins_after = first.number;
-        return Ok(Layout { separator: Some(','), columns, n_fields: Some(8), axes, from_first: false, begins_after });
-    }
-    // Case 2: the header of a EuRoC ground truth.
+    // Case 1: the header of a EuRoC ground truth.
     if first.text.starts_with('#') && is_euroc(&header) {
         let names: [&str; 8] = std::array::from_fn(|i| header[i]);
         let columns = in_order(&names, [0, 1, 2, 3, 4, 5, 6, 7], 9);
-        let begins_after = first.number;
-        return Ok(Layout {
-            separator: Some(','),
-            columns,
-            n_fields: None,
-            axes: Axes::Euroc,
-            from_first: true,
-            begins_after,
-        });
-    }
-    // Case 3: a pose log, whose header has the required column names in any order.
-    let separator = [',', ';', '\t'].into_iter().find(|separator| first.text.contains(*separator));
-    let names = Line { number: first.number, text: first.text.trim_start_matches('#').trim() }.fields(separator);
-    if pose_log::is_header(&names) {
-        let columns = pose_log::columns(first.number, &names)?;
-        let (axes, begins_after) = (Axes::OpenGl, first.number);
+        let (separator, axes, begins_after) = (Some(','), Axes::Euroc, first.number);
         return Ok(Layout { separator, columns, n_fields: None, axes, from_first: true, begins_after });
     }
-    // Case 4: a TUM trajectory, whose first line without `#` has eight numbers.
+    // Case 2: a header with the names of all columns in any order.
+    let names = Line { number: first.number, text: first.text.trim_start_matches('#').trim() };
+    let separator = separator_of(&names);
+    let names = names.fields(separator);
+    if let Some(Named { columns, axes, counts_from_run }) = pose_log::named(first.number, &names)? {
+        // A line of this crate's own files has no other fields.
+        let n_fields = (counts_from_run && names.len() == OWN.len()).then_some(OWN.len());
+        let begins_after = first.number;
+        return Ok(Layout { separator, columns, n_fields, axes, from_first: !counts_from_run, begins_after });
+    }
+    // Case 3: a TUM trajectory, whose first line without `#` has eight numbers.
     let numbers = lines.iter().find(|line| !line.text.starts_with('#')).ok_or_else(no_sample)?;
     let fields = numbers.fields(None);
     if fields.len() == TUM.len() && fields.iter().all(|field| field.parse::<f64>().is_ok()) {
@@ -218,6 +294,11 @@ fn recognised(lines: &[Line<'_>]) -> Result<Layout, FileError> {
         return Ok(Layout { separator: None, columns, n_fields: Some(8), axes, from_first: true, begins_after: 0 });
     }
     Err(of_line(first.number, FORMATS, first.text))
+}
+
+/// Returns the character that separates the columns, or `None` for white space.
+fn separator_of(line: &Line<'_>) -> Option<char> {
+    [',', ';', '\t'].into_iter().find(|separator| line.text.contains(*separator))
 }
 
 /// Returns true for the header of a EuRoC ground truth file. Columns after the first eight (velocity, biases) have no
@@ -229,12 +310,15 @@ fn is_euroc(header: &[&str]) -> bool {
 
 fn in_order(names: &[&str; 8], order: [usize; 8], time_places: i32) -> [Column; 8] {
     let places = |slot| if slot == 0 { time_places } else { 0 };
-    std::array::from_fn(|slot| Column { index: order[slot], name: names[order[slot]].to_owned(), places: places(slot) })
+    std::array::from_fn(|slot| {
+        let (index, name) = (order[slot], names[order[slot]].to_owned());
+        Column { index, name, places: places(slot), is_negated: false }
+    })
 }
 
 fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, FileError> {
     let first = lines.first().ok_or_else(no_sample)?;
-    let separator = [',', ';', '\t'].into_iter().find(|separator| first.text.contains(*separator));
+    let separator = separator_of(first);
     // A first line of numbers alone is a sample, not a header.
     let header = Line { number: first.number, text: first.text.trim_start_matches('#').trim() };
     let fields = header.fields(separator);
@@ -283,6 +367,13 @@ impl Layout {
         Ok((stamp_ps, Pose { position: DVec3::new(x, y, z), orientation }))
     }
 
+    /// Returns true if the quaternion of a line is zero or not a number, as some trackers write after losing the head.
+    fn has_no_pose(&self, line: &Line<'_>) -> bool {
+        let fields = line.fields(self.separator);
+        let number = |column: &Column| fields.get(column.index)?.parse::<f64>().ok();
+        self.columns[4..].iter().all(|column| number(column).is_some_and(|number| number == 0.0 || number.is_nan()))
+    }
+
     fn unit_quaternion(&self, line: &Line<'_>, q: DQuat) -> Result<DQuat, FileError> {
         let found = q.length();
         if (found - 1.0).abs() <= LENGTH_TOLERANCE {
@@ -311,7 +402,8 @@ impl Layout {
 fn number(line: &Line<'_>, column: &Column, text: &str) -> Result<f64, FileError> {
     let parsed = text.parse().ok().filter(|x: &f64| x.is_finite());
     let number = parsed.ok_or_else(|| not_a_number(line, column, text))?;
-    Ok(if column.places == 3 { number / 1e3 } else { number })
+    let sign = if column.is_negated { -1.0 } else { 1.0 };
+    Ok(sign * number / 10f64.powi(column.places))
 }
 
 fn not_a_number(line: &Line<'_>, column: &Column, found: &str) -> FileError {

@@ -169,11 +169,12 @@ fn other_columns_are_read_by_a_mapping_of_names_or_numbers() {
     let named =
         "frame;qx;qy;qz;qw;px;py;pz;stamp\n7;0;0;0;1;0;1700;0;20.5\n8;0;0.70710678;0;0.70710678;250;1700;-500;520.5\n";
     let columns = Columns::parse("t_ms=stamp,x_mm=px,y_mm=py,z_mm=pz,qw=qw,qx=qx,qy=qy,qz=qz").unwrap();
-    let format = RecordingFormat { columns, axes: None };
+    let format = RecordingFormat { columns, ..RecordingFormat::default() };
     let by_name = Recording::read_as(named.as_bytes(), &format).unwrap();
     let numbered: String = named.lines().skip(1).map(|line| line.replace(';', " ") + "\n").collect();
     let columns = Columns::parse("t_ms=9,x_mm=6,y_mm=7,z_mm=8,qw=5,qx=2,qy=3,qz=4").unwrap();
-    let by_number = Recording::read_as(numbered.as_bytes(), &RecordingFormat { columns, axes: None }).unwrap();
+    let by_number =
+        Recording::read_as(numbered.as_bytes(), &RecordingFormat { columns, ..RecordingFormat::default() }).unwrap();
     assert_eq!(by_name, by_number);
     let own = Recording::read(OWN.as_bytes()).unwrap();
     for ms in [0, 300, 500] {
@@ -191,7 +192,8 @@ fn an_incomplete_mapping_is_an_error() {
         ("t", "found `t`"),
     ] {
         let message = Columns::parse(mapping).and_then(|columns| {
-            Ok(Recording::read_as(&b"1,2,3\n"[..], &RecordingFormat { columns, axes: None }).map(|_| ())?)
+            Ok(Recording::read_as(&b"1,2,3\n"[..], &RecordingFormat { columns, ..RecordingFormat::default() })
+                .map(|_| ())?)
         });
         let message = message.unwrap_err().to_string();
         assert!(
@@ -200,7 +202,9 @@ fn an_incomplete_mapping_is_an_error() {
         );
     }
     let columns = Columns::parse("t=stamp,x=x,y=y,z=z,qw=w,qx=i,qy=j,qz=k").unwrap();
-    let error = Recording::read_as(&b"time,x,y,z,w,i,j,k\n"[..], &RecordingFormat { columns, axes: None }).unwrap_err();
+    let error =
+        Recording::read_as(&b"time,x,y,z,w,i,j,k\n"[..], &RecordingFormat { columns, ..RecordingFormat::default() })
+            .unwrap_err();
     assert_eq!(error.to_string(), "line 1: expected a column `stamp` for t, found time, x, y, z, w, i, j, k");
 }
 
@@ -291,4 +295,121 @@ fn samples_made_by_a_program_are_checked_like_samples_of_a_file() {
         let error = Recording::from_samples(samples).expect_err(says).to_string();
         assert!(error.contains(says), "{error}");
     }
+}
+
+#[test]
+fn named_columns_may_have_any_order_case_and_separator_beside_other_columns() {
+    let own = Recording::read(OWN.as_bytes()).unwrap();
+    let rows =
+        [(0.0, [0.0, 1.7, 0.0], [1.0, 0.0, 0.0, 0.0]), (0.5, [0.25, 1.7, -0.5], [0.70710678, 0.0, 0.70710678, 0.0])];
+    // Header, separator, and a line from time, position and quaternion (w, x, y, z).
+    type Row = fn(f64, [f64; 3], [f64; 4]) -> Vec<String>;
+    let cases: [(&str, &str, Row); 5] = [
+        ("time_s,x,y,z,qx,qy,qz,qw", ",", |t, [x, y, z], [w, i, j, k]| {
+            [t, x, y, z, i, j, k, w].map(|n| n.to_string()).to_vec()
+        }),
+        ("QW;QX;QY;QZ;frame;X;Y;Z;Time_S", ";", |t, [x, y, z], [w, i, j, k]| {
+            [w, i, j, k, 7.0, x, y, z, t].map(|n| n.to_string()).to_vec()
+        }),
+        ("Timestamp [ms]\tPosX\tPosY\tPosZ\tRotX\tRotY\tRotZ\tRotW", "\t", |t, [x, y, z], [w, i, j, k]| {
+            [1e3 * t, x, y, z, i, j, k, w].map(|n| n.to_string()).to_vec()
+        }),
+        ("t pz px py q_w q_x q_y q_z", " ", |t, [x, y, z], [w, i, j, k]| {
+            [t, z, x, y, w, i, j, k].map(|n| n.to_string()).to_vec()
+        }),
+        (
+            "head.position.x (mm),head.position.y (mm),head.position.z (mm),time_ns,quat_w,quat_x,quat_y,quat_z",
+            ",",
+            |t, p, q| {
+                let [x, y, z] = p.map(|metres| 1e3 * metres);
+                [x, y, z, 1e9 * t, q[0], q[1], q[2], q[3]].map(|n| n.to_string()).to_vec()
+            },
+        ),
+    ];
+    for (header, separator, row) in cases {
+        let lines = rows.map(|(t, p, q)| row(t, p, q).join(separator) + "\n").concat();
+        let recording =
+            Recording::read(format!("{header}\n{lines}").as_bytes()).unwrap_or_else(|e| panic!("{header}: {e}"));
+        assert_eq!(recording.span_ps(), (0, PS_PER_S / 2), "{header}");
+        for ms in [0, 250, 500] {
+            assert!(recording.pose(ms * PS_PER_MS).angle_deg(&own.pose(ms * PS_PER_MS)) < 1e-6, "{header}");
+            assert!(recording.pose(ms * PS_PER_MS).distance_m(&own.pose(ms * PS_PER_MS)) < 1e-12, "{header}");
+        }
+    }
+    // The names of TUM without `#` keep the axes of TUM.
+    let named = TUM.replace("# ground truth trajectory\n# ", "");
+    assert_eq!(Recording::read(named.as_bytes()).unwrap(), Recording::read(TUM.as_bytes()).unwrap());
+}
+
+#[test]
+fn a_minus_before_a_column_changes_the_sign() {
+    // The axes of Unity are left-handed: z and the turns about x and y have the opposite sign.
+    let text = "a,b,c,d,e,f,g,h\n0,0.1,1.7,0.3,0.5,0.5,-0.5,0.5\n1,0.2,1.7,0.4,0.5,0.5,-0.5,0.5\n";
+    let read = |columns: &str, axes| {
+        let columns = Columns::parse(columns).unwrap();
+        Recording::read_as(text.as_bytes(), &RecordingFormat { columns, axes, jumps: Jumps::Keep }).unwrap()
+    };
+    let by_sign = read("t=a,x=b,y=c,z=-d,qw=e,qx=-f,qy=-g,qz=h", None);
+    assert_eq!(by_sign, read("t=a,x=b,y=c,z=d,qw=e,qx=f,qy=g,qz=h", Some(Axes::Unity)));
+    assert_eq!(by_sign, read("t=1,x=2,y=3,z=-4,qw=5,qx=-6,qy=-7,qz=8", None));
+    assert_eq!(by_sign.pose(0).position, DVec3::new(0.1, 1.7, -0.3));
+}
+
+#[test]
+fn a_recording_that_begins_late_has_a_gap_before_its_first_pose() {
+    let late = load("20,0,0,0,1,0,0,0\n20.1,0,0,0,1,0,0,0\n").unwrap();
+    assert_eq!(late.warnings(), ["no pose for 20.000 s from 0.000 s on"]);
+    assert_eq!(late.gap_ps(PS_PER_S), Some((0, 20 * PS_PER_S)));
+    assert_eq!(late.ending(End::Hold).gap_ps(PS_PER_S), None);
+    assert!(load("0.2,0,0,0,1,0,0,0\n0.3,0,0,0,1,0,0,0\n").unwrap().warnings().is_empty());
+}
+
+/// Returns lines at 100 Hz of a head at 1.6 m that moves by 5 mm with each line. Lines in `lost` have the text `pose`.
+fn with_lost(lost: std::ops::Range<u64>, pose: &str) -> String {
+    let good = |n: u64| format!("{},1.6,0,1,0,0,0", 0.005 * n as f64);
+    let line =
+        |n| format!("{}.{:02},{}\n", n / 100, n % 100, if lost.contains(&n) { pose.to_owned() } else { good(n) });
+    (0..100).map(line).collect()
+}
+
+#[test]
+fn lines_faster_than_a_head_are_reported_and_can_be_left_out() {
+    let leave_out = RecordingFormat { jumps: Jumps::LeaveOut, ..RecordingFormat::default() };
+    let read = |rows: &str| Recording::read_as(format!("{HEADER}{rows}").as_bytes(), &leave_out);
+    let good = load(&with_lost(0..0, "")).unwrap();
+    assert!(good.warnings().is_empty(), "{:?}", good.warnings());
+    // 1.6 m within 10 ms are 160 m/s, on the way to the zeros and on the way back. The first line after 30 zeros could
+    // be reached at 5 m/s.
+    let zeros = load(&with_lost(31..34, "0,0,0,1,0,0,0")).unwrap();
+    let [warning] = &zeros.warnings()[..] else { panic!("one warning") };
+    assert!(
+        warning.starts_with("2 lines in which the head moves too fast, first line 33 (161 m/s): a head"),
+        "{warning}"
+    );
+    for (lost, pose) in [
+        (31..34, "0,0,0,1,0,0,0"),
+        (31..61, "0,0,0,1,0,0,0"),
+        (0..3, "0,0,0,1,0,0,0"),
+        (31..34, "0,0,0,0,0,0,0"),
+        (31..34, "0,0,0,nan,nan,nan,nan"),
+    ] {
+        let kept = read(&with_lost(lost.clone(), pose)).unwrap();
+        assert_eq!(kept.n_samples() as u64, 100 - (lost.end - lost.start), "{lost:?} {pose}");
+        assert!(kept.warnings()[0].contains("left out"), "{:?}", kept.warnings());
+        assert!((31..34).all(|n| kept.pose(n * 10 * PS_PER_MS).distance_m(&good.pose(n * 10 * PS_PER_MS)) < 1e-12));
+    }
+    // A turn of 30 degrees within 10 ms.
+    let turned = load(&with_lost(31..100, "0.155,1.6,0,0.96592583,0,0.25881905,0")).unwrap().warnings();
+    assert!(turned[0].starts_with("line 33: the head moves too fast (3000 deg/s)"), "{turned:?}");
+    // The way of a head in centimetres, and times in milliseconds that are read as seconds.
+    let centimetres: String = (0..50).map(|n| format!("{}e-2,{},160,0,1,0,0,0\n", n, 0.5 * f64::from(n))).collect();
+    assert!(
+        load(&centimetres).unwrap().warnings()[0].contains("50 m/s")
+            && load(&centimetres).unwrap().warnings()[0].ends_with("in seconds?")
+    );
+    let milliseconds: String = (0..50).map(|n| format!("{},0,0,0,1,0,0,0\n", 11 * n)).collect();
+    assert_eq!(
+        load(&milliseconds).unwrap().warnings(),
+        ["poses are 11 s apart, longer than a gap: is the unit of time right?"]
+    );
 }
