@@ -648,9 +648,9 @@ number of the memory matters. It adds the clocks of Phong triangles, of strips, 
 just-in-time pixels. In short:
 
 - **Waits.** The compiled kernel loses most to floating-point operations that wait for a scalar one in flight:
-  560 clocks, and 120 more behind products of doubles. For the straight kernel, instruction misses cost 1,680
-  clocks and the early use of loaded numbers 470. The dual kernel loses 95 to instruction misses, and less
-  than 30 to anything else.
+  560 clocks, and 120 more behind products of doubles. In the straight kernel, instruction misses
+  cost 1,680 clocks, and numbers that are used too soon after their load cost 470. The dual kernel loses 95 to
+  instruction misses, and less than 30 to anything else.
 
 - **Memory.** If each further transfer of a line takes 4 clocks instead of 2, the straight kernel takes 850
   clocks more, the dual 76 and the compiled 22. DMA at half of the data rate of one ring channel adds 630, 220
