@@ -47,7 +47,8 @@ pub(crate) fn of_summary(rows: &[Row]) -> String {
 
 pub(crate) fn of_optimizations(rows: &[OptimizationRow]) -> String {
     let mut text =
-        "| saving | work | with it, ms a field | without, ms a field | times |\n|---|---|---|---|---|\n".to_owned();
+        "| optimization | work | with it, ms a field | without, ms a field | times |\n|---|---|---|---|---|\n"
+            .to_owned();
     for OptimizationRow { saving, work, with_ms, without_ms } in rows {
         let times = without_ms / with_ms;
         let _ = writeln!(text, "| {saving} | {work} | {} | {} | {times:.2} |", digits(*with_ms), digits(*without_ms));
@@ -69,9 +70,9 @@ pub(crate) fn replace(path: &Path, name: &str, table: &str) -> Fallible<()> {
 /// Returns a sentence about the host, the date and the conditions of the measurement.
 pub(crate) fn conditions(rounds: usize, load_before: &str) -> String {
     format!(
-        "The program `scripts/speed` measured the values on {} with {}, {} and the profile {}. The values are CPU \
-         times of the process, the best of {rounds} alternating rounds. The load average was {load_before} at the start \
-         and {} at the end, including the measuring process.",
+        "Measured by `scripts/speed` on {} with {}, {}\n\
+         and the profile {}. Values are CPU times of the process, the best of {rounds} alternating rounds. Load averages,\n\
+         with the measuring process, were {load_before} at the start and {} at the end.",
         date(),
         machine(),
         compiler(),

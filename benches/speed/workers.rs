@@ -94,10 +94,9 @@ pub(crate) fn table() -> Fallible<String> {
     let simulating: f64 = pieces.iter().map(|piece| piece.0).sum();
     let alone = makespan(&pieces, 0);
     let mut text = format!(
-        "The times of {} regions in {pairs} stereo pairs of the head were measured one by one. A pair takes {:.2} ms on the \
-         simulating thread, and {:.2} ms of pixels. The schedule is simulated from these times. One thread simulates, and the \
-         other threads take regions from its queue of {}. The simulating thread draws too when the queue is full, and at the \
-         end. The goal on two threads is 7 ms.\n\n\
+        "This table is computed from the times of {} regions in {pairs} stereo pairs of `head`, measured one by one. A pair\n\
+         takes {:.2} ms of simulation and {:.2} ms of drawing. One thread simulates and puts regions into a queue of {}, from\n\
+         which the others take them. When the queue is full, and at the end, it draws too. Two threads should take 7 ms.\n\n\
          | threads | ms a pair | faster than one | of what the simulating thread alone allows |\n|---|---|---|---|\n",
         pieces.len(),
         simulating / pairs as f64 * 1e3,

@@ -34,8 +34,7 @@ pub struct Footprint {
     /// Upper left, upper right, lower left and lower right texel.
     ///
     /// Without guard texels (a margin that repeats the neighbouring face), a texel beyond an edge belongs to the
-    /// neighbouring face. `None` marks a texel beyond a corner. The mean of the other three texels replaces a texel
-    /// beyond a corner.
+    /// neighbouring face. One beyond a corner is `None`, and the mean of the other three replaces it.
     pub texels: [Option<TexelAddress>; 4],
     /// Horizontal and vertical distance from the upper left texel, as fractions from 0 to 1 inclusive. The unit is
     /// `2^-weight_bits`.
@@ -91,9 +90,8 @@ impl AddressUnit {
     /// Returns a position along one axis of the face, relative to the middles of texels, in units of
     /// `2^-quotient_bits`.
     ///
-    /// The position is the number of guard texels plus the quotient times the number of inner texels. For
-    /// interpolation, half a texel is subtracted. A rounded quotient stands for the middle of its interval, so half of
-    /// its last bit is added.
+    /// It is the number of guard texels plus the quotient times the number of inner texels, minus half a texel for
+    /// interpolation. Since a rounded quotient stands for the middle of its interval, half of its last bit is added.
     fn place(&self, quotient: i64) -> i64 {
         let half = if self.weight_bits == 0 { 0 } else { 1 << (self.quotient_bits - 1) };
         let inner = i64::from(self.geometry.inner());

@@ -1,7 +1,6 @@
 //! Address computation for groups of pixels. Each step is a loop over all pixels, so the compiler can vectorize it.
 //!
-//! Directions are sums of three products below 2^53, so doubles hold the sums exactly. Quotients need no correction
-//! either:
+//! Directions are sums of three products below 2^53, which doubles hold exactly. Quotients need no correction either:
 //!
 //! - A quotient is a multiple of 1/(2F) and less than 2^q. Here q is the number of bits of a quotient, and F is the
 //!   component of the direction along the face's axis. F is below 2^(v + m - 1), where v and m are the numbers of bits
@@ -84,7 +83,7 @@ impl Batch {
 
 /// Computes the addresses of up to [`BATCH`] directions.
 ///
-/// Every step processes all entries of the arrays, so loops have a constant length. Unused entries hold values of
+/// Every step processes all entries of the arrays, so that loops have a constant length. Unused entries hold values of
 /// earlier groups.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub(crate) fn addresses(batch: &mut Batch, unit: &AddressUnit, vectors: [&[i32]; 3], matrix: &MatrixWords) {

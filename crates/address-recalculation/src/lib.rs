@@ -11,43 +11,43 @@
 //! ```
 //!
 //! The renderer draws the surroundings of the eye onto six faces of a cube. For each pixel, the display rotates the
-//! viewing vector by the newest orientation and converts the result to an address in the faces. A rotation of the head
-//! therefore needs no rendering.
+//! viewing vector by the newest orientation and finds its address in the faces. This is why a rotation of the head
+//! needs no rendering.
 //!
 //! # Stages, in the order of the signal
 //!
-//! 1. **Table.** The table has a viewing vector of length 1 for each pixel, in signed words. The vectors include the
-//!    effect of the [`Lens`]: flat, radial, equidistant, or from a file. A lens that shows two pixels in the same
-//!    direction is refused.
+//! 1. **Table.** Each pixel has a viewing vector of length 1, in signed words, which includes the effect of the
+//!    [`Lens`]: flat, radial, equidistant, or from a file. A lens that shows two pixels in the same direction is
+//!    refused.
 //! 2. **Latch.** The orientation register ([`OrientationLatch`]) accepts matrices from the host's own port
-//!    ([`AddressRecalculationPipeline::load_orientation`]) or over the ring ([`orientation_message`]). A matrix that is
-//!    not a rotation is refused and counted, and the previous matrix stays valid. The display reads (latches) the
-//!    matrix once per field, per line or per pixel ([`Latch`]). The matrix is read before the first pixel of the field
-//!    or line is displayed, earlier by the duration of all stages.
+//!    ([`AddressRecalculationPipeline::load_orientation`]) or over the ring ([`orientation_message`]). One that is not
+//!    a rotation is refused and counted, and the previous matrix stays valid. The display reads (latches) the matrix
+//!    once per field, per line or per pixel ([`Latch`]). It does so before the first pixel of the field or line,
+//!    earlier by the duration of all stages.
 //! 3. **Rotate.** Nine products and six sums rotate the vector. The results keep all bits.
 //! 4. **Face.** The longest component selects the face. Among equally long components, x precedes y, and y precedes z
 //!    ([`CubeFace`]).
 //! 5. **Divide.** Dividers compute (1 + u) / 2 and (1 + v) / 2, one bit per stage. Results are rounded down, and 1
 //!    becomes all ones.
-//! 6. **Address.** The position is the quotient, plus half of its last bit, times the size of the face. The upper bits
-//!    select the texel. The next bits, rounded, are the fractions. The four texels around the position lie in four
-//!    banks, so one access reads all of them. Without guard texels, a texel beyond an edge belongs to the neighbouring
-//!    face. A texel beyond a corner is the mean of the other three ([`Footprint`]).
-//! 7. **Compose.** For each texel, the memory with the nearest depth is selected. At equal depths, the memory with the
-//!    lowest index is selected. A texel with the farthest depth is empty. If all memories are empty, the background
-//!    memory or the background colour is visible ([`Composition`]).
+//! 6. **Address.** The position is the quotient, plus half of its last bit, times the size of the face. Its upper bits
+//!    select the texel, and the next bits, rounded, are the fractions. The four texels around it lie in four banks, so
+//!    one access reads them all. Without guard texels, a texel beyond an edge belongs to the neighbouring face, and one
+//!    beyond a corner is the mean of the other three ([`Footprint`]).
+//! 7. **Compose.** For each texel, the memory with the nearest depth is selected, and among equal depths the one with
+//!    the lowest index. A texel with the farthest depth is empty. If all are empty, the background memory or colour is
+//!    visible ([`Composition`]).
 //! 8. **Interpolate.** The weights are products of the two fractions. Halves are rounded up.
 //!
 //! # Updates
 //!
-//! An update of a memory begins with a map of the regions that will arrive ([`begin_update`]). The six faces lie one
-//! below the other in the grid of [`region_grid`]. A region arrives in 32 messages: first its 16,384 colours, then its
-//! 16,384 depths of 24 bits. With 16 bits of colour and 16 bits of depth, a region takes 16 messages, with the depth in
-//! the upper half of each word. The [`PixelSource`](pxpl5_wire::PixelSource) of a region supplies all these words.
+//! An update begins with a map of the regions that will arrive ([`begin_update`]). The six faces lie one below the
+//! other in the grid of [`region_grid`]. A region arrives in 32 messages: first its 16,384 colours, then its 16,384
+//! depths of 24 bits. With 16 bits of colour and of depth it takes 16 messages, with the depth in the upper half of
+//! each word. Its [`PixelSource`](pxpl5_wire::PixelSource) supplies all these words.
 //!
-//! A request to swap takes effect at the first later retrace at which all regions have arrived. An incomplete update is
-//! never visible. [`MemoryStats`] counts the retraces that an update missed, and the delay until the update is shown.
-//! Memories that have exchanged objects swap together or not at all ([`swap_together`]).
+//! A request to swap takes effect at the first later retrace at which all regions have arrived, so an incomplete update
+//! is never visible. [`MemoryStats`] counts the retraces that it missed, and the delay until it is shown. Memories that
+//! have exchanged objects swap together or not at all ([`swap_together`]).
 //!
 //! Pixels are computed only when a picture is read, and only for the regions that the field's pixels use.
 //!
@@ -63,9 +63,9 @@
 //!
 //! # Reference model and fast model
 //!
-//! [`mod@reference`] is the reference model. This model simulates, clock by clock, the registers of every stage, partial
-//! products, restoring dividers and banks. [`Lookup`] is the fast model. This model processes 64 pixels at a time in
-//! doubles, which are exact for these word lengths. tests/equal.rs checks that the two models give identical bits.
+//! [`mod@reference`] simulates, clock by clock, the registers of every stage, partial products, restoring dividers and
+//! banks. [`Lookup`] is fast: it processes 64 pixels at a time in doubles, which are exact for these word lengths.
+//! tests/equal.rs checks that both give identical bits.
 //!
 //! # Not modelled
 //!

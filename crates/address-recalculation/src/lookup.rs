@@ -1,12 +1,11 @@
 //! The fast model of pixel computation, which processes groups of pixels and gives the same bits as the reference
 //! model.
 //!
-//! A picture reads each texel several times. The depths of a texel in all memories are compared only once, when a pixel
-//! first needs the texel ([`Composed`]). Addresses and weights are computed for a group of pixels together
-//! ([`crate::batch`]).
+//! A picture reads each texel several times, so its depths in all memories are compared only once, when a pixel first
+//! needs it ([`Composed`]). Addresses and weights are computed for groups of pixels ([`crate::batch`]).
 //!
-//! The address unit computes two cases pixel by pixel. In the first case, words are too wide for exact doubles. In the
-//! second case, the four texels of a pixel do not lie on one face.
+//! Two cases go pixel by pixel to the address unit: words that are too wide for exact doubles, and pixels whose four
+//! texels do not lie on one face.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::batch::{BATCH, Batch, addresses, mixed};
@@ -67,8 +66,8 @@ impl<'a> Addressing<'a> {
     /// Computes the footprints (the four texels and their weights) of up to [`BATCH`] pixels together, and returns
     /// true.
     ///
-    /// Returns false and computes nothing in two cases. In the first case, the words have too many bits for exact
-    /// results in doubles. In the second case, there are so few pixels that a computation pixel by pixel is faster.
+    /// Returns false and computes nothing if the words have too many bits for exact results in doubles, or if there are
+    /// so few pixels that one by one is faster.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
         let is_worth_it = self.is_exact && vectors[0].len() >= MIN_GROUP_PIXELS;
         if is_worth_it {

@@ -1,5 +1,5 @@
-//! Priority rendering: policies that decide when parts of the scene must be drawn again, and warping. Warping makes
-//! parts of different age meet without gaps.
+//! Priority rendering: policies that decide when parts of the scene must be drawn again, and warping, by which parts of
+//! different age meet without gaps.
 //!
 //! ```text
 //!  objects --> [ validity period ] --> level --> Objects --+
@@ -16,24 +16,21 @@
 //!   sphere), is animated, or rotates. A rotation of the head never makes an image wrong. A face that is out of sight
 //!   can be drawn later ([`time_until_visible_s`]).
 //! - **Objects** ([`Objects`]): each object is in the least often drawn memory in which its image stays correct. Memory
-//!   k is drawn every 2^k frames. An object changes its memory only in a frame that draws both memories, and both are
-//!   shown together.
-//! - **Cells** ([`Cells`]): the floor of the world is divided into square cells. The home cell is the cell that
-//!   contained the eye when cells were last assigned to memories. All cells at one distance from the home cell form a
-//!   ring, which lies in one memory. Memory 0 holds the inner rings of cells, and memory 1 holds one ring of cells.
-//!   Memory 2 and all later memories each hold `ring_growth` times as many rings of cells as the memory before.
-//! - **Due memories**: a memory must be drawn again when the eye has moved too far since the memory's last update. The
-//!   permitted distance grows with the distance to the memory's nearest cell. The nearest cell is chosen among all
-//!   cells that the memory could hold, or only among cells with content (`to_held_cells`). With warping, an update of a
-//!   memory also makes all more often drawn memories due (cascade).
-//! - **New home cell**: cells are assigned to memories anew when two conditions hold: the eye has left the home cell,
-//!   and the least often drawn memory is due. All memories whose cells have changed are then shown together.
+//!   k is drawn every 2^k frames. An object changes its memory only in a frame that draws and shows both.
+//! - **Cells** ([`Cells`]): the floor is divided into square cells. The home cell is the one that contained the eye
+//!   when cells were last assigned to memories, and all cells at one distance from it form a ring. Memory 0 holds the
+//!   inner rings, memory 1 one ring, and each later memory `ring_growth` times as many as the one before.
+//! - **Due memories**: a memory must be drawn again when the eye has moved too far since its last update. How far it
+//!   may move grows with the distance to the nearest cell, among all cells that the memory could hold or only among
+//!   cells with content (`to_held_cells`). With warping, an update also makes all more often drawn memories due
+//!   (cascade).
+//! - **New home cell**: cells are assigned anew when the eye has left the home cell and the least often drawn memory is
+//!   due. All memories whose cells have changed are then shown together.
 //! - **Segmentation** ([`Segmentation`]): meshes are cut at the borders of cells. Each line is cut once for all
 //!   triangles that share it, so the parts have bit-identical vertices along a cut. A segment is the part of a mesh in
 //!   one cell.
-//! - **Warping** ([`RegionWarp`]): a vertex on the border to the less often drawn memory is moved. The displacement is
-//!   the difference of the two eye positions from which the memories were drawn. The vertex then has the same direction
-//!   and depth in both memories.
+//! - **Warping** ([`RegionWarp`]): a vertex on the border to the less often drawn memory is moved by the difference of
+//!   the two eye positions from which the memories were drawn. It then has the same direction and depth in both.
 //!
 //! Units are metres, seconds and radians, except in names that contain `deg`. Axes are right-handed with y up. Results
 //! are bit-identical on every computer.

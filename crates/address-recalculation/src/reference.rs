@@ -191,9 +191,9 @@ impl ReferencePipeline {
         registers.dividers = [forward + right, forward - up].map(|dividend| Divider::new(dividend as u64, divisor));
     }
 
-    /// Multiplies the two quotients by the number of texels along an edge of the face. A quotient is a position on the
-    /// face from 0 to 1. In each product, the bits above the binary point select the texel, and the bits below are the
-    /// fraction for interpolation.
+    /// Multiplies the two quotients, which are positions on the face from 0 to 1, by the number of texels along an
+    /// edge. In each product, the bits above the binary point select the texel, and the bits below are the fraction for
+    /// interpolation.
     fn address(&self, registers: &Registers) -> Footprint {
         let q = self.unit.quotient_bits;
         // Offset of the first position: guard texels and rounding, minus half a texel for interpolation.

@@ -55,8 +55,8 @@ pub(crate) const fn widened(colour: u32) -> u32 {
 
 /// The six faces of one buffer, initially empty.
 ///
-/// Each texel is one word. The upper half is the nearness: the farthest depth minus the texel's depth. The lower half
-/// is the colour. The larger of two words is therefore the nearer texel, and 0 is an empty texel. The host allocates no
+/// Each texel is one word. Its upper half is the nearness (the farthest depth minus the texel's depth), and its lower
+/// half the colour. The larger of two words is therefore the nearer texel, and 0 is an empty one. The host allocates no
 /// memory pages for undrawn parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FaceSet {

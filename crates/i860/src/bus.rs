@@ -9,8 +9,8 @@ pub struct Unmapped;
 
 /// The memory and devices that the processor can access, by physical byte addresses. Data are little-endian.
 ///
-/// The processor checks the alignment first, so an address is always a multiple of the access size. A 16-byte access
-/// arrives as two accesses of 8 bytes.
+/// Alignment is checked before, so an address is always a multiple of the access size. A 16-byte access arrives as two
+/// of 8 bytes.
 pub trait Bus {
     /// Reads `size` bytes (1, 2, 4 or 8) at `address`. The result is zero-extended.
     ///

@@ -127,17 +127,17 @@ impl Cpu {
         self.time.sampler.as_ref()
     }
 
-    /// Discards all decoded instructions. Call this function after another device has written code into memory, because
-    /// the processor decodes instructions ahead, up to the next branch. The processor's own stores into code take
-    /// effect immediately (the real chip would need a flush and dirbase.ITI).
+    /// Discards all decoded instructions. Call this after another device has written code into memory, because
+    /// instructions are decoded ahead, up to the next branch. The processor's own stores into code take effect
+    /// immediately (the real chip would need a flush and dirbase.ITI).
     pub fn invalidate_code(&mut self) {
         self.code.clear();
         self.code_changed = false;
     }
 
-    /// Takes the decoded code of `program` from `programs`, a shared store of decoded programs. The processor uses this
-    /// code until [`Cpu::close`]. Memory must contain `program` as assembled. With `None`, the processor decodes all
-    /// code again. This call does not change the number of simulated clocks.
+    /// Takes the decoded code of `program` from `programs`, a shared store, and uses it until [`Cpu::close`]. Memory
+    /// must contain `program` as assembled. With `None`, all code is decoded again. Either way, simulated clocks stay
+    /// the same.
     ///
     /// All processors that share the store must have the same [`Config::freezes`].
     pub fn open(&mut self, programs: &mut DecodedPrograms, program: Option<&Arc<Program>>) {

@@ -8,9 +8,8 @@ use std::sync::Arc;
 
 /// A shared store of decoded programs and their memoized clocks, for processors with the same freeze rules.
 ///
-/// Several processors can use one store in turn, because decoded code and clocks do not depend on the processor. A
-/// processor reuses the work of an earlier processor ([`Cpu::open`](crate::Cpu::open),
-/// [`Cpu::close`](crate::Cpu::close)).
+/// Several processors can use it in turn, because decoded code and clocks do not depend on the processor. Each reuses
+/// the work of an earlier one ([`Cpu::open`](crate::Cpu::open), [`Cpu::close`](crate::Cpu::close)).
 #[derive(Default)]
 pub struct DecodedPrograms {
     pub(crate) numbers: Box<Numbers>,

@@ -66,9 +66,8 @@ impl Dram {
         self.data_end.max(self.free)
     }
 
-    /// Adds the times of a refresh of the DRAM and of a transfer by another bus master. Each time is added only if the
-    /// refresh or transfer is due at clock `now` or earlier. If several refreshes are due, only the latest refresh
-    /// takes time, and the same holds for transfers (assumed).
+    /// Adds the times of a DRAM refresh and of a transfer by another bus master, if they are due at clock `now` or
+    /// earlier. Of several that are due, only the latest takes time (assumed).
     fn steal(&mut self, now: u64) {
         let t = self.timing;
         for (interval, clocks, due) in [

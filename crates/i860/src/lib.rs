@@ -37,11 +37,9 @@
 //! - Arithmetic is IEEE, rounded to nearest even, with the same bits on every computer. fsr.FZ flushes results to zero.
 //!   Without traps, a NaN result is the first NaN operand, converted to a quiet NaN, or the default NaN with its sign
 //!   set.
-//! - A scalar operation (including `frcp` and `frsqr`) destroys the contents of its unit's pipe. The contents become
-//!   NaN in this model. The assembler prints a warning for code that reads a result from a pipe after a scalar
-//!   operation.
-//! - The results of the approximations `frcp` and `frsqr` come from a [`SeedTable`], because the chip's table is not
-//!   public.
+//! - A scalar operation (including `frcp` and `frsqr`) destroys the contents of its unit's pipe, which become NaN here.
+//!   If code reads a result from the pipe afterwards, the assembler prints a warning.
+//! - The approximations `frcp` and `frsqr` come from a [`SeedTable`], because the chip's table is not public.
 //! - After a trap, the processor is at the first instruction of the trap handler, and [`Cpu::step`] returns the cause.
 //!   Illegal words and pairs, a branch in a delay slot and a misaligned pair are instruction traps.
 //! - No program can make the model panic. A run ends at its stop address, at a trap, or when its instruction budget is
@@ -50,36 +48,34 @@
 //! # Timing
 //!
 //! An instruction or pair is issued in one clock unless a row of [`timing::FREEZES`] delays it. Of several simultaneous
-//! freezes, only the longest counts. The times of cache misses are added. An experiment can disable every row or change
-//! its cost. Every DRAM time is a parameter with an allowed range. A [`Profile`] accounts for every clock.
+//! freezes, only the longest counts; the times of cache misses are added. You can disable every row or change its cost,
+//! and every DRAM time is a parameter with an allowed range. A [`Profile`] accounts for every clock.
 //!
 //! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte cache
 //! lines and pseudo-random replacement. A write miss allocates no cache line. The TLB has 64 entries.
 //!
 //! All rows are *assumed*: they repeat Intel's list of instruction timings as the authors remember it. Tests compare
-//! the model with published figures: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, and about 48
-//! clocks for a square root. Another published figure is 106 clocks for 117 instructions of a tree-traversal loop,
-//! whose code is not published. The test therefore runs a loop of the same shape (pairs, odd entry, taken `bnc.t`), and
-//! checks only the issue rules.
+//! them with published figures: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, and about 48 for
+//! a square root. A fourth figure, 106 clocks for 117 instructions of a tree-traversal loop, has no published code. Its
+//! test runs a loop of the same shape (pairs, odd entry, taken `bnc.t`), and checks only the issue rules.
 //!
 //! # Speed
 //!
-//! Code is decoded once, as basic blocks. A block extends from an address to the next branch, and includes its delay
-//! slot. The processor executes a block, and the clock then counts its time.
+//! Code is decoded once, as basic blocks from an address to the next branch and its delay slot. The processor executes
+//! a block, and the clock then counts its time.
 //!
-//! A *run* is a part of a block whose instructions and data are all in the caches. A run does not use the bus, the
-//! queues or the replacement sequence. The clocks of a run depend only on three things: the remaining waits of earlier
-//! instructions, the rest of an arriving instruction-cache line, and taken branches and traps. The model memoizes these
-//! clocks and reuses them, like FastSim (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this optimization
-//! on.
+//! A *run* is a part of a block whose instructions and data are all in the caches. It uses neither the bus nor the
+//! queues nor the replacement sequence. Its clocks therefore depend only on the remaining waits of earlier
+//! instructions, the rest of an arriving instruction-cache line, and taken branches and traps. The model memoizes them
+//! and reuses them, like FastSim (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this optimization on.
 //!
-//! A block is one run, or several runs between accesses that miss the cache. The model counts the clocks of these
-//! accesses one by one, and also the clocks of instructions after a wait of more than 15 clocks. A block that is not
-//! entirely in the instruction cache is also split at cache lines.
+//! A block is one run, or several between accesses that miss the cache. Those accesses are counted one by one, and so
+//! are instructions after a wait of more than 15 clocks. A block that is not entirely in the instruction cache is also
+//! split at cache lines.
 //!
-//! Counted and reused clocks give the same state, clocks and profile. `tests/memo.rs` checks random programs, including
-//! programs larger than the caches. `crates/pphigs/tests/memo.rs` checks the triangle kernels with changed delays in
-//! every row. The benchmarks of `crates/pphigs` measure the gain for these kernels.
+//! Counted and reused clocks give the same state, clocks and profile. `tests/memo.rs` checks this with random programs,
+//! some larger than the caches, and `crates/pphigs/tests/memo.rs` with the triangle kernels and changed delays in every
+//! row. The benchmarks of `crates/pphigs` measure the gain.
 //!
 //! A [`DecodedPrograms`] keeps decoded programs and their clocks for all processors that run them. Profiles by address
 //! ([`Cpu::watch`]) and address translation always count every instruction.

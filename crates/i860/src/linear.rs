@@ -1,11 +1,10 @@
-//! A scheduler that converts straight-line code to instruction pairs for dual-instruction mode. The scheduler chooses
-//! the registers and the order of the instructions.
+//! A scheduler that converts straight-line code to instruction pairs for dual-instruction mode.
 //!
-//! A *linear stretch* is the part of an assembler source between `.linear` and `.endlinear`. Each line of a stretch
-//! computes a value from other values. The line contains an operation, but not the pipe that executes it. [`schedule`]
-//! replaces the stretch by pairs of a floating-point and a core instruction. The scheduler chooses the order, fills and
-//! drains the pipes of adder and multiplier, and assigns registers. The operations and their operands stay as written,
-//! so results do not depend on the order.
+//! A *linear stretch* is the part of an assembler source between `.linear` and `.endlinear`. Each of its lines computes
+//! a value from other values, and names the operation but not the pipe that executes it. [`schedule`] replaces the
+//! stretch by pairs of a floating-point and a core instruction: it chooses the order, fills and drains the pipes of
+//! adder and multiplier, and assigns registers. Operations and operands stay as written, so results do not depend on
+//! the order.
 //!
 //! ```text
 //!         .linear                       or with numbers: window, eagerness, reserve, slope, shake
@@ -30,10 +29,10 @@
 //! | `adds subs and andnot or xor shl shr shra orh` | core; the first source may be a constant |
 //! | `prefetch` | core: a load whose data is not used; no other memory access is placed until the load ends |
 //!
-//! Each value has one name. `r0` to `r31` and `f0` are registers that the stretch does not change. A `.pool` line of
-//! the source lists the integer registers that [`schedule`] can use: `.pool r4 r5 r6`. The scheduler can place loads
-//! and stores in any order. If a load must wait for a store, the store has a label, `@label st.l ..`, and the load has
-//! `!label` at its end. A stretch begins and ends in dual-instruction mode.
+//! Each value has one name. `r0` to `r31` and `f0` are registers that the stretch does not change, and a `.pool` line
+//! lists the integer registers that [`schedule`] can use: `.pool r4 r5 r6`. Loads and stores can be placed in any
+//! order. If a load must wait for a store, the store has a label, `@label st.l ..`, and the load has `!label` at its
+//! end. A stretch begins and ends in dual-instruction mode.
 //!
 //! The base register of a store has a meaning by convention:
 //!
@@ -42,27 +41,24 @@
 //! | `r18` | output, such as command words, which the data cache does not hold | the store uses the bus for 3 clocks; at most two of these stores wait for the bus, and no prefetch is placed while one of them uses the bus |
 //! | any other | memory that the data cache holds | none of these limits |
 //!
-//! The convention affects only the order of the pairs. Code that breaks the convention computes the same results, but can
-//! have freezes.
+//! This affects only the order of the pairs. Code that breaks the convention computes the same results, but can have
+//! freezes.
 //!
 //! # Method
 //!
-//! The method is list scheduling, clock by clock. In each clock, the scheduler considers a *window*: a number of lines
-//! that begins with the first unissued line. From the operations in the window that can be issued, the scheduler
-//! selects the operation with the longest path to the end of the stretch.
+//! This is list scheduling, clock by clock. Each clock looks at a *window* of lines that begins with the first unissued
+//! one. Of the operations in it that can be issued, the one with the longest path to the end of the stretch is taken.
 //!
-//! Only the first line in the window may use the last free registers. Later lines must leave a *reserve* of free
-//! registers. For each 64 lines of distance from the first line, the reserve increases by *slope* registers. With this
-//! reserve, no schedule runs out of registers.
+//! Only the first line may use the last free registers. Later ones must leave a *reserve*, which increases by *slope*
+//! registers for each 64 lines of distance. With it, no schedule runs out of registers.
 //!
-//! An operation without operands pushes a pipe (a *drain*) in two cases. In the first case, no operation can be issued.
-//! In the second case, a value in the pipe has a longer path than the best operation, by more than the *eagerness*. An
-//! operation that can be a dual operation also pushes the other pipe, if no result is lost.
+//! An operation without operands pushes a pipe (a *drain*) if nothing can be issued. It also does so if a value in the
+//! pipe has a longer path than the best operation, by more than the *eagerness*. An operation that can be a dual
+//! operation also pushes the other pipe, if no result is lost.
 //!
-//! The scheduler respects the rules of the freeze table. The scheduled code therefore runs without freezes if all
-//! accesses except the stores with the base `r18` hit the caches. If the parameter *shake* is not 0, the scheduler changes the priorities at random by small
-//! amounts. The length of the schedule then changes by some per cent. A search can try many values of *shake* and keep
-//! the shortest schedule.
+//! The rules of the freeze table are respected, so scheduled code runs without freezes if all accesses except the
+//! stores with the base `r18` hit the caches. If *shake* is not 0, priorities change at random by small amounts, and
+//! the length of the schedule by some per cent. A search can try many values and keep the shortest schedule.
 
 mod machine;
 mod parse;

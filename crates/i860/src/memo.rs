@@ -1,12 +1,10 @@
 //! Memoization: the model stores the clocks of code, and reuses them when the code runs again.
 //!
 //! The idea comes from FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
-//! 1998). A run is a part of a basic block whose instructions and data are all in the caches. A run leaves the bus, the
-//! queues and the replacement sequence unchanged. The clocks of a run depend on three things: the scoreboard before the
-//! run, the rest of an arriving instruction-cache line, and branches and traps.
+//! 1998). The overview of the crate says what a run is, and on what its clocks depend.
 //!
-//! Each distinct scoreboard has a number, so a comparison of integers finds a run. Accesses that need the bus end a
-//! run, and their clocks are counted with the full scoreboard.
+//! Each distinct scoreboard has a number, so a run is found by a comparison of integers. An access that needs the bus
+//! ends the run; its clocks are counted with the full scoreboard.
 
 use crate::profile::Profile;
 use crate::scoreboard::{PendingWaits, Scoreboard};

@@ -1,11 +1,9 @@
-//! Counting of the clocks of a basic block in parts. A *run* is a part of a block whose instructions and data are all
-//! in the caches. The clocks of a run are memoized and reused. The clocks of accesses that need the bus, between two
-//! runs, are counted each time.
+//! Counting of the clocks of a basic block in parts. Those of a *run*, whose instructions and data are all in the
+//! caches, are memoized and reused. Those of accesses between two runs, which need the bus, are counted each time.
 //!
 //! A *place* is a position in a block: three times the index of an instruction or pair, plus 1 after its fetch or plus
-//! 2 after its issue. A run ends before an access that needs the bus, or before a cache line that is not in the
-//! instruction cache. Otherwise, it ends at the end of the executed code. After an access that needs the bus, the next
-//! run begins with the scoreboard after this access.
+//! 2 after its issue. A run ends before an access that needs the bus, before a cache line that is not in the
+//! instruction cache, or at the end of the executed code. The next one begins with the scoreboard after that access.
 
 use crate::block::{AccessingUnit, Block, Execution};
 use crate::bus::Bus;

@@ -1,9 +1,9 @@
-//! The results of frcp (reciprocal) and frsqr (reciprocal square root). They are approximations, from which programs
-//! begin Newton steps (*seeds*).
+//! The results of frcp (reciprocal) and frsqr (reciprocal square root): approximations from which programs begin Newton
+//! steps (*seeds*).
 //!
-//! The chip's table is not public. Only a limit of the error is known: the error of the fraction is below 2^-7. The
-//! user therefore chooses one of three tables. Programs refine the seeds by Newton steps. The choice therefore affects
-//! only the last one or two bits of their results, and does not affect the number of clocks.
+//! The chip's table is not public. Known is only that the error of the fraction is below 2^-7, so you choose one of
+//! three tables. Because programs refine the seeds, the choice affects only the last one or two bits of their results,
+//! and never the number of clocks.
 
 use crate::arithmetic::{narrow, widen};
 
@@ -16,8 +16,8 @@ pub enum SeedTable {
     /// result.
     Truncated8,
     /// The result for the middle of the interval that contains the operand, rounded to 8 fraction bits. The first 8
-    /// fraction bits of the operand determine the interval. A ROM of 256 entries can hold these results (512 entries
-    /// for frsqr, because of the parity of the exponent). Assumed.
+    /// fraction bits of the operand determine the interval. A ROM of 256 entries can hold these results (512 for frsqr,
+    /// because of the parity of the exponent). Assumed.
     Midpoint8,
     /// The correctly rounded result.
     Exact,

@@ -8,8 +8,8 @@ use pxpl5_sim::parameters::ParameterTable;
 
 pxpl5_sim::parameters::parameter_table! {
     /// The constant part of the delay of each row of [`FREEZES`], in the same order. Intel's list is quoted as the
-    /// authors remember it. Unless a published figure narrows a value, its range is therefore one clock less to one
-    /// clock more.
+    /// authors remember it, so a value that no published figure narrows has a range of one clock less to one clock
+    /// more.
     pub struct FreezeClocks {
         /// Delay by row 1a of the freeze table: a miss of the instruction cache.
         instruction_miss: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";
@@ -166,9 +166,8 @@ pub struct Config {
     pub seeds: crate::SeedTable,
     /// Seed of the pseudo-random sequence that chooses the cache line to replace.
     pub replacement_seed: u16,
-    /// True if the clocks of repeated code are reused instead of counted again. The code must be in the instruction
-    /// cache, and its data in the data cache. The method comes from FastSim (Schnarr and Larus, 1998). This
-    /// optimization changes only the computing time of the simulation, and is on by default.
+    /// True if the clocks of repeated code are reused instead of counted again (as in FastSim; Schnarr and Larus,
+    /// 1998). The code and its data must be in the caches. This is on by default and changes only the computing time.
     pub memoise: bool,
 }
 
@@ -195,9 +194,8 @@ impl Config {
         [(FREEZES_PATH, &mut self.freezes.clocks), (DRAM_PATH, &mut self.dram)]
     }
 
-    /// Returns the settings that differ from [`Config::cycle`] and change results, as keys and values. Names of
-    /// experiments include these settings. Parameter tables are not part of the list. Memoization is not part of it
-    /// either, because it changes no result.
+    /// Returns the settings that differ from [`Config::cycle`] and change results, as keys and values, for names of
+    /// experiments. Parameter tables are not part of the list; nor is memoization, because it changes no result.
     pub fn unusual_settings(&self) -> Vec<(&'static str, String)> {
         // The pattern lists every field, so that the compiler reports a new field that is not handled here.
         let Config { timing, freezes, dram: _, seeds, replacement_seed, memoise: _ } = self;

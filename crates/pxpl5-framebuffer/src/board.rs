@@ -20,9 +20,9 @@ pub struct FrameBufferStats {
     pub regions: u64,
     /// Number of swap requests that took effect.
     pub swaps: u64,
-    /// Number of lines that a newer region overwrote before the beam had shown all of their pixels. The newer region
-    /// can arrive too early, or the older region too late. A third cause is a buffer that was shown for only one field,
-    /// which scans every second line.
+    /// Number of lines that a newer region overwrote before the beam had shown all of their pixels. Either it came too
+    /// early, or the older region too late. A third cause is a buffer that was shown for only one field, which scans
+    /// every second line.
     pub lines_never_shown: u64,
 }
 

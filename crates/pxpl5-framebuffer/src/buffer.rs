@@ -134,11 +134,11 @@ impl Buffer {
         }
     }
 
-    /// Removes regions whose pixels are all covered by newer regions. The function compares single pixels, because
-    /// several regions with different borders can together cover a region.
+    /// Removes regions whose pixels are all covered by newer regions. Single pixels are compared, because several
+    /// regions with different borders can together cover one.
     ///
-    /// A port receives one region at a time. A region that is still arriving is therefore the newest, and no region
-    /// covers it.
+    /// A region that is still arriving is never covered: it is the newest, because a port receives one region at a
+    /// time.
     fn discard_covered(&mut self, width: u32, height: u32) {
         // Mark the pixels of each region, from the newest region to the oldest.
         let mut covered = vec![false; (width * height) as usize];

@@ -1,5 +1,5 @@
-//! The frame buffers of Pixel-Planes 5, each with two pixel buffers. The display is NTSC video, or a panel that is
-//! described by parameters.
+//! The frame buffers of Pixel-Planes 5, each with two pixel buffers: NTSC video, or a panel that is described by
+//! parameters.
 //!
 //! ```text
 //!   ring --Pixels--> port --+--> buffer 0 (even and odd field) --+
@@ -10,27 +10,25 @@
 //!
 //! # Behaviour
 //!
-//! 1. A region arrives row by row, in messages of 1,024 pixels (the last message can be shorter). The port accepts
-//!    every word immediately. The words of a message arrive one word time apart. The last word arrives at the time of
-//!    the event [`FrameBufferEvent::Pixels`]. The last message of a region causes [`FrameBufferOutput::RegionArrived`].
-//! 2. The target of a message ([`CopyTarget`](pxpl5_wire::CopyTarget)) states the buffer, the region and the lines. The
-//!    rows of a [`Lines::Frame`](pxpl5_wire::Lines) picture are lines of the frame. Row `r` of a field picture is line
-//!    `2 r` (even) or `2 r + 1` (odd).
-//! 3. A retrace displays the buffer that software has requested last ([`FrameBufferOutput::Swapped`]). A request that
-//!    arrives at the instant of a retrace waits for the next retrace.
+//! 1. A region arrives row by row, in messages of 1,024 pixels (the last one can be shorter). The port accepts every
+//!    word immediately, one word time apart. [`FrameBufferEvent::Pixels`] is the arrival of a message's last word, and
+//!    the last message of a region causes [`FrameBufferOutput::RegionArrived`].
+//! 2. Its target ([`CopyTarget`](pxpl5_wire::CopyTarget)) states the buffer, the region and the lines. The rows of a
+//!    [`Lines::Frame`](pxpl5_wire::Lines) picture are lines of the frame. Row `r` of a field picture is line `2 r`
+//!    (even) or `2 r + 1` (odd).
+//! 3. A retrace displays the buffer that software has requested last ([`FrameBufferOutput::Swapped`]). A request at the
+//!    very instant of a retrace waits for the next one.
 //! 4. Field `n` scans the even lines of the displayed buffer if `n` is even, else the odd lines. A pixel shows the word
-//!    that is in the buffer when the beam reaches the pixel, including a word that arrives at this instant. If a region
-//!    arrives too late, the viewer sees old pixels in a part of the region, and new pixels in the rest.
-//!    [`ScannedField::late_regions`] lists such regions.
+//!    that is in the buffer when the beam reaches it, including one that arrives at this instant. If a region arrives
+//!    too late, the viewer sees old pixels in one part of it and new ones in the rest ([`ScannedField::late_regions`]).
 //! 5. [`FrameBufferStats::lines_never_shown`] counts lines that a newer region overwrites before the beam has shown all
-//!    of their pixels. Only regions that fill exactly the same pixels are compared with each other.
+//!    of their pixels. It compares only regions that fill exactly the same pixels.
 //! 6. Two boards scan in lock-step because both receive the same retraces.
 //! 7. An impossible event (pixels for another board, a region outside the frame, a repeated message) is a counted fault
 //!    without effect: [`FrameBuffer::faults`].
 //!
-//! Pixels are computed only when a picture is read. A [`ScannedField`] holds all data for its pixels, so a program can
-//! compute the pixels later or in another thread. At each retrace the board discards regions that no later scan can
-//! show.
+//! Pixels are computed only when a picture is read. A [`ScannedField`] holds all data for this, so it can happen later
+//! or in another thread. At each retrace the board discards regions that no later scan can show.
 //!
 //! # Timing
 //!
@@ -45,8 +43,8 @@
 //! | first visible line of an odd field | 22.5 lines after its retrace |
 //! | pixel `x` of a line | (140 + `x`) pixel periods of 11/135 us after its start |
 //!
-//! Odd fields begin in the middle of a line, which interlaces the two fields on a screen. In an odd field, the first
-//! line is scanned half a line time later than in an even field. It therefore appears half a line pitch lower.
+//! Odd fields begin in the middle of a line, which interlaces the two fields on a screen. Their first line is scanned
+//! half a line time later, so it appears half a line pitch lower.
 //!
 //! **Not modelled:**
 //!
@@ -55,8 +53,7 @@
 //! - two simultaneous transfers into one board (the port permits only one transfer at a time)
 //! - conflicts between the scan and the port over the video RAM
 //!
-//! A [`Panel`] is the other kind of frame buffer: a display of any size and rate, described by parameters. A panel
-//! keeps whole pictures.
+//! A [`Panel`] is a display of any size and rate, described by parameters, which keeps whole pictures.
 //!
 //! Sources: TR94 (resolution, two buffers of two fields, two boards in lock-step), NTSC (field, line). The position of
 //! the blanking is assumed.

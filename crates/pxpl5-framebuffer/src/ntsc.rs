@@ -167,9 +167,8 @@ impl Display for NtscDisplay {
 /// Returns the screen as a viewer sees it at `time`. `fields` should contain the field that is scanned at `time`, and
 /// the two fields before it. Lines of a missing field are black.
 ///
-/// Half of the lines belong to the previous field. Of the other lines, those above the beam belong to the current
-/// field, and those below the beam belong to the field two fields earlier. The model's phosphor does not fade, so each
-/// line stays until the beam returns.
+/// Half of the lines belong to the previous field. Of the others, those above the beam belong to the current field, and
+/// those below it to the field two fields earlier. The model's phosphor does not fade until the beam returns.
 pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
     let now = video.field_at(time);
     let ages = [0, 1, 2].map(|age| picture_of(fields, now.before(age)));
@@ -197,9 +196,8 @@ pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
     screen
 }
 
-/// Returns the lowest number below `count` for which `has` is false, or `count` if there is no such number. `has` must
-/// be true for all lower numbers and false for all higher numbers. With this function, the display finds the first
-/// pixel that the beam has not reached.
+/// Returns the lowest number below `count` for which `has` is false, or `count` if there is none. `has` must be true
+/// for all lower numbers and false for all higher ones. This finds the first pixel that the beam has not reached.
 fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
     let (mut low, mut high) = (0, count);
     while low < high {

@@ -130,9 +130,9 @@ impl ScannedField {
     /// Returns the time from the scan of pixel `i` of a segment to its arrival, or zero if the pixel arrived in time.
     /// Returns `None` if the field does not scan the pixel.
     ///
-    /// The board gets an event only at the end of a message. If a message has not ended at the end of the field, all
-    /// its words therefore count as missing. On the published ring, which is faster than the beam, none of these words
-    /// would be in time anyway.
+    /// The board gets an event only at the end of a message. If this is after the end of the field, all words of the
+    /// message count as missing. On the published ring, which is faster than the beam, none of them would be in time
+    /// anyway.
     fn lateness(&self, segment: &Segment, i: u32) -> Option<Span> {
         let scanned_at = self.video.when(segment.x + i, segment.y, self.field)?;
         let has_come = segment.message_at < self.ends_at;

@@ -38,12 +38,11 @@ impl Scans {
         pair.older.rows().filter(|row| !self.shows_row(*row, pair)).count() as u64
     }
 
-    /// Returns true if a fast test proves that the beam has shown the older region completely. The test treats the even
-    /// rows and the odd rows of the region as two groups.
+    /// Returns true if a fast test proves that the beam has shown the older region completely. Even and odd rows are
+    /// tested separately.
     ///
-    /// For each group, the test looks for a field in which the beam passes the first and the last pixel at the right
-    /// time. Both passes must come after the older region was written, and before the newer region was written. The
-    /// beam then also passes the other pixels of the group in this time.
+    /// Each group needs a field in which the beam passes the first and the last pixel after the older region was
+    /// written, and before the newer one. It then also passes the other pixels of the group in this time.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
         // The older region must be complete before a field shows it.
         let Some(written) = pair.older.last_at() else { return false };
@@ -85,8 +84,8 @@ fn corners(region: &RegionWrite, [first, last]: [u32; 2]) -> impl Iterator<Item 
 /// Iterates over the first and the last pixel of each part of a row that arrived in one message. Each item has the
 /// pixel and the arrival time of its word. The region must be complete.
 ///
-/// The beam and the words of a message advance at constant rates. If the beam passes these two pixels in time, it
-/// therefore also passes the pixels between them in time.
+/// Beam and words of a message both advance at constant rates. If the beam passes these two pixels in time, it also
+/// passes those between them in time.
 fn ends(region: &RegionWrite, row: u32, word: Span) -> impl Iterator<Item = ([u32; 2], Time)> + '_ {
     region.row(row, word).flat_map(move |segment| {
         [0, segment.length - 1].map(|i| ([segment.x + i, segment.y], segment.arrival(i, word)))

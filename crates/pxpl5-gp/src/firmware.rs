@@ -16,8 +16,8 @@ use std::task::Poll;
 
 /// A program on a board.
 ///
-/// It runs forever or ends with a fault. It must await only one future at a time, because the board records one wait
-/// for each program.
+/// It runs forever or ends with a fault. Since the board records one wait for each program, it must await only one
+/// future at a time.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
@@ -247,8 +247,8 @@ impl Gp {
     /// Waits until `ready` returns a value, and returns this value. `what` is the name of the wait in reports of
     /// deadlocks.
     ///
-    /// The board calls `ready` again after a message, a retrace or a change of a status signal, and after progress of
-    /// its other program. The acceptance of messages does not cause a call: use [`Gp::accepted`] for this.
+    /// `ready` is called again after a message, a retrace or a change of a status signal, and after progress of the
+    /// other program. The acceptance of messages does not cause a call: use [`Gp::accepted`] for this.
     #[inline]
     pub async fn until<T>(&self, what: &'static str, ready: impl FnMut() -> Option<T>) -> T {
         self.wait(Wait { what, ended_by: Cause::Arrival }, ready).await

@@ -119,8 +119,7 @@ impl Gp {
     }
 
     /// Sends groups of messages as one chain, like [`Gp::send_batch`]. Each group has one receiver, whose port stays
-    /// reserved from the first to the last message of the group. No message of another board can therefore arrive in
-    /// between.
+    /// reserved from its first to its last message, so that nothing from another board can arrive in between.
     #[inline]
     pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
         let links = groups.into_iter().flat_map(|(destination, group)| {

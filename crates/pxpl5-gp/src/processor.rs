@@ -117,15 +117,14 @@ const LINK: usize = 1;
 
 /// An i860 with the memory of a board.
 ///
-/// The i860's clock stops between calls. Caches, queues and the open DRAM row keep their state until the next call. A
-/// write by Rust code takes no time and changes no cache, because it stands for an earlier write by i860 code.
+/// Its clock stops between calls, while caches, queues and the open DRAM row keep their state. A write by Rust code
+/// takes no time and changes no cache, because it stands for an earlier write by i860 code.
 ///
-/// The model does not memoize the clocks of a whole call, because no call repeats exactly. While the head is still, 96
-/// % of the calls have the same code and inputs as an earlier call. While the head moves, no call has. These numbers
-/// are from 48 fields each: 188 calls of Slats with 110 triangles, and 2,800 calls of Rendering Control with the
-/// aircraft scene. Even calls with equal inputs differ in the content of the caches, because the replacement of lines
-/// is pseudo-random. They also differ in the time to the next memory refresh. The model can memoize the clocks of short
-/// sequences of instructions ([`i860::Config::memoise`]).
+/// Clocks of whole calls are not memoized, because no call repeats exactly. While the head is still, 96 % of the calls
+/// have the same code and inputs as an earlier one; while it moves, none has. Even calls with equal inputs differ in
+/// the content of the caches, whose lines are replaced pseudo-randomly, and in the time to the next memory refresh. The
+/// numbers are from 188 calls of Slats with 110 triangles and 2,800 of Rendering Control with the aircraft scene, 48
+/// fields each. What can be memoized are the clocks of short sequences of instructions ([`i860::Config::memoise`]).
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,

@@ -6,9 +6,8 @@ use std::ops::Range;
 /// other data.
 pub const RING_MEMORY: Range<u32> = 0xF_0000..0x10_0000;
 
-/// First address of the uncached memory, which extends to the end of [`RING_MEMORY`]. The ring interface reads and
-/// writes this memory directly. The i860 does not snoop the bus, so the board excludes this memory from the caches
-/// (KEN# pin).
+/// First address of the uncached memory, which extends to the end of [`RING_MEMORY`]. Here the ring interface reads and
+/// writes directly. The i860 does not snoop the bus, so the board excludes this memory from the caches (KEN# pin).
 pub(crate) const WINDOW: u32 = 0xF_4000;
 
 /// Returns true if the caches can hold the data at `address`.

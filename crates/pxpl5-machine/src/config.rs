@@ -115,7 +115,7 @@ impl MachineConfig {
     /// Returns the parameters that identify this machine in the names of experiments.
     ///
     /// Parameters of pipelines and of the i860 are omitted if they have the values of the papers. Older versions could
-    /// not change these parameters, so names of old experiments do not contain them.
+    /// not change them, so names of old experiments do not contain them.
     pub fn identifying_parameters(&self) -> Vec<Parameter> {
         let all = self.parameters().into_iter();
         all.filter(|parameter| parameter.value != parameter.info.papers || !self.is_implied(parameter)).collect()

@@ -30,7 +30,7 @@ pub(crate) fn mark_facts(mark: &Mark) -> [u64; 6] {
 /// Returns the number of a surface in the trace hash: 0 or 1 for the first two surfaces, 2 for no surface. From the
 /// third surface on, the number is the index plus 1.
 ///
-/// The numbers come from versions with at most two surfaces, and published hashes depend on the numbers.
+/// They come from versions with at most two surfaces, and published hashes depend on them.
 fn surface_fact(surface: Option<SurfaceId>) -> u64 {
     match surface {
         None => 2,

@@ -140,10 +140,10 @@ impl Machine {
         self.pixels = Some(worker);
     }
 
-    /// Makes the graphics processors execute i860 code. The clocks of this code then determine the times of the
-    /// processors' work. The call has an effect only if the configuration has a code version.
+    /// Makes the graphics processors execute i860 code, whose clocks then determine the times of their work. Has an
+    /// effect only if the configuration has a code version.
     ///
-    /// Call this method before loading programs.
+    /// Call this before loading programs.
     pub fn run_code(&mut self) {
         if let Some(version) = self.record.config.code {
             let core = self.record.config.i860;

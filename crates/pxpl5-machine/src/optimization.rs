@@ -14,8 +14,8 @@ pub enum Optimization {
     Transfers,
     /// The pixels of regions without primitives are computed once and reused.
     ///
-    /// Slats also sends triangles to regions that the triangles do not touch, and the computation of pixels skips these
-    /// triangles. If disabled, the pixels of every region and triangle are computed.
+    /// Slats also sends triangles to regions that they do not touch, and these are skipped too. If disabled, the pixels
+    /// of every region and triangle are computed.
     EmptyRegions,
     /// At the cycle level, the clocks of repeated code are reused if all its instructions and data are in the caches.
     ///

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Data that a pipeline adds to the record of a run, beside the observations of the boards.
 ///
-/// The pipeline's programs write the data. The pipeline's results read the data with [`Record::attached`].
+/// Its programs write them, and its results read them with [`Record::attached`].
 pub trait Attachment: Any + Debug + Send + Sync {
     /// Discards the data that belong only to discarded observations. By default, all data is kept.
     fn discard(&self, _record: &Record) {}
@@ -111,9 +111,9 @@ impl Record {
 
     /// Returns the pictures that a double-buffered port has shown, in the order of swaps.
     ///
-    /// The picture of a swap is the newest picture of which a region arrived before the swap. No region of the next
-    /// picture can have arrived before the swap, because the port's second buffer becomes free only at the swap.
-    /// Pictures with discarded observations are missing.
+    /// The picture of a swap is the newest one of which a region arrived before it. No region of the next picture can
+    /// have arrived by then, because the port's second buffer becomes free only at the swap. Pictures with discarded
+    /// observations are missing.
     pub fn shown_by(&self, port: NodeId) -> Vec<Shown> {
         // Sort the arrivals at this port by time.
         let arrivals = self.observation.arrivals.iter().filter(|arrival| arrival.target.frame_buffer == port);
@@ -183,9 +183,8 @@ impl Record {
     /// Returns true if a full backing store (`renderer.kept_bits`) has delayed a region or changed a decision of a
     /// program.
     ///
-    /// If the result is false, the same run with larger backing stores has the same times. Firmware whose decisions
-    /// depend on the capacity must report a full backing store with
-    /// [`Gp::note_full_store`](pxpl5_gp::Gp::note_full_store).
+    /// Otherwise, the same run with larger backing stores has the same times. Firmware whose decisions depend on the
+    /// capacity must report a full backing store with [`Gp::note_full_store`](pxpl5_gp::Gp::note_full_store).
     pub const fn met_full_store(&self) -> bool {
         self.met_full_store
     }

@@ -16,8 +16,7 @@ pub const EMPTY_PLANE: Plane = [0; PIXELS / 64];
 
 /// A 128 x 128 array of one-bit processors with 208 bits of memory each.
 ///
-/// Each pixel has one bit in the *Enable* register. An instruction writes only to the memory of pixels whose Enable bit
-/// is set.
+/// Each pixel has one bit in the *Enable* register, and an instruction writes only to pixels whose bit is set.
 ///
 /// All implementations give the same result after every instruction: the same bits of pixel memory and of Enable, and
 /// the same [`Executed`].
@@ -32,9 +31,9 @@ pub trait PixelArray {
     /// Executes a list of commands, and can skip commands that change no pixel of the region. Returns one entry for
     /// each region that the list copies to a frame buffer.
     ///
-    /// An illegal instruction ends the execution, as on the hardware. Pixels drawn before the illegal instruction stay.
-    /// The final pixel memory is the same as after [`Self::execute`], but the Enable register can differ. `room` is
-    /// scratch space for the words of the commands.
+    /// An illegal instruction ends the execution, as on the hardware; what was drawn before it stays. Pixel memory ends
+    /// as after [`Self::execute`], but the Enable register can differ. `room` is scratch space for the words of the
+    /// commands.
     fn draw(&mut self, commands: &CommandContent, room: &mut Vec<Word>) -> Vec<OutputRegion> {
         room.clear();
         commands.append_visible(room);

@@ -26,8 +26,8 @@ use tile::{EMPTY, FULL, HEIGHT, TILES, Tile, TilePlane, WIDTH};
 
 /// Pixel array of 208 bit planes, an Enable plane and serial adders, like the hardware.
 ///
-/// The array counts a clock whenever a bit plane moves. The count is therefore an independent test of the formulas in
-/// [`crate::isa::timing`]. The array is the reference model unless [`Self::skipping`] is called.
+/// It counts a clock whenever a bit plane moves, which makes the count an independent test of the formulas in
+/// [`crate::isa::timing`]. It is the reference model unless [`Self::skipping`] is called.
 #[derive(Clone, Debug)]
 pub struct BitSerial {
     layout: Layout,
@@ -70,10 +70,9 @@ impl BitSerial {
 
     /// Turns on the skipping mode, which leaves out work that changes no bit.
     ///
-    /// The array does not simulate pixels that are disabled. The signs of an expression at the corners of a tile of 32
-    /// x 16 pixels often determine the sign in the whole tile. In this case, the adders are not simulated either.
-    /// Clocks, faults and all bits are the same in both modes. The skipping mode takes about a tenth of the time of the
-    /// default mode.
+    /// Disabled pixels are not simulated. Nor are the adders, if the signs of an expression at the corners of a tile of
+    /// 32 x 16 pixels determine the sign in the whole tile. Clocks, faults and all bits stay the same, at about a tenth
+    /// of the time.
     #[must_use]
     pub fn skipping(self) -> Self {
         Self { skipping: true, ..self }

@@ -306,8 +306,8 @@ impl Renderer {
         self.transfer_next(context);
     }
 
-    /// Moves the colours of a finished region to the backing store when the store has room. If the copy includes
-    /// depths, the depths move as a second block.
+    /// Moves the colours of a finished region to the backing store when it has room, and depths, if they are copied, as
+    /// a second block.
     ///
     /// The controller continues when the move is complete.
     fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
@@ -479,8 +479,8 @@ impl Renderer {
 
     /// Returns the changes of the number of words in the FIFO since the last call. The changes are not sorted by time.
     ///
-    /// The number increases when a complete command has arrived, and decreases when a command starts. Changes in the
-    /// future are predictions from the messages that have arrived so far.
+    /// It increases when a complete command has arrived, and decreases when a command starts. Changes in the future are
+    /// predictions from the messages so far.
     pub fn take_fifo_changes(&mut self) -> Vec<(Time, i64)> {
         self.fifo.take_changes()
     }

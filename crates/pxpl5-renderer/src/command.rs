@@ -1,13 +1,13 @@
 //! Commands: fixed-length programs of array instructions, which the graphics processors send.
 //!
-//! A command holds typed operands. The operands and the [`Layout`] determine the command's program. The first
-//! instruction of a drawing command is *enable all*, whose label is the command's kind. The array ignores the label.
-//! [`Command::decode`] and the fast pixel array recognize the command by the label.
+//! A command holds typed operands. With the [`Layout`] they determine its program. A drawing command begins with
+//! *enable all*, whose label is the command's kind. The array ignores the label, but [`Command::decode`] and the fast
+//! pixel array recognize the command by it.
 //!
 //! # Formats
 //!
-//! - Edge: a pixel is inside if the expression is `>= 0` at this pixel. A pixel exactly on an edge of two triangles
-//!   must belong to one of the two. For this purpose, the sender adjusts the constant coefficient of the expression.
+//! - Edge: a pixel is inside if the expression is `>= 0` there. A pixel exactly on an edge of two triangles must belong
+//!   to one of them, for which the sender adjusts the constant coefficient.
 //! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, where nearer is smaller. A pixel passes if the new depth is
 //!   **strictly less** than the stored depth. A layout with a narrower Z stores and compares the upper bits of the
 //!   depth.

@@ -1,9 +1,9 @@
 //! Conformance suite for pixel arrays. Two arrays execute the same lists of instructions, and must be equal in every
 //! bit after each list.
 //!
-//! [`crate::BitSerial`] is the reference model. To compare an array with the reference model, a test calls
-//! [`instructions`] and [`commands`] once. The test then calls [`random_round`] for the rounds 0, 1, 2 and so on. The
-//! number of a failing round is enough to repeat the round.
+//! [`crate::BitSerial`] is the reference model. To compare an array with it, a test calls [`instructions`] and
+//! [`commands`] once, and then [`random_round`] for the rounds 0, 1, 2 and so on. The number of a failing round is
+//! enough to repeat it.
 
 mod random;
 

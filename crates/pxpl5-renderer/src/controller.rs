@@ -57,8 +57,7 @@ impl Controller {
     /// Stores the coefficients of `expression`, and converts it to coordinates of the array (origin at the array's
     /// upper left pixel).
     ///
-    /// If `expression` has no coefficients, the function uses the stored coefficients of the last linear or quadratic
-    /// expression.
+    /// If it has no coefficients, those of the last linear or quadratic expression are used.
     pub(crate) fn latch(&mut self, expression: &Expression) -> LocalExpression {
         match expression {
             Expression::Linear(linear) => self.linear = *linear,

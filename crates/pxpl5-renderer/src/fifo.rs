@@ -3,14 +3,13 @@
 //!
 //! Rules (the rules that the papers do not state are assumed):
 //!
-//! - A word enters the channel as soon as the FIFO has room for this word. Each word takes one word time on the
-//!   channel.
+//! - A word enters the channel as soon as the FIFO has room for it, and takes one word time there.
 //! - A command starts when all its words have arrived and the previous command has ended.
 //! - The words of a command leave the FIFO when the command starts.
 //! - A *blocking* command (copy of a region) ends when [`InputFifo::resume`] is called. No later command starts before
 //!   its end.
 //!
-//! A SIMD array takes the same time for any data. All start and end times therefore follow from the arrival times.
+//! A SIMD array takes the same time for any data, so all start and end times follow from the arrival times.
 
 use pxpl5_sim::{Span, Time};
 use std::collections::VecDeque;
@@ -84,10 +83,9 @@ struct StartTimes(VecDeque<Departure>);
 impl StartTimes {
     /// Returns the time at which the last of the words `first` to `last` enters the FIFO, but at least `soonest`.
     ///
-    /// Each word waits until the FIFO has room for this word, and then takes one word time on the channel. `first` must
-    /// be at least the `first` of the previous call. Of several commands that start at equal intervals, only the last
-    /// command that makes room determines the result. An interval is at least as long as the transfer of a command's
-    /// words, so the words after earlier starts have already entered.
+    /// Each word waits until there is room for it, and then takes one word time on the channel. `first` must be at
+    /// least the `first` of the previous call. Of several commands that start at equal intervals, only the last that
+    /// makes room matters, since an interval is at least as long as the transfer of a command's words.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.discard_before(first);
@@ -140,8 +138,8 @@ pub(crate) struct InputFifo {
 /// Longest time in which a command can select the region to copy without drawing. The selection takes 6 clocks of 40
 /// MHz, 150 ns.
 ///
-/// If at most this time lies between a wait of the controller and a copy command, the region was already drawn before
-/// the wait. Work that takes longer counts as drawing.
+/// If no more time lies between a wait of the controller and a copy command, the region was already drawn before the
+/// wait. Longer work counts as drawing.
 const SELECTION: Span = Span::from_ns(1_000);
 
 /// Times of the latest blocking command (copy of a region), and of the commands before it.
@@ -236,8 +234,8 @@ impl InputFifo {
         self.in_transit.push_back(work);
     }
 
-    /// Computes the arrival of a message. The message consists of the commands that calls of `take` have added
-    /// since the previous message.
+    /// Computes the arrival of a message, which consists of the commands that calls of `take` have added since the
+    /// previous one.
     ///
     /// `begins` is the time at which the first word of the message is on the channel.
     pub(crate) fn message(&mut self, begins: Time) -> Progress {
@@ -258,9 +256,8 @@ impl InputFifo {
         self.busy
     }
 
-    /// Returns the time until `now` that the controller has spent on commands, without blocking commands. `now` must
-    /// not be earlier than the last handled event. The function assumes that the controller executes all unfinished
-    /// commands from `now` on without a gap.
+    /// Returns the time until `now` that the controller has spent on commands, without blocking ones, as if it executed
+    /// all unfinished commands from `now` on without a gap. `now` must not be earlier than the last handled event.
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let ahead = self.free_at.map_or(0, |free_at| free_at.0.saturating_sub(now.0));
         Span(self.busy.0.saturating_sub(ahead))
@@ -345,13 +342,13 @@ impl InputFifo {
         progress
     }
 
-    /// Computes the times of all commands of a batch in one step. Calls of [`InputFifo::arrival`] and
-    /// [`InputFifo::start`] for each command would give the same results.
+    /// Computes the times of all commands of a batch in one step, with the same results as [`InputFifo::arrival`] and
+    /// [`InputFifo::start`] for each.
     ///
     /// `free_at` is the end of the command before the batch, and `span` is the execution time of each command.
     /// Recording ([`InputFifo::watch`]) must be off. Each command must fit in the FIFO, must not block, and must take
-    /// at least as long as the transfer of its words. The words of each command then arrive while the previous command
-    /// executes. Each command after the first therefore starts at the end of the previous command.
+    /// at least as long as the transfer of its words. So its words arrive while the previous command executes, at whose
+    /// end it starts.
     fn run_freely(&mut self, work: CommandBatch, free_at: Time, span: Span) {
         debug_assert!(
             self.waiting.is_empty() && self.words_left == self.words_in,

@@ -1,18 +1,18 @@
 //! The instruction set of the renderer's controller.
 //!
-//! No list of the machine's instructions is public. F89, TR94 and LK publish only the principles. Bit-serial
-//! instructions arrive in ring messages. An Enable register decides which pixels an instruction changes. A tree
-//! evaluates linear and quadratic expressions in all pixels together. Each pixel has 208 bits of memory. A backing
-//! store moves 32-bit blocks in the background. Mnemonics, encodings and operand rules below are **assumed**. These
-//! instructions are the smallest set that can execute the published program of a triangle, and the shading of a region
-//! after its last primitive.
+//! No list of the machine's instructions is public. F89, TR94 and LK publish only the principles: bit-serial
+//! instructions arrive in ring messages, and an Enable register decides which pixels they change. A tree evaluates
+//! linear and quadratic expressions in all pixels together. Each pixel has 208 bits of memory, and a backing store
+//! moves 32-bit blocks in the background. Mnemonics, encodings and operand rules are therefore **assumed**. They are
+//! the smallest set that can execute the published program of a triangle, and the shading of a region after its last
+//! primitive.
 //!
 //! # Words
 //!
-//! The first word of an instruction is `opcode << 24 | modifier << 16 | operand`. An operand encodes a *bit field* of
-//! pixel memory in 16 bits. Bit 15 is set if the bit field is signed. Bit 14 is set if the address counts from the
-//! first bit of the selected context (the part of pixel memory with the region). Bits 13..8 are width - 1. Bits 7..0
-//! are the address of the least significant bit. Unused bits must be zero.
+//! The first word of an instruction is `opcode << 24 | modifier << 16 | operand`. The operand encodes a *bit field* of
+//! pixel memory in 16 bits: bit 15 is set if it is signed. Bit 14 is set if its address counts from the first bit of
+//! the selected context (the part of pixel memory with the region). Bits 13..8 are width - 1, and bits 7..0 the address
+//! of the least significant bit. Unused bits must be zero.
 //!
 //! | opcode | instruction | words | bit clocks | effect |
 //! |---|---|---|---|---|

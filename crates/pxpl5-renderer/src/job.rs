@@ -165,8 +165,8 @@ impl PixelJob {
     /// Returns the depths of the region's pixels as 24-bit numbers, from 0 at the near plane to 2^24 - 1 at the far
     /// plane.
     ///
-    /// A layout with a narrower Z does not store the low bits of the depth. At the far plane, these bits are all 1 in
-    /// the result. At other depths, they are all 0.
+    /// A layout with a narrower Z does not store the low bits of the depth. In the result they are all 1 at the far
+    /// plane, and 0 elsewhere.
     fn depths(&self, array: &Lanes) -> Vec<Word> {
         let [width, height] = self.size();
         let missing = Z_BITS - u32::from(self.pool.layout.plan().z.width);

@@ -31,8 +31,8 @@ use template::Templates;
 
 /// Pixel array that keeps a 32-bit word for each bit field (such as depth or colour) of each pixel.
 ///
-/// The array recognizes whole commands of its layout, and touches only the pixels that a command can change. The array
-/// executes all other instructions on all pixels, one bit field after the other.
+/// It recognizes whole commands of its layout, and touches only the pixels that they can change. All other instructions
+/// are executed on all pixels, one bit field after the other.
 #[derive(Clone, Debug)]
 pub struct Lanes {
     layout: Layout,

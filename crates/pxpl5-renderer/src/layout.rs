@@ -8,9 +8,9 @@ use std::ops::RangeInclusive;
 
 /// An unchecked division of pixel memory into bit fields. [`Layout::new`] checks it.
 ///
-/// The addresses of a context's bit fields count from the first bit of the context. Context `i` begins at bit `i *
-/// context_bits` of pixel memory. The address of the scratch memory is absolute, and all contexts share it. Sharing is
-/// safe, because no command reads data that an earlier command has left in the scratch memory.
+/// Addresses in a context count from its first bit: context `i` begins at bit `i * context_bits` of pixel memory. The
+/// address of the scratch memory is absolute. All contexts share it, because no command reads what an earlier one has
+/// left there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContextPlan {
     /// Name of the layout in error messages.
@@ -76,9 +76,9 @@ impl Layout {
     /// Returns the layout of Slats: four regions, each with 24 bits of colour and 20 bits of Z. All regions share 32
     /// bits of scratch memory.
     ///
-    /// TR94 publishes four contexts (regions) in 208 bits. Four equal parts of 52 bits leave no room for the scratch
-    /// memory that a sphere needs (30 bits). A context needs the scratch memory only while a command runs, so all
-    /// contexts can share it. To make room for the scratch memory, Z has 4 bits less (assumed).
+    /// TR94 publishes four contexts (regions) in 208 bits, but four equal parts of 52 bits leave no room for the
+    /// scratch memory that a sphere needs (30 bits). It is needed only while a command runs, so all contexts can share
+    /// it. To make room for it, Z has 4 bits less (assumed).
     #[must_use]
     pub const fn slats() -> Self {
         Self(SLATS)

@@ -11,39 +11,39 @@
 //!
 //! # Behaviour, in the order of processing
 //!
-//! 1. Messages bring commands. All pixels execute the same instruction, so the time of a command depends only on the
-//!    command's kind ([`RendererTiming`], [`Renderer`]).
-//! 2. A command is a fixed-length program of instructions ([`Command`], [`CommandKind`]). [`isa`] defines the
-//!    instructions, their words, clocks and effects. A [`Layout`] places the bit fields in pixel memory.
-//! 3. A triangle enables all pixels. Then the array disables the pixels at which one of three edge expressions is
-//!    negative. The depth test disables the pixels where the triangle is not nearer than the stored depth, and stores Z
-//!    in the other enabled pixels. Colours (Gouraud) or normals (Phong) follow. The silhouette of a sphere is a
-//!    quadratic expression, whose square root gives depth, normal and light. [`Shade`] computes colours from normals
-//!    once, after the last primitive of a region.
+//! 1. Messages bring commands. All pixels execute the same instruction, so a command's time depends only on its kind
+//!    ([`RendererTiming`], [`Renderer`]).
+//! 2. A command is a fixed-length program of instructions ([`Command`], [`CommandKind`]), whose words, clocks and
+//!    effects [`isa`] defines. A [`Layout`] places the bit fields in pixel memory.
+//! 3. A triangle enables all pixels, then disables those at which one of three edge expressions is negative. The depth
+//!    test disables pixels where the triangle is not nearer than the stored depth, and stores Z in the others. Colours
+//!    (Gouraud) or normals (Phong) follow. A sphere's silhouette is a quadratic expression, whose square root gives
+//!    depth, normal and light. [`Shade`] computes colours from normals once, after the last primitive of a region.
 //! 4. Pixels are computed separately from time. The reference model [`BitSerial`] moves bit planes like the hardware,
 //!    and defines every bit. [`BitSerial::skipping`] leaves out work that changes nothing. [`Lanes`] computes with
-//!    whole numbers instead of single bits, and only at the pixels that a command can change. The suite in
-//!    [`conformance`] tests that all three arrays agree in the 208 bits of all pixels, Enable, clocks and faults.
+//!    whole numbers, and only at pixels that a command can change. [`conformance`] tests that all three agree in the
+//!    208 bits of all pixels, Enable, clocks and faults.
 //!
 //! # Numbers
 //!
-//! A triangle takes 258 clocks with interpolated colour and 292 with normals. The published rate is 150,000 triangles
-//! per second (TR94), which is 267 clocks per triangle. Each bit of the number formats takes one clock: 220 of the 258
-//! clocks, and 250 of the 292 clocks. [`isa::timing`] derives the numbers, and [`command`] lists the other commands.
+//! A triangle takes 258 clocks with interpolated colour and 292 with normals, where the published 150,000 triangles a
+//! second (TR94) are 267 clocks each. Most of it follows from the number formats, since each of their bits takes one
+//! clock: 220 of the 258, and 250 of the 292. [`isa::timing`] derives the numbers, and [`command`] lists the other
+//! commands.
 //!
 //! # Faults
 //!
-//! An instruction with an illegal word or operand has no effect. The fault ends the list of commands and is counted
+//! An instruction with an illegal word or operand has no effect. It ends the list of commands and is counted
 //! ([`ArrayFault`], [`PixelArray::faults`]).
 //!
 //! # Not modelled
 //!
-//! - The real instruction set, which is lost. The model's instruction set is **assumed**. It is the smallest set that
-//!   can run the published programs.
+//! - The real instruction set, which is lost. Ours is **assumed**: the smallest one that can run the published
+//!   programs.
 //! - The split of the array into 64 chips.
 //! - The time to fill the pipeline of the evaluator, except for a constant number of clocks for each instruction.
-//! - The state of a block of the backing store during its transfer. The array moves the whole block at the start of the
-//!   transfer. The backing store nevertheless stays busy for the time of the transfer.
+//! - A block of the backing store during its transfer. The whole block moves at the start, although the store stays
+//!   busy for the time of the transfer.
 //! - Antialiasing, texture, transparency.
 //!
 //! Sources: F89 (array, evaluator, memory, backing store), TR94 (recipe, rates, regions, Slats' four contexts), LK

@@ -1,10 +1,9 @@
 //! Choice of the vector instructions (such as AVX2) at run time.
 //!
-//! All `unsafe` code of this crate is in this file, in `simd/x86.rs` and in `simd/wasm.rs`. The code first checks that
-//! the processor has a vector unit, then calls functions that are compiled for this unit. WebAssembly has one vector
-//! unit for a whole module, chosen at compile time. The benchmark groups `lanes/Portable` and `lanes/Avx2` of `cargo
-//! bench
-//! -p pxpl5-renderer` measure the gain.
+//! All `unsafe` code of this crate is here, in `simd/x86.rs` and in `simd/wasm.rs`. It checks that the processor has a
+//! vector unit before it calls functions that are compiled for this unit. WebAssembly has one unit for a whole module,
+//! chosen at compile time. The gain is measured by the benchmark groups `lanes/Portable` and `lanes/Avx2` (`cargo bench
+//! -p pxpl5-renderer`).
 #![allow(unsafe_code)] // The compiler cannot check the features of the processor.
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]

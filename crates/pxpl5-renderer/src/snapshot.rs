@@ -20,8 +20,8 @@ pub struct RendererSnapshot {
     /// True while the controller executes commands other than copies.
     pub executing: bool,
     /// Region that the most recently started commands draw. `None` after the start of the copy command, or if the
-    /// commands do not contain the region. Always `None` unless [`Renderer::watch_fifo`](crate::Renderer::watch_fifo)
-    /// was called.
+    /// commands do not contain the region, and always unless [`Renderer::watch_fifo`](crate::Renderer::watch_fifo) was
+    /// called.
     pub drawing: Option<RegionPlace>,
     /// Number of finished regions in the backing store, including regions that wait for their transfer to the backing
     /// store.

@@ -10,25 +10,24 @@
 //!
 //! # Behaviour
 //!
-//! 1. A [`RingEvent::Request`] puts a message into the queue of its source port. Messages leave a queue in order. A
+//! 1. A [`RingEvent::Request`] puts a message into the queue of its source port, which messages leave in order. A
 //!    source can send to different receivers at the same time, on a limited number of channels.
-//! 2. The *head*, the first message of a queue, waits until three things are free: a channel, the source's port and the
-//!    destination. The arbiter grants all three together. The arbiter serves heads in the order in which they became
-//!    heads, and at equal times in the order of their sources. A head that must wait does not delay later heads.
+//! 2. The *head*, the first message of a queue, waits until a channel, the source's port and the destination are free.
+//!    The arbiter grants all three together. It serves heads in the order in which they became heads, and at equal
+//!    times in the order of their sources. A head that must wait does not delay later ones.
 //! 3. A message occupies its channel and both ports for 16 + `words` word times. At the end of this time, the arbiter
 //!    grants the next message. A board can send and receive at the same time.
-//! 4. A message sent with [`Request::hold`] leaves its destination reserved for the same source. The messages of a
-//!    region therefore follow each other without messages of other sources in between. This rule is published for frame
-//!    buffers (TR94). For all other receivers, it is assumed, because all boards have the same port.
+//! 4. A message sent with [`Request::hold`] leaves its destination reserved for the same source, so the messages of a
+//!    region are not interrupted by other sources. This is published for frame buffers (TR94), and assumed for all
+//!    other receivers, because all boards have the same port.
 //! 5. An *elastic* receiver (a graphics processor, a frame buffer or the host) accepts every word immediately. It gets
 //!    the message when the last word has arrived ([`RingOutput::Delivered`]).
-//! 6. A receiver with a FIFO that can be full (a renderer) gets an announcement of the message
-//!    ([`RingOutput::Announce`]). The receiver answers with the time at which the last word enters the FIFO
-//!    ([`RingEvent::Accept`]). If the FIFO was full, this time is later than the earliest possible time. The difference
-//!    is a *stall*, during which channel and ports stay occupied.
-//! 7. Messages to receivers with a FIFO use at most [`RingTiming::fifo_channels`] channels. A board with a full FIFO
-//!    may have to send messages before it can accept more words. The remaining channels are for such messages, so full
-//!    FIFOs cannot block them.
+//! 6. A receiver with a FIFO that can be full (a renderer) gets an announcement ([`RingOutput::Announce`]) and answers
+//!    with the time at which the last word enters its FIFO ([`RingEvent::Accept`]). A full FIFO makes this later than
+//!    the earliest possible time. The difference is a *stall*, during which channel and ports stay occupied.
+//! 7. Such messages use at most [`RingTiming::fifo_channels`] channels. A board with a full FIFO may have to send
+//!    messages before it can accept more words, and the remaining channels are for these, so full FIFOs cannot block
+//!    them.
 //! 8. No message is dropped. An impossible message (0 words, more than 1,024 words, or a port that does not exist) is
 //!    refused, counted and kept for the report: [`Ring::refusals`].
 //!
@@ -43,10 +42,10 @@
 //! | last word arrived; sender notified ([`RingOutput::Sent`]) | `g + (overhead + words) x word + stall + h x hop` |
 //! | channel and ports free | `g + (overhead + words) x word + stall` |
 //!
-//! All times of a message are known at its grant or at the receiver's answer. A message therefore needs only one event,
-//! its grant, and a second event if another message waits for its end. [`Ring::move_every_word`] disables this
-//! optimization. The reference model ([`reference`](mod@reference)) applies the same rules word by word, and shares no
-//! code with the ring. A property test compares the reference model with the ring, with and without the optimization.
+//! All times of a message are known at its grant or at the receiver's answer. It therefore needs only one event, its
+//! grant, and a second one if another message waits for its end. [`Ring::move_every_word`] disables this optimization.
+//! The reference model ([`reference`](mod@reference)) applies the same rules word by word and shares no code with the
+//! ring; a property test compares the two, with and without the optimization.
 //!
 //! **Not modelled:**
 //!

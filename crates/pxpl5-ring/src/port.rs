@@ -11,9 +11,9 @@ pub enum RingEvent {
     /// A receiver with a FIFO answers an announcement with the time at which the last word will enter the FIFO. The
     /// event belongs to phase `Arrive`.
     ///
-    /// A time earlier than `first_word_at + words x word` is impossible. Such an answer is counted as a fault, and the
-    /// earliest possible time replaces it. If the answer arrives after the time at which the message would free its
-    /// sender, the sender becomes free immediately.
+    /// A time earlier than `first_word_at + words x word` is impossible: it is counted as a fault, and the earliest
+    /// possible time replaces it. If the answer comes after the message would have freed its sender, the sender becomes
+    /// free at once.
     Accept {
         destination: NodeId,
         /// Time at which the last word enters the receiver, including the stall.
@@ -34,9 +34,9 @@ pub struct Request {
     /// Number that the sender gets back in [`RingOutput::Sent`] or [`RingOutput::Refused`]. With `None`, it gets no
     /// answer.
     pub ticket: Option<u64>,
-    /// True if the destination stays reserved for this source after the message. The next message of this source
-    /// without `hold` ends the reservation. Without such a message, the destination stays blocked, and
-    /// [`Ring::waiting`](crate::Ring::waiting) lists the messages that wait for it.
+    /// True if the destination stays reserved for this source after the message. The source's next message without
+    /// `hold` ends this. If none comes, the destination stays blocked, and [`Ring::waiting`](crate::Ring::waiting)
+    /// lists the messages that wait for it.
     pub hold: bool,
     /// Rank among the messages that reach the same port at the same instant, the lowest first. It is necessary because
     /// events of one instant have no order.

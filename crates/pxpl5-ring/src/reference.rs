@@ -7,13 +7,12 @@
 //! 2. Every channel at the end of a word slot moves one word: first the slots of the overhead, then the words of the
 //!    message. A word that does not fit into its receiver stays in its slot and is offered again in the next time step.
 //!    Channel and ports become free after the last word has moved and the receiver has answered.
-//! 3. The first message of each queue may get a free channel. The message that has been first in its queue for the
-//!    longest time is served first. Among equal times, the message with the lowest source number is served first. A
-//!    message needs a source port with a free send channel, and a free destination that is not reserved for another
-//!    source. Messages to receivers with a FIFO use at most `fifo_channels` channels.
+//! 3. The first message of each queue may get a free channel. The longest waiting one is served first, and among equals
+//!    the one with the lowest source number. It needs a source port with a free send channel, and a free destination
+//!    that is not reserved for another source. Messages to receivers with a FIFO use at most `fifo_channels` channels.
 //!
-//! Because of the hops between two boards, each slot is later at the receiver than at the sender. Hops have no other
-//! effect. The model never computes the end of a message in advance, and skips no event.
+//! Because of the hops between two boards, each slot is later at the receiver than at the sender; hops have no other
+//! effect. No end of a message is computed in advance, and no event is skipped.
 
 use crate::{RingError, RingTiming};
 use pxpl5_sim::parameters::ParameterTable;

@@ -340,9 +340,9 @@ impl Ring {
         }
     }
 
-    /// Grants channels to all waiting messages that can be sent, in one pass. One pass is enough, because a grant frees
-    /// nothing, and the next message of the same source comes later in the order. If nothing has become free since the
-    /// last pass, the pass checks only messages that became first in their queue at this instant.
+    /// Grants channels to all waiting messages that can be sent. One pass is enough, because a grant frees nothing, and
+    /// the next message of the same source comes later in the order. If nothing has become free since the last pass,
+    /// only messages that became first in their queue at this instant are checked.
     fn grant_all(&mut self, now: Time, context: &mut RingContext) {
         let is_for_all = std::mem::take(&mut self.unblocked);
         let mut place =
@@ -398,9 +398,9 @@ impl Ring {
         }
     }
 
-    /// Puts a message on a channel, and outputs its delivery or its announcement. The end of the message is known at
-    /// its grant if the receiver accepts every word immediately, otherwise at the receiver's answer. If every word
-    /// causes an event, the end is known at the last of these events.
+    /// Puts a message on a channel, and outputs its delivery or its announcement. Its end is known now if the receiver
+    /// accepts every word immediately, otherwise at the receiver's answer. If every word causes an event, it is known
+    /// at the last of these.
     fn carry(&mut self, flight: MessageInFlight, message: Message, context: &mut RingContext) {
         if self.word_by_word {
             let begins = flight.granted;

@@ -10,8 +10,7 @@ pub struct Cycles(pub u64);
 
 /// A clock whose period is the rational number `numerator_ps / denominator` picoseconds.
 ///
-/// The clock edge with number n is at floor(n x period). The time of each edge is computed from time zero, with 128-bit
-/// numbers if 64 bits are too few.
+/// Edge n is at floor(n x period). It is computed from time zero, with 128-bit numbers if 64 bits are too few.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Clock {
     numerator_ps: u64,

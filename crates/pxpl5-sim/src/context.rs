@@ -5,8 +5,8 @@ use crate::{EventQueue, Phase, Span, Time};
 
 /// The events that a device schedules for itself, and the outputs of the device.
 ///
-/// `E` is the device's own event type, `O` its output type. After each event, the code that owns the devices removes
-/// the scheduled events and the outputs.
+/// `E` is the device's own event type, `O` its output type. The code that owns the devices takes both out after each
+/// event.
 #[derive(Debug)]
 pub struct Context<E, O> {
     now: Time,

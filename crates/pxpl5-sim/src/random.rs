@@ -2,9 +2,8 @@
 
 use crate::trace::{INCREMENT, mix};
 
-/// The generator SplitMix64 (Steele, Lea and Flood: Fast splittable pseudorandom number generators, 2014). The sequence
-/// has 2^64 numbers of 64 bits, and each number occurs once. The generator suits tests and random lists, but not
-/// cryptography.
+/// The generator SplitMix64 (Steele, Lea and Flood: Fast splittable pseudorandom number generators, 2014). Each of the
+/// 2^64 numbers of 64 bits occurs once in its sequence. It suits tests and random lists, but not cryptography.
 #[derive(Clone, Copy, Debug)]
 pub struct SplitMix64 {
     state: u64,

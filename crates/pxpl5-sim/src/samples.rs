@@ -8,14 +8,14 @@ use std::ops::Deref;
 ///
 /// The samples of one quantity take 512 KiB.
 ///
-/// Under Slats, one sample belongs to a field. Under any other pipeline, one sample belongs to a picture.
+/// Under Slats, one sample belongs to a field, and under any other pipeline to a picture.
 pub const KEPT_SAMPLES: usize = 65_536;
 
 /// A collection of numbers in order of arrival, with a limit.
 ///
-/// Up to the limit, all numbers are kept, and the statistics equal the results of [`Statistics::of`] bit for bit.
-/// Beyond the limit, only the first numbers are kept. The statistics are then computed from sums with twice the
-/// precision of `f64`. These statistics differ from the exact statistics at most in the last digits.
+/// Up to the limit, all numbers are kept, and the statistics equal those of [`Statistics::of`] bit for bit. Beyond it,
+/// only the first ones are kept, and the statistics come from sums with twice the precision of `f64`. They differ from
+/// the exact ones at most in the last digits.
 ///
 /// As a slice, the collection contains the kept numbers.
 #[derive(Clone, Debug, PartialEq)]

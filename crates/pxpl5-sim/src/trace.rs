@@ -22,9 +22,8 @@ pub const fn mix(value: u64) -> u64 {
 
 /// The hash of a run: the sum of the hashes of all its records.
 ///
-/// A record has the time of an event and numbers that describe the event.
-/// The sum depends on every time and every number. The sum does not depend on the order of simultaneous events, because
-/// this order has no meaning.
+/// A record has the time of an event and numbers that describe it. The sum depends on all of them, but not on the order
+/// of simultaneous events, because this order has no meaning.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct TraceHash(pub u64);
 

@@ -193,9 +193,9 @@ pub trait CommandWords: Debug + Send + Sync {
     /// Appends the words of message `part` to `out`. Every call appends the same words.
     fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
-    /// Passes the whole commands of message number `part` to `out`. An implementation may leave out primitives that
-    /// touch no pixel of the region. The Enable bits select the pixels in which a command has an effect. Each passed
-    /// command that draws must set these bits itself, because the preceding command may have been left out.
+    /// Passes the whole commands of message number `part` to `out`, and may leave out primitives that touch no pixel of
+    /// the region. Because the preceding command may be missing, each drawing command must set the Enable bits, which
+    /// select the pixels in which it has an effect.
     ///
     /// Returns true if the passed commands may contain a primitive. The default implementation passes all commands and
     /// returns true.
@@ -283,9 +283,8 @@ pub struct CopyTarget {
     pub lines: Lines,
     pub grid: RegionGrid,
     pub region: RegionId,
-    /// Number of the picture that contains the region. The pipeline counts its pictures ([`PictureNumber`]). Boards use
-    /// the number only to separate successive copies of a region. Observers use the number to collect the regions of a
-    /// picture.
+    /// Number of the picture that contains the region, as counted by the pipeline ([`PictureNumber`]). Boards use it
+    /// only to separate successive copies of a region, and observers to collect the regions of a picture.
     pub picture: PictureNumber,
 }
 

@@ -80,9 +80,8 @@ pub enum DisplayOutput {
         /// Number of the period that begins with the tick.
         tick: PeriodNumber,
     },
-    /// A display memory shows the requested buffer from this tick of the display's clock on. Several display memories,
-    /// each with its own port, share a surface. The machine notifies the first graphics processor of the swap at this
-    /// port.
+    /// A display memory shows the requested buffer from this tick on. Several of them, each with its own port, share a
+    /// surface. The first graphics processor is notified of the swap at this port.
     Updated {
         /// Index of the surface that shows the display memory, counted from the display's first surface.
         surface: usize,
@@ -126,15 +125,14 @@ pub trait Display: Any + Debug + Send + Sync {
     /// scan has not reached are included.
     fn shown(&self, surface: usize) -> Option<RgbImage>;
 
-    /// Returns the picture that a viewer sees at the end of a period. The picture consists of the pixels lit in this
-    /// period and of earlier pixels that are still visible. Returns `None` before the end of the period, and after the
-    /// display has discarded the data of the period.
+    /// Returns the picture that a viewer sees at the end of a period: the pixels lit in it, and earlier ones that are
+    /// still visible. Returns `None` before that end, and after the display has discarded the data of the period.
     fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage>;
 
     /// Returns the colour of the pixel [x, y] in the picture that [`seen`](Self::seen) returns. Returns `None` for a
     /// pixel outside the picture.
     ///
-    /// The default implementation computes the whole picture. A display can compute fewer pixels.
+    /// By default this computes the whole picture. A display can do less.
     fn seen_pixel(&self, surface: usize, [x, y]: [u32; 2], period: PeriodNumber) -> Option<[u8; 3]> {
         Some(self.seen(surface, period)?.get_pixel_checked(x, y)?.0)
     }
@@ -142,18 +140,16 @@ pub trait Display: Any + Debug + Send + Sync {
     /// Returns the picture that a viewer sees at the instant `time`. Returns `None` if the display no longer has the
     /// pictures of the period that contains `time`, or if this period has not ended.
     ///
-    /// The default implementation returns the picture at the end of the period. This result is right for displays that
-    /// light all pixels at the same time.
+    /// By default this is the picture at the end of the period, which is right for displays that light all pixels at
+    /// the same time.
     fn seen_at(&self, surface: usize, time: Time) -> Option<RgbImage> {
         self.seen(surface, self.period_at(time))
     }
 
-    /// Returns the picture that a viewer sees at `now`, the current simulated time. The picture consists of the pixels
-    /// lit so far in the current period and of earlier pixels that are still visible. Unlit pixels are black. The
-    /// display stays unchanged.
+    /// Returns the picture that a viewer sees at `now`, the current simulated time: the pixels lit so far in the
+    /// current period, and earlier ones that are still visible. Unlit pixels are black. The display stays unchanged.
     ///
-    /// The default implementation assumes that the shown buffer was complete when its period began. This assumption is
-    /// true for double buffers.
+    /// By default it is assumed that the shown buffer was complete when its period began, as in double buffers.
     fn picture_so_far(&self, surface: usize, now: Time) -> Option<RgbImage> {
         let period = self.period_at(now);
         let size = self.surfaces().get(surface)?;

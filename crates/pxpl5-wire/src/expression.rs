@@ -2,8 +2,7 @@ use serde::{Deserialize, Serialize};
 
 /// The expression `a x + b y + c` at the integer pixel (x, y) of the screen, in 32-bit two's complement (sums wrap).
 ///
-/// The value at (x, y) applies to the centre of the pixel. Code that computes the coefficients must therefore include
-/// the offset from a pixel's corner to its centre in `c`.
+/// It applies to the centre of the pixel, so code that computes `c` must include the offset from the pixel's corner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Linear {
     /// Increase of the value from a pixel to its right neighbour.
@@ -66,9 +65,9 @@ pub struct TriangleBatch<'a> {
 /// The expression `xx x^2 + xy x y + yy y^2 + x x + y y + one` at the integer pixel (x, y). Sums wrap in 64-bit two's
 /// complement.
 ///
-/// The machine's evaluator computes `A x^2 + B x y + C y^2 + D x + E y + F` (F89). The two words per coefficient are
-/// assumed. With 32 bits, a coefficient could not have both the range of a screen and the precision for the silhouette
-/// of a small sphere.
+/// The machine's evaluator computes `A x^2 + B x y + C y^2 + D x + E y + F` (F89). Two words per coefficient are
+/// assumed, because 32 bits do not have both the range of a screen and the precision for the silhouette of a small
+/// sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Quadratic {
     /// Coefficient of x squared, A in F89.

@@ -55,7 +55,7 @@ pub struct RegionId(pub u16);
 
 /// The division of a picture into a grid of regions.
 ///
-/// All lengths are in pixels. Regions in the last column and in the last row can be smaller than all other regions.
+/// All lengths are in pixels. Regions in the last column and row can be smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct RegionGrid {
     pub width: u32,

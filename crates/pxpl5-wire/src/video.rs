@@ -24,9 +24,8 @@ pub struct VideoNumbers {
 
 /// The times of retraces, lines and pixels. All times are computed from time zero, so no rounding errors accumulate.
 ///
-/// Field `n` begins at retrace `n`. The field scans the even lines of the video frame if `n` is even, else the odd
-/// lines. Lines follow an uninterrupted line clock. A field has 262.5 lines, so an odd field begins in the middle of a
-/// line.
+/// Field `n` begins at retrace `n` and scans the even lines of the video frame if `n` is even, else the odd ones. Lines
+/// follow an uninterrupted line clock. Since a field has 262.5 of them, an odd one begins in the middle of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Video {
     numbers: VideoNumbers,
@@ -93,9 +92,8 @@ impl Video {
         Some(self.pixel.edge(blanked.saturating_add(u64::from(x))))
     }
 
-    /// Returns the time at which the beam reaches the first pixel of a region in a field. The region is shown
-    /// completely if all its pixels have arrived by this time. Returns `None` for a region outside the video frame, or
-    /// for a region without a line in this field.
+    /// Returns the time at which the beam reaches the first pixel of a region in a field. Pixels that have arrived by
+    /// then are shown completely. Returns `None` for a region outside the video frame, or without a line in this field.
     pub fn reaches(&self, target: &CopyTarget, field: PeriodNumber) -> Option<Time> {
         let [left, top, _, height] = self.rectangle(target)?;
         (top..top + height).find_map(|row| self.when(left, frame_line(target.lines, row), field))

@@ -4,9 +4,8 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 
 /// Returns sine and cosine of `numerator / denominator` of a turn.
 ///
-/// The angle is reduced to the first eighth of a turn with integers. Adding half a turn therefore gives exactly the
-/// negative sine and cosine. Adding a quarter turn exchanges sine and cosine, except for a sign. At 45 degrees, sine
-/// and cosine are equal.
+/// The angle is reduced to the first eighth of a turn with integers. Adding half a turn therefore negates sine and
+/// cosine exactly, and adding a quarter turn exchanges them, except for a sign. At 45 degrees, they are equal.
 ///
 /// # Panics
 /// Panics if the denominator is zero.

@@ -1,11 +1,10 @@
-//! Binning finds, for each primitive, the groups of slices that can show the primitive. Binning takes place once per
-//! volume, and only uses the signs of a few plane equations.
+//! Binning finds, for each primitive, the groups of slices that can show it. It takes place once per volume and needs
+//! only the signs of a few plane equations.
 //!
-//! The code of a vertex has one bit per plane. A bit is set if the vertex is on the positive side of its plane. The
-//! `and` of a primitive's codes gives the planes with the whole primitive on their positive side. The complement of the
-//! `or` gives the planes with the whole primitive on their negative side. A region of space is defined by the signs of
-//! the plane equations at its points. A primitive cannot touch a region if one plane separates the primitive from the
-//! region.
+//! A vertex has a code with one bit per plane, which is set if the vertex is on the positive side. The `and` of a
+//! primitive's codes gives the planes that have it completely on their positive side. The complement of the `or` gives
+//! those on whose negative side it is. A region of space is defined by such signs too, so a primitive cannot touch it
+//! if one plane separates them.
 
 use serde::{Deserialize, Serialize};
 
@@ -161,9 +160,8 @@ impl Codes {
 /// Returns two booleans for one plane. The first is true if all of a primitive lies on the plane's positive side. The
 /// second is true if any part of the primitive lies on this side.
 ///
-/// If a primitive is nearer to the plane than the tolerance, the primitive counts as lying on both sides. A triangle in
-/// the plane is therefore drawn by the slices on both sides. This is necessary, because the rule for points on a
-/// boundary may assign the triangle to either side.
+/// A primitive that is nearer to the plane than the tolerance counts as lying on both sides, and the slices on both
+/// sides draw it. This is necessary, because the rule for points on a boundary may assign it to either.
 fn sides(least: f64, most: f64, norm: f64, tolerance: BinTolerance, clip: f64, extra: f64) -> (bool, bool) {
     let pixels = match tolerance {
         BinTolerance::Codes => return (least >= 0.0, most >= 0.0),

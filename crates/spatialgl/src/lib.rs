@@ -16,18 +16,16 @@
 //!
 //! # Behaviour
 //!
-//! - A display consists of views and slice volumes ([`SpatialDisplay`]). The pipeline uses no other property of a
-//!   display, and the recorded draw calls do not depend on the display. [`SweptDisplay`] is the spinning screen of
-//!   the SpatialGL paper. [`FlatDisplay`] shows the same draw calls.
+//! - A display consists of views and slice volumes ([`SpatialDisplay`]). Nothing else about it matters, and the
+//!   recorded draw calls do not depend on it: [`SweptDisplay`], the spinning screen of the SpatialGL paper, and
+//!   [`FlatDisplay`] show the same ones.
 //! - The boundary planes of swept slices come from one table in which opposite planes are exact negatives. Neighbouring
-//!   slices therefore compute the same number for a point between them. [`TieRule`] assigns the point to one of the two
-//!   slices.
+//!   slices therefore compute the same number for a point between them, and [`TieRule`] assigns it to one of the two.
 //! - Samples are at pixel centres, with the top-left rule on edges. There is no culling, and only the flat screen has a
-//!   depth test. Edges, near and far plane and slice volume are linear or quadratic in homogeneous window coordinates.
-//!   The pipeline therefore needs neither geometric clipping nor a division before a fragment is accepted.
+//!   depth test. Since edges, near and far plane and slice volume are linear or quadratic in homogeneous window
+//!   coordinates, fragments are accepted without geometric clipping or a division.
 //! - [`ReferenceRenderer`] is the reference model. [`HostRenderer`] draws the same voxels with the same counts, eight
-//!   pixels at a time. [`Workers`] execute batches on several threads. The hash of a volume depends neither on the
-//!   renderer nor on the threads.
+//!   pixels at a time, and [`Workers`] execute batches on several threads. A volume's hash depends on neither.
 //! - A line has round ends that overlap the line. Under [`Combine::Add`] the overlapping pixels get the colour twice.
 //!
 //! # Numbers

@@ -1,5 +1,5 @@
-//! Perspecta: a diffuse screen that rotates about its vertical axis, and a projector. The projector flashes (strobes) a
-//! picture at each of 396 angles of a revolution. Each pixel has one bit per colour.
+//! Perspecta: a diffuse screen that rotates about its vertical axis, and a projector that flashes (strobes) a picture
+//! at each of 396 angles of a revolution. Each pixel has one bit per colour.
 //!
 //! ```text
 //!  ring --map, tiles--> [ frame store 0 | frame store 1 ] --strobe k--> screen at k d --> [ viewer ] --> picture
@@ -8,16 +8,16 @@
 //!
 //! # Behaviour
 //!
-//! - A volume is N slices with one bit each for red, green and blue. A volume arrives as maps and tiles
-//!   ([`volume_messages`]) in the frame store that is not shown. A map is a message that lists the tiles that will be
-//!   sent, and makes all other tiles dark. A swap request takes effect at the first later strobe 0 at which all
-//!   announced tiles have arrived. A partly written slice is therefore never shown.
+//! - A volume is N slices with one bit each for red, green and blue. It arrives as maps and tiles ([`volume_messages`])
+//!   in the frame store that is not shown. A map lists the tiles that will be sent, and makes all others dark. A swap
+//!   request takes effect at the first later strobe 0 at which all announced tiles have arrived, so a partly written
+//!   slice is never shown.
 //! - Strobe k of revolution n lights at the time (n + k / N) / f, for f revolutions per second. In terms of
 //!   [`Display`](pxpl5_wire::display::Display), a period is a revolution and a surface is a slice. Each pixel of a
 //!   slice lights when its strobe begins.
 //! - Strobes k and k + N/2 show the same plane from opposite sides, so a volume appears twice per revolution.
-//! - The viewer adds the light of all lit pixels of one revolution, each as a point at its voxel. The sums are
-//!   integers. No voxel hides another voxel.
+//! - The viewer adds the light of all lit pixels of one revolution, each as a point at its voxel, in integers. No voxel
+//!   hides another.
 //!
 //! # Numbers
 //!

@@ -7,11 +7,10 @@ use crate::clip::HalfWedge;
 /// The quadratic Q(u, v) = uu u^2 + uv u v + vv v^2 + u u + v v + one. u and v are the horizontal and the vertical
 /// coordinate in the slice. The slice contains the samples at which Q is not negative.
 ///
-/// Q is the product of the distances from both boundary planes of the slice, plus the bias b. s is the distance from
-/// the slice, and the triangle lies in the plane s = a u + c v + d. The product of the distances is u^2 S^2 - s^2 C^2.
-/// S and C are the sine and the cosine of half the angle between slices. Coordinates are pixels of the slice, and
-/// values are square pixels. The projection is orthographic. Projections with a shear or from a perspective eye also
-/// give quadratics.
+/// Q is the product of the distances from both boundary planes of the slice, u^2 S^2 - s^2 C^2, plus the bias b. Here s
+/// is the distance from the slice, and the triangle lies in the plane s = a u + c v + d. S and C are the sine and the
+/// cosine of half the angle between slices. Coordinates are pixels of the slice, and values are square pixels. The
+/// projection is orthographic, but projections with a shear or from a perspective eye also give quadratics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipQuadratic {
     /// Coefficient of u^2, dimensionless.

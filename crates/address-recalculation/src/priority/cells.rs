@@ -69,11 +69,10 @@ impl CellAssignment {
         (0..self.memories - 1).find(|memory| ring <= self.last_ring(*memory)).unwrap_or(self.memories - 1)
     }
 
-    /// Returns the number of the outermost ring of cells that memory k = `memory` holds. The last memory (the least
-    /// often drawn) has no outer limit, so the result does not apply to this memory.
+    /// Returns the number of the outermost ring of cells that memory k = `memory` holds. It does not apply to the last
+    /// memory (the least often drawn), which has no outer limit.
     ///
-    /// The result is the number of inner rings of cells plus 1 + g + g^2 + ... + g^(k-1), where g is
-    /// [`CellAssignment::ring_growth`].
+    /// This is the number of inner rings plus 1 + g + g^2 + ... + g^(k-1), where g is [`CellAssignment::ring_growth`].
     pub fn last_ring(&self, memory: usize) -> u64 {
         let next = |(rings, of_memory): (u64, u64)| {
             (rings.saturating_add(of_memory), of_memory.saturating_mul(self.ring_growth))
@@ -83,8 +82,8 @@ impl CellAssignment {
 
     /// Returns the distance, in metres, between a position and the border at which memory k = `memory` begins.
     ///
-    /// The cells of the memory lie outside this border. For a position on or outside the border, the distance is 0. For
-    /// memory 0, which begins at the eye, the distance is always 0.
+    /// The memory's cells lie outside this border. On or outside it, the distance is 0, and so it is for memory 0,
+    /// which begins at the eye.
     pub fn distance(&self, place: DVec3, memory: usize) -> f64 {
         if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
     }

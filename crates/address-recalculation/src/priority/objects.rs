@@ -38,9 +38,8 @@ impl Objects {
     /// Computes the updates of frame number `frame`, counted from 0. `periods_s` holds the validity period of each
     /// object from now on, in seconds.
     ///
-    /// An object changes its memory only in a frame that draws both the old and the new memory. Memory k can be drawn
-    /// in every 2^k-th frame. Such a frame does not draw the memory if the images of all its objects stay correct for
-    /// 2^k more frames.
+    /// An object changes its memory only in a frame that draws both the old and the new one. Memory k can be drawn in
+    /// every 2^k-th frame, but it is not if the images of all its objects stay correct for 2^k more frames.
     pub fn frame(&mut self, frame: u64, periods_s: &[f64]) -> Update {
         let mut together = vec![false; self.memories];
         // Move objects between memories first.

@@ -15,8 +15,7 @@
 //! * No result is read from a pipe after a scalar operation has destroyed the contents of the pipe. Programs that empty
 //!   a pipe read destroyed results and ignore these results.
 //!
-//! The rules for pairs are checked in address order. The check does not follow jumps into the middle of code that
-//! consists of pairs.
+//! Pairs are checked in address order, without following jumps into the middle of paired code.
 
 use crate::decoded::float_mask;
 use crate::dual_operation::{MULTIPLIER_ROUTES, ROUTES, Source};

@@ -1,4 +1,4 @@
-//! The published figures and the simulated values as a Markdown document. The text is a Markdown file with marks, which
+//! The published figures and the simulated values as a Markdown document. Its text is in document.md.in, whose marks
 //! are replaced by numbers and rows of tables.
 
 use super::definitions::{SEGMENTS, definitions};
@@ -31,7 +31,7 @@ pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
     let usual = all.interpretations.usual();
     let [with, without] = [per_section(&cut), per_section(&uncut)];
     filled(
-        include_str!("document.md"),
+        include_str!("document.md.in"),
         &[
             ("frames", EXPERIMENT_FRAMES.to_string()),
             ("met", met(false)),
@@ -135,7 +135,7 @@ fn fits(all: &Experiments) -> String {
 /// Returns the interpretations of table 1 of the paper CPR05 (update rates) as Markdown, ranked by their error.
 pub fn interpretations(all: &Interpretations) -> String {
     let ranked = lines(all.ranked.iter().map(ranked));
-    filled(include_str!("interpretations.md"), &[("ranked", ranked), ("best", best(all))])
+    filled(include_str!("interpretations.md.in"), &[("ranked", ranked), ("best", best(all))])
 }
 
 /// Returns two results as Markdown: the best fit of one set of rules to all update rates, and the prediction of each
@@ -145,7 +145,7 @@ fn best(all: &Interpretations) -> String {
     let best = every.min_by(|a, b| a.error_percent.total_cmp(&b.error_percent));
     let of_best = |text: fn(&Tried) -> String| best.map_or_else(String::new, text);
     filled(
-        include_str!("best.md"),
+        include_str!("best.md.in"),
         &[
             ("best_rules", of_best(|best| best.rules.text())),
             ("best_path", of_best(|best| best.situation.text().to_owned())),

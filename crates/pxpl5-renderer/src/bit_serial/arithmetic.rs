@@ -209,7 +209,7 @@ impl Tile {
         }
     }
 
-    /// Computes `destination := a * b`. For each bit `j` of `b` that is set, the function adds `a << j`.
+    /// Computes `destination := a * b` by adding `a << j` for each bit `j` of `b` that is set.
     ///
     /// Each addition takes one more clock for the carry. For the sign bit of a signed `b`, `a` is subtracted instead.
     /// The bits of the destination above the product become copies of the product's sign bit.
@@ -280,8 +280,8 @@ impl Tile {
 
     /// Computes a square root, one binary digit at a time, from the highest digit.
     ///
-    /// Each step compares the remainder with a trial value. The trial value consists of the digits of the root so far,
-    /// followed by the bits 01. The comparison covers all bits that the remainder can occupy.
+    /// Each step compares the remainder with the digits of the root so far, followed by the bits 01. The comparison
+    /// covers all bits that the remainder can occupy.
     fn square_root(&mut self, destination: FieldBits, radicand: FieldBits) {
         let n = destination.width;
         for i in (0..n).rev() {

@@ -39,8 +39,7 @@ impl<E: WholeTrees> VectorKernel for DeliverToTiles<'_, E> {
 impl BitSerial {
     /// Executes an instruction that evaluates an expression in all pixels.
     ///
-    /// For a linear expression, the instruction ends after the last bit that the pixels use. For a quadratic
-    /// expression, the instruction ends after all bits of the expression.
+    /// With a linear expression it ends after the last bit that the pixels use, with a quadratic one after all bits.
     pub(super) fn evaluate(&mut self, expression: &Expression, usage: &ExpressionUse) -> Result<(), FaultKind> {
         let delivery = &self.delivery(usage, expression.bits())?;
         let local = self.controller.latch(expression);

@@ -1,17 +1,17 @@
 //! Expression evaluator: trees of serial adders. In each clock, the trees deliver one bit of an expression's value to
 //! every pixel.
 //!
-//! A tree multiplies a coefficient by the index of each column (or row). Each column (or row) is a leaf of the tree.
-//! Level `l` of the tree delays the coefficient by `l` clocks. This level adds the delayed coefficient to the leaves
-//! whose index has bit `l` set. Coefficients enter with the least significant bit first.
+//! A tree multiplies a coefficient by the index of each column (or row), which is a leaf of the tree. Level `l` delays
+//! the coefficient by `l` clocks and adds it to the leaves whose index has bit `l` set. Coefficients enter with the
+//! least significant bit first.
 //!
-//! For a linear expression, every pixel adds the bit stream of its column to the bit stream of its row. For a quadratic
-//! expression, wider trees multiply by the squares of the indices. Each row also has its own coefficient of x, and each
-//! pixel multiplies this coefficient by its column. This circuit is assumed: F89 publishes only the expression.
+//! For a linear expression, every pixel adds the bit streams of its column and its row. For a quadratic one, wider
+//! trees multiply by the squares of the indices; each row also has its own coefficient of x, which each pixel
+//! multiplies by its column. This circuit is assumed: F89 publishes only the expression.
 //!
-//! No data flows from the pixels back to the trees. The simulator therefore first computes all clocks of the trees.
-//! Then the simulator computes all clocks of each vector of pixels, with the carries in registers. In vectors for
-//! trees, a lane holds 32 columns or rows. In vectors for pixels, a lane holds one row of a tile.
+//! No data flows from the pixels back to the trees. The simulator can therefore compute all clocks of the trees first,
+//! and then all clocks of each vector of pixels, with the carries in registers. In vectors for trees, a lane holds 32
+//! columns or rows. In vectors for pixels, it holds one row of a tile.
 
 use super::tile::{self, WIDTH};
 use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};

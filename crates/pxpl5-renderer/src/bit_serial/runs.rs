@@ -1,5 +1,5 @@
-//! Skipping mode for runs. A run is a sequence of instructions with linear expressions or constants. The mode leaves
-//! out work that changes no bit.
+//! Skipping mode for runs, which are sequences of instructions with linear expressions or constants. It leaves out work
+//! that changes no bit.
 //!
 //! No data flows from pixel to pixel. A tile can therefore execute all instructions of a run before the next tile
 //! begins:
@@ -7,11 +7,10 @@
 //! - If all pixels of a tile are disabled, the tile does nothing, because instructions with expressions never enable
 //!   pixels.
 //! - If an edge expression is negative at all corners of a tile, the tile is disabled without simulation of adders. If
-//!   it is negative at no corner, it disables no pixel. Both rules hold only if the expression does not overflow 32
-//!   bits anywhere in the array.
-//! - The adder trees of a tile have only five levels instead of seven. A vector can therefore hold the trees of several
-//!   expressions side by side. The value of the expression at the upper left pixel of the tile replaces the constant
-//!   coefficient.
+//!   it is negative at none, it disables no pixel. This holds only if the expression does not overflow 32 bits anywhere
+//!   in the array.
+//! - A tile's adder trees have five levels instead of seven, so a vector can hold those of several expressions side by
+//!   side. The expression's value at the upper left pixel of the tile replaces the constant coefficient.
 //!
 //! The remaining work is done bit by bit, as in the reference mode.
 

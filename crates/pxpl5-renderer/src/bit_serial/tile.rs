@@ -37,8 +37,7 @@ impl Tile {
 
     /// Returns true if this tile must execute an instruction that changes only enabled pixels.
     ///
-    /// In the reference mode, every tile executes the instruction. In the skipping mode, only tiles with an enabled
-    /// pixel execute the instruction.
+    /// In the reference mode every tile does, in the skipping mode only one with an enabled pixel.
     #[inline(always)]
     pub(super) fn has_work(&self, skipping: bool) -> bool {
         !skipping || self.enabled()

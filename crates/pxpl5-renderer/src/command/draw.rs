@@ -98,8 +98,8 @@ pub(crate) const COLOUR_AT: usize = PHONG_WORDS - 1;
 /// A fast encoder of triangle commands. It does not build the program of each command, because a scene can have 100,000
 /// triangles per frame.
 ///
-/// In one layout, the words of all triangle commands differ only in their operands. The encoder copies the words of a
-/// blank triangle, then overwrites the operands.
+/// In one layout, the words of all triangle commands differ only in their operands. So the encoder copies those of a
+/// blank triangle and overwrites the operands.
 #[derive(Clone, Debug)]
 pub struct TriangleEncoder([Word; TRIANGLE_WORDS]);
 

@@ -39,15 +39,15 @@ pub struct SphereBody {
 
 /// A sphere with interpolated colour.
 ///
-/// A sphere takes more clocks than a triangle for three reasons. First, a quadratic expression takes 12 words and 48
-/// clocks, and is evaluated twice: for the sign and for the radicand. Second, the root takes 202 bit clocks. Third, the
-/// depth needs three passes instead of two, because it depends on the stored root. Interpolated colour also takes a
-/// product and a limit for each component (134 clocks each).
+/// It takes more clocks than a triangle for three reasons. A quadratic expression takes 12 words and 48 clocks, and is
+/// evaluated twice: for the sign and for the radicand. The root takes 202 bit clocks. And the depth needs three passes
+/// instead of two, because it depends on the stored root. Interpolated colour also takes a product and a limit for each
+/// component (134 clocks each).
 ///
-/// The assumed cost, "a little dearer than a triangle", would fit a paraboloid. The depth of a paraboloid is the
-/// quadratic expression itself. A paraboloid takes 318 clocks with a quadratic expression for each colour, or 268
-/// clocks with normals. The depth of a paraboloid is exact only at the silhouette and at the middle, so intersecting
-/// spheres would meet in wrong places. The model therefore computes the root.
+/// The assumed cost, "a little dearer than a triangle", would fit a paraboloid, whose depth is the quadratic expression
+/// itself. It takes 318 clocks with a quadratic expression for each colour, or 268 with normals. But its depth is exact
+/// only at the silhouette and at the middle, so intersecting spheres would meet in wrong places. This is why the model
+/// computes the root.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereCommand {
     pub body: SphereBody,
@@ -57,16 +57,15 @@ pub struct SphereCommand {
     /// Factor of the square root for each colour component, -512 to 511: component = limit(linear + ((root >> 4) *
     /// factor >> 8)).
     ///
-    /// The sum must be in the range from -512 to 511, because a larger sum would wrap around. The function `limit`
-    /// limits the sum to the range from 0 to 255.
+    /// The sum must be from -512 to 511, because a larger one would wrap around; `limit` then limits it to 0 to 255.
     pub root_factor: [i16; 3],
 }
 
 /// A sphere whose pixels are shaded after the last primitive of the region (Phong).
 ///
-/// The z component of the normal is `root >> 2`. At the middle of the sphere, this component is `r / 4`, where r is the
-/// root at the middle. The sender uses the same scale for x and y. The length of the normal has no effect, because
-/// shading normalizes the normal. With perspective, x and y of the normal are approximated by linear expressions.
+/// The z component of the normal is `root >> 2`, which is `r / 4` at the middle of the sphere, where the root is r. The
+/// sender uses the same scale for x and y. The normal's length has no effect, because shading normalizes it. With
+/// perspective, linear expressions only approximate its x and y.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongSphereCommand {
     pub body: SphereBody,

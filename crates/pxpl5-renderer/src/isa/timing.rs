@@ -20,8 +20,8 @@ pub const CLOCK_HZ: u64 = 40_000_000;
 
 /// Number of clocks to fetch an instruction and to fill the pipeline of the expression evaluator.
 ///
-/// Derived: 4 is the only whole number for which both kinds of triangle take times in the ranges of the published
-/// steps. These ranges are 256 to 267 clocks (Gouraud) and 262 to 292 clocks (Phong).
+/// Derived: with no other whole number do both kinds of triangle take times in the ranges of the published steps, 256
+/// to 267 clocks (Gouraud) and 262 to 292 (Phong).
 ///
 /// The bits of the number formats need 222 clocks in 9 instructions: 2 (enable), 3 x 32 (edges), 32 (compare Z), 32
 /// (store Z) and 3 x 20 (colour). With normals, the formats need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) =
@@ -50,9 +50,8 @@ pub const fn square_root_clocks(n: u32) -> u32 {
 
 /// Returns the number of clocks of a product of an `a`-bit factor and a `b`-bit factor, with a result of `w` bits.
 ///
-/// For each bit of the second factor, an addition takes one clock for each bit of the first factor and one clock for
-/// the carry. Additions leave out bits beyond the result. If the result has more than `a + b` bits, each further bit
-/// takes one clock.
+/// For each bit of the second factor, an addition takes one clock for each bit of the first and one for the carry,
+/// except for bits beyond the result. If the result has more than `a + b` bits, each further bit takes one clock.
 pub fn multiply_clocks(w: u32, a: u32, b: u32) -> u32 {
     let additions: u32 = (0..b.min(w)).map(|j| (a + 1).min(w - j)).sum();
     additions + w.saturating_sub(a + b)

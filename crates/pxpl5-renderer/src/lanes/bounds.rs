@@ -141,8 +141,8 @@ pub(super) struct Boxes {
 /// Distance from the array's upper left pixel, in pixels. The fast computation of bounds requires that the values of
 /// edge expressions within this distance fit in 32 bits.
 ///
-/// Each coefficient then has at most 22 bits, and the constant has 31 bits. The products of these numbers are therefore
-/// exact in the 53 bits of an `f64`.
+/// Each coefficient then has at most 22 bits, and the constant has 31, so their products are exact in the 53 bits of an
+/// `f64`.
 const REACH: f64 = 512.0;
 
 impl Boxes {

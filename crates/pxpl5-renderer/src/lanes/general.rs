@@ -123,9 +123,8 @@ impl Lanes {
         self.store(destination)
     }
 
-    /// Computes two results of `f` in each pixel, such as a quotient and a remainder. The inputs are the bit field
-    /// `source` and the numbers in the second buffer. The first result goes to `destination`, and the second result
-    /// goes to `source`.
+    /// Computes two results of `f` in each pixel, such as a quotient and a remainder, from the bit field `source` and
+    /// the numbers in the second buffer. The first goes to `destination`, and the second to `source`.
     fn two_results(
         &mut self,
         destination: Operand,

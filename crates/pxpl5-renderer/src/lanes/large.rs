@@ -48,7 +48,7 @@ impl Lanes {
     /// Returns the columns (arrays of words) that a sphere needs. Returns `None` if the bit fields of depth and
     /// radicand have different widths.
     ///
-    /// With different widths, the command's program would leave a mixture of depth and radicand in the scratch memory.
+    /// The command's program would then leave a mixture of both in the scratch memory.
     fn sphere_place(&self) -> Option<SpherePlace> {
         let scratch = SphereScratch::in_layout(&self.layout).ok()?;
         let root_bits = scratch.root.width;
@@ -110,9 +110,9 @@ impl Lanes {
         Some(())
     }
 
-    /// Stores the coefficients of a sphere for reuse by a later instruction. Returns the sphere with the upper left
-    /// pixel of the array as origin of coordinates. If square roots in this layout have less than 12 bits, the returned
-    /// shifts of radicand and depth are larger.
+    /// Stores the coefficients of a sphere for reuse by a later instruction, and returns it with the upper left pixel
+    /// of the array as origin of coordinates. If square roots in this layout have less than 12 bits, its shifts of
+    /// radicand and depth are larger.
     fn sphere_body(&mut self, body: SphereBody, place: &SpherePlace) -> SphereBody {
         self.controller.hold_quadratic(body.silhouette);
         SphereBody {

@@ -224,8 +224,8 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
 
     /// Draws a triangle each of whose rows fits in one vector. The vectors begin at column `x`.
     ///
-    /// The function always draws two rows at a time, even if one of them lies outside the triangle. A branch to skip
-    /// this row would often be mispredicted, and would then take longer than the row.
+    /// Two rows are always drawn at a time, even if one of them lies outside the triangle. A branch to skip it would
+    /// often be mispredicted, and would then take longer than the row.
     #[inline(always)]
     fn narrow<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, x: usize, rows: Range<usize>) {
         let pairs = rows.len().div_ceil(2);

@@ -16,8 +16,8 @@ impl Lanes {
     /// Executes the command at the start of `words`, and returns its length in words. Returns `None` if the words are
     /// not a command of this layout.
     ///
-    /// After a triangle, the function also executes all directly following triangles of the same kind. The length then
-    /// includes these triangles.
+    /// Triangles of the same kind that follow a triangle directly are executed too, and their words are included in the
+    /// length.
     #[inline]
     pub(super) fn whole_command(&mut self, words: &[Word], executed: &mut Executed) -> Option<usize> {
         let kind = CommandKind::from_opcode((words[0] >> 16) as u8)?;

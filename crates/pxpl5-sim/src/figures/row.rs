@@ -152,12 +152,12 @@ impl FigureRow {
         Self { unprinted, is_met, ..self }
     }
 
-    /// Returns true if the model cannot reproduce the published value with any values of the unpublished parameters. In
-    /// this case, a rule of the model is wrong.
+    /// Returns true if the model cannot reproduce the published value with any values of the unpublished parameters. A
+    /// rule of the model is wrong then.
     ///
-    /// The model can reach the interval of the analytic level. The interval is extended on both sides by the distance
-    /// between `analytic` and `simulated`. The two levels may differ by this distance at all values of the parameters.
-    /// The published value is compared with its printed range, or with its last digit if no range is printed.
+    /// It can reach the interval of the analytic level, extended on both sides by the distance between `analytic` and
+    /// `simulated`, by which the two levels may differ everywhere. The published value is compared with its printed
+    /// range, or with its last digit if no range is printed.
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };
         // The margin has the difference between the two levels and the precision of the printed figure.

@@ -81,8 +81,7 @@ impl SettingError {
     /// Creates the error of a name that denotes nothing. `what` is the kind of thing that the name should denote, such
     /// as `pipeline`.
     ///
-    /// The message states the most similar name first, then all valid names. If there are many valid names, the message
-    /// leaves the list out.
+    /// The message states the most similar name first, then all valid names unless there are many.
     #[must_use]
     pub fn unknown<S: AsRef<str>>(what: &str, found: &str, valid: impl IntoIterator<Item = S>) -> Self {
         let valid: Vec<S> = valid.into_iter().collect();

@@ -1,8 +1,8 @@
 //! Search for the name that is most similar to an unknown name, for error messages.
 
-/// Returns the candidate that begins with `name`, for example a parameter of the table `name`. Otherwise returns the
-/// candidate that shares the most words with `name`. Among candidates that share equally many words, the candidate with
-/// the fewest single-letter changes is returned. Returns `None` if there are no candidates.
+/// Returns the candidate that begins with `name`, for example a parameter of the table `name`. Otherwise it is the one
+/// that shares the most words with `name`, and among equals the one with the fewest single-letter changes. Returns
+/// `None` if there are no candidates.
 ///
 /// Capital and small letters are the same. Words end at punctuation, and similar words count as the same word.
 pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {

@@ -7,8 +7,8 @@ use std::hash::{Hash, Hasher};
 ///
 /// Files and reports contain only the number, without the name of the variant.
 ///
-/// A whole value never equals a real value, and neither is greater than the other. Two real values are compared in
-/// IEEE's total order. NaN therefore lies outside every range, and two tables can be compared for equality.
+/// A whole value never equals a real one, and neither is greater. Two real values are compared in IEEE's total order,
+/// so NaN lies outside every range, and tables can be compared for equality.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {

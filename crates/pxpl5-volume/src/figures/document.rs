@@ -6,7 +6,7 @@ use super::shown::ShownStatement;
 use crate::settings::VolumeSettings;
 use pxpl5_sim::figures::column::NUMBER;
 use pxpl5_sim::figures::{Definition, FigureRow, TableColumn, filled, lines, significant, table};
-use pxpl5_sim::parameters::{Parameter, PathSettings};
+use pxpl5_sim::parameters::{Parameter, PathSettings, Provenance};
 use std::fmt::Write as _;
 
 /// Returns the text of docs/volumetric.md. The text has every figure, the definitions, the statements without numbers,
@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 pub fn markdown(figures: &VolumeFigures) -> String {
     let rows = &figures.figures;
     filled(
-        include_str!("document.md"),
+        include_str!("document.md.in"),
         &[
             ("met", rows.iter().filter(|row| row.is_met).count().to_string()),
             ("rows", rows.len().to_string()),
@@ -28,19 +28,28 @@ pub fn markdown(figures: &VolumeFigures) -> String {
     )
 }
 
-const COLUMNS: [TableColumn<FigureRow>; 8] = [
+const COLUMNS: [TableColumn<FigureRow>; 6] = [
     NUMBER,
     ("statement", |row| match &row.scene {
         Some(scene) => format!("{} ({scene})", row.statement),
         None => row.statement.to_string(),
     }),
-    ("source", |row| row.source.to_string()),
-    ("provenance", |row| format!("{}{}", row.origin, if row.scene.is_some() { ", measured" } else { "" })),
+    ("source", |row| {
+        let measured = if row.scene.is_some() { ", measured" } else { "" };
+        format!("{}{measured}", source(&row.source, row.origin))
+    }),
     ("expected", |row| format!("{} {}", expected(row), row.unit)),
     ("model", |row| number(row.simulated)),
-    ("error", |row| row.error_percent.map_or_else(|| "-".to_owned(), |error| format!("{error:+.2} %"))),
     ("", |row| if row.is_met { "met" } else { "**missed**" }.to_owned()),
 ];
+
+/// Returns the section of the paper, and states if the number was derived from printed numbers.
+fn source(section: &str, provenance: Provenance) -> String {
+    match provenance {
+        Provenance::Derived if section != "derived" => format!("{section}, derived"),
+        _ => section.to_owned(),
+    }
+}
 
 /// Returns the expected value as text. If the statement of the SpatialGL paper contains "over", "about" or "most", the
 /// text includes the interval of accepted values.
@@ -68,11 +77,10 @@ fn missed(rows: &[FigureRow]) -> String {
     text
 }
 
-const DEFINITIONS: [TableColumn<Definition>; 5] = [
+const DEFINITIONS: [TableColumn<Definition>; 4] = [
     ("#", |one| one.id.to_owned()),
     ("number", |one| one.statement.to_string()),
-    ("source", |one| one.source.to_owned()),
-    ("provenance", |one| one.provenance.to_string()),
+    ("source", |one| source(one.source, one.provenance)),
     ("value", |one| format!("{} {}", number(one.value), one.unit)),
 ];
 

@@ -15,8 +15,8 @@ pub struct LightTimes {
 
 /// The instant for which the view of a picture is predicted.
 ///
-/// All pipelines use the same choice. The instant follows from the [`LightTimes`] of the picture, the times at which
-/// the display shows the picture.
+/// All pipelines use the same choice. It refers to the [`LightTimes`] of the picture, the times at which the display
+/// shows it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aim {

@@ -27,8 +27,8 @@ type Regions = BTreeMap<RegionId, PartialRegion>;
 ///
 /// One of the buffers is shown.
 ///
-/// **Not modelled:** pixels that arrive in the shown buffer during the scan. A display that models such pixels must
-/// keep the arrival times of all messages, like the NTSC frame buffer.
+/// **Not modelled:** pixels that arrive in the shown buffer during the scan. A display with such pixels must keep the
+/// arrival times of all messages, like the NTSC frame buffer.
 #[derive(Clone, Debug)]
 pub struct DoubleBuffer {
     width: u32,

@@ -40,8 +40,8 @@ impl PixelLight {
 
     /// Returns the duration of a constant brightness that has the same variance over time as this light.
     ///
-    /// The duration is the square root of p^2 + 12 r^2 for a persistence p and a time constant r. A constant brightness
-    /// of duration p has the variance p^2 / 12, a first-order lag has the variance r^2, and variances add.
+    /// It is the square root of p^2 + 12 r^2 for a persistence p and a time constant r. A constant brightness of
+    /// duration p has the variance p^2 / 12, a first-order lag has r^2, and variances add.
     pub fn width(&self) -> Span {
         let [persistence, response] = [self.persistence, self.response].map(|span| span.0 as f64);
         Span((persistence * persistence + 12.0 * response * response).sqrt().round() as u64)

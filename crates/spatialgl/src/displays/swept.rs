@@ -167,8 +167,8 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
 /// Returns sine and cosine of an angle around the axis. The angle is counted from slice 0, in steps of half the angle
 /// between slices.
 ///
-/// Sine and cosine are computed for only one of two opposite directions. Opposite directions are therefore exact
-/// negatives of each other, for every angle of slice 0.
+/// They are computed for only one of two opposite directions, so these are exact negatives of each other, for every
+/// angle of slice 0.
 fn direction(config: &SweptConfig, half_slices: i64) -> (f64, f64) {
     let signed = if config.rotation == Rotation::XToZ { half_slices } else { -half_slices };
     if config.phase == 0.0 {

@@ -5,9 +5,9 @@
 //! tile  TILE  slice       | tile     tile size   eight pixels a word, row by row
 //! ```
 //!
-//! Empty tiles are not sent, so the map must make these tiles dark. Without this rule (derived), the frame store would
-//! still show old tiles: the tiles of the volume that it held before. Messages consist of ring words, at most
-//! [`MAX_MESSAGE_WORDS`] per message. All messages write to the store that is not shown.
+//! Empty tiles are not sent, so the map must make them dark. Without this rule (derived), the frame store would still
+//! show tiles of the volume that it held before. Messages consist of ring words, at most [`MAX_MESSAGE_WORDS`] each,
+//! and all of them write to the store that is not shown.
 
 use crate::{BitPlanes, Size, TileGrid, Tiling};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};

@@ -11,8 +11,7 @@ use crate::image::SliceImage;
 use crate::view::SliceView;
 use multiversion::multiversion;
 
-/// A fast renderer on one thread. The renderer draws the same voxels and gives the same counts as
-/// [`ReferenceRenderer`](super::ReferenceRenderer).
+/// A fast renderer on one thread, with the same voxels and counts as [`ReferenceRenderer`](super::ReferenceRenderer).
 ///
 /// The loops are compiled once for each vector unit (see [`mod@multiversion`]), all from the same code and with the
 /// same results.

@@ -1,9 +1,9 @@
 //! Set-up of a triangle in the window of a slice, in homogeneous coordinates (Olano and Greer 1997).
 //!
-//! The triangle needs neither clipping nor a division. Each edge is a linear function of the position in the window.
-//! This function is positive inside the triangle. The three functions are the weights of the corners at every sample,
-//! except for one common positive factor. Behind the eye, all three functions are negative. Vertex attributes are
-//! interpolated by these weights. Corners behind the eye or 10^6 px away therefore need no special case.
+//! The triangle needs neither clipping nor a division. Each edge is a linear function of the position in the window,
+//! positive inside the triangle and negative behind the eye. At every sample, the three functions are the weights of
+//! the corners, except for one common positive factor, and interpolate the vertex attributes. Corners behind the eye or
+//! 10^6 px away therefore need no special case.
 
 /// A position in homogeneous window coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -99,9 +99,9 @@ impl Edge {
         Self { a: -self.a, b: -self.b, c: -self.c, ..self }
     }
 
-    /// Returns the least value that the edge function has for a sample inside the triangle. For left edges and
-    /// horizontal upper edges, the value is zero, because samples on such an edge count as inside. For other edges, the
-    /// value is the smallest number above zero.
+    /// Returns the least value that the edge function has for a sample inside the triangle. It is zero for left edges
+    /// and horizontal upper edges, because samples on them count as inside, and otherwise the smallest number above
+    /// zero.
     #[inline(always)]
     fn least(&self) -> f64 {
         let has_its_samples = self.a > 0.0 || (self.a == 0.0 && self.b > 0.0);
