@@ -27,7 +27,7 @@ enum Numbers {
 
 /// Names of experiments contain this text in place of the tuned parameters. The parameters follow from the method and
 /// from all other settings.
-const TUNING: &str = "for its interval and motion, version 1";
+const TUNING: &str = "for its interval and motion, version 2";
 
 /// The coordinates in which a head motion is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -312,6 +312,8 @@ impl Head {
         let predictor = PredictorConfig {
             orientation_baseline: of_turns.orientation_baseline,
             orientation_jerk: of_turns.orientation_jerk,
+            orientation_decay: of_turns.orientation_decay,
+            check_ps: [own.check_ps[0], of_turns.check_ps[1]],
             start,
             ..own
         };

@@ -175,9 +175,13 @@ fn refuse_recording_keys(file: &ExperimentFile, motion: &str) -> Result<(), Sett
 }
 
 /// Parameters of the predictor whose values come from automatic tuning.
-const TUNED: [&str; 7] = [
+const TUNED: [&str; 11] = [
     "position_jerk",
     "orientation_jerk",
+    "velocity_decay",
+    "acceleration_decay",
+    "turn_decay",
+    "turn_acceleration_decay",
     "start_speed",
     "start_acceleration",
     "start_turn",
