@@ -38,11 +38,15 @@ pub enum HeadPlace {
     Scene,
     /// The motion has the coordinates of the scene's world, in metres. No pose is moved.
     World,
+    /// The mean position of the motion is placed at the start of the scene's own motion, and the head is turned about the
+    /// vertical axis so that it faces the middle of the scene as long as it can.
+    Content,
 }
 
 impl HeadPlace {
-    /// Both choices of coordinates, with their names in experiment files.
-    pub const ALL: [(&'static str, Self); 2] = [("scene", Self::Scene), ("world", Self::World)];
+    /// All choices of coordinates, with their names in experiment files.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("scene", Self::Scene), ("world", Self::World), ("content", Self::Content)];
 }
 
 pxpl5_sim::parameters::named!(HeadPlace, "meaning of head poses", HeadPlace::ALL);

@@ -126,7 +126,6 @@ impl MeanInterval {
     }
 
     /// Returns true if the interval contains 0, or if there is no interval.
-    #[must_use]
     pub fn may_be_zero(&self) -> bool {
         !(self.low > 0.0 || self.high < 0.0)
     }

@@ -10,15 +10,17 @@ use super::store::CompareStore;
 use super::trial::{Trial, common_window_from};
 use crate::StopFlag;
 use crate::error::StudyError;
-use crate::experiment_file::{ExperimentFile, Plan, plain};
+use crate::experiment_file::{ExperimentFile, Origin, Plan, Settings, plain};
 use crate::limit::{CEILING, LimitQuery};
 use crate::parallel;
-use pxpl5_measure::Showing;
+use pxpl5_measure::{Showing, program};
 use pxpl5_run::{Experiment, Goal, Head, Pixels, Tunings, WARM_UP_PERIODS};
 use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -64,6 +66,16 @@ pub struct CompareQuery {
 pub struct Comparison {
     /// Name and version of the JSON layout.
     pub schema: &'static str,
+    /// Version of the program that made the comparison.
+    pub version: &'static str,
+    /// Commit from which the program was built, if it is known.
+    pub commit: Option<&'static str>,
+    /// Hash of everything that affects the first row with the first seed.
+    pub config_hash: String,
+    /// Every key that was set, options of the comparison, and hashes of the scene and of the files that are named.
+    pub settings: BTreeMap<String, String>,
+    /// Warnings about settings whose values no source supports.
+    pub warnings: Vec<String>,
     /// Name of the machine's preset.
     pub machine: String,
     /// Number of graphics processors and number of renderers.
@@ -221,6 +233,11 @@ impl CompareQuery {
         let sampling = self.sampling(&any)?;
         let mut comparison = Comparison {
             schema: "pxpl5-comparison/4",
+            version: program::VERSION,
+            commit: program::commit(),
+            config_hash: any.experiment(Arc::clone(&common.scene)).config_hash().to_string(),
+            settings: self.header()?.settings,
+            warnings: any.warnings(),
             machine: any.machine.preset.clone(),
             boards: any.machine.boards(),
             scene: common.scene.name().to_owned(),
@@ -265,6 +282,42 @@ impl CompareQuery {
         let compared_pipelines = self.compared_pipelines()?;
         let seed = self.any_plan(&compared_pipelines)?.seed;
         Ok(compared_pipelines.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
+    }
+
+    /// Returns a warning if the shared settings come from the folder of another comparison, and its results will differ.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`CompareQuery::run`].
+    pub fn changes(&self) -> Result<Option<String>, StudyError> {
+        let (plan, _) = self.identity()?;
+        Ok(plan.origin.changes(&Origin::of(&plan.experiment(plan.load_scene()?))))
+    }
+
+    /// Returns an experiment file in `folder` with the shared settings, their origin, and the command that makes the
+    /// comparison again.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`CompareQuery::run`].
+    pub fn file_in(&self, folder: &Path) -> Result<String, StudyError> {
+        let (plan, rows) = self.identity()?;
+        let mut settings = Settings::of(&self.shared);
+        settings.make_relative(folder);
+        settings.originate(&Origin::of(&plan.experiment(plan.load_scene()?)));
+        let mut options =
+            format!("--only {} --seeds {} --confidence {}", rows.join(","), self.seeds.len(), self.confidence);
+        if let Some(until) = self.until {
+            options += &format!(" --until-precision {} --max-seeds {}", until.width, until.max_seeds);
+        }
+        for (option, _) in [("limits", self.limits), ("causes", self.causes), ("predictors", self.predictors)]
+            .iter()
+            .filter(|(_, is_on)| *is_on)
+        {
+            options += &format!(" --{option}");
+        }
+        let first = self.seeds.first().copied().unwrap_or_default();
+        Ok(format!("# pxpl5 compare experiment.toml --seed {first} {options}\n{settings}"))
     }
 
     fn compared_pipelines(&self) -> Result<Vec<ComparedPipeline>, StudyError> {
@@ -447,7 +500,6 @@ impl Comparison {
 
     /// Returns the rows with the least mean error: the best row, and all rows that cannot be told apart from it, because
     /// the interval of the difference contains 0 ([`ComparisonRow::above_best_px`]).
-    #[must_use]
     pub fn least(&self) -> Vec<&ComparisonRow> {
         let is_least =
             |row: &&ComparisonRow| row.above_best_px.is_some_and(|above| above.mean <= 0.0 || above.may_be_zero());

@@ -93,6 +93,8 @@ pub struct Plan {
     pub output: Outputs,
     /// Published figure to compare with, if any.
     pub published: Option<Published>,
+    /// Origin of the results beside the experiment file, if a command wrote the file with its results.
+    pub origin: Origin,
 }
 
 /// Largest seed that TOML can represent.
@@ -130,6 +132,7 @@ impl ExperimentFile {
                 csv: self.flag("output.csv")?.unwrap_or(true),
             },
             published: Published::read(self)?,
+            origin: Origin::read(self)?,
         })
     }
 

@@ -98,7 +98,6 @@ impl Recording {
     ];
 
     /// Returns the file of a recording in [`Self::SHIPPED`], or `None` for another name.
-    #[must_use]
     pub fn shipped(name: &str) -> Option<&'static [u8]> {
         match name {
             "vive-tracked" => Some(include_bytes!("../../data/vive-tracked.csv")),

@@ -57,7 +57,6 @@ pub struct TrackerConfig {
 
 impl TrackerConfig {
     /// Returns true if the reports have random errors, which differ with the seed.
-    #[must_use]
     pub fn is_random(&self) -> bool {
         [self.position_noise_m, self.orientation_noise_deg, self.position_bias_m, self.orientation_bias_deg] != [0.0; 4]
     }
