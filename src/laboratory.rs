@@ -114,8 +114,8 @@ pub use pxpl5_lab::Plan;
 
 pub use pxpl5_lab::{
     HeadChoice, ModelPlace, MotionChoice, Origin, Outputs, Published, SceneChoice, Settings, Suitability, WhatIf,
-    compare, figures, in_parallel, interpretations, intervals, levels, limit, pipeline_figures, registry, rig,
-    sweep, tracking_parameters,
+    compare, figures, in_parallel, interpretations, intervals, levels, limit, pipeline_figures, registry, rig, sweep,
+    tracking_parameters,
 };
 
 /// Less common names of the laboratory: trackers, predictors, and estimates of the cost of a run.

@@ -2,6 +2,7 @@
 
 use super::head::HeadChoice;
 use super::hmd;
+use super::origin::Origin;
 use super::read::{not_applicable, plain, wrong};
 use super::scene::SceneChoice;
 use super::{ExperimentFile, Setting, display};
