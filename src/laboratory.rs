@@ -113,8 +113,8 @@ pub use pxpl5_lab::suitability;
 pub use pxpl5_lab::Plan;
 
 pub use pxpl5_lab::{
-    HeadChoice, MotionChoice, Outputs, Published, SceneChoice, Settings, Suitability, WhatIf, compare, figures,
-    in_parallel, interpretations, intervals, levels, limit, pipeline_figures, registry, rig, sweep,
+    HeadChoice, ModelPlace, MotionChoice, Origin, Outputs, Published, SceneChoice, Settings, Suitability, WhatIf,
+    compare, figures, in_parallel, interpretations, intervals, levels, limit, pipeline_figures, registry, rig, sweep,
     tracking_parameters,
 };
 

@@ -112,6 +112,7 @@ class PercentilesData(TypedDict):
     mean: float | None
     p50: float | None
     p90: float | None
+    p95: float | None
     p99: float | None
     max: float | None
 
@@ -127,11 +128,16 @@ class PixelErrorsData(TypedDict):
     centre_deg: PercentilesData
     #: Number of evaluated pixels.
     evaluated: int
-    #: Numbers of pixels that were left out, by reason.
+    #: Numbers of evaluated pixels whose content has left the picture, lies behind the eye, or was found by no device.
+    outside: int
     behind: int
+    unfilled: int
+    #: Numbers of pixels that were left out, by reason.
     empty: int
     incomplete: int
     before: int
+    #: Share of the picture that the scene covers.
+    covered_share: float | None
 
 
 class BudgetData(TypedDict):
@@ -143,6 +149,7 @@ class BudgetData(TypedDict):
     drawing_ms: float | None
     showing_ms: float | None
     scanning_ms: float | None
+    lighting_ms: float | None
     total_ms: float | None
     n: int
 
@@ -168,6 +175,13 @@ class PredictorGateData(TypedDict):
     interval: float
 
 
+class PredictorDecayData(TypedDict):
+    """Rates in 1/s at which a Kalman filter lets velocity and acceleration decay."""
+
+    velocity: float
+    acceleration: float
+
+
 class PredictorData(TypedDict):
     """Parameters of a predictor."""
 
@@ -178,6 +192,10 @@ class PredictorData(TypedDict):
     orientation_noise_deg: float
     position_jerk: float
     orientation_jerk: float
+    position_decay: PredictorDecayData
+    orientation_decay: PredictorDecayData
+    #: Intervals of position and orientation at which the filter is checked, ps.
+    check_ps: list[int]
     horizon_ps: int
     start: PredictorStartData
     gate: PredictorGateData
@@ -193,6 +211,8 @@ class TrainingData(TypedDict):
     seed: int
     mean_m: float
     mean_deg: float
+    none_deg: float
+    velocity_deg: float
 
 
 class ReprojectionDeviceData(TypedDict):

@@ -10,13 +10,14 @@ use crate::error::CliError;
 use crate::estimate::RunWork;
 use crate::numbers::{confidence, count_of, whole};
 use crate::output::OutputFolder;
+use crate::run::MIN_COVERED;
 use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal::{self, answer, json_text};
 use progress::CompareProgress;
 use pxpl5::compare::{
-    CONFIDENCE, CompareQuery, CompareStore, MAX_SEEDS, MIN_SEEDS, Precision, ROWS_FOLDER, RecordedLength, RowChoice,
-    UntilPrecise, edge_pictures,
+    CONFIDENCE, CompareQuery, CompareStore, Comparison, ComparisonRow, MAX_SEEDS, MIN_SEEDS, Precision, ROWS_FOLDER,
+    RecordedLength, RowChoice, UntilPrecise, edge_pictures,
 };
 use pxpl5::views::png_bytes;
 use pxpl5::{ExperimentFile, MachineConfig};
@@ -25,7 +26,7 @@ use std::path::PathBuf;
 /// Arguments of `pxpl5 compare`.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
-  pxpl5 compare --head synthetic --scene mig --tracker fastrak
+  pxpl5 compare --head recorded:vive-tracked --scene mig --place content --in-room
   pxpl5 compare --head head.csv --predict none --out out/compare
   pxpl5 compare --machine design-maximum --gps 34 --set gp.triangle_ns=20000 --seeds 10 --json
   pxpl5 compare --fields 60 --seeds 1
@@ -74,7 +75,7 @@ pub(crate) struct CompareArgs {
     /// Confidence of all intervals, between 0 and 1.
     #[arg(long, value_name = "SHARE", default_value_t = CONFIDENCE, value_parser = confidence)]
     confidence: f64,
-    /// Write comparison.json, rows.csv, errors.csv, gallery.html with the picture of every pipeline, pictures of a
+    /// Write comparison.json, experiment.toml (which makes the comparison again), rows.csv, errors.csv, gallery.html with the picture of every pipeline, pictures of a
     /// vertical edge, and charts into this folder. The charts show the error over time, its distribution, and the error
     /// against latency and against prediction interval. DIR/rows/rows.jsonl has each row as soon as the runs of the row
     /// have ended.
@@ -120,6 +121,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let CompareArgs { causes, predictors, confidence, .. } = args;
     let mut query = CompareQuery { shared, only, seeds, limits, causes, predictors, pictures, confidence, until };
     set_length(&mut query, args.quiet)?;
+    terminal::warn(query.changes()?.as_slice(), args.quiet);
     admit(args.budget, &query, args.quiet)?;
     // The store keeps finished rows, so that an interruption loses only the rows in progress.
     let rows_of = |out: &PathBuf| query.open_store(&out.join(ROWS_FOLDER), args.resume);
@@ -129,10 +131,13 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let comparison = query.run_into(store.as_ref(), |done, of| progress.finished(done, of), |row| progress.ended(row));
     progress.clear();
     let comparison = comparison?;
+    terminal::warn(&comparison.warnings, args.quiet);
+    terminal::warn(out_of_view(&comparison).as_slice(), args.quiet);
     // Write all files, then publish the folder in one step.
     let json = json_text(&comparison)?;
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;
+        folder.put("experiment.toml", query.file_in(folder.path())?.as_bytes())?;
         for (name, text) in drawings::files(&comparison) {
             folder.put(name, text.as_bytes())?;
         }
@@ -141,6 +146,19 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     }
     folder.map(OutputFolder::commit).transpose()?;
     answer(args.json, args.quiet, &json, || table::text(&comparison))
+}
+
+/// Returns a warning that names the rows in whose pictures the scene hardly appears.
+fn out_of_view(comparison: &Comparison) -> Option<String> {
+    let is_out = |row: &&ComparisonRow| row.covered_share.is_some_and(|share| share < MIN_COVERED);
+    let rows: Vec<&str> = comparison.pipelines.iter().filter(is_out).map(|row| row.pipeline.as_str()).collect();
+    let names = rows.join(", ");
+    (!rows.is_empty()).then(|| {
+        format!(
+            "the scene covers less than {} % of the picture in {names}: these errors are those of the background; --place content turns the head towards it",
+            MIN_COVERED * 100.0
+        )
+    })
 }
 
 fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), CliError> {

@@ -9,11 +9,12 @@ use crate::simulate::{How, Simulated, simulate};
 use crate::table::{Comparison, table};
 use crate::terminal::{print, warn};
 use clap::Args;
+use pxpl5::tracking::predict::Training;
 use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::views::results::{origin_lines, quantities_csv};
 use pxpl5::{
-    ExperimentFile, HeadReport, KeptRecords, Level, Measured, Optimization, Outcome, Plan, Report, Results, SurfaceId,
-    WhatIf, what_if,
+    ExperimentFile, HeadReport, KeptRecords, Level, Measured, Optimization, Origin, Outcome, Plan, Report, Results,
+    SurfaceId, WhatIf, what_if,
 };
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -73,7 +74,10 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let how = How { threads: args.threads, without, keep, budget, quiet, ..How::default() };
     let Simulated { outcome, too_short } = simulate(&plan, how)?;
     let results = Results::of_run(outcome);
-    let Some((_, report)) = &results.run else { return Err(no_events()) };
+    let Some((outcome, report)) = &results.run else { return Err(no_events()) };
+    // A file from a folder of results says whether the run repeats those results.
+    warn(plan.origin.changes(&Origin::of(outcome.experiment())).as_slice(), args.quiet);
+    warn(out_of_view(report).as_slice(), args.quiet);
     // A run without a latency still writes its files and its report, and then ends with an error.
     let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;
     let more = if args.what_if { Some(more(&plan)?) } else { None };
@@ -154,16 +158,31 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
     // A run with a tracked head has a latency to light and an error in pixels.
     if let Some(head) = &report.head {
         let HeadReport { tracker, predictor, training, aim, display, end_to_end, error, .. } = head;
-        let tuned = training.map_or_else(String::new, |on| format!(", tuned for {} ms", on.interval_ps / PS_PER_MS));
+        let tuned = training.map_or_else(String::new, |on| {
+            let Training { interval_ps, mean_deg, none_deg, velocity_deg, .. } = on;
+            format!(
+                ", tuned for {} ms: {mean_deg:.2} degrees there, {none_deg:.2} without prediction, {velocity_deg:.2} by velocity",
+                interval_ps / PS_PER_MS
+            )
+        });
         let _ = writeln!(
             text,
-            "Head to light: {} ms, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}). Pixel error (display {display}): mean {} px, 99 % {} px, mean {} degrees, n {}.",
+            "Head to light: {} ms, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}).",
             number_or_dash(end_to_end.total_ms, 2),
             end_to_end.n,
+        );
+        let covered = error
+            .covered_share
+            .map_or_else(String::new, |share| format!("; the scene covers {:.1} % of the picture", share * 100.0));
+        let _ = writeln!(
+            text,
+            "Pixel error (display {display}): mean {} px, median {} px, 95 % {} px, mean {} degrees, n {}, {:.1} % of it outside of the view{covered}.",
             number_or_dash(error.pixels.mean, 2),
-            number_or_dash(error.pixels.p99, 2),
+            number_or_dash(error.pixels.p50, 2),
+            number_or_dash(error.pixels.p95, 2),
             number_or_dash(error.degrees.mean, 3),
-            error.pixels.n
+            error.pixels.n,
+            error.outside as f64 / error.evaluated.max(1) as f64 * 100.0
         );
     }
     if report.arp.is_none() {
@@ -185,6 +204,17 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
         let _ = writeln!(text, "Written to {}.", path.display());
     }
     text
+}
+
+/// Share of the picture below which a scene hardly has anything to do with the error.
+pub(crate) const MIN_COVERED: f64 = 0.05;
+
+fn out_of_view(report: &Report) -> Option<String> {
+    let share = report.head.as_ref()?.error.covered_share.filter(|share| *share < MIN_COVERED)?;
+    Some(format!(
+        "the scene covers only {:.1} % of the picture, so the error is that of the background; --place content turns the head towards it",
+        share * 100.0
+    ))
 }
 
 /// Formats a number. The result for NaN is "-".
@@ -230,7 +260,7 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
     folder.put("report.json", format!("{}\n", json(report)?).as_bytes())?;
     folder.put(
         "experiment.toml",
-        format!("{}{}", origin_lines(report, "# "), plan.settings_for_any_folder()).as_bytes(),
+        format!("{}{}", origin_lines(report, "# "), plan.settings_in(folder.path(), outcome.experiment())).as_bytes(),
     )?;
     // Files that the experiment's `output` keys turn off are left out.
     if plan.output.csv {

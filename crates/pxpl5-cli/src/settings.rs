@@ -27,6 +27,18 @@ pub(crate) struct SettingArgs {
     /// Keep the coordinates of a model file, in metres; by default the model is fitted into the view of both eyes.
     #[arg(long)]
     no_fit: bool,
+    /// Place of the middle of the scene in its world: metres to the right, upwards and backwards.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    model_at: Option<String>,
+    /// Length of the longest side of the scene, in metres.
+    #[arg(long, value_name = "METRES")]
+    model_size: Option<f64>,
+    /// Turn of the scene about the vertical axis, in degrees to the left.
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    model_turn: Option<f64>,
+    /// Add the walls of the scene `room` around the viewer.
+    #[arg(long)]
+    in_room: bool,
     /// Drop triangles that face away from the eye. A surface without holes looks the same.
     #[arg(long)]
     cull: bool,
@@ -40,8 +52,8 @@ pub(crate) struct SettingArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     renderers: Option<i64>,
     /// Motion of a head with a tracker: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED,
-    /// walk:M_PER_S along the scene's path, walk:M_PER_S:SEED (a walk that looks around as synthetic:SEED does), or a
-    /// recording. A recording is a FILE.csv, .txt, .tum or .jsonl: a table with time_s,x,y,z,qw,qx,qy,qz, a file of
+    /// walk:M_PER_S along the scene's path, walk:M_PER_S:SEED (a walk that looks around as synthetic:SEED does),
+    /// recorded:NAME (a real head: vive-tracked or vive-dev), or a recording. A recording is a FILE.csv, .txt, .tum or .jsonl: a table with time_s,x,y,z,qw,qx,qy,qz, a file of
     /// EuRoC or TUM, a pose log, or any table with --columns.
     #[arg(long, value_name = "MOTION", allow_hyphen_values = true)]
     head: Option<String>,
@@ -60,8 +72,9 @@ pub(crate) struct SettingArgs {
     /// Predictor of the head's pose: none, velocity, acceleration or kalman; default kalman.
     #[arg(long)]
     predict: Option<String>,
-    /// Meaning of the poses of --head: scene (the motion begins where the scene's own motion begins) or world (the
-    /// poses are metres in the scene's coordinates); default scene.
+    /// Meaning of the poses of --head: scene (the motion begins where the scene's own motion begins), world (the poses
+    /// are metres in the scene's coordinates) or content (the head faces the scene as long as it can); default scene, and
+    /// content for a model file.
     #[arg(long)]
     place: Option<String>,
     /// Instant during a picture's display for which the head's pose is predicted: middle, first-pixel, last-pixel or
@@ -139,6 +152,15 @@ impl SettingArgs {
         for column in self.columns.iter().flat_map(|columns| columns.split(',')) {
             let (field, name) = column.split_once('=').unwrap_or((column, ""));
             file.set(&format!("head.columns.{}", field.trim()), name.trim(), "--columns")?;
+        }
+        let places = self.model_at.iter().flat_map(|places| places.splitn(3, ','));
+        for (axis, place) in ["x", "y", "z"].into_iter().zip(places) {
+            file.set_text(&format!("model.{axis}={place}"), "--model-at")?;
+        }
+        self.model_size.map(|metres| file.set("model.size", metres, "--model-size")).transpose()?;
+        self.model_turn.map(|degrees| file.set("model.turn", degrees, "--model-turn")).transpose()?;
+        if self.in_room {
+            file.set("model.room", true, "--in-room")?;
         }
         if self.no_fit {
             file.set("fit", false, "--no-fit")?;

@@ -174,3 +174,33 @@ fn seeds_are_added_until_the_interval_is_narrow_or_the_maximum_is_reached() {
     assert_eq!(refused.status.code(), Some(2));
     assert!(err(&refused).contains("share of the mean (10%) or in pixels (0.2px)"), "{}", err(&refused));
 }
+
+/// Tests the experiment file in the folder of a comparison. It has the overrides and a way to the model, it makes the
+/// same comparison again, and after a change of the model it says so.
+#[test]
+fn the_folder_of_a_comparison_makes_it_again_and_says_when_the_model_has_changed() {
+    let folder = Folder::new("compare-again");
+    let model = |z: f32| format!("v -1 0 {z}\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    std::fs::create_dir(folder.0.join("models")).expect("a folder");
+    folder.file("models/tri.obj", model(0.0));
+    let run = |more: &[&str]| {
+        let shared = ["compare", "--only", "slats", "--seeds", "1", "--json"];
+        let ran = folder.run(&[&shared, more].concat());
+        assert!(ran.status.success(), "{}", err(&ran));
+        let json: Value = serde_json::from_slice(&ran.stdout).expect("JSON");
+        (json, err(&ran))
+    };
+    let set = ["--scene", "models/tri.obj", "--head", "recorded:vive-dev", "--fields", "40", "--out", "o"];
+    let (first, _) = run(&[&set[..], &["--set", "machine.gp.triangle_ns=25000"]].concat());
+    assert_eq!(first["settings"]["machine.gp.triangle_ns"], "25000");
+    let file = read(&folder, "o/experiment.toml");
+    assert!(file.contains("gp.triangle_ns = 25000") && file.contains("scene = \"../models/tri.obj\""), "{file}");
+    assert!(file.starts_with("# pxpl5 compare experiment.toml --seed 1 --only slats --seeds 1"), "{file}");
+    let (again, words) = run(&["o/experiment.toml", "--out", "again"]);
+    assert_eq!(again["config_hash"], first["config_hash"]);
+    assert_eq!(again["pipelines"][0]["error"], first["pipelines"][0]["error"]);
+    assert!(!words.contains("has changed"), "{words}");
+    folder.file("models/tri.obj", model(0.5));
+    let (_, words) = run(&["o/experiment.toml"]);
+    assert!(words.contains("the model of the scene has changed"), "{words}");
+}

@@ -19,7 +19,8 @@ const FASTEST_PAN: f64 = 10_000.0;
 
 /// Syntax of all motions that [`motion`] and [`walk`] accept, for help texts and errors.
 pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S (or \
-                           walk:M_PER_S:SEED) along the scene's path, or a recording (FILE.csv, FILE.txt, FILE.tum or FILE.jsonl)";
+                           walk:M_PER_S:SEED) along the scene's path, recorded:NAME (a real head: vive-tracked or vive-dev), \
+                           or a recording (FILE.csv, FILE.txt, FILE.tum or FILE.jsonl)";
 
 /// Maximum speed of the motions `slide` and `walk` in metres per second.
 const FASTEST_SLIDE: f64 = 100.0;
@@ -67,14 +68,22 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, SettingError> {
     })
 }
 
-/// Returns true if the name of a motion is the path of a recording's file.
+/// Name of the motions that come with the library: `recorded:NAME`.
+const RECORDED: &str = "recorded:";
+
+/// Returns true if the name of a motion is a recording: the path of a file, or one that comes with the library.
 pub fn is_recording(name: &str) -> bool {
+    name.starts_with(RECORDED) || is_recorded_file(name)
+}
+
+/// Returns true if the name of a motion is the path of a recording's file.
+pub(crate) fn is_recorded_file(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
     [".csv", ".txt", ".tum", ".jsonl"].iter().any(|end| name.ends_with(end))
 }
 
 /// Builds a motion from its name: `still`, `pan:DEG_PER_S`, `slide:M_PER_S` (to the right), `sine:DEG:HZ` (of the yaw),
-/// `pendulum`, `synthetic:SEED`, or the path of a recording.
+/// `pendulum`, `synthetic:SEED`, `recorded:NAME` ([`Recording::SHIPPED`]), or the path of a recording.
 ///
 /// A recording's path ends in `.csv`, `.txt`, `.tum` or `.jsonl` ([`Recording::read`]). For the motion `walk`, which
 /// needs a scene, see [`walk`].
@@ -121,13 +130,25 @@ pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + S
             Arc::new(Synthetic::recorded_use(seed))
         }
         ("walk", _) => return Err(no_path(text)),
-        _ if is_recording(text) => Arc::new(recording(Path::new(text), replay)?),
+        ("recorded", name) => {
+            let names = Recording::SHIPPED.map(|(name, _)| name);
+            let file = Recording::shipped(name).ok_or_else(|| {
+                unknown("recording", name, names.into_iter(), &format!("{RECORDED}{}", names.join(" or ")))
+            })?;
+            Arc::new(recording_of(file, text, &Replay { format: RecordingFormat::default(), end: replay.end })?)
+        }
+        _ if is_recorded_file(text) => Arc::new(recording(Path::new(text), replay)?),
         // A path of a file with another ending is no mistyped name.
         _ if Path::new(text).extension().is_some_and(|end| end.to_string_lossy().contains(char::is_alphabetic)) => {
             return Err(number(text, "a recording whose name ends in .csv, .txt, .tum or .jsonl"));
         }
         _ => {
-            return Err(unknown("motion", text, listed("still pan slide sine pendulum synthetic walk"), MOTIONS));
+            return Err(unknown(
+                "motion",
+                text,
+                listed("still pan slide sine pendulum synthetic walk recorded"),
+                MOTIONS,
+            ));
         }
     })
 }

@@ -48,8 +48,8 @@ mod what_if;
 
 pub use error::StudyError;
 pub use experiment_file::{
-    ExperimentFile, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice, Settings,
-    tracking_parameters,
+    ExperimentFile, FileKey, HeadChoice, ModelPlace, MotionChoice, Origin, Outputs, PathChoice, Plan, Published,
+    SceneChoice, Settings, tracking_parameters,
 };
 pub use head_names::{PREDICTORS, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;

@@ -31,7 +31,11 @@ pub struct Budget {
     /// Time from the start of the display of the picture until the display's beam reaches the middle of the picture.
     #[serde(deserialize_with = "number_or_nan")]
     pub scanning_ms: f64,
-    /// Time from the measurement of the pose until the middle of the picture is lit.
+    /// Time from the instant at which a pixel begins to light until the middle of its light: half of the persistence, and
+    /// the response of the panel. 0 for a display that lights a pixel for an instant.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub lighting_ms: f64,
+    /// Time from the measurement of the pose until the middle of the light of the picture's middle.
     #[serde(deserialize_with = "number_or_nan")]
     pub total_ms: f64,
     /// Number of pictures over which the means are computed.
@@ -61,6 +65,7 @@ impl Budget {
             drawing_ms: mean(|budget| budget.drawing_ms),
             showing_ms: mean(|budget| budget.showing_ms),
             scanning_ms: mean(|budget| budget.scanning_ms),
+            lighting_ms: mean(|budget| budget.lighting_ms),
             total_ms: mean(|budget| budget.total_ms),
             n,
         }
@@ -70,8 +75,8 @@ impl Budget {
 /// Returns the sum of two means that the papers add, in milliseconds. `None` if no picture was measured.
 ///
 /// The first mean is the time from the measurement of the pose until its report reaches the host. The second mean is
-/// the time from the start of TRANSFORM until the picture is shown, over both eyes. The sum leaves out three stages of
-/// [`Budget::total_ms`]: the wait for the pipeline, SEND and EDIT, and the scan to the middle of the picture.
+/// the time from the start of TRANSFORM until the picture is shown, over both eyes. The sum leaves out these stages of
+/// [`Budget::total_ms`]: the wait for the pipeline, SEND and EDIT, the scan to the middle of the picture, and its light.
 pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
     let Budget { tracking_ms, drawing_ms, showing_ms, .. } = Budget::of(outcome);
     let of_eyes = outcome.summary().eye_latency_ms();
@@ -101,7 +106,7 @@ const OLDER_POSES: usize = 64;
 /// Head poses that a pipeline requested. The key of a pose is the number of the view that is drawn for the pose.
 pub(crate) type Poses = BTreeMap<ViewNumber, SampledPose>;
 
-pub(crate) const STAGES: usize = 6;
+pub(crate) const STAGES: usize = 7;
 
 impl BudgetSum {
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
@@ -126,9 +131,9 @@ impl BudgetSum {
     pub(crate) fn result(self) -> Budget {
         let n = self.stages_ms[0].count();
         let means = self.stages_ms.map(|samples| samples.statistics().mean);
-        let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms] = means;
-        let total_ms = tracking_ms + waiting_ms + sending_ms + drawing_ms + showing_ms + scanning_ms;
-        Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, n }
+        let total_ms = means.iter().sum();
+        let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms] = means;
+        Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms, total_ms, n }
     }
 }
 
@@ -160,6 +165,7 @@ fn of_picture(run: &FinalResults<'_>, times: &PictureTimes, sampled: &SampledPos
         times.copied_at?,
         times.shown_at,
         light,
+        light + run.record.display().light().centre(),
     ];
     Some(std::array::from_fn(|i| (path[i + 1].0 as f64 - path[i].0 as f64) * 1e-9))
 }

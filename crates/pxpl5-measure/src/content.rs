@@ -60,6 +60,10 @@ impl Contents {
         Self { bodies: in_world.map(|(place, structure)| Body::of(scene, place, structure)).collect() }
     }
 
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
     /// Returns the nearest point that a ray from the eye hits, with moving objects placed for the time `objects_at`.
     ///
     /// `direction` is scaled to a depth of 1 m along the axis of the view. Returns `None` if the ray hits nothing

@@ -6,7 +6,7 @@
 
 use crate::reproject::direction;
 use crate::rows::Rows;
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use image::RgbImage;
 use std::ops::Range;
 use tracking::Pose;
@@ -121,22 +121,23 @@ impl Drawing<'_> {
     /// Pixels without content become black. Returns the number of these pixels.
     pub(crate) fn move_rows(&self, now: &Pose, targets: Range<u32>, out: &mut RgbImage) -> u64 {
         let sources = self.source_rows(now, &targets);
+        let moved = self.moved_view(now);
         let mut target = Target::new(self.picture.width(), targets);
         let [mut above, mut below] = std::array::from_fn(|_| SeenRow::with_length(target.width as usize));
         let mut pairs = Pairs::default();
         for row in sources.clone() {
-            self.see_row(now, row, &target, &mut below);
+            self.see_row(&moved, row, &target, &mut below);
             if row > sources.start {
                 pairs.join(&above, &below);
-                target.draw_cells(row - 1, [&above, &below], &pairs);
+                target.draw_cells(&moved, row - 1, [&above, &below], &pairs);
             } else {
                 // The upper half of the first row belongs to no cell.
-                target.draw_edge(row, &below);
+                target.draw_edge(&moved, row, &below);
             }
             std::mem::swap(&mut above, &mut below);
         }
         if let Some(last) = sources.last() {
-            target.draw_edge(last, &above);
+            target.draw_edge(&moved, last, &above);
         }
         target.copy(self, out)
     }
@@ -146,14 +147,18 @@ impl Drawing<'_> {
         &self.depths.depths[begin..begin + self.picture.width() as usize]
     }
 
-    fn see_row(&self, now: &Pose, row: u32, target: &Target, out: &mut SeenRow) {
+    fn moved_view(&self, now: &Pose) -> MovedView<'_> {
         let to_new = now.orientation.conjugate();
         let turn = to_new * self.drawn_for.orientation;
+        MovedView { view: self.view, rows: self.rows, turn, from: to_new * (self.drawn_for.position - now.position) }
+    }
+
+    fn see_row(&self, moved: &MovedView<'_>, row: u32, target: &Target, out: &mut SeenRow) {
         let begin = DVec2::new(0.5, f64::from(self.rows.row(row)) + 0.5);
         // Along a row the direction changes by a constant step.
-        let ray = (turn * direction(self.view, begin)).as_vec3();
-        let step = (turn * (DVec3::X / self.view.focal_px())).as_vec3();
-        let from = (to_new * (self.drawn_for.position - now.position)).as_vec3();
+        let ray = (moved.turn * direction(self.view, begin)).as_vec3();
+        let step = (moved.turn * (DVec3::X / self.view.focal_px())).as_vec3();
+        let from = moved.from.as_vec3();
         let (centre, focal) = (self.view.centre_px().as_vec2(), self.view.focal_px() as f32);
         let [first, distance] = [self.rows.first as f32, self.rows.distance as f32];
         let right = target.width as f32;
@@ -217,6 +222,29 @@ impl Drawing<'_> {
     }
 }
 
+/// The way from a place of the picture to a place of the screen.
+#[derive(Clone, Copy, Debug)]
+struct MovedView<'a> {
+    view: &'a Hmd,
+    rows: Rows,
+    /// Rotation from the axes of the old pose to the axes of the new pose.
+    turn: DQuat,
+    /// Position of the old pose in the axes of the new pose.
+    from: DVec3,
+}
+
+impl MovedView<'_> {
+    /// Returns column and row on the screen of a column and row of the picture, at a depth. A place behind the eye
+    /// returns itself.
+    fn place(&self, [x, row]: [f32; 2], depth: f32) -> [f32; 2] {
+        let [first, distance] = [f64::from(self.rows.first), f64::from(self.rows.distance)];
+        let from = DVec2::new(f64::from(x) + 0.5, first + f64::from(row) * distance + 0.5);
+        let point = self.turn * direction(self.view, from) * f64::from(depth) + self.from;
+        let to = self.view.project(point).unwrap_or(from);
+        [(to.x - 0.5) as f32, ((to.y - 0.5 - first) / distance) as f32]
+    }
+}
+
 /// Nearest content found so far for each pixel of the rows that are drawn.
 struct Target {
     width: u32,
@@ -238,7 +266,7 @@ impl Target {
         Self { width, rows, depths: vec![f32::INFINITY; size], sources: vec![NOTHING; size] }
     }
 
-    fn draw_cells(&mut self, upper_row: u32, rows: [&SeenRow; 2], pairs: &Pairs) {
+    fn draw_cells(&mut self, moved: &MovedView<'_>, upper_row: u32, rows: [&SeenRow; 2], pairs: &Pairs) {
         let count = pairs.near.len();
         let first = upper_row * self.width;
         let [left, right] = [&pairs.columns[0][..count], &pairs.columns[1][..count]];
@@ -249,10 +277,10 @@ impl Target {
             let farthest = far[x - 1].max(far[x]);
             let is_surface = farthest < f32::INFINITY && farthest <= near[x - 1].min(near[x]) * SAME_SURFACE;
             if !is_surface {
-                // The surface ends between these pixels. So each pixel ends half a pixel beside its middle.
+                // The surface ends between these pixels. So each pixel ends at the edge of its own square.
                 for (seen, row) in rows.iter().zip([upper_row, upper_row + 1]) {
-                    self.draw_pixel(seen, row, x - 1);
-                    self.draw_pixel(seen, row, x);
+                    self.draw_pixel(moved, seen, row, x - 1);
+                    self.draw_pixel(moved, seen, row, x);
                 }
                 continue;
             }
@@ -268,7 +296,7 @@ impl Target {
         }
         // Half a pixel at both ends of the rows belongs to no cell.
         for x in [0, count - 1] {
-            self.draw_pixel(rows[0], upper_row, x);
+            self.draw_pixel(moved, rows[0], upper_row, x);
         }
     }
 
@@ -287,21 +315,26 @@ impl Target {
         self.put(column as u32, row as u32, depth, source + corner as u32);
     }
 
-    fn draw_edge(&mut self, row: u32, seen: &SeenRow) {
+    fn draw_edge(&mut self, moved: &MovedView<'_>, row: u32, seen: &SeenRow) {
         for x in 0..seen.x.len() {
-            self.draw_pixel(seen, row, x);
+            self.draw_pixel(moved, seen, row, x);
         }
     }
 
-    /// Draws a pixel of the picture, in column `x` and row `row`, at its new position on the screen. The position is
-    /// rounded to the nearest pixel of the screen.
-    fn draw_pixel(&mut self, seen: &SeenRow, row: u32, x: usize) {
+    /// Draws a pixel of the picture, in column `x` and row `row`, at its new position on the screen. The pixel covers what
+    /// its square covers at its depth, and at least the nearest pixel of the screen.
+    fn draw_pixel(&mut self, moved: &MovedView<'_>, seen: &SeenRow, row: u32, x: usize) {
         if seen.old_depth[x] == f32::INFINITY {
             return;
         }
-        let limits = [self.rows.start as f32, self.rows.end as f32];
-        let columns = next(seen.x[x] - 0.5, 0.0, self.width as f32)..next(seen.x[x] + 0.5, 0.0, self.width as f32);
-        for line in next(seen.row[x] - 0.5, limits[0], limits[1])..next(seen.row[x] + 0.5, limits[0], limits[1]) {
+        let corner = |side: f32| moved.place([x as f32 + side, row as f32 + side], seen.old_depth[x]);
+        let [begin, end] = [corner(-0.5), corner(0.5)];
+        let within = |axis: usize, at: f32, least: f32, greatest: f32| {
+            let [from, to] = [begin[axis].min(end[axis]), begin[axis].max(end[axis])];
+            next(from.min(at - 0.5), least, greatest)..next(to.max(at + 0.5), least, greatest)
+        };
+        let columns = within(0, seen.x[x], 0.0, self.width as f32);
+        for line in within(1, seen.row[x], self.rows.start as f32, self.rows.end as f32) {
             for column in columns.clone() {
                 self.put(column as u32, line as u32, seen.depth[x], row * self.width + x as u32);
             }
@@ -450,6 +483,23 @@ mod tests {
                 compared += 1;
             }
             assert!(compared > 270_000, "{compared}");
+        }
+    }
+
+    /// Tests the pixels that a pure turn leaves empty, on a wall and on squares of different depths. They are those whose
+    /// source lies beyond the edge of the picture. A column of the picture has 480 pixels.
+    #[test]
+    fn a_turn_leaves_the_same_pixels_empty_with_depth_as_with_rotation() {
+        let squares = |x: u32, y: u32| if (x / 50 + y / 60) % 2 == 0 { 1.0 } else { 3.0 };
+        for (yaw, pitch) in [(0.02, 0.0), (-0.05, 0.0), (0.2, 0.0), (0.0, 0.1), (0.0, -0.03), (0.1, 0.05)] {
+            let now = Pose::facing(rotation::from_yaw_pitch_roll(yaw, pitch, 0.0));
+            let turned = reproject(&places(), &Hmd::unc(), Warp::Rotation, &Pose::IDENTITY, &now);
+            let (expected, _) = turned.expect("the size");
+            for (found, _) in [moved(|_, _| 2.0, &now), moved(squares, &now)] {
+                let both = found.pixels().zip(expected.pixels());
+                let differ = both.filter(|(a, b)| place(a).is_some() != place(b).is_some()).count();
+                assert!(differ < 100, "{yaw} {pitch}: {differ} pixels");
+            }
         }
     }
 

@@ -54,6 +54,7 @@ impl Distribution {
             mean: statistics.mean,
             p50: at(50),
             p90: at(90),
+            p95: at(95),
             p99: at(99),
             max: statistics.max,
         }

@@ -5,8 +5,7 @@ use crate::errors::{CENTRE, FieldMisregistration, PixelErrors, Showing, grid, la
 use crate::eye_report::{Device, EyeReport, EyeSum};
 use crate::moved::{Moved, moved};
 use crate::raster::{offset, pose_of_field};
-use crate::registration::{Evaluator, middle};
-use crate::reproject::Move;
+use crate::registration::{Evaluated, Evaluator, middle};
 use crate::reprojector::Reprojector;
 use crate::rows::Rows;
 use crate::shown::{Drawn, Moment, Seen, Shown};
@@ -199,7 +198,7 @@ impl Evaluation {
                 _ => {
                     let seen = self.seen(run, field, pixel);
                     self.smear(&seen, pixel, &light, &mut collected.eye);
-                    self.error(pixel, seen, collected)
+                    self.error(pixel, &seen, collected)
                 }
             };
             let Some(error) = error else { continue };
@@ -208,7 +207,7 @@ impl Evaluation {
                 centre = Some(error);
             }
         }
-        self.look_for_edges(run, field, &mut collected.eye);
+        self.survey(run, field, collected);
         let begin = display.tick(field);
         collected.take(field, begin, &of_field, centre);
     }
@@ -234,36 +233,38 @@ impl Evaluation {
         }
     }
 
-    /// Returns the error of a pixel. If the pixel cannot be evaluated, returns `None` and increments the counter for
+    /// Returns the error of a pixel. If the pixel shows no complete picture, returns `None` and increments the counter for
     /// the reason.
-    fn error(&self, pixel: Pixel, seen: Seen, collected: &mut Collected) -> Option<Misregistration> {
+    fn error(&self, pixel: Pixel, seen: &Seen, collected: &mut Collected) -> Option<Misregistration> {
         let errors = &mut collected.errors;
         // Each reason has its own counter.
-        let (error, not_evaluated) = match seen {
-            Seen::Nothing => (None, &mut errors.empty),
-            Seen::Incomplete => (None, &mut errors.incomplete),
-            Seen::Before => (None, &mut errors.before),
-            Seen::Complete(drawn) => (self.error_of(pixel, &drawn), &mut errors.behind),
+        let not_evaluated = match seen {
+            Seen::Nothing => &mut errors.empty,
+            Seen::Incomplete => &mut errors.incomplete,
+            Seen::Before => &mut errors.before,
+            Seen::Complete(drawn) => return Some(collected.count(self.error_of(pixel, drawn))),
         };
-        *not_evaluated += u64::from(error.is_none());
-        error
+        *not_evaluated += 1;
+        None
     }
 
-    fn error_of(&self, pixel: Pixel, drawn: &Drawn) -> Option<Misregistration> {
+    fn error_of(&self, pixel: Pixel, drawn: &Drawn) -> Evaluated {
         let place = middle(pixel.place[0], pixel.place[1]);
-        if matches!(self.content, Content::DelayedVideo) {
+        let moment = self.evaluator.moment(drawn);
+        if matches!(self.content, Content::DelayedVideo)
+            && let Some(measured_at) = moment.measured_at
+        {
             // The camera moves with the head. The picture of the camera is shown with the drawn picture for the same
             // measurement of the head.
-            let moment = self.evaluator.moment(drawn);
             let content = self.evaluator.content(drawn, place);
-            return self.evaluator.error_between(place, &content, moment.measured_at?, moment.objects_at);
+            return self.evaluator.error_between(place, &content, measured_at, moment.objects_at);
         }
         let evaluated_at = if self.at_one_instant { drawn.instant(pixel.light) } else { pixel.light };
         self.evaluator.error(place, drawn, evaluated_at)
     }
 
-    /// Returns the error of a pixel that a device moves to the newest pose. If the pixel cannot be evaluated, returns
-    /// `None` and increments the counter for the reason.
+    /// Returns the error of a pixel that a device moves to the newest pose. A pixel that the device leaves empty has the
+    /// error of the picture without the device. Returns `None` if the pixel shows no complete picture.
     fn moved_error(
         &self,
         run: &FinalResults<'_>,
@@ -272,34 +273,26 @@ impl Evaluation {
         pixel: Pixel,
         collected: &mut Collected,
     ) -> Option<Misregistration> {
-        let display = run.record.display();
-        // Without a newest pose, the device shows nothing at this pixel.
-        let Some(newest) = reprojector.newest(display, pixel.place) else {
-            collected.errors.empty += 1;
-            return None;
+        // Without a newest pose, the device cannot move the picture.
+        let Some(newest) = reprojector.newest(run.record.display(), pixel.place) else {
+            collected.errors.unfilled += 1;
+            return self.error(pixel, &self.shown.seen(run, pixel.place, field, pixel.begins), collected);
         };
         let by = reprojector.setting.by;
         let found = moved((&self.evaluator, &self.shown, run), (by, &newest.pose), pixel.place, field, pixel.begins);
-        let Collected { errors, eye, .. } = collected;
-        // Only a device with depth can detect that a pixel's content is hidden in the picture.
-        if by == Warp::Depth && !matches!(found, Moved::NotComplete(_)) {
-            eye.add_pixel(matches!(found, Moved::Beyond), matches!(found, Moved::Hidden));
-        }
         let (content, drawn) = match found {
             Moved::Shows(content, drawn) => (content, drawn),
-            Moved::NotComplete(seen) => return self.error(pixel, seen, collected),
+            Moved::NotComplete(seen) => return self.error(pixel, &seen, collected),
             Moved::Beyond | Moved::Hidden => {
-                errors.empty += 1;
-                return None;
+                collected.errors.unfilled += 1;
+                return self.error(pixel, &self.shown.seen(run, pixel.place, field, pixel.begins), collected);
             }
         };
-        eye.pose(newest.measured_at, pixel.light);
-        self.smear_of(&content, pixel, &display.light(), eye);
+        collected.eye.pose(newest.measured_at, pixel.light);
+        self.smear_of(&content, pixel, &run.record.display().light(), &mut collected.eye);
         let evaluated_at = if self.at_one_instant { drawn.instant(pixel.light) } else { pixel.light };
         let place = middle(pixel.place[0], pixel.place[1]);
-        let error = self.evaluator.error_of(place, &content, evaluated_at);
-        errors.behind += u64::from(error.is_none());
-        error
+        Some(collected.count(self.evaluator.error_of(place, &content, evaluated_at)))
     }
 
     fn smear(&self, seen: &Seen, pixel: Pixel, light: &PixelLight, eye: &mut EyeSum) {
@@ -319,35 +312,41 @@ impl Evaluation {
         }
     }
 
-    /// Checks at many screen positions of a field if the content for a position lies beyond the edge of the drawn
-    /// picture. Such a position stays empty.
-    ///
-    /// If pictures are moved with depth, this method does nothing, because the evaluation of the pixel errors includes
-    /// this check.
-    fn look_for_edges(&self, run: &FinalResults<'_>, field: PeriodNumber, eye: &mut EyeSum) {
+    /// Counts the screen positions of a field that show a part of the scene, and those that a device leaves empty.
+    fn survey(&self, run: &FinalResults<'_>, field: PeriodNumber, collected: &mut Collected) {
         let display = run.record.display();
         let view = &self.evaluator.view;
         for (x, y, at) in lattice(display, field) {
             let place = middle(x, y);
+            let drawn = match (&self.content, self.shown.seen(run, [x, y], field, at)) {
+                (Content::Ideal(_), _) => {
+                    Drawn::View(Moment { pose: self.head.truth(at), objects_at: at, measured_at: None })
+                }
+                (_, Seen::Complete(drawn)) => drawn,
+                _ => continue,
+            };
+            let is_covered = self.evaluator.is_covered(&drawn, place);
+            collected.covered += u64::from(is_covered == Some(true));
+            collected.surveyed += u64::from(is_covered.is_some());
             // Find the place in the drawn picture that the pixel shows. This place can lie beyond the edge of the
             // picture.
-            let from = match &self.content {
-                Content::ShiftedRaster(_, offset) => {
-                    let Some(offset) = offset else { continue };
-                    let reports_until = display.tick(field);
-                    let arrived = self.head.report_by(reports_until);
+            let eye = &mut collected.eye;
+            match &self.content {
+                Content::ShiftedRaster(_, Some(offset)) => {
+                    let arrived = self.head.report_by(display.tick(field));
                     eye.pose(arrived.and_then(|arrived| self.head.measured_at(arrived)), at);
-                    Some(place - offset.shift_px(view, at.0))
+                    eye.add_pixel(!view.contains(place - offset.shift_px(view, at.0)), false);
                 }
-                Content::Reprojected(reprojector) if reprojector.setting.by != Warp::Depth => {
-                    let Seen::Complete(drawn) = self.shown.seen(run, [x, y], field, at) else { continue };
+                Content::Reprojected(reprojector) => {
                     let Some(newest) = reprojector.newest(display, [x, y]) else { continue };
-                    let pose = self.evaluator.moment(&drawn).pose;
-                    Move::between(reprojector.setting.by, view, &pose, &newest.pose).source(view, place)
+                    let by = reprojector.setting.by;
+                    match moved((&self.evaluator, &self.shown, run), (by, &newest.pose), [x, y], field, at) {
+                        Moved::NotComplete(_) => {}
+                        found => eye.add_pixel(matches!(found, Moved::Beyond), matches!(found, Moved::Hidden)),
+                    }
                 }
-                _ => return,
-            };
-            eye.add_pixel(!from.is_some_and(|from| view.contains(from)), false);
+                _ => {}
+            }
         }
     }
 }
@@ -368,6 +367,9 @@ struct Collected {
     fields_kept: usize,
     errors: PixelErrors,
     eye: EyeSum,
+    /// Number of surveyed screen positions, and of those that show a part of the scene.
+    surveyed: u64,
+    covered: u64,
 }
 
 /// Number of pixel errors that are kept individually, for each field that is kept. For
@@ -378,7 +380,21 @@ impl Collected {
     fn keeping(fields: usize, eye: EyeSum) -> Self {
         let both = |limit| [Distribution::keeping(limit), Distribution::keeping(limit)];
         let grid = both(fields.saturating_mul(KEPT_OF_GRID));
-        Self { grid, centre: both(fields), fields_kept: fields, errors: PixelErrors::default(), eye }
+        Self {
+            grid,
+            centre: both(fields),
+            fields_kept: fields,
+            errors: PixelErrors::default(),
+            eye,
+            surveyed: 0,
+            covered: 0,
+        }
+    }
+
+    fn count(&mut self, found: Evaluated) -> Misregistration {
+        self.errors.outside += u64::from(found.is_outside);
+        self.errors.behind += u64::from(found.is_behind);
+        found.error
     }
 
     fn take(
@@ -410,6 +426,7 @@ impl Collected {
             centre_px,
             centre_deg,
             all_px: pixels.kept().to_vec(),
+            covered_share: (self.surveyed > 0).then(|| self.covered as f64 / self.surveyed as f64),
             ..self.errors
         };
         (errors, eye)

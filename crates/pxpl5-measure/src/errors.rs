@@ -25,12 +25,14 @@ pub struct FieldMisregistration {
 
 /// Errors over a grid of pixels and all fields of the result window.
 ///
-/// Only pixels of pictures that were complete, in time and shown within the result window are evaluated. The members
-/// `behind`, `empty`, `incomplete` and `before` count the remaining pixels. Statistics of no pixels are NaN (null in
-/// JSON).
+/// Each pixel of a picture that was complete, in time and shown within the result window has an error. It has two
+/// measures: the angle between the displayed and the correct direction, and the distance on the screen. The distance is
+/// at most the picture's diagonal, because content that has left the picture, or lies behind the eye, has no place on the
+/// screen. The members `empty`, `incomplete` and `before` count the pixels without an error. Statistics of no pixels are
+/// NaN (null in JSON).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PixelErrors {
-    /// Distance of the evaluated pixels from their correct position, in pixels.
+    /// Distance of the evaluated pixels from their correct position, in pixels, at most the picture's diagonal.
     pub pixels: Percentiles,
     /// Angle between the displayed and the correct direction of the evaluated pixels, in degrees.
     pub degrees: Percentiles,
@@ -40,14 +42,23 @@ pub struct PixelErrors {
     pub centre_deg: Percentiles,
     /// Number of evaluated pixels, summed over all fields of the result window.
     pub evaluated: u64,
-    /// Number of pixels whose content lies behind the eye at the time when the pixels are lit.
+    /// Number of evaluated pixels whose content has left the picture at the time when the pixels are lit. Content behind
+    /// the eye is included.
+    pub outside: u64,
+    /// Number of evaluated pixels whose content lies behind the eye at the time when the pixels are lit.
     pub behind: u64,
+    /// Number of evaluated pixels that a device leaves empty, because no content moves there. They have the error of the
+    /// picture without the device.
+    pub unfilled: u64,
     /// Number of pixels that were lit before any picture was shown.
     pub empty: u64,
     /// Number of pixels from pictures that were not complete in time.
     pub incomplete: u64,
     /// Number of pixels that still showed a picture from before the result window, for example from the warm-up.
     pub before: u64,
+    /// Share of the picture, 0 to 1, that the scene covers, as a mean over the evaluated fields. `None` if errors are
+    /// evaluated at a fixed distance, or if the whole scene moves with the head.
+    pub covered_share: Option<f64>,
     /// Errors of each field, in the order of time.
     ///
     /// If a run keeps only statistics, the list has only its first [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields.
@@ -70,28 +81,40 @@ pub(crate) const CENTRE: usize = (GRID * GRID / 2) as usize;
 /// Returns the evaluated pixels of a display period in the order of the scan, with the times at which the pixels are
 /// lit.
 pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
-    let mut pixels = spread(display, period, (GRID, GRID));
+    let mut pixels = spread(display, period, (GRID, GRID), (0.5, 0.5));
     // Some scans do not begin at the top. The middle pixel stays in the middle of the list.
     pixels.sort_by_key(|(_, _, at)| *at);
     pixels
 }
 
-/// Numbers of columns and rows of the screen positions that are checked for content beyond the edge of the picture.
-const LATTICE: (u32, u32) = (16, 12);
+/// Numbers of columns and rows of the screen positions at which empty and covered parts of the picture are counted.
+const LATTICE: (u32, u32) = (8, 6);
 
+/// Steps of the lattice from one display period to the next, relative to the distance of two positions: the powers of
+/// the inverse of the plastic number. All parts of the picture, edges included, are thus met equally often.
+const LATTICE_STEP: (f64, f64) = (0.754_877_666_246_693, 0.569_840_290_998_053);
+
+/// Returns evenly spread pixels that move from period to period, with the times at which the pixels are lit.
 pub(crate) fn lattice(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
-    spread(display, period, LATTICE)
+    let part = |step: f64| (0.5 + period.0 as f64 * step).fract();
+    spread(display, period, LATTICE, (part(LATTICE_STEP.0), part(LATTICE_STEP.1)))
 }
 
 /// Returns pixels that are spread evenly over columns and rows of a picture, with the times at which the pixels are
-/// lit.
-fn spread(display: &dyn Display, period: PeriodNumber, (columns, rows): (u32, u32)) -> Vec<(u32, u32, Time)> {
+/// lit. `part` is the place of a pixel between two places, from 0 to 1.
+fn spread(
+    display: &dyn Display,
+    period: PeriodNumber,
+    (columns, rows): (u32, u32),
+    part: (f64, f64),
+) -> Vec<(u32, u32, Time)> {
     let Some(surface) = display.surfaces().first() else { return Vec::new() };
     let lit = Rows::lit(display, period);
-    let place = |i: u32, of: u32, size: u32| (2 * i + 1) * size / (2 * of);
+    let place =
+        |i: u32, part: f64, of: u32, size: u32| ((f64::from(i) + part) * f64::from(size) / f64::from(of)) as u32;
     // Move each row to a row that this period lights.
-    let rows = (0..rows).map(|j| lit.beside(place(j, rows, surface.height)));
-    let places = rows.flat_map(|y| (0..columns).map(move |i| (place(i, columns, surface.width), y)));
+    let rows = (0..rows).map(|j| lit.beside(place(j, part.1, rows, surface.height)));
+    let places = rows.flat_map(|y| (0..columns).map(move |i| (place(i, part.0, columns, surface.width), y)));
     places.filter_map(|(x, y)| Some((x, y, display.lights(0, x, y, period)?))).collect()
 }
 

@@ -19,6 +19,9 @@ pub struct Percentiles {
     /// 90th percentile: the smallest value that is at least as large as 90 % of the values.
     #[serde(deserialize_with = "number_or_nan")]
     pub p90: f64,
+    /// 95th percentile: the smallest value that is at least as large as 95 % of the values.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub p95: f64,
     /// 99th percentile: the smallest value that is at least as large as 99 % of the values.
     #[serde(deserialize_with = "number_or_nan")]
     pub p99: f64,
@@ -30,7 +33,7 @@ pub struct Percentiles {
 impl Default for Percentiles {
     fn default() -> Self {
         let none = f64::NAN;
-        Self { n: 0, mean: none, p50: none, p90: none, p99: none, max: none }
+        Self { n: 0, mean: none, p50: none, p90: none, p95: none, p99: none, max: none }
     }
 }
 
@@ -43,7 +46,7 @@ impl Percentiles {
         let Some(max) = values.last().copied() else { return Self::default() };
         let at = |percent: usize| values[(values.len() * percent).div_ceil(100).max(1) - 1];
         let mean = values.iter().sum::<f64>() / values.len() as f64;
-        Self { n: values.len() as u64, mean, p50: at(50), p90: at(90), p99: at(99), max }
+        Self { n: values.len() as u64, mean, p50: at(50), p90: at(90), p95: at(95), p99: at(99), max }
     }
 }
 
@@ -54,13 +57,13 @@ mod tests {
     #[test]
     fn percentiles_of_the_numbers_1_to_100_are_exact() {
         let p = Percentiles::of((1..=100).rev().map(f64::from));
-        assert_eq!((p.n, p.mean, p.p50, p.p90, p.p99, p.max), (100, 50.5, 50.0, 90.0, 99.0, 100.0));
+        assert_eq!((p.n, p.mean, p.p50, p.p90, p.p95, p.p99, p.max), (100, 50.5, 50.0, 90.0, 95.0, 99.0, 100.0));
     }
 
     #[test]
     fn an_empty_list_has_no_percentile() {
-        let Percentiles { n, mean, p50, p90, p99, max } = Percentiles::of(std::iter::empty());
+        let Percentiles { n, mean, p50, p90, p95, p99, max } = Percentiles::of(std::iter::empty());
         assert_eq!(n, 0);
-        assert!([mean, p50, p90, p99, max].iter().all(|number| number.is_nan()));
+        assert!([mean, p50, p90, p95, p99, max].iter().all(|number| number.is_nan()));
     }
 }

@@ -82,35 +82,60 @@ impl Evaluator {
         }
     }
 
-    /// Returns the distance from the position `place` to the correct position of the content that is displayed at
-    /// `place`. The correct position is the position at the time `at`, when the pixel is lit.
-    ///
-    /// Returns `None` if the content is behind the eye.
-    pub(crate) fn error(&self, place: DVec2, drawn: &Drawn, at: Time) -> Option<Misregistration> {
+    /// Returns the error of the content that is displayed at the position `place`. The correct position is the position
+    /// at the time `at`, when the pixel is lit.
+    pub(crate) fn error(&self, place: DVec2, drawn: &Drawn, at: Time) -> Evaluated {
         self.error_of(place, &self.content(drawn, place), at)
     }
 
-    /// Returns the distance from the position `place`, where `content` is displayed, to the correct position of
-    /// `content` at the time `at`. Returns `None` if the content is behind the eye.
-    pub(crate) fn error_of(&self, place: DVec2, content: &Content, at: Time) -> Option<Misregistration> {
+    /// Returns the error of `content`, which is displayed at the position `place` at the time `at`.
+    pub(crate) fn error_of(&self, place: DVec2, content: &Content, at: Time) -> Evaluated {
         self.error_between(place, content, at, at)
     }
 
-    /// Returns the distance from the position `place` to the correct position of `content`. The correct position is
-    /// seen from the head at the time `head_at`, with moving objects at the time `objects_at`.
-    pub(crate) fn error_between(
-        &self,
-        place: DVec2,
-        content: &Content,
-        head_at: Time,
-        objects_at: Time,
-    ) -> Option<Misregistration> {
+    /// Returns the error of `content`, which is displayed at the position `place`. The correct position is seen from the
+    /// head at the time `head_at`, with moving objects at the time `objects_at`.
+    pub(crate) fn error_between(&self, place: DVec2, content: &Content, head_at: Time, objects_at: Time) -> Evaluated {
         let content = self.contents.place(content, objects_at);
         let seen = self.head.truth(head_at).view_of(content);
-        let offset_px = place - self.view.project(seen)?;
         let degrees = angle_between(self.direction(place), seen).to_degrees();
-        Some(Misregistration { offset_px, pixels: offset_px.length(), degrees })
+        let diagonal = self.view.centre_px().length() * 2.0;
+        let projected = self.view.project(seen);
+        // Content behind the eye lies beyond the edge of the picture, on the side to which it is nearer.
+        let offset_px = match projected {
+            Some(right) => (place - right).clamp_length_max(diagonal),
+            None => DVec2::new(-seen.x, seen.y).try_normalize().unwrap_or(DVec2::X) * diagonal,
+        };
+        let is_outside = !projected.is_some_and(|right| self.view.contains(right));
+        let error = Misregistration { offset_px, pixels: offset_px.length(), degrees };
+        Evaluated { error, is_outside, is_behind: projected.is_none() }
     }
+
+    /// Returns true if a primitive of the scene is drawn at a position of a view. `None` if errors are evaluated at a
+    /// fixed distance, or if the whole scene moves with the head.
+    pub(crate) fn is_covered(&self, drawn: &Drawn, place: DVec2) -> Option<bool> {
+        if self.contents.is_empty() {
+            return None;
+        }
+        let hits = |moment: &Moment, place: DVec2| {
+            let Pose { position, orientation } = moment.pose;
+            self.contents.met(position, orientation * self.direction(place), moment.objects_at).is_some()
+        };
+        Some(match drawn {
+            Drawn::ShiftedRaster(moment, shift) => hits(moment, place - *shift),
+            Drawn::Faces(faces) => faces.memories.iter().any(|(moment, _)| hits(moment, place)),
+            Drawn::View(_) | Drawn::Between { .. } => hits(&self.moment(drawn), place),
+        })
+    }
+}
+
+/// The error of a pixel, and the place of its content.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Evaluated {
+    pub(crate) error: Misregistration,
+    /// True if the content has left the picture, or lies behind the eye.
+    pub(crate) is_outside: bool,
+    pub(crate) is_behind: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -214,11 +239,12 @@ impl<'a> Registration<'a> {
 
     /// Returns the error of the pixel (`x`, `y`). The field `field` must scan the line of the pixel.
     ///
-    /// Returns `None` if the picture shown was not complete in time, or if its content is behind the eye.
+    /// Returns `None` if the picture shown was not complete in time. The error in pixels is at most the picture's diagonal
+    /// ([`PixelErrors`](crate::PixelErrors)).
     pub fn at(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Misregistration> {
         let at = self.run.record.display().lights(0, x, y, field)?;
         let Seen::Complete(drawn) = self.shown.seen(&self.run, [x, y], field, at) else { return None };
-        self.evaluator.error(middle(x, y), &drawn, at)
+        Some(self.evaluator.error(middle(x, y), &drawn, at).error)
     }
 }
 

@@ -183,7 +183,7 @@ fn every_evaluated_field_has_errors_of_all_its_pixels_and_the_time_of_its_retrac
 /// It turns by at least 145 degrees until the first pixel of a picture is lit, and by less than 240 degrees until the
 /// last pixel is lit. All content is then behind the eye, which sees 30 degrees to each side.
 #[test]
-fn a_point_behind_the_eye_when_its_pixel_lights_is_counted_without_an_error() {
+fn a_point_behind_the_eye_has_an_angle_and_the_diagonal_of_the_picture_as_its_error() {
     let fields = 45;
     let late = TrackerConfig::ideal().with_latency_ps(100 * PS_PER_MS);
     let head = Head::new(Arc::new(Pan::at(1_450.0)), late, PredictorKind::None, 1).expect("in range");
@@ -192,6 +192,13 @@ fn a_point_behind_the_eye_when_its_pixel_lights_is_counted_without_an_error() {
     let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
     let outcome = experiment.fields(fields).pixels(Pixels::Off).run().expect("two triangles");
     let errors = outcome.pixel_errors().expect("a head");
-    assert_eq!((errors.evaluated, errors.behind), (0, 25 * (fields - WARM_UP_PERIODS)));
-    assert!(errors.pixels.mean.is_nan() && errors.by_field.is_empty());
+    let all = 25 * (fields - WARM_UP_PERIODS);
+    assert_eq!((errors.evaluated, errors.outside, errors.behind), (all, all, all));
+    // The picture has 640 by 480 pixels. A pixel at its edge is up to 38.7 degrees off the axis.
+    assert!(
+        (errors.pixels.mean - 800.0).abs() < 1e-9 && (errors.pixels.max - 800.0).abs() < 1e-9,
+        "{:?}",
+        errors.pixels
+    );
+    assert!(errors.degrees.mean > 120.0 && errors.degrees.max <= 180.0, "{:?}", errors.degrees);
 }

@@ -27,7 +27,7 @@ enum Numbers {
 
 /// Names of experiments contain this text in place of the tuned parameters. The parameters follow from the method and
 /// from all other settings.
-const TUNING: &str = "for its interval and motion, version 1";
+const TUNING: &str = "for its interval and motion, version 2";
 
 /// The coordinates in which a head motion is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,11 +38,15 @@ pub enum HeadPlace {
     Scene,
     /// The motion has the coordinates of the scene's world, in metres. No pose is moved.
     World,
+    /// The mean position of the motion is placed at the start of the scene's own motion, and the head is turned about the
+    /// vertical axis so that it faces the middle of the scene as long as it can.
+    Content,
 }
 
 impl HeadPlace {
-    /// Both choices of coordinates, with their names in experiment files.
-    pub const ALL: [(&'static str, Self); 2] = [("scene", Self::Scene), ("world", Self::World)];
+    /// All choices of coordinates, with their names in experiment files.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("scene", Self::Scene), ("world", Self::World), ("content", Self::Content)];
 }
 
 pxpl5_sim::parameters::named!(HeadPlace, "meaning of head poses", HeadPlace::ALL);
@@ -312,6 +316,8 @@ impl Head {
         let predictor = PredictorConfig {
             orientation_baseline: of_turns.orientation_baseline,
             orientation_jerk: of_turns.orientation_jerk,
+            orientation_decay: of_turns.orientation_decay,
+            check_ps: [own.check_ps[0], of_turns.check_ps[1]],
             start,
             ..own
         };

@@ -1,6 +1,7 @@
 //! The views of a tracked head: predicted poses, and records of the poses that a pipeline requested.
 
 use crate::dry_run::SeenTimes;
+use crate::facing;
 use crate::head::{Head, HeadPlace};
 use crate::report_schedule::{Arrivals, Coming, Contents, ReportSchedule};
 use crate::scene_views::view;
@@ -97,8 +98,10 @@ pub struct HeadViews {
     until: Time,
     schedule: Mutex<ReportSchedule>,
     seen_times: Option<SeenTimes>,
-    /// Pose of the viewer in the scene at time zero.
+    /// Pose of the viewer in the scene for the pose `anchor` of the motion.
     base: Pose,
+    anchor: Pose,
+    /// Pose of the motion at time zero.
     start: Pose,
     state: Mutex<(Follower, Vec<SampledPose>)>,
 }
@@ -118,14 +121,15 @@ impl HeadViews {
         seen_times: Option<SeenTimes>,
     ) -> Self {
         let start = head.motion.pose(0);
-        let begin = match head.place() {
-            HeadPlace::Scene => scene.motion().pose(0),
-            HeadPlace::World => start,
+        let (anchor, begin) = match head.place() {
+            HeadPlace::Scene => (start, scene.motion().pose(0)),
+            HeadPlace::World => (start, start),
+            HeadPlace::Content => facing::content(head.motion.as_ref(), scene, &hmd, until),
         };
         let base = Pose { orientation: begin.orientation.normalize(), ..begin };
         let schedule = Mutex::new(ReportSchedule::new(head.arrivals(until)));
         let state = Mutex::new((Follower::of_head(&head, until), Vec::new()));
-        Self { head, scene: Arc::clone(scene), hmd, eyes, until, schedule, seen_times, base, start, state }
+        Self { head, scene: Arc::clone(scene), hmd, eyes, until, schedule, seen_times, base, anchor, start, state }
     }
 
     pub(crate) fn functions(this: &Arc<Self>) -> (Views, ViewsWanted, ReportTimes) {
@@ -215,8 +219,8 @@ impl HeadViews {
     }
 
     pub(crate) fn in_scene(&self, tracked: &Pose) -> Pose {
-        let turn: DQuat = self.base.orientation * self.start.orientation.conjugate();
-        let way: DVec3 = turn * (tracked.position - self.start.position);
+        let turn: DQuat = self.base.orientation * self.anchor.orientation.conjugate();
+        let way: DVec3 = turn * (tracked.position - self.anchor.position);
         Pose { position: self.base.position + way, orientation: (turn * tracked.orientation).normalize() }
     }
 

@@ -26,6 +26,7 @@ mod due;
 mod error;
 mod estimator;
 mod experiment;
+mod facing;
 mod fingerprint;
 mod head;
 mod head_views;

@@ -210,6 +210,52 @@ impl Scene {
         self
     }
 
+    /// Returns the scene turned about the vertical axis by `turn_deg` degrees, scaled so that the longest side of its
+    /// bounding box has `size_m` metres, and moved so that the middle of this box is at `at`. What is `None` stays.
+    #[must_use]
+    pub fn placed(&self, at: [Option<f64>; 3], size_m: Option<f64>, turn_deg: f64) -> Self {
+        let of_spheres = self.spheres().iter().map(|sphere| (sphere.centre.as_dvec3(), f64::from(sphere.radius)));
+        let points = self.vertices().iter().map(|vertex| (vertex.position.as_dvec3(), 0.0));
+        let (low, high) = bounds(points.chain(of_spheres));
+        let (middle, longest) = ((low + high) / 2.0, (high - low).max_element());
+        let to = DVec3::new(at[0].unwrap_or(middle.x), at[1].unwrap_or(middle.y), at[2].unwrap_or(middle.z));
+        // A scene of a single point has no size.
+        let scale = size_m.filter(|_| longest > 0.0).map_or(1.0, |size| size / longest);
+        let (sin, cos) = libm::sincos(turn_deg.to_radians());
+        let turn =
+            DMat4::from_cols_array(&[cos, 0.0, -sin, 0.0, 0.0, 1.0, 0.0, 0.0, sin, 0.0, cos, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        let model = DMat4::from_translation(to)
+            * turn
+            * DMat4::from_scale(DVec3::splat(scale))
+            * DMat4::from_translation(-middle);
+        let edits = (0..self.structures().len()).map(|structure| Edit { structure, model: model.as_mat4() });
+        self.posed(&edits.collect::<Vec<_>>())
+    }
+
+    /// Returns the scene together with the structures of `other`. Name, lighting and motion of the head stay.
+    ///
+    /// # Errors
+    ///
+    /// Fails if both together have more vertices than an index can count.
+    pub fn together_with(self, other: &Self) -> Result<Self, SettingError> {
+        let Self { mut parts, warnings } = self;
+        let [vertices, triangles, spheres] = [parts.vertices.len(), parts.triangles.len(), parts.spheres.len()];
+        let first = u32::try_from(vertices).unwrap_or(u32::MAX);
+        parts.vertices.extend_from_slice(other.vertices());
+        parts
+            .triangles
+            .extend(other.triangles().iter().map(|corners| corners.map(|corner| corner.saturating_add(first))));
+        parts.spheres.extend_from_slice(other.spheres());
+        let later = |range: &Range<usize>, by: usize| range.start + by..range.end + by;
+        parts.structures.extend(other.structures().iter().map(|structure| Structure {
+            vertices: later(&structure.vertices, vertices),
+            triangles: later(&structure.triangles, triangles),
+            spheres: later(&structure.spheres, spheres),
+            ..structure.clone()
+        }));
+        Ok(Self::new(parts)?.with_warnings(warnings))
+    }
+
     /// Returns the contents of the scene. After changes, [`Scene::new`] can make a scene from these contents again.
     pub fn into_parts(self) -> SceneParts {
         self.parts
@@ -255,16 +301,19 @@ impl Scene {
 /// Returns the centre of the bounding box around balls (centre, radius), and the distance from this centre to the
 /// farthest point of a ball. Without balls the centre and the distance are zero.
 pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
-    let inverted = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = balls
-        .clone()
-        .fold(inverted, |(low, high), (centre, radius)| (low.min(centre - radius), high.max(centre + radius)));
+    let (low, high) = bounds(balls.clone());
     if low.x > high.x {
         return (DVec3::ZERO, 0.0);
     }
     let middle = (low + high) / 2.0;
     let reaches = balls.map(|(centre, radius)| length(centre - middle) + radius);
     (middle, reaches.fold(0.0, f64::max))
+}
+
+/// Returns the lowest and the highest corner of the box around balls (centre, radius). Without balls, both are infinite.
+fn bounds(balls: impl Iterator<Item = (DVec3, f64)>) -> (DVec3, DVec3) {
+    let inverted = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    balls.fold(inverted, |(low, high), (centre, radius)| (low.min(centre - radius), high.max(centre + radius)))
 }
 
 /// Returns the length of a vector. The result is correct even if the square of the length exceeds the range of f64.

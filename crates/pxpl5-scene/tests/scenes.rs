@@ -311,3 +311,36 @@ fn every_sphere_is_closed_and_nearly_round_with_the_stated_number_of_triangles()
         assert!(error.kind == SettingErrorKind::Value && error.expected.starts_with("N "), "{count}: {error}");
     }
 }
+
+/// Tests a scene that is turned to the left by a quarter, scaled and moved. What lay before its middle (-z) then lies to
+/// the left of it (-x).
+#[test]
+fn a_scene_is_placed_by_the_middle_and_the_longest_side_of_its_box() {
+    let scene = builtin("aircraft").expect("built in");
+    let placed = scene.placed([Some(1.0), None, Some(-3.0)], Some(1.5), 90.0);
+    let bounds = |scene: &Scene| {
+        let positions = scene.vertices().iter().map(|vertex| vertex.position);
+        positions.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))
+    };
+    let [(low, high), (low_after, high_after)] = [bounds(&scene), bounds(&placed)];
+    let [before, after] = [(low + high) / 2.0, (low_after + high_after) / 2.0];
+    assert!(after.distance(Vec3::new(1.0, before.y, -3.0)) < 1e-5, "{after}");
+    assert!(((high_after - low_after).max_element() - 1.5).abs() < 1e-5);
+    let scale = 1.5 / (high - low).max_element();
+    for (one, other) in scene.vertices().iter().zip(placed.vertices()) {
+        let way = (one.position - before) * scale;
+        assert!((other.position - after).distance(Vec3::new(way.z, way.y, -way.x)) < 1e-4);
+    }
+    assert_eq!(scene.placed([None; 3], None, 0.0).triangles(), scene.triangles());
+}
+
+#[test]
+fn a_scene_together_with_a_room_has_the_primitives_of_both_and_its_own_name() {
+    let [scene, room] = ["aircraft", "room"].map(|name| builtin(name).expect("built in"));
+    let both = scene.clone().together_with(&room).expect("few vertices");
+    assert_eq!((both.name(), both.primitives()), (scene.name(), scene.primitives() + room.primitives()));
+    let corners =
+        |scene: &Scene, triangle: usize| scene.triangles()[triangle].map(|v| scene.vertices()[v as usize].position);
+    let last = room.triangles().len() - 1;
+    assert_eq!(corners(&both, scene.triangles().len() + last), corners(&room, last));
+}

@@ -4,11 +4,13 @@ use serde_json::{Value, json};
 
 /// Motions of the head that need no recorded file, each with a description. The empty name stands for the motion that
 /// belongs to the scene.
-const MOTIONS: [(&str, &str); 6] = [
+const MOTIONS: [(&str, &str); 8] = [
     ("", "the scene's own motion, followed without delay"),
     ("still", "a head that stands still"),
     ("pan:100", "a turn at 100 degrees a second"),
     ("sine:20:0.5", "to and fro by 20 degrees at half a hertz"),
+    ("recorded:vive-tracked", "a real head: a user of an HTC Vive walks and looks around, 29 s"),
+    ("recorded:vive-dev", "a real head: a standing user of the same headset, 9 s"),
     ("synthetic:1", "computed, not recorded: a viewer who looks around as fast as recorded users of headsets do"),
     ("live.csv", "your own: drag across a picture while the machine runs"),
 ];

@@ -292,6 +292,14 @@ parameter_table! {
         /// Strength of random changes of the head's angular acceleration, as the orientation filter assumes it. The
         /// filter treats angular jerk as white noise. The value is the root of the spectral density of this noise.
         orientation_jerk: f64 = 14.0, "rad/s^3/sqrt(Hz)", Assumed, 0.1..=10000.0 in 0.000001..=1000000.0, "least mean error 50 ms ahead, flat from 10 to 20; used where the filter is not tuned";
+        /// Rate at which the position filter lets the head's velocity decay (Singer 1970). 0 keeps it.
+        velocity_decay: f64 = 0.0, "1/s", Assumed, 0.0..=1000.0 in 0.0..=1000.0, "0 where the filter is not tuned";
+        /// Rate at which the position filter lets the head's acceleration decay. 0 keeps it.
+        acceleration_decay: f64 = 0.0, "1/s", Assumed, 0.0..=1000.0 in 0.0..=1000.0, "0 where the filter is not tuned";
+        /// Rate at which the orientation filter lets the head's angular velocity decay. 0 keeps it.
+        turn_decay: f64 = 0.0, "1/s", Assumed, 0.0..=1000.0 in 0.0..=1000.0, "0 where the filter is not tuned";
+        /// Rate at which the orientation filter lets the head's angular acceleration decay. 0 keeps it.
+        turn_acceleration_decay: f64 = 0.0, "1/s", Assumed, 0.0..=1000.0 in 0.0..=1000.0, "0 where the filter is not tuned";
         /// Standard deviation that a filter assumes for the head's speed before the first report.
         start_speed: f64 = 1.0, "m/s", Assumed, 0.01..=10.0 in 0.000001..=1000.0, "above the mean translation speed";
         /// Standard deviation that a filter assumes for the head's acceleration before the first report.

@@ -4,7 +4,7 @@ use pxpl5_sim::parameters::{Entry, ParameterTable};
 
 use crate::config::HostPort;
 use crate::identity::{SettingSink, write_vector};
-use crate::predict::PredictorConfig;
+use crate::predict::{Decay, PredictorConfig};
 use crate::tracker::{MagneticDistortion, SerialLine, SerialRead, TrackerConfig, TrackerFault};
 
 impl TrackerConfig {
@@ -95,6 +95,9 @@ impl PredictorConfig {
             orientation_noise_deg,
             position_jerk,
             orientation_jerk,
+            position_decay,
+            orientation_decay,
+            check_ps,
             horizon_ps,
             start,
             gate,
@@ -111,6 +114,17 @@ impl PredictorConfig {
         settings("predictor.start_turn", &start.turn);
         settings("predictor.start_turn_acceleration", &start.turn_acceleration);
         settings("predictor.horizon_ps", horizon_ps);
+        for (name, decay) in [("position", position_decay), ("orientation", orientation_decay)] {
+            if *decay != Decay::NONE {
+                settings(
+                    &format!("predictor.{name}_decay"),
+                    &format_args!("{} {}", decay.velocity, decay.acceleration),
+                );
+            }
+        }
+        if *check_ps != [0; 2] {
+            settings("predictor.check_ps", &format_args!("{} {}", check_ps[0], check_ps[1]));
+        }
         // The gate was no setting in earlier versions, so only changed numbers are written.
         gate.entries().iter().for_each(|entry| write_unusual(settings, "predictor.gate", entry));
     }

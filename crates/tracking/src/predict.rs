@@ -1,6 +1,7 @@
 //! Prediction of the head's pose at an exact future instant.
 
 mod channel;
+mod checked;
 mod config;
 mod evaluate;
 mod exact;
@@ -10,11 +11,12 @@ mod gate;
 mod orientation_kalman;
 mod position_kalman;
 mod predicting;
+mod propagation;
 #[cfg(test)]
 mod tests;
 mod tune;
 
-pub use config::{PredictorConfig, PredictorKind, Start};
+pub use config::{Decay, PredictorConfig, PredictorKind, Start};
 pub use evaluate::{PredictionDeviation, prediction_errors};
 pub use exact::ExactPredictor;
 pub use gate::ReportCounts;

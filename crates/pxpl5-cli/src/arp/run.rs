@@ -7,8 +7,10 @@ use crate::output::OutputFolder;
 use crate::terminal::{advance, answer, json_text, progress};
 use crate::version::{VERSION, commit_text};
 use clap::Args;
+use pxpl5::Fingerprint;
 use pxpl5::arp::pictures::of_walk;
-use pxpl5::arp::{ArpReport, TearWidths, WalkMemoryReport, WalkOutcome};
+use pxpl5::arp::{ArpReport, TearWidths, WalkMemoryReport, WalkOutcome, WalkReport};
+use pxpl5::scene::Scene;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -25,7 +27,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct RunArgs {
     #[command(flatten)]
     walk: WalkArgs,
-    /// Write report.json, frames.csv and pictures into this folder. Some pictures show the cube faces of all display
+    /// Write report.json, experiment.toml (which makes the walk again), frames.csv and pictures into this folder. Some pictures show the cube faces of all display
     /// memories, and the view of the eye with its lens and (up to 170 degrees) without a lens. Others show the memory
     /// chosen at each pixel, errors, the cells from above, the cuts as wires, and updates. The rest show the scene with
     /// gaps at the cuts, with warping, and without cuts.
@@ -48,6 +50,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     let json = json_text(&outcome.report)?;
     if let Some(mut folder) = folder {
         folder.put("report.json", json.as_bytes())?;
+        folder.put("experiment.toml", experiment(&outcome, &scene).as_bytes())?;
         folder.put("frames.csv", frames_csv(&outcome).as_bytes())?;
         // The pictures need the scene at all poses, so they are drawn only for an output folder.
         let walk = &plan.walk;
@@ -56,6 +59,19 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
         folder.commit()?;
     }
     answer(args.json, args.walk.quiet, &json, || text(&outcome, args.out.as_deref()))
+}
+
+/// Returns the settings of the walk as a file for `pxpl5 arp run`, with the origin of the results in comments.
+fn experiment(outcome: &WalkOutcome, scene: &Scene) -> String {
+    let WalkReport { scene: name, settings, .. } = &outcome.report;
+    let mut hash = Fingerprint::of_scene(scene);
+    settings.iter().for_each(|(path, value)| hash.setting(path, value));
+    let lines = settings.iter().map(|(path, value)| format!("{path} = {value:?}\n"));
+    format!(
+        "# version: {VERSION}\n# commit: {}\n# config_hash: {hash}\nscene = {name:?}\n{}",
+        commit_text(),
+        lines.collect::<String>()
+    )
 }
 
 fn origin(outcome: &WalkOutcome) -> Vec<(&'static str, String)> {

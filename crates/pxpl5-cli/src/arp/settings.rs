@@ -14,7 +14,7 @@ use pxpl5::arp::pictures::ArpPicture;
 use pxpl5::scene::{Placement, Scene};
 use pxpl5::sweep::leaves;
 use pxpl5::views::png_bytes;
-use pxpl5::{MotionChoice, PathSettings, SceneChoice};
+use pxpl5::{ModelPlace, MotionChoice, PathSettings, SceneChoice};
 use pxpl5_sim::parameters::{assignment_of, text_of};
 use std::fs::File;
 use std::io::BufReader;
@@ -164,6 +164,7 @@ fn load(name: &str) -> Result<Arc<Scene>, CliError> {
         placement: Placement::AsInFile,
         triangles: None,
         culled: false,
+        model: ModelPlace::default(),
         motion: MotionChoice::default(),
         contents: None,
     };

@@ -24,8 +24,7 @@ fn evaluated(comparison: &Comparison) -> impl Iterator<Item = &ComparisonRow> {
 }
 
 fn over_time(comparison: &Comparison) -> String {
-    let seed = comparison.seeds.first().copied().unwrap_or_default();
-    let axes = axes(comparison, &format!("Error over time, seed {seed}"), "time, s", "mean error over the picture, px");
+    let axes = axes(comparison, "Error over time, first motion", "time, s", "mean error over the picture, px");
     curves(comparison, &axes, |row| row.by_field.iter().map(|field| (field.time_s, field.mean_px)).collect())
 }
 
@@ -83,7 +82,7 @@ fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAx
 
 type Column = (&'static str, fn(&ComparisonRow) -> String);
 
-const COLUMNS: [Column; 29] = [
+const COLUMNS: [Column; 34] = [
     ("pipeline", |row| row.pipeline.clone()),
     ("settings", |row| row.settings.clone()),
     ("latency_ms.mean", |row| number(row.latency_ms.mean)),
@@ -107,6 +106,11 @@ const COLUMNS: [Column; 29] = [
     ("error.bootstrap.block_fields", |row| count(row.error.bootstrap.map(|size| size.block_fields))),
     ("error.pixels.p50", |row| number(row.error.pixels.p50)),
     ("error.pixels.p90", |row| number(row.error.pixels.p90)),
+    ("error.pixels.p95", |row| number(row.error.pixels.p95)),
+    ("above_best_px.low", |row| number(row.above_best_px.map_or(f64::NAN, |above| above.low))),
+    ("above_best_px.high", |row| number(row.above_best_px.map_or(f64::NAN, |above| above.high))),
+    ("error.outside_share", |row| number(row.error.outside_share.unwrap_or(f64::NAN))),
+    ("covered_share", |row| number(row.covered_share.unwrap_or(f64::NAN))),
     ("error.pixels.p99", |row| number(row.error.pixels.p99)),
     ("error.n", |row| row.error.n.to_string()),
     ("seeds", |row| row.seeds.to_string()),

@@ -15,7 +15,7 @@ use pxpl5::views::png_bytes;
 use pxpl5::volume::pixel_planes::supported;
 use pxpl5::volume::spatialgl::Threads;
 use pxpl5::volume::{Counted, RendererKind, Volume, VolumeSettings};
-use pxpl5::{MotionChoice, PathSettings, SceneChoice};
+use pxpl5::{ModelPlace, MotionChoice, PathSettings, SceneChoice};
 use std::num::NonZero;
 use std::sync::Arc;
 
@@ -153,6 +153,7 @@ pub(super) fn scene_choice(name: &str, triangles: Option<u64>) -> SceneChoice {
         placement: Placement::Fitted,
         triangles: triangles.map(|triangles| triangles as usize),
         culled: false,
+        model: ModelPlace::default(),
         motion: MotionChoice::default(),
         contents: None,
     }

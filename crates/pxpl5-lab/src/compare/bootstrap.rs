@@ -19,8 +19,8 @@ pub const RESAMPLES: usize = 2_000;
 /// other. In tests with a known dependence, the intervals of shorter series were much too narrow.
 pub const MIN_BOOTSTRAP_VALUES: usize = 100;
 
-/// Minimum number of blocks in a series for an interval (assumed).
-const MIN_BLOCKS: usize = 10;
+/// Minimum number of blocks in a series for an interval (assumed). The variance of fewer blocks is too uncertain.
+const MIN_BLOCKS: usize = 20;
 
 /// Fixed seed of the random blocks, so that the same values give the same interval.
 const SEED: u64 = 0xB10C_B007;
@@ -45,7 +45,7 @@ pub struct BlockBootstrap {
 
 impl BlockBootstrap {
     /// Resamples a series of finite numbers. Returns `None` for fewer than [`MIN_BOOTSTRAP_VALUES`] numbers, and if
-    /// values depend on each other over more than a tenth of the series.
+    /// values depend on each other over more than a twentieth of the series.
     pub fn of(series: &[f64]) -> Option<Self> {
         if series.len() < MIN_BOOTSTRAP_VALUES {
             return None;
@@ -232,9 +232,9 @@ mod tests {
     fn the_95_percent_intervals_of_correlated_series_cover_the_true_mean_in_87_to_98_percent() {
         const SERIES: u64 = 200;
         let true_mean = 20.0;
-        // The result is `None` for a series that seems to have fewer than ten blocks.
+        // The result is `None` for a series that seems to have fewer than twenty blocks.
         let covers = |seed: u64| {
-            let series: Vec<f64> = ar1(0.8, 600, mix(seed + 991)).iter().map(|x| x + true_mean).collect();
+            let series: Vec<f64> = ar1(0.8, 1_200, mix(seed + 991)).iter().map(|x| x + true_mean).collect();
             let mean = series.iter().sum::<f64>() / series.len() as f64;
             let (low, high) = BlockBootstrap::of(&series)?.interval(mean, 0.95);
             Some((low..=high).contains(&true_mean))

@@ -5,20 +5,22 @@ use super::interval::CONFIDENCE;
 use super::precision::UntilPrecise;
 use super::predictors::predictor_means;
 use super::progress::Progress;
-use super::row::{ComparisonRow, Sampling};
+use super::row::{ComparisonRow, Sampling, difference};
 use super::store::CompareStore;
 use super::trial::{Trial, common_window_from};
 use crate::StopFlag;
 use crate::error::StudyError;
-use crate::experiment_file::{ExperimentFile, Plan, plain};
+use crate::experiment_file::{ExperimentFile, Origin, Plan, Settings, plain};
 use crate::limit::{CEILING, LimitQuery};
 use crate::parallel;
-use pxpl5_measure::Showing;
+use pxpl5_measure::{Showing, program};
 use pxpl5_run::{Experiment, Goal, Head, Pixels, Tunings, WARM_UP_PERIODS};
 use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -64,6 +66,16 @@ pub struct CompareQuery {
 pub struct Comparison {
     /// Name and version of the JSON layout.
     pub schema: &'static str,
+    /// Version of the program that made the comparison.
+    pub version: &'static str,
+    /// Commit from which the program was built, if it is known.
+    pub commit: Option<&'static str>,
+    /// Hash of everything that affects the first row with the first seed.
+    pub config_hash: String,
+    /// Every key that was set, options of the comparison, and hashes of the scene and of the files that are named.
+    pub settings: BTreeMap<String, String>,
+    /// Warnings about settings whose values no source supports.
+    pub warnings: Vec<String>,
     /// Name of the machine's preset.
     pub machine: String,
     /// Number of graphics processors and number of renderers.
@@ -218,8 +230,14 @@ impl CompareQuery {
             ended(&row);
             Ok::<_, StudyError>(Some(row))
         });
-        Ok(Comparison {
-            schema: "pxpl5-comparison/3",
+        let sampling = self.sampling(&any)?;
+        let mut comparison = Comparison {
+            schema: "pxpl5-comparison/4",
+            version: program::VERSION,
+            commit: program::commit(),
+            config_hash: any.experiment(Arc::clone(&common.scene)).config_hash().to_string(),
+            settings: self.header()?.settings,
+            warnings: any.warnings(),
             machine: any.machine.preset.clone(),
             boards: any.machine.boards(),
             scene: common.scene.name().to_owned(),
@@ -233,7 +251,9 @@ impl CompareQuery {
             max_seeds: self.until.map(|until| until.max_seeds),
             evaluated_from: common_window_from(any.fields),
             pipelines: pipelines.into_iter().filter_map(Result::transpose).collect::<Result<_, _>>()?,
-        })
+        };
+        comparison.compare_with_best(sampling);
+        Ok(comparison)
     }
 
     /// Returns the names of the rows that the query runs.
@@ -262,6 +282,42 @@ impl CompareQuery {
         let compared_pipelines = self.compared_pipelines()?;
         let seed = self.any_plan(&compared_pipelines)?.seed;
         Ok(compared_pipelines.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
+    }
+
+    /// Returns a warning if the shared settings come from the folder of another comparison, and its results will differ.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`CompareQuery::run`].
+    pub fn changes(&self) -> Result<Option<String>, StudyError> {
+        let (plan, _) = self.identity()?;
+        Ok(plan.origin.changes(&Origin::of(&plan.experiment(plan.load_scene()?))))
+    }
+
+    /// Returns an experiment file in `folder` with the shared settings, their origin, and the command that makes the
+    /// comparison again.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`CompareQuery::run`].
+    pub fn file_in(&self, folder: &Path) -> Result<String, StudyError> {
+        let (plan, rows) = self.identity()?;
+        let mut settings = Settings::of(&self.shared);
+        settings.make_relative(folder);
+        settings.originate(&Origin::of(&plan.experiment(plan.load_scene()?)));
+        let mut options =
+            format!("--only {} --seeds {} --confidence {}", rows.join(","), self.seeds.len(), self.confidence);
+        if let Some(until) = self.until {
+            options += &format!(" --until-precision {} --max-seeds {}", until.width, until.max_seeds);
+        }
+        for (option, _) in [("limits", self.limits), ("causes", self.causes), ("predictors", self.predictors)]
+            .iter()
+            .filter(|(_, is_on)| *is_on)
+        {
+            options += &format!(" --{option}");
+        }
+        let first = self.seeds.first().copied().unwrap_or_default();
+        Ok(format!("# pxpl5 compare experiment.toml --seed {first} {options}\n{settings}"))
     }
 
     fn compared_pipelines(&self) -> Result<Vec<ComparedPipeline>, StudyError> {
@@ -349,15 +405,20 @@ impl CompareQuery {
         contender.trial(common.experiment(&plan).pixels(pixels), self.causes)
     }
 
+    fn sampling(&self, plan: &Plan) -> Result<Sampling, StudyError> {
+        let is_one_motion = !self.shared.has_motion_for_each_seed()?;
+        let is_noisy = plan.head.as_ref().is_some_and(|head| head.head().tracker().config().is_random());
+        Ok(Sampling { seeds: self.seeds.len(), is_one_motion, is_noisy, confidence: self.confidence })
+    }
+
     /// Runs a row with all seeds. Then adds seeds while the confidence interval of the mean error is too wide.
     fn row(&self, contender: &ComparedPipeline, common: &Common<'_>) -> Result<ComparisonRow, StudyError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
-        let is_one_motion = !self.shared.has_motion_for_each_seed()?;
         let mut trials = self.trials(contender, &self.seeds, common);
         let (mut row, shown) = loop {
             // Failed runs are left out, and their first error is reported below.
             let ran: Vec<&Trial> = trials.iter().flatten().collect();
-            let sampling = Sampling { seeds: trials.len(), is_one_motion, confidence: self.confidence };
+            let sampling = Sampling { seeds: trials.len(), ..self.sampling(&plan)? };
             let mut row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &ran, sampling);
             row.is_precise = self.until.map(|until| until.is_reached(&row.error.mean_px));
             // More seeds do not help a row with failed runs or without an evaluation.
@@ -433,11 +494,35 @@ impl Comparison {
     /// - rows whose evaluation begins later than that of most rows
     /// - the row with delayed video, because its error leaves out the delay of the real world
     pub fn best(&self) -> Option<&ComparisonRow> {
-        let evaluated =
-            self.pipelines.iter().filter(|row| row.was_evaluated() && row.failure.is_none() && row.shows_all());
-        let ranked = evaluated.filter(|row| row.is_ranked());
-        let timed = ranked.filter(|row| row.head_to_light_ms.mean.is_finite() && !self.starts_late(row));
-        timed.min_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean))
+        let ranked = self.pipelines.iter().filter(|row| self.is_ranked(row));
+        ranked.min_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean))
+    }
+
+    /// Returns the rows with the least mean error: the best row, and all rows that cannot be told apart from it, because
+    /// the interval of the difference contains 0 ([`ComparisonRow::above_best_px`]).
+    pub fn least(&self) -> Vec<&ComparisonRow> {
+        let is_least =
+            |row: &&ComparisonRow| row.above_best_px.is_some_and(|above| above.mean <= 0.0 || above.may_be_zero());
+        let mut rows: Vec<&ComparisonRow> = self.pipelines.iter().filter(is_least).collect();
+        rows.sort_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean));
+        rows
+    }
+
+    fn compare_with_best(&mut self, sampling: Sampling) {
+        let Some(best) = self.best().cloned() else { return };
+        let ranked: Vec<bool> = self.pipelines.iter().map(|row| self.is_ranked(row)).collect();
+        for (row, is_ranked) in self.pipelines.iter_mut().zip(ranked) {
+            row.above_best_px = is_ranked.then(|| difference(row, &best, sampling));
+        }
+    }
+
+    fn is_ranked(&self, row: &ComparisonRow) -> bool {
+        row.was_evaluated()
+            && row.failure.is_none()
+            && row.shows_all()
+            && row.is_ranked()
+            && row.head_to_light_ms.mean.is_finite()
+            && !self.starts_late(row)
     }
 
     /// Returns true if the evaluation of `row` begins four or more display periods after

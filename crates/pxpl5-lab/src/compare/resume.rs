@@ -27,7 +27,7 @@ impl CompareQuery {
         CompareStore::open(folder, &self.header()?, resume)
     }
 
-    fn header(&self) -> Result<Header, StudyError> {
+    pub(super) fn header(&self) -> Result<Header, StudyError> {
         let (plan, rows) = self.identity()?;
         // The seeds of the query replace the seed of the settings.
         let shared = self.shared.settings.iter().filter(|(key, _)| *key != "seed");

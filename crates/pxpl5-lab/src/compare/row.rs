@@ -1,9 +1,9 @@
 //! A row of a comparison: the results of one method, combined from the runs of all seeds.
 
-use super::bootstrap::{BlockBootstrap, BootstrapSize};
+use super::bootstrap::BootstrapSize;
 use super::contender::{ComparedPipeline, DELAYED_VIDEO, IDEAL};
 use super::gallery::LastPicture;
-use super::interval::{IntervalMethod, MeanInterval};
+use super::interval::MeanInterval;
 use super::trial::Trial;
 use pxpl5_measure::{Budget, FieldMisregistration, Percentiles, Showing};
 use pxpl5_run::{Cause, Pipeline, ResultWindow, Statistics, number_or_nan};
@@ -26,6 +26,9 @@ pub struct ErrorSpread {
     pub pixels: Percentiles,
     /// Number of evaluated pixels, over all seeds.
     pub n: u64,
+    /// Share of the evaluated pixels, 0 to 1, whose content has left the picture when the pixel is lit. `None` if no pixel
+    /// was evaluated.
+    pub outside_share: Option<f64>,
     /// Percentiles 0 to 100 of the error over all evaluated pixels, in pixels: 101 numbers in ascending order. Empty if
     /// no pixel was evaluated.
     pub distribution_px: Vec<f64>,
@@ -100,6 +103,15 @@ pub struct ComparisonRow {
     pub late_regions: Option<usize>,
     /// Pixel errors on a grid of pixels, over all evaluated fields.
     pub error: ErrorSpread,
+    /// Mean pixel error of each seed that was evaluated, in the order of the seeds.
+    pub seed_px: Vec<f64>,
+    /// Mean error minus the mean error of the best row, in pixels. Both rows have the same motions, so the interval is
+    /// narrower than those of the two means. `None` if the comparison has no best row, and for rows that are not ranked.
+    #[serde(default)]
+    pub above_best_px: Option<MeanInterval>,
+    /// Share of the picture, 0 to 1, that the scene covers, as a mean over the seeds. `None` if errors are evaluated at a
+    /// fixed distance, or if the whole scene moves with the head.
+    pub covered_share: Option<f64>,
     /// Display periods over which the run with the first seed was evaluated. `None` if there is no seed, or if the run
     /// was too short.
     pub window: Option<ResultWindow>,
@@ -121,7 +133,8 @@ pub struct ComparisonRow {
     pub failure: Option<String>,
     /// Seconds that the runs took on this computer.
     pub host_seconds: f64,
-    /// Pixel errors of each display field in the run with the first seed.
+    /// Pixel errors of each display field for the first motion: in the run with the first seed, or as a mean over all seeds
+    /// if they share the motion.
     #[serde(skip)]
     pub by_field: Vec<FieldMisregistration>,
     /// Last picture of the first seed for the first eye. `None` if no picture was kept or shown.
@@ -170,6 +183,9 @@ impl ComparisonRow {
             not_shown: sum(trials.iter().map(|trial| Some(trial.due?.not_shown()))),
             late_regions: sum(trials.iter().map(|trial| trial.due.map(|_| trial.late_regions))),
             error: ErrorSpread::of(trials, sampling),
+            seed_px: seed_means(trials),
+            above_best_px: None,
+            covered_share: mean_of(trials.iter().filter_map(|trial| trial.errors.covered_share)),
             window: trials.first().and_then(|trial| trial.window),
             causes: causes(trials, sampling),
             predictors: Vec::new(),
@@ -178,7 +194,11 @@ impl ComparisonRow {
             triangles_definition: String::new(),
             failure: None,
             host_seconds: trials.iter().map(|trial| trial.host_seconds).sum(),
-            by_field: trials.first().map(|trial| trial.errors.by_field.clone()).unwrap_or_default(),
+            by_field: if sampling.is_one_motion {
+                mean_of_fields(trials)
+            } else {
+                trials.first().map(|trial| trial.errors.by_field.clone()).unwrap_or_default()
+            },
             picture: trials.first().and_then(|trial| trial.picture.clone()),
         }
     }
@@ -212,6 +232,8 @@ pub(super) struct Sampling {
     pub(super) seeds: usize,
     /// True if the head moves in the same way for each seed, for example because the motion is a recording.
     pub(super) is_one_motion: bool,
+    /// True if the tracker's reports have random errors.
+    pub(super) is_noisy: bool,
     pub(super) confidence: f64,
 }
 
@@ -258,52 +280,78 @@ fn causes(trials: &[&Trial], sampling: Sampling) -> Vec<CauseShare> {
 }
 
 impl ErrorSpread {
-    /// Combines the errors of all runs. Several motions give a confidence interval over the seeds. One motion gives an
-    /// interval over time, because a different seed would not change the motion.
+    /// Combines the errors of all runs. Several motions give a confidence interval over the seeds. For one motion, see
+    /// [`MeanInterval::of_one_motion`].
     pub(super) fn of(trials: &[&Trial], sampling: Sampling) -> Self {
         let confidence = sampling.confidence;
         let evaluated: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.evaluated > 0).collect();
-        let px: Vec<f64> = evaluated.iter().map(|trial| trial.errors.pixels.mean).collect();
+        let px = seed_means(trials);
         let deg: Vec<f64> = evaluated.iter().map(|trial| trial.errors.degrees.mean).collect();
         let mut all: Vec<f64> = evaluated.iter().flat_map(|trial| &trial.errors.all_px).copied().collect();
         all.sort_by(f64::total_cmp);
-        let mut spread = Self {
-            mean_px: MeanInterval::of(&px, confidence),
-            bootstrap: None,
-            mean_deg: MeanInterval::of(&deg, confidence),
-            pixels: Percentiles::of(all.iter().copied()),
-            n: evaluated.iter().map(|trial| trial.errors.evaluated).sum(),
-            distribution_px: hundredths(&all),
+        let (mean_px, bootstrap) = if sampling.is_one_motion {
+            let series: Vec<f64> = mean_of_fields(&evaluated).iter().map(|field| field.mean_px).collect();
+            MeanInterval::of_one_motion(&px, &series, sampling.is_noisy, confidence)
+        } else {
+            (MeanInterval::of(&px, confidence), None)
         };
-        if sampling.is_one_motion || px.len() < 2 {
-            spread.bootstrap_over_time(&evaluated, confidence);
+        let mean_deg = MeanInterval::of(&deg, confidence);
+        let evaluated_n: u64 = evaluated.iter().map(|trial| trial.errors.evaluated).sum();
+        let share = |count: fn(&Trial) -> u64| {
+            (evaluated_n > 0)
+                .then(|| evaluated.iter().map(|trial| count(trial)).sum::<u64>() as f64 / evaluated_n as f64)
+        };
+        Self {
+            mean_px,
+            bootstrap,
+            // Angles are not kept for each field, so their mean has no interval over time.
+            mean_deg: if bootstrap.is_some() { mean_deg.without_interval() } else { mean_deg },
+            pixels: Percentiles::of(all.iter().copied()),
+            n: evaluated_n,
+            outside_share: share(|trial| trial.errors.outside),
+            distribution_px: hundredths(&all),
         }
-        spread
-    }
-
-    /// Replaces the interval of the mean by the interval of a bootstrap over the fields. A run that is too short for a
-    /// bootstrap gives no interval.
-    fn bootstrap_over_time(&mut self, evaluated: &[&Trial], confidence: f64) {
-        let mean = self.mean_px.mean;
-        let bootstrap = BlockBootstrap::of(&mean_of_fields(evaluated));
-        let (low, high) = bootstrap.as_ref().map_or((f64::NAN, f64::NAN), |it| it.interval(mean, confidence));
-        let method = if bootstrap.is_some() { IntervalMethod::MovingBlockBootstrap } else { IntervalMethod::None };
-        self.mean_px = MeanInterval { low, high, method, ..self.mean_px };
-        // Angles are not kept for each field, so their mean has no interval over time.
-        self.mean_deg = self.mean_deg.without_interval();
-        self.bootstrap = bootstrap.map(|it| it.size());
     }
 }
 
-/// Returns the mean error of each evaluated field, averaged over the seeds, in the order of time.
-fn mean_of_fields(evaluated: &[&Trial]) -> Vec<f64> {
-    let mut fields: BTreeMap<PeriodNumber, (f64, f64)> = BTreeMap::new();
+/// Returns the difference of two rows' mean errors, with its interval. Both rows have the same motions, so a field, or a
+/// seed, of one row is compared with the same field or seed of the other.
+pub(super) fn difference(row: &ComparisonRow, best: &ComparisonRow, sampling: Sampling) -> MeanInterval {
+    let seeds: Vec<f64> = row.seed_px.iter().zip(&best.seed_px).map(|(one, other)| one - other).collect();
+    if !sampling.is_one_motion {
+        return MeanInterval::of_signed(&seeds, sampling.confidence);
+    }
+    let of_best: BTreeMap<PeriodNumber, f64> = best.by_field.iter().map(|one| (one.field, one.mean_px)).collect();
+    let paired = row.by_field.iter().filter_map(|one| Some(one.mean_px - of_best.get(&one.field)?));
+    let series: Vec<f64> = paired.filter(|px| px.is_finite()).collect();
+    MeanInterval::of_one_motion(&seeds, &series, sampling.is_noisy, sampling.confidence).0
+}
+
+fn seed_means(trials: &[&Trial]) -> Vec<f64> {
+    let evaluated = trials.iter().filter(|trial| trial.errors.evaluated > 0);
+    evaluated.map(|trial| trial.errors.pixels.mean).collect()
+}
+
+fn mean_of(values: impl Iterator<Item = f64>) -> Option<f64> {
+    Some(Statistics::of(values).mean).filter(|mean| mean.is_finite())
+}
+
+/// Returns the errors of each evaluated field, averaged over the seeds, in the order of time.
+fn mean_of_fields(evaluated: &[&Trial]) -> Vec<FieldMisregistration> {
+    let mut fields: BTreeMap<PeriodNumber, (FieldMisregistration, f64)> = BTreeMap::new();
     for field in evaluated.iter().flat_map(|trial| &trial.errors.by_field).filter(|field| field.mean_px.is_finite()) {
-        let (sum, n) = fields.entry(field.field).or_default();
-        *sum += field.mean_px;
+        let blank = FieldMisregistration { mean_px: 0.0, centre_px: 0.0, ..*field };
+        let (sum, n) = fields.entry(field.field).or_insert((blank, 0.0));
+        sum.mean_px += field.mean_px;
+        sum.centre_px += field.centre_px;
         *n += 1.0;
     }
-    fields.into_values().map(|(sum, n)| sum / n).collect()
+    let mean = |(sum, n): (FieldMisregistration, f64)| FieldMisregistration {
+        mean_px: sum.mean_px / n,
+        centre_px: sum.centre_px / n,
+        ..sum
+    };
+    fields.into_values().map(mean).collect()
 }
 
 /// Returns the minimum of sorted numbers, followed by the percentiles 1 to 100. Percentile p is the smallest number

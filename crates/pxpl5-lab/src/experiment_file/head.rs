@@ -2,9 +2,11 @@
 //! applies to pictures during the scan.
 
 use super::read::{beside, plain, wrong};
-use super::scene::SceneChoice;
+use super::scene::{SceneChoice, is_file};
 use super::{ExperimentFile, motion, reprojection, tracking_numbers};
-use crate::head_names::{Replay, is_recording, is_walk, predictor, recording_of, replayed, tracker_by, walk};
+use crate::head_names::{
+    Replay, is_recorded_file, is_recording, is_walk, predictor, recording_of, replayed, tracker_by, walk,
+};
 use pxpl5_run::{Aim, Head, HeadPlace, Pipeline};
 use pxpl5_sim::parameters::Parameter;
 use pxpl5_sim::parameters::SettingError;
@@ -21,6 +23,8 @@ pub struct HeadChoice {
     tracker: String,
     predict: String,
     numbers: Vec<Parameter>,
+    /// Meaning of the poses of the motion before this scene, if no setting states it.
+    usual_place: HeadPlace,
     head: Arc<Head>,
 }
 
@@ -46,11 +50,13 @@ impl HeadChoice {
         let Some(motion_name) = file.text("head.motion")? else { return Self::none(file) };
         let raster = reprojection::read(file, pipeline)?;
         let aim = file.choice("head.aim", &Aim::ALL)?.unwrap_or_default();
-        let place = file.choice("head.place", &HeadPlace::ALL)?.unwrap_or_default();
+        // Before a model of one's own, a head faces the model. The scenes that are built in have a start of their own.
+        let usual = if file.text("scene")?.is_some_and(is_file) { HeadPlace::Content } else { HeadPlace::Scene };
+        let place = file.choice("head.place", &HeadPlace::ALL)?.unwrap_or(usual);
         // A recording is found relative to the experiment file that names the recording.
         let replay = replay(file)?;
         let motion_name = match file.get("head.motion") {
-            Some(setting) if is_recording(motion_name) => beside(&setting.folder, motion_name),
+            Some(setting) if is_recorded_file(motion_name) => beside(&setting.folder, motion_name),
             _ => motion_name.to_owned(),
         };
         refuse_recording_keys(file, &motion_name)?;
@@ -73,7 +79,15 @@ impl HeadChoice {
         let head = evaluated(file, if is_tuned(file)? { head.tuned() } else { head })?;
         let supposed = numbers.iter().filter(|number| !number.is_in_range()).cloned().collect();
         let head = head.with_unsupported_parameters(supposed);
-        Ok(Some(Self { motion: motion_name, replay, tracker: tracker_name, predict, numbers, head: Arc::new(head) }))
+        Ok(Some(Self {
+            motion: motion_name,
+            replay,
+            tracker: tracker_name,
+            predict,
+            numbers,
+            usual_place: usual,
+            head: Arc::new(head),
+        }))
     }
 
     /// Returns `None` for an experiment without a head motion. Returns an error if such an experiment sets a `head.` or
@@ -116,7 +130,7 @@ impl HeadChoice {
         ]
         .map(|(key, value)| (key.to_owned(), Value::from(value)))
         .into();
-        if self.head.place() != HeadPlace::default() {
+        if [self.head.place(), self.usual_place] != [HeadPlace::Scene; 2] {
             all.push(("head.place".to_owned(), Value::from(self.head.place().to_string())));
         }
         all.extend(reprojection::settings(self.head.raster()));
@@ -146,7 +160,7 @@ fn moving(
     replay: &Replay,
 ) -> Result<Arc<dyn tracking::motion::Motion + Send + Sync>, SettingError> {
     // A recording in memory has priority over a file.
-    if let Some(contents) = file.contents(name).filter(|_| is_recording(name)) {
+    if let Some(contents) = file.contents(name).filter(|_| is_recorded_file(name)) {
         let recording = recording_of(&**contents, name, replay);
         return Ok(Arc::new(recording.map_err(|error| refused(file, "head.motion", &error))?));
     }
@@ -180,9 +194,13 @@ fn refuse_recording_keys(file: &ExperimentFile, motion: &str) -> Result<(), Sett
 }
 
 /// Parameters of the predictor whose values come from automatic tuning.
-const TUNED: [&str; 7] = [
+const TUNED: [&str; 11] = [
     "position_jerk",
     "orientation_jerk",
+    "velocity_decay",
+    "acceleration_decay",
+    "turn_decay",
+    "turn_acceleration_decay",
     "start_speed",
     "start_acceleration",
     "start_turn",

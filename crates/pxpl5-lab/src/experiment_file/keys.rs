@@ -4,6 +4,7 @@ use super::ExperimentFile;
 use super::head::COLUMNS;
 use super::hmd;
 use super::motion::PathChoice;
+use super::origin;
 use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Aim, Every, FIELDS_RANGE, HeadPlace, Level, Pixels, Registry, Reprojection};
@@ -27,8 +28,18 @@ impl FileKey {
     }
 }
 
+/// Range of a coordinate of a model, m.
+const MODEL_M: KeyValues = KeyValues::Real(-1e4, 1e4);
+
 /// Keys that exist for every registry of pipelines and displays.
 const COMMON: &[Key] = &[
+    Key::new("model.x", "place of the middle of the scene in its world, to the right", MODEL_M).with_unit("m"),
+    Key::new("model.y", "place of the middle of the scene in its world, upwards", MODEL_M).with_unit("m"),
+    Key::new("model.z", "place of the middle of the scene in its world, backwards", MODEL_M).with_unit("m"),
+    Key::new("model.size", "length of the longest side of the scene", KeyValues::Real(1e-3, 1e4)).with_unit("m"),
+    Key::new("model.turn", "turn of the scene about the vertical axis, to the left", KeyValues::Real(-360.0, 360.0))
+        .with_unit("deg"),
+    Key::new("model.room", "add the scene `room`, whose walls surround the viewer", KeyValues::Flag).with_default("false"),
     Key::new("title", "title of the experiment, for readers", KeyValues::ANY),
     Key::new(
         "scene",
@@ -69,7 +80,7 @@ const COMMON: &[Key] = &[
     Key::new(
         "head.motion",
         "motion of a tracked head from the start pose of head.path on: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, \
-         pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, or a recording (.csv, .txt, \
+         pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, recorded:NAME, or a recording (.csv, .txt, \
          .tum, .jsonl), relative to the experiment file",
         KeyValues::ANY,
     ),
@@ -95,11 +106,11 @@ const COMMON: &[Key] = &[
     ),
     Key::new(
         "head.place",
-        "what the poses of head.motion count from: scene (the motion begins where the scene's own motion begins) or \
-             world (the poses are metres in the scene's coordinates)",
+        "what the poses of head.motion count from: scene (the motion begins where the scene's own motion begins), world \
+             (the poses are metres in the scene's coordinates) or content (the head faces the scene as long as it can)",
         KeyValues::Names(&const { names(&HeadPlace::ALL) }),
     )
-    .with_default("scene"),
+    .with_default("scene; content for a model file"),
     Key::new(
         "head.filter",
         "numbers of the predictor: tuned (for the pipeline's prediction interval and the motion, with other noise than in \
@@ -180,7 +191,7 @@ const COMMON: &[Key] = &[
 ];
 
 pub(super) fn common(name: &str) -> Option<&'static Key> {
-    COMMON.iter().chain(hmd::KEYS.iter().map(|(key, ..)| key)).find(|key| key.name == name)
+    COMMON.iter().chain(&origin::KEYS).chain(hmd::KEYS.iter().map(|(key, ..)| key)).find(|key| key.name == name)
 }
 
 impl ExperimentFile {
@@ -212,7 +223,7 @@ pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
         FileKey::of("display", format!("display for which the pipeline draws: {}", displays.join(", "))),
     ];
     all.extend(super::display::keys().map(|(path, about)| FileKey::of(path, about)));
-    let of_all = COMMON.iter().chain(hmd::KEYS.iter().map(|(key, ..)| key));
+    let of_all = COMMON.iter().chain(&origin::KEYS).chain(hmd::KEYS.iter().map(|(key, ..)| key));
     all.extend(of_all.map(|key| FileKey::of(key.name, key.help())));
     // One key for each column of a recording.
     let column =

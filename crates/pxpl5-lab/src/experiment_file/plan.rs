@@ -2,6 +2,7 @@
 
 use super::head::HeadChoice;
 use super::hmd;
+use super::origin::Origin;
 use super::read::{not_applicable, plain, wrong};
 use super::scene::SceneChoice;
 use super::{ExperimentFile, Setting, display};
@@ -93,6 +94,8 @@ pub struct Plan {
     pub output: Outputs,
     /// Published figure to compare with, if any.
     pub published: Option<Published>,
+    /// Origin of the results beside the experiment file, if a command wrote the file with its results.
+    pub origin: Origin,
 }
 
 /// Largest seed that TOML can represent.
@@ -130,6 +133,7 @@ impl ExperimentFile {
                 csv: self.flag("output.csv")?.unwrap_or(true),
             },
             published: Published::read(self)?,
+            origin: Origin::read(self)?,
         })
     }
 

@@ -5,6 +5,7 @@ use pxpl5_scene::{Format, Placement, Scene};
 use pxpl5_sim::parameters::SettingError;
 use std::path::Path;
 use std::sync::Arc;
+use toml::Value;
 
 /// The scene of an experiment: its name or file, its number of primitives, and the motion of the head in front of the
 /// scene.
@@ -18,10 +19,55 @@ pub struct SceneChoice {
     pub triangles: Option<usize>,
     /// True if the back faces of all structures of the scene are removed.
     pub culled: bool,
+    /// Place, size and surroundings of the scene.
+    pub model: ModelPlace,
     /// Motion of the head without a tracker.
     pub motion: MotionChoice,
     /// Contents of the model file ([`ExperimentFile::with_contents`]), which replace the file on this computer.
     pub contents: Option<Arc<[u8]>>,
+}
+
+/// The place of a scene in its world: the keys `model.*`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ModelPlace {
+    /// Coordinates of the middle of the scene's bounding box in metres. `None` keeps a coordinate.
+    pub at_m: [Option<f64>; 3],
+    /// Length of the longest side of the bounding box in metres. `None` keeps the size.
+    pub size_m: Option<f64>,
+    /// Turn about the vertical axis in degrees, to the left as seen from above.
+    pub turn_deg: Option<f64>,
+    /// True if the scene `room` is added, whose walls surround the viewer.
+    pub in_room: bool,
+}
+
+const AT: [&str; 3] = ["model.x", "model.y", "model.z"];
+
+impl ModelPlace {
+    fn read(file: &ExperimentFile) -> Result<Self, SettingError> {
+        let number = |key: &str| file.number(key);
+        Ok(Self {
+            at_m: [number(AT[0])?, number(AT[1])?, number(AT[2])?],
+            size_m: number("model.size")?,
+            turn_deg: number("model.turn")?,
+            in_room: file.flag("model.room")?.unwrap_or(false),
+        })
+    }
+
+    pub(super) fn settings(&self) -> Vec<(&'static str, Value)> {
+        let numbers = [self.at_m[0], self.at_m[1], self.at_m[2], self.size_m, self.turn_deg];
+        let keys = [AT[0], AT[1], AT[2], "model.size", "model.turn"];
+        let given = keys.into_iter().zip(numbers).filter_map(|(key, number)| Some((key, Value::from(number?))));
+        given.chain(self.in_room.then_some(("model.room", Value::from(true)))).collect()
+    }
+
+    fn of(&self, scene: Arc<Scene>) -> Result<Arc<Scene>, SettingError> {
+        if *self == Self::default() {
+            return Ok(scene);
+        }
+        let placed = scene.placed(self.at_m, self.size_m, self.turn_deg.unwrap_or(0.0));
+        let whole = if self.in_room { placed.together_with(&pxpl5_scene::builtin("room")?)? } else { placed };
+        Ok(Arc::new(whole))
+    }
 }
 
 impl SceneChoice {
@@ -38,7 +84,8 @@ impl SceneChoice {
         }
         let culled = file.flag("cull")?.unwrap_or(false);
         let contents = file.contents(&name).cloned();
-        Ok(Self { name, placement, triangles, culled, motion: MotionChoice::read(file)?, contents })
+        let model = ModelPlace::read(file)?;
+        Ok(Self { name, placement, triangles, culled, model, motion: MotionChoice::read(file)?, contents })
     }
 
     /// Generates the scene or reads its file.
@@ -82,6 +129,7 @@ impl SceneChoice {
             Some(n) if n < whole.primitives() => Arc::new(decimated(n)?),
             _ => whole,
         };
+        let scene = self.model.of(scene)?;
         // The scene's own motion needs no copy of the scene.
         if self.motion == MotionChoice::default() {
             return Ok(scene);

@@ -300,3 +300,31 @@ fn every_key_has_one_description_with_its_values() {
     paths.sort_unstable();
     assert!(paths.windows(2).all(|pair| pair[0] != pair[1]), "a path appears twice: {paths:?}");
 }
+
+/// Tests the keys that place a scene, and the file that a run writes: it reads back with the same place.
+#[test]
+fn a_scene_is_placed_in_metres_and_its_place_is_kept() {
+    let text = "pipeline = \"slats\"\nscene = \"aircraft\"\nmodel.z = -4\nmodel.size = 2.0\nmodel.room = true\n";
+    let plan = plan(text);
+    let scene = plan.load_scene().expect("built in");
+    let [aircraft, room] = ["aircraft", "room"].map(|name| pxpl5_scene::builtin(name).expect("built in").primitives());
+    assert_eq!(scene.primitives(), aircraft + room);
+    let again = self::plan(&plan.settings().to_string());
+    assert_eq!((again.scene.model, again.fingerprint()), (plan.scene.model, plan.fingerprint()));
+    let wrong = refusal("pipeline = \"slats\"\nscene = \"mig\"\nmodel.size = 0");
+    assert!(wrong.contains("model.size"), "{wrong}");
+}
+
+#[test]
+fn the_recordings_of_the_library_are_motions_with_an_end() {
+    for (name, seconds) in [("vive-tracked", 29.241_548), ("vive-dev", 9.334_480)] {
+        let text =
+            format!("pipeline = \"slats\"\nscene = \"room\"\nhead.motion = \"recorded:{name}\"\nhead.end = \"hold\"");
+        let plan = plan(&text);
+        let head = plan.head.expect("a head").head();
+        assert_eq!(head.motion().moves_until_ps(), Some((seconds * 1e12f64).round() as u64), "{name}");
+    }
+    let text = "pipeline = \"slats\"\nscene = \"room\"\nhead.motion = \"recorded:vive\"";
+    let error = refusal(text);
+    assert!(error.contains("vive-dev"), "{error}");
+}

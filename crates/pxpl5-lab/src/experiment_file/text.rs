@@ -3,7 +3,7 @@
 use super::hmd;
 use super::plan::Plan;
 use super::scene::is_file;
-use crate::compare::is_recording;
+use crate::head_names::is_recorded_file;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Fingerprint, KeyValue};
 use pxpl5_scene::Placement;
@@ -16,7 +16,7 @@ use toml::Value;
 /// The effective settings of an experiment, by path.
 ///
 /// `Display` writes the settings as the text of an experiment file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// TOML values by the path of their key.
     pub values: BTreeMap<String, Value>,
@@ -56,7 +56,7 @@ impl Plan {
     /// absolute.
     pub fn settings_for_any_folder(&self) -> Settings {
         let mut all = self.settings();
-        for (key, is_file) in [("scene", is_file as fn(&str) -> bool), ("head.motion", is_recording)] {
+        for (key, is_file) in [("scene", is_file as fn(&str) -> bool), ("head.motion", is_recorded_file)] {
             let named = all.values.get(key).and_then(Value::as_str).filter(|name| is_file(name));
             // An empty path cannot be made absolute and stays unchanged.
             if let Some(absolute) = named.and_then(|name| std::path::absolute(name).ok()) {
@@ -103,6 +103,7 @@ impl Plan {
         if let Some(triangles) = self.scene.triangles {
             all.put("triangles", triangles as i64);
         }
+        self.scene.model.settings().into_iter().for_each(|(path, value)| all.put(path, value));
         self.scene.motion.settings().into_iter().for_each(|(path, value)| all.put(path, value));
     }
 
@@ -120,7 +121,7 @@ impl Plan {
 }
 
 impl Settings {
-    fn put(&mut self, path: &str, value: impl Into<Value>) {
+    pub(super) fn put(&mut self, path: &str, value: impl Into<Value>) {
         self.values.insert(path.to_owned(), value.into());
     }
 
@@ -172,7 +173,7 @@ fn toml_number(value: Number) -> Value {
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.lines(f, None)?;
-        for table in ["head", "hmd", "tracking", "machine", "output", "published"] {
+        for table in ["model", "head", "hmd", "tracking", "machine", "output", "published", "origin"] {
             if self.values.keys().any(|path| path.split_once('.').is_some_and(|(of, _)| of == table)) {
                 writeln!(f, "\n[{table}]")?;
                 self.lines(f, Some(table))?;

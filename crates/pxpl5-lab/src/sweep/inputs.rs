@@ -2,7 +2,7 @@
 
 use super::Sweep;
 use crate::experiment_file::{ExperimentFile, beside, is_file};
-use crate::head_names::is_recording;
+use crate::head_names::is_recorded_file;
 use pxpl5_run::Fingerprint;
 use pxpl5_scene::{Placement, load_placed};
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ struct FileKey {
 
 const KEYS: [FileKey; 2] = [
     FileKey { key: "scene", names_file: is_file, hash_of: hash_of_model },
-    FileKey { key: "head.motion", names_file: is_recording, hash_of: hash_of_file },
+    FileKey { key: "head.motion", names_file: is_recorded_file, hash_of: hash_of_file },
 ];
 
 impl Sweep {

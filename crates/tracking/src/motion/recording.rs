@@ -118,6 +118,22 @@ pub struct Recording {
 }
 
 impl Recording {
+    /// Recordings of real heads that come with the library, by name, with what they show. Their origin and terms are in
+    /// `data/README.md` of this crate.
+    pub const SHIPPED: [(&'static str, &'static str); 2] = [
+        ("vive-tracked", "a user of an HTC Vive walks and looks around, 29 s"),
+        ("vive-dev", "the same headset on a standing user, 9 s"),
+    ];
+
+    /// Returns the file of a recording in [`Self::SHIPPED`], or `None` for another name.
+    pub fn shipped(name: &str) -> Option<&'static [u8]> {
+        match name {
+            "vive-tracked" => Some(include_bytes!("../../data/vive-tracked.csv")),
+            "vive-dev" => Some(include_bytes!("../../data/vive-dev.csv")),
+            _ => None,
+        }
+    }
+
     /// Reads a file of poses with ascending time stamps. If several samples have the same time stamp, only the first is
     /// kept, and [`Motion::warnings`] reports this. The contents of the file determine its format:
     ///

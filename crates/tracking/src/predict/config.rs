@@ -3,6 +3,7 @@ use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use serde::{Deserialize, Serialize};
 
 use super::Predictor;
+use super::checked::Checked;
 use super::extrapolation::{Extrapolation, Order};
 use super::orientation_kalman::OrientationKalman;
 use super::position_kalman::{NoiseModel, PositionKalman};
@@ -27,7 +28,7 @@ pub enum PredictorKind {
     ConstantAcceleration,
     /// Two Kalman filters. The filter for position is linear and estimates position, velocity and acceleration. The
     /// filter for orientation is an extended Kalman filter and estimates a quaternion, the angular velocity and the
-    /// angular acceleration.
+    /// angular acceleration. Velocities and accelerations decay by [`Decay`].
     Kalman,
 }
 
@@ -70,6 +71,16 @@ pub struct PredictorConfig {
     /// Strength of random changes of the head's angular acceleration (angular jerk), as a Kalman filter assumes it,
     /// rad/s^3/sqrt(Hz). The angular jerk is white noise, and the value is the root of its spectral density.
     pub orientation_jerk: f64,
+    /// Decay of the head's velocity and acceleration, as a Kalman filter assumes it.
+    #[serde(default)]
+    pub position_decay: Decay,
+    /// Decay of the head's angular velocity and angular acceleration, as a Kalman filter assumes it.
+    #[serde(default)]
+    pub orientation_decay: Decay,
+    /// Prediction intervals of position and orientation, ps, at which a Kalman filter is checked against the last report
+    /// and against a constant velocity. The three are weighted by their recent errors. 0 uses the filter alone.
+    #[serde(default)]
+    pub check_ps: [u64; 2],
     /// Longest time, ps, for which the predictor extrapolates, forwards or backwards from the newest measurement. For
     /// other instants the predictor returns its estimate for the instant of the newest measurement.
     pub horizon_ps: u64,
@@ -79,6 +90,24 @@ pub struct PredictorConfig {
     /// Limits by which the predictor accepts or rejects reports.
     #[serde(default = "default_gate")]
     pub gate: table::Gate,
+}
+
+/// Rates at which a Kalman filter lets velocity and acceleration decay, as in the model of Singer (1970).
+///
+/// With both rates 0 the acceleration stays constant. A great rate of acceleration leaves a constant velocity, and
+/// great rates of both leave the last pose: the other prediction methods are limits of this one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Decay {
+    /// Rate at which a velocity decays, 1/s.
+    pub velocity: f64,
+    /// Rate at which an acceleration decays, 1/s.
+    pub acceleration: f64,
+}
+
+impl Decay {
+    /// No decay: the acceleration stays constant.
+    pub const NONE: Self = Self { velocity: 0.0, acceleration: 0.0 };
 }
 
 /// Standard deviations that a Kalman filter assumes for the head's motion before the first report. The assumed mean is
@@ -136,6 +165,9 @@ impl PredictorConfig {
             orientation_noise_deg: tracker.orientation_noise_deg.max(MIN_NOISE_DEG),
             position_jerk: filter.position_jerk,
             orientation_jerk: filter.orientation_jerk,
+            position_decay: Decay { velocity: filter.velocity_decay, acceleration: filter.acceleration_decay },
+            orientation_decay: Decay { velocity: filter.turn_decay, acceleration: filter.turn_acceleration_decay },
+            check_ps: [0; 2],
             horizon_ps: table::ms_to_ps(filter.horizon),
             start: Start::of(filter),
             gate: tables.gate,
@@ -171,6 +203,10 @@ impl PredictorConfig {
         table::Filter {
             position_jerk: self.position_jerk,
             orientation_jerk: self.orientation_jerk,
+            velocity_decay: self.position_decay.velocity,
+            acceleration_decay: self.position_decay.acceleration,
+            turn_decay: self.orientation_decay.velocity,
+            turn_acceleration_decay: self.orientation_decay.acceleration,
             baseline: baseline.into(),
             horizon: crate::time::seconds(self.horizon_ps) * 1e3,
             start_speed: self.start.speed,
@@ -194,17 +230,25 @@ impl PredictorConfig {
         let position = NoiseModel {
             measurement: square(self.position_noise_m),
             jerk: square(self.position_jerk),
+            decay: self.position_decay,
             start: (square(self.start.speed), square(self.start.acceleration)),
         };
         let orientation = NoiseModel {
             measurement: square(self.orientation_noise_deg.to_radians()),
             jerk: square(self.orientation_jerk),
+            decay: self.orientation_decay,
             start: (square(self.start.turn), square(self.start.turn_acceleration)),
         };
+        let (position, orientation) = (PositionKalman::new(position), OrientationKalman::new(orientation));
+        let horizon_s = crate::time::seconds(self.horizon_ps);
+        let [of_position, of_orientation] = self.check_ps;
+        if self.check_ps == [0; 2] {
+            return Box::new(GatedFilterPair::new(position, orientation, horizon_s, self.gate));
+        }
         Box::new(GatedFilterPair::new(
-            PositionKalman::new(position),
-            OrientationKalman::new(orientation),
-            crate::time::seconds(self.horizon_ps),
+            Checked::new(position, self.position_baseline as usize, of_position, DVec3::ZERO),
+            Checked::new(orientation, self.orientation_baseline as usize, of_orientation, DQuat::IDENTITY),
+            horizon_s,
             self.gate,
         ))
     }

@@ -1,7 +1,8 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::channel::Channel;
-use super::position_kalman::{NoiseModel, symmetric, white_jerk};
+use super::position_kalman::{NoiseModel, symmetric};
+use super::propagation::{Propagation, Propagations};
 use crate::rotation;
 use crate::time::span_s;
 
@@ -22,13 +23,14 @@ struct Covariance {
 }
 
 /// Extended Kalman filter for orientation. The state is a quaternion, the angular velocity omega (rad/s) and the
-/// angular acceleration domega (rad/s^2) in the world frame. Angular jerk is white noise.
+/// angular acceleration domega (rad/s^2) in the world frame. Both decay, and angular jerk is white noise.
 ///
 /// The filter describes the error of the quaternion by a rotation vector. The covariance is therefore 9 x 9 and
 /// regular, and the quaternion keeps its length.
 #[derive(Clone, Debug)]
 pub(super) struct OrientationKalman {
     belief: NoiseModel,
+    propagations: Propagations,
     t_ps: u64,
     orientation: DQuat,
     rate: DVec3,
@@ -40,6 +42,7 @@ impl OrientationKalman {
     pub(super) fn new(belief: NoiseModel) -> Self {
         Self {
             belief,
+            propagations: Propagations::of(belief.decay),
             t_ps: 0,
             orientation: DQuat::IDENTITY,
             rate: DVec3::ZERO,
@@ -48,18 +51,20 @@ impl OrientationKalman {
         }
     }
 
-    /// Returns the turn (rotation vector) in `dt` seconds at constant angular acceleration: the first two terms of the
-    /// Magnus series. The second term accounts for the changing axis of rotation.
-    fn turn(&self, dt: f64) -> DVec3 {
-        let sideways = self.rate.cross(self.acceleration) * (dt * dt * dt / 12.0);
-        self.rate * dt + self.acceleration * (dt * dt / 2.0) - sideways
+    /// Returns the turn (rotation vector) from the factors of [`Propagations::way`]: the first two terms of the Magnus
+    /// series. The second term accounts for the changing axis of rotation.
+    fn turn(&self, [by_rate, by_acceleration, sideways]: [f64; 3]) -> DVec3 {
+        self.rate * by_rate + self.acceleration * by_acceleration - self.rate.cross(self.acceleration) * sideways
     }
 
     fn predict(&mut self, dt: f64) {
-        let turn = self.turn(dt);
+        let propagation = self.propagations.over(dt);
+        let turn = self.turn(propagation.turned(1.0));
         self.orientation = (rotation::exp(turn) * self.orientation).normalize();
-        self.rate += self.acceleration * dt;
-        self.covariance.predict(turn, dt, self.belief.jerk);
+        let step = &propagation.step;
+        self.rate = self.rate * step.y_axis.y + self.acceleration * step.z_axis.y;
+        self.acceleration *= step.z_axis.z;
+        self.covariance.predict(turn, &propagation, self.belief.jerk);
     }
 
     fn correct(&mut self, measured: DQuat) {
@@ -85,26 +90,31 @@ impl Covariance {
         }
     }
 
-    /// Replaces the covariance P by F P F^T + Q with F = [R, A, B; 0, 1, dt; 0, 0, 1]. R rotates old errors with the
-    /// head. A and B integrate the errors of angular velocity and acceleration to first order in `turn`.
-    fn predict(&mut self, turn: DVec3, dt: f64, jerk: f64) {
+    /// Replaces the covariance P by F P F^T + Q with F = [R, A, B; 0, d, e; 0, 0, c]. R rotates old errors with the
+    /// head. A and B integrate the errors of angular velocity and acceleration to first order in `turn`. The numbers d,
+    /// e and c are the decay of the two, and the velocity that the acceleration adds.
+    fn predict(&mut self, turn: DVec3, Propagation { step, growth, .. }: &Propagation, jerk: f64) {
         let r = DMat3::from_quat(rotation::exp(turn));
         let small = turn.clamp_length_max(LARGEST_LINEAR_TURN);
-        let a = (DMat3::IDENTITY + cross(small / 2.0)) * dt;
-        let b = (DMat3::IDENTITY + cross(small / 3.0)) * (dt * dt / 2.0);
+        let a = (DMat3::IDENTITY + cross(small / 2.0)) * step.y_axis.x;
+        let b = (DMat3::IDENTITY + cross(small / 3.0)) * step.z_axis.x;
+        let (d, e, c) = (step.y_axis.y, step.z_axis.y, step.z_axis.z);
         // The first block row of F P. The other two rows contain only the terms of rate and acceleration.
         let to_angle = r * self.angle + a * self.angle_rate.transpose() + b * self.angle_acceleration.transpose();
         let to_rate = r * self.angle_rate + a * self.rate + b * self.rate_acceleration.transpose();
         let to_acceleration = r * self.angle_acceleration + a * self.rate_acceleration + b * self.acceleration;
-        let q = white_jerk(dt) * jerk;
+        let q = *growth * jerk;
         self.angle = symmetric(to_angle * r.transpose() + to_rate * a.transpose() + to_acceleration * b.transpose())
             + isotropic(q.x_axis.x);
-        self.angle_rate = to_rate + to_acceleration * dt + isotropic(q.x_axis.y);
-        self.angle_acceleration = to_acceleration + isotropic(q.x_axis.z);
+        self.angle_rate = to_rate * d + to_acceleration * e + isotropic(q.x_axis.y);
+        self.angle_acceleration = to_acceleration * c + isotropic(q.x_axis.z);
         let cross_rate = self.rate_acceleration;
-        self.rate_acceleration += self.acceleration * dt + isotropic(q.y_axis.z);
-        self.rate += (cross_rate + cross_rate.transpose()) * dt + self.acceleration * (dt * dt) + isotropic(q.y_axis.y);
-        self.acceleration += isotropic(q.z_axis.z);
+        self.rate_acceleration = (cross_rate * d + self.acceleration * e) * c + isotropic(q.y_axis.z);
+        self.rate = self.rate * (d * d)
+            + (cross_rate + cross_rate.transpose()) * (d * e)
+            + self.acceleration * (e * e)
+            + isotropic(q.y_axis.y);
+        self.acceleration = self.acceleration * (c * c) + isotropic(q.z_axis.z);
     }
 
     /// Returns S^-1 times the difference between measured and predicted orientation. S is P + r I. P is the covariance
@@ -131,7 +141,11 @@ impl Covariance {
 
 impl Channel<DQuat> for OrientationKalman {
     fn restart(&mut self, t_ps: u64, orientation: DQuat) {
-        *self = Self { t_ps, orientation, ..Self::new(self.belief) };
+        self.t_ps = t_ps;
+        self.orientation = orientation;
+        self.rate = DVec3::ZERO;
+        self.acceleration = DVec3::ZERO;
+        self.covariance = Covariance::start(&self.belief);
     }
 
     fn update(&mut self, t_ps: u64, orientation: DQuat) {
@@ -141,7 +155,7 @@ impl Channel<DQuat> for OrientationKalman {
     }
 
     fn extrapolate(&self, dt_s: f64) -> DQuat {
-        (rotation::exp(self.turn(dt_s)) * self.orientation).normalize()
+        (rotation::exp(self.turn(self.propagations.way(dt_s))) * self.orientation).normalize()
     }
 }
 

@@ -1,34 +1,26 @@
 use glam::{DMat3, DVec3};
 
 use super::channel::Channel;
+use super::config::Decay;
+use super::propagation::{Propagation, Propagations};
 use crate::time::span_s;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NoiseModel {
     pub(super) measurement: f64,
     pub(super) jerk: f64,
+    pub(super) decay: Decay,
     /// Variances of the head's velocity and acceleration that the filter assumes before the first measurement.
     pub(super) start: (f64, f64),
 }
 
-/// Returns the covariance that is added over `dt` seconds for value, velocity and acceleration. The cause is jerk that
-/// is white noise of spectral density 1. The covariance is the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T for s from 0 to
-/// `dt`.
-pub(super) fn white_jerk(dt: f64) -> DMat3 {
-    let d2 = dt * dt;
-    let d3 = dt * dt * dt;
-    DMat3::from_cols(
-        DVec3::new(d2 * d3 / 20.0, d2 * d2 / 8.0, d3 / 6.0),
-        DVec3::new(d2 * d2 / 8.0, d3 / 3.0, d2 / 2.0),
-        DVec3::new(d3 / 6.0, d2 / 2.0, dt),
-    )
-}
-
-/// Linear Kalman filter for position. Its state is position, velocity and acceleration along each axis, and jerk is
-/// white noise. All axes have the same noise and measurement times, so they share one covariance.
+/// Linear Kalman filter for position. Its state is position, velocity and acceleration along each axis. Velocity and
+/// acceleration decay, and jerk is white noise. All axes have the same noise and measurement times, so they share one
+/// covariance.
 #[derive(Clone, Debug)]
 pub(super) struct PositionKalman {
     belief: NoiseModel,
+    propagations: Propagations,
     t_ps: u64,
     position: DVec3,
     velocity: DVec3,
@@ -39,17 +31,20 @@ pub(super) struct PositionKalman {
 impl PositionKalman {
     pub(super) fn new(belief: NoiseModel) -> Self {
         let zero = DVec3::ZERO;
+        let propagations = Propagations::of(belief.decay);
+        let covariance = DMat3::ZERO;
         let mut filter =
-            Self { belief, t_ps: 0, position: zero, velocity: zero, acceleration: zero, covariance: DMat3::ZERO };
+            Self { belief, propagations, t_ps: 0, position: zero, velocity: zero, acceleration: zero, covariance };
         filter.restart(0, zero);
         filter
     }
 
     fn predict(&mut self, dt: f64) {
-        self.position += self.velocity * dt + self.acceleration * (dt * dt / 2.0);
-        self.velocity += self.acceleration * dt;
-        let step = DMat3::from_cols(DVec3::X, DVec3::new(dt, 1.0, 0.0), DVec3::new(dt * dt / 2.0, dt, 1.0));
-        self.covariance = symmetric(step * self.covariance * step.transpose() + white_jerk(dt) * self.belief.jerk);
+        let Propagation { step, growth, .. } = self.propagations.over(dt);
+        self.position += self.velocity * step.y_axis.x + self.acceleration * step.z_axis.x;
+        self.velocity = self.velocity * step.y_axis.y + self.acceleration * step.z_axis.y;
+        self.acceleration *= step.z_axis.z;
+        self.covariance = symmetric(step * self.covariance * step.transpose() + growth * self.belief.jerk);
     }
 
     /// Corrects state and covariance by a measurement. Joseph's form keeps the covariance positive definite under any
@@ -84,7 +79,8 @@ impl Channel<DVec3> for PositionKalman {
     }
 
     fn extrapolate(&self, dt_s: f64) -> DVec3 {
-        self.position + self.velocity * dt_s + self.acceleration * (dt_s * dt_s / 2.0)
+        let [by_velocity, by_acceleration, _] = self.propagations.way(dt_s);
+        self.position + self.velocity * by_velocity + self.acceleration * by_acceleration
     }
 }
 
@@ -101,7 +97,7 @@ mod tests {
     use crate::time::{PS_PER_S, nearest_ps};
     use proptest::prelude::*;
 
-    const BELIEF: NoiseModel = NoiseModel { measurement: 6.4e-7, jerk: 64.0, start: (1.0, 25.0) };
+    const BELIEF: NoiseModel = NoiseModel { measurement: 6.4e-7, jerk: 64.0, decay: Decay::NONE, start: (1.0, 25.0) };
 
     proptest! {
         #[test]
@@ -109,8 +105,11 @@ mod tests {
             steps in prop::collection::vec(-6.0..-0.7f64, 1..200),
             noise in -10.0..0.0f64,
             jerk in -4.0..6.0f64,
+            decays in (0.0..1e3, 0.0..1e3),
         ) {
-            let belief = NoiseModel { measurement: 10f64.powf(noise), jerk: 10f64.powf(jerk), start: (1.0, 25.0) };
+            let decay = Decay { velocity: decays.0, acceleration: decays.1 };
+            let (measurement, jerk) = (10f64.powf(noise), 10f64.powf(jerk));
+            let belief = NoiseModel { measurement, jerk, decay, ..BELIEF };
             let mut filter = PositionKalman::new(belief);
             let mut t_ps = 0;
             for step in steps {
@@ -126,7 +125,7 @@ mod tests {
             let p = filter.covariance;
             filter.update(nearest_ps(dt), DVec3::X * x);
             let f = DMat3::from_cols(DVec3::X, DVec3::new(dt, 1.0, 0.0), DVec3::new(dt * dt / 2.0, dt, 1.0));
-            let p = f * p * f.transpose() + white_jerk(dt) * BELIEF.jerk;
+            let p = f * p * f.transpose() + Propagation::over(dt, Decay::NONE).growth * BELIEF.jerk;
             // A report measures the position alone: h = (1, 0, 0).
             let k = p.x_axis / (p.x_axis.x + BELIEF.measurement);
             let p = (DMat3::IDENTITY - DMat3::from_cols(k, DVec3::ZERO, DVec3::ZERO)) * p;
@@ -135,18 +134,6 @@ mod tests {
             let state = DVec3::new(filter.position.x, filter.velocity.x, filter.acceleration.x);
             prop_assert!((k * x - state).length() < 1e-8 * (1.0 + state.length()));
         }
-    }
-
-    #[test]
-    fn the_growth_under_white_jerk_is_the_integral_of_its_impulse_responses() {
-        let dt = 0.3;
-        let n = 3000;
-        let sum = (0..n).fold(DMat3::ZERO, |sum, i| {
-            let s = (f64::from(i) + 0.5) / f64::from(n) * dt;
-            let r = DVec3::new(s * s / 2.0, s, 1.0);
-            sum + DMat3::from_cols(r * r.x, r * r.y, r * r.z) * (dt / f64::from(n))
-        });
-        assert!((sum - white_jerk(dt)).to_cols_array().iter().all(|e| e.abs() < 1e-8));
     }
 
     fn parabola(t: f64) -> DVec3 {

@@ -56,6 +56,11 @@ pub struct TrackerConfig {
 }
 
 impl TrackerConfig {
+    /// Returns true if the reports have random errors, which differ with the seed.
+    pub fn is_random(&self) -> bool {
+        [self.position_noise_m, self.orientation_noise_deg, self.position_bias_m, self.orientation_bias_deg] != [0.0; 4]
+    }
+
     /// Returns the Polhemus Fastrak with one receiver, its filter off and 115,200 baud. The host's Unix kernel is
     /// patched so that each character on the serial port causes an interrupt.
     pub fn fastrak() -> Self {

@@ -1,9 +1,12 @@
 use super::*;
+use crate::predict::Decay;
 use crate::predict::tests::{Dense, identity, is_positive_definite, norm, product, sum, transposed};
 use crate::time::{PS_PER_S, nearest_ps};
 use proptest::prelude::*;
 
-const BELIEF: NoiseModel = NoiseModel { measurement: 6.9e-6, jerk: 1e4, start: (4.0, 400.0) };
+const BELIEF: NoiseModel = NoiseModel { measurement: 6.9e-6, jerk: 1e4, decay: Decay::NONE, start: (4.0, 400.0) };
+
+const DECAY: Decay = Decay { velocity: 5.0, acceleration: 30.0 };
 
 /// Returns the covariance of the filter as one matrix of 9 x 9 numbers.
 fn dense(c: &Covariance) -> Dense<9> {
@@ -31,22 +34,26 @@ fn integrate(filter: &OrientationKalman, dt: f64) -> DQuat {
     let n = 20_000;
     let h = dt / f64::from(n);
     (0..n).fold(filter.orientation, |q, i| {
-        let rate = filter.rate + filter.acceleration * ((f64::from(i) + 0.5) * h);
-        rotation::exp(rate * h) * q
+        let step = filter.propagations.over((f64::from(i) + 0.5) * h).step;
+        rotation::exp((filter.rate * step.y_axis.y + filter.acceleration * step.z_axis.y) * h) * q
     })
 }
 
 #[test]
 fn extrapolation_solves_the_differential_equation_of_a_turning_axis() {
-    let filter = OrientationKalman {
-        rate: DVec3::new(1.0, 3.0, -0.5),
-        acceleration: DVec3::new(10.0, -4.0, 6.0),
-        ..OrientationKalman::new(BELIEF)
-    };
-    // Magnus' third term is of order |rate|^2 |acceleration| dt^4 / 240: below 1e-4 rad at 100 ms.
-    assert!(rotation::angle_deg(filter.extrapolate(0.1), integrate(&filter, 0.1)) < 0.006);
-    let without = rotation::exp(filter.rate * 0.1 + filter.acceleration * 0.005) * filter.orientation;
-    assert!(rotation::angle_deg(without, integrate(&filter, 0.1)) > 0.1, "the second term is needed");
+    for decay in [Decay::NONE, DECAY] {
+        let filter = OrientationKalman {
+            rate: DVec3::new(1.0, 3.0, -0.5),
+            acceleration: DVec3::new(10.0, -4.0, 6.0),
+            ..OrientationKalman::new(NoiseModel { decay, ..BELIEF })
+        };
+        // Magnus' third term is of order |rate|^2 |acceleration| dt^4 / 240: below 1e-4 rad at 100 ms.
+        assert!(rotation::angle_deg(filter.extrapolate(0.1), integrate(&filter, 0.1)) < 0.006);
+        let [by_rate, by_acceleration, _] = filter.propagations.way(0.1);
+        let without = rotation::exp(filter.rate * by_rate + filter.acceleration * by_acceleration) * filter.orientation;
+        let missing = rotation::angle_deg(without, integrate(&filter, 0.1));
+        assert!(missing > 0.04, "the second term is needed: {missing}");
+    }
 }
 
 /// Returns the derivative of the predicted state by the current state (the matrix F), from finite differences.
@@ -64,8 +71,14 @@ fn jacobian(filter: &OrientationKalman, dt: f64) -> Dense<9> {
         }
         let change = rotation::difference(end, moved.extrapolate(dt)) / step;
         (0..3).for_each(|row| f[row][column] = change[row]);
-        if column >= 6 {
-            f[column - 3][column] = dt;
+        let step = filter.propagations.over(dt).step;
+        match column / 3 {
+            0 => {}
+            1 => f[column][column] = step.y_axis.y,
+            _ => {
+                f[column - 3][column] = step.z_axis.y;
+                f[column][column] = step.z_axis.z;
+            }
         }
     }
     f
@@ -73,11 +86,13 @@ fn jacobian(filter: &OrientationKalman, dt: f64) -> Dense<9> {
 
 #[test]
 fn the_covariance_grows_by_the_jacobian_of_the_propagation() {
-    let filter = turning();
-    for dt in [1e-4, 1.0 / 120.0, 0.05] {
+    for (dt, decay) in
+        [1e-4, 1.0 / 120.0, 0.05].into_iter().flat_map(|dt| [Decay::NONE, DECAY].map(|decay| (dt, decay)))
+    {
+        let filter = OrientationKalman { propagations: Propagations::of(decay), ..turning() };
         let f = jacobian(&filter, dt);
         let mut q = [[0.0; 9]; 9];
-        for (i, entry) in white_jerk(dt).to_cols_array().into_iter().enumerate() {
+        for (i, entry) in Propagation::over(dt, decay).growth.to_cols_array().into_iter().enumerate() {
             (0..3).for_each(|axis| q[i % 3 * 3 + axis][i / 3 * 3 + axis] = entry);
         }
         let moved = product(&product(&f, &dense(&filter.covariance)), &transposed(&f));
@@ -120,8 +135,10 @@ proptest! {
         steps in prop::collection::vec((-4.3..-0.7f64, -0.2..0.2f64, -0.2..0.2f64), 1..100),
         noise in -10.0..-2.0f64,
         jerk in 0.0..6.0f64,
+        decays in (0.0..1e3, 0.0..1e3),
     ) {
-        let belief = NoiseModel { measurement: 10f64.powf(noise), jerk: 10f64.powf(jerk), start: (4.0, 400.0) };
+        let decay = Decay { velocity: decays.0, acceleration: decays.1 };
+        let belief = NoiseModel { measurement: 10f64.powf(noise), jerk: 10f64.powf(jerk), decay, ..BELIEF };
         let mut filter = OrientationKalman::new(belief);
         let mut t_ps = 0;
         let mut q = DQuat::IDENTITY;
