@@ -77,7 +77,7 @@ pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<
         // Both pipelines are measured with the messages of their own protocol.
         match of {
             CodeUse::Pphigs => slave(&mut rig, of, &view, &mut traffic),
-            CodeUse::Slats | CodeUse::SlatsLit => field(&mut rig, of, &view, &mut traffic),
+            _ => field(&mut rig, of, &view, &mut traffic),
         }
         .map_err(|error| ExperimentError::Scene(error.to_string()))?;
         if number == 0 {

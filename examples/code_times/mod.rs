@@ -127,6 +127,7 @@ fn picture(of: CodeUse) -> Picture {
     let (viewport, shading, binning) = match of {
         CodeUse::Pphigs => (Viewport::FRAME, Shading::Phong, RegionBinning::Touched),
         CodeUse::Slats => (Viewport::field(FieldParity::Even), Shading::Precomputed, RegionBinning::All),
+        CodeUse::SlatsTouched => (Viewport::field(FieldParity::Even), Shading::Precomputed, RegionBinning::Touched),
         CodeUse::SlatsLit => (Viewport::field(FieldParity::Even), Shading::Gouraud, RegionBinning::All),
     };
     Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: false }
@@ -137,14 +138,14 @@ fn picture(of: CodeUse) -> Picture {
 const fn eyes_of_a_pass(of: CodeUse) -> &'static [&'static [usize]] {
     match of {
         CodeUse::Pphigs => &[&[0], &[1]],
-        CodeUse::Slats | CodeUse::SlatsLit => &[&[0, 1]],
+        CodeUse::Slats | CodeUse::SlatsTouched | CodeUse::SlatsLit => &[&[0, 1]],
     }
 }
 
 fn parts(of: CodeUse, share: &Share) -> Vec<Share> {
     match of {
         CodeUse::Pphigs => vec![share.clone()],
-        CodeUse::Slats | CodeUse::SlatsLit => share.clumps(CLUMP).take(CLUMPS).collect(),
+        _ => share.clumps(CLUMP).take(CLUMPS).collect(),
     }
 }
 
@@ -201,8 +202,8 @@ impl CodeTimes {
         // Clipped triangles are counted separately, so their time is subtracted here.
         let of_clipper = self.triangle_ns + self.guard_ns;
         let uncut = |sample: &Sample| [sample[0], sample[2], sample[3] - of_clipper * sample[1]];
-        // Only PPHIGS bins triangles by region; Slats sends every clump to all regions.
-        if of == CodeUse::Pphigs {
+        // Only programs with bins by region have times of entries.
+        if picture(of).binning == RegionBinning::Touched {
             self.entry_ns = solve(scenes.iter().flatten().map(uncut).map(|[uncut, n, ns]| ([n, uncut], ns)));
         }
         let entry_ns = self.entry_ns;

@@ -77,15 +77,17 @@ struct Ports<const N: usize> {
 /// Copies the regions of all renderers to the frame buffers. Each copy takes `region` nanoseconds.
 ///
 /// The renderer that is free first copies first, and for equal times the renderer with the lower index. While this
-/// order is equal on all machines, the machines are computed together.
+/// order is equal on all machines, the machines are computed together. `free` has the times at which the two ports are
+/// free, before these copies and then after them.
 #[inline(always)]
 pub(super) fn make<const N: usize>(
     arrays: &mut [Array<N>],
     queues: &[Queue; MAX_RENDERERS],
     region: Times<N>,
+    free: &mut [Times<N>; 2],
 ) -> [CopyTimes; N] {
     let mut left = *queues;
-    let mut ports = Ports::new();
+    let mut ports = Ports::new(*free);
     // While all configurations agree on the first renderer, copy for all lanes at once.
     while let Some(first) = first_of_all(arrays, &left) {
         let to_right = left[first].0 & Queue::RIGHT != 0;
@@ -94,6 +96,7 @@ pub(super) fn make<const N: usize>(
     }
     // Then copy for each lane in its own order.
     ports.copy_apart(arrays, &left, region);
+    *free = ports.free;
     std::array::from_fn(|i| CopyTimes { begin_ns: ports.begins.0[i], end_ns: ports.ends.0[i] })
 }
 
@@ -120,8 +123,8 @@ fn first_of_all<const N: usize>(arrays: &[Array<N>], left: &[Queue; MAX_RENDERER
 }
 
 impl<const N: usize> Ports<N> {
-    const fn new() -> Self {
-        Self { free: [Times::all(f64::MIN); 2], begins: Times::all(f64::INFINITY), ends: Times::all(f64::MIN) }
+    const fn new(free: [Times<N>; 2]) -> Self {
+        Self { free, begins: Times::all(f64::INFINITY), ends: Times::all(f64::MIN) }
     }
 
     /// Copies a region from the time `ready` on, or later when the port becomes free. Returns the end of the copy.

@@ -27,9 +27,9 @@ impl SlatsModel {
         let models = std::array::from_ref(self);
         let mut arrays = [Array::idle(); MAX_RENDERERS];
         let arrays = &mut arrays[..self.renderers];
-        begin(models, arrays);
+        let free = begin(models, arrays);
         let done = senders::render(self, arrays, clumps).map(Times::all);
-        let [times] = end(models, arrays, done);
+        let [times] = end(models, arrays, done, free);
         times
     }
 
@@ -68,18 +68,21 @@ fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTri
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
     let mut arrays = [Array::idle(); MAX_RENDERERS];
     let arrays = &mut arrays[..models[0].renderers];
-    begin(models, arrays);
+    let free = begin(models, arrays);
     let done = clumps::render(models, arrays, triangles, each);
-    end(models, arrays, done)
+    end(models, arrays, done, free)
 }
 
-/// With split copies, makes the renderers first copy the lower half of the previous field.
+/// With split copies, makes the renderers first copy the lower half of the previous field. Returns the times from which
+/// the ports of the two frame buffers are free.
 #[inline(always)]
-fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
+fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) -> [Times<N>; 2] {
+    let mut free = [Times::all(f64::MIN); 2];
     if models[0].split {
         let of_bottom = models[0].layout(|region| region >= REGIONS / 2);
-        copy(models, arrays, Times::all(0.0), &of_bottom);
+        copy(models, arrays, Times::all(0.0), &of_bottom, &mut free);
     }
+    free
 }
 
 /// Computes the copies of a field. `rendered` is the time at which the renderers have accepted all triangles. `cpu` is
@@ -89,6 +92,7 @@ fn end<const N: usize>(
     models: &[SlatsModel; N],
     arrays: &mut [Array<N>],
     [rendered, cpu]: [Times<N>; 2],
+    mut free: [Times<N>; 2],
 ) -> [FieldTimes; N] {
     let is_split = models[0].split;
     let of_top = models[0].layout(|region| !is_split || region < REGIONS / 2);
@@ -96,11 +100,11 @@ fn end<const N: usize>(
     let message = Times::each(|i| models[i].message_ns);
     // The copy commands are prepared while the clumps are sent, and follow them.
     let ordered = rendered.later(cpu + message);
-    let top = copy(models, arrays, ordered, &of_top);
+    let top = copy(models, arrays, ordered, &of_top, &mut free);
     // No closure here: a closure that is not inlined would lack the vector instructions.
     let bottom = if is_split {
         let retrace = Times::each(|i| models[i].field_ns);
-        Some(copy(models, arrays, retrace.later(ordered + message), &of_bottom))
+        Some(copy(models, arrays, retrace.later(ordered + message), &of_bottom, &mut free))
     } else {
         None
     };
@@ -115,6 +119,7 @@ fn copy<const N: usize>(
     arrays: &mut [Array<N>],
     from: Times<N>,
     queues: &[Queue; MAX_RENDERERS],
+    free: &mut [Times<N>; 2],
 ) -> [CopyTimes; N] {
     // A message with two copies has 22 words: SelectRegion and CopyRegion take 11 words per region.
     let each = Times::<N>::each(|i| models[i].overhead_ns + 2.0 * 11.0 * models[i].word_ns);
@@ -122,7 +127,7 @@ fn copy<const N: usize>(
         let commanded = from + each * Times::all((renderer + 1) as f64);
         array.free = commanded.later(array.free);
     }
-    copies::make(arrays, queues, Times::each(|i| models[i].region_ns))
+    copies::make(arrays, queues, Times::each(|i| models[i].region_ns), free)
 }
 
 pub(super) const CLOSED_FORM: ClosedForm =

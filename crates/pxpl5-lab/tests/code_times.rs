@@ -26,6 +26,8 @@ fn the_table_of_code_times_equals_the_simulated_code() {
         (CodeVersion::Scheduled, CodeUse::Pphigs, papers.of_scheduled_phong()),
         (CodeVersion::Compiled, CodeUse::Slats, papers.of_compiled_precomputed()),
         (CodeVersion::Scheduled, CodeUse::Slats, papers.of_scheduled_precomputed()),
+        (CodeVersion::Compiled, CodeUse::SlatsTouched, papers.of_compiled_touched()),
+        (CodeVersion::Scheduled, CodeUse::SlatsTouched, papers.of_scheduled_touched()),
         (CodeVersion::Compiled, CodeUse::SlatsLit, papers.of_compiled_gouraud()),
         (CodeVersion::Scheduled, CodeUse::SlatsLit, papers.of_scheduled_gouraud()),
     ];

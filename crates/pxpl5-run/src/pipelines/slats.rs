@@ -167,13 +167,17 @@ impl Pipeline for Slats {
     }
 
     fn code_use(&self) -> CodeUse {
-        match self.lighting {
-            SlatsLighting::Precomputed => CodeUse::Slats,
-            SlatsLighting::OnGp => CodeUse::SlatsLit,
+        match (self.lighting, self.binning) {
+            (SlatsLighting::Precomputed, RegionBinning::All) => CodeUse::Slats,
+            (SlatsLighting::Precomputed, RegionBinning::Touched) => CodeUse::SlatsTouched,
+            (SlatsLighting::OnGp, _) => CodeUse::SlatsLit,
         }
     }
 
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
+        // A machine with times of code has those of the program that draws this variant.
+        let has_times_of_code = config.gp == GpTiming::SLATS_1994;
+        let config = if has_times_of_code { config.with_times_of_code(self.code_use()) } else { config };
         let Some(code) = self.code else { return config };
         let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
         let gp = GpTiming { triangle_ns, sphere_ns, bin_entry_ns, ..config.gp };
