@@ -20,7 +20,7 @@ use pxpl5::compare::{
     RecordedLength, RowChoice, UntilPrecise, edge_pictures,
 };
 use pxpl5::views::png_bytes;
-use pxpl5::{ExperimentFile, MachineConfig};
+use pxpl5::{ExperimentFile, MachineConfig, StopFlag};
 use std::path::PathBuf;
 
 /// Arguments of `pxpl5 compare`.
@@ -128,7 +128,8 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let store = args.out.as_ref().map(rows_of).transpose()?;
     let found = store.as_ref().map_or(0, CompareStore::found);
     let progress = CompareProgress::new(found, query.rows()?.len(), args.quiet);
-    let comparison = query.run_into(store.as_ref(), |done, of| progress.finished(done, of), |row| progress.ended(row));
+    let (finished, ended) = (|done, of| progress.finished(done, of), |row: &ComparisonRow| progress.ended(row));
+    let comparison = query.run_into(store.as_ref(), &StopFlag::default(), finished, ended);
     progress.clear();
     let comparison = comparison?;
     terminal::warn(&comparison.warnings, args.quiet);
