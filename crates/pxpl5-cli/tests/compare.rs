@@ -63,9 +63,9 @@ fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up
 #[test]
 fn computing_causes_and_predictors_changes_no_other_number_of_a_comparison() {
     let shared =
-        ["--scene", "full-screen:2", "--fields", "24", "--seeds", "2", "--only", "slats,vdrt,jitp-field,ideal"];
+        ["--scene", "full-screen:2", "--fields", "24", "--seeds", "1", "--only", "slats,vdrt,jitp-field,ideal"];
     let given = |more: &[&str]| {
-        let mut all = json(&compare(&[shared.as_slice(), more, &["--json"]].concat()));
+        let mut all = json(&compare(&[shared.as_slice(), more, &["--no-limits", "--json"]].concat()));
         let rows = all["pipelines"].as_array_mut().expect("a list");
         let lists = rows.iter_mut().map(|row| {
             row["host_seconds"] = Value::Null;
@@ -259,19 +259,6 @@ fn values_that_were_not_measured_are_null_in_json_and_empty_in_the_table() {
             assert_eq!(cell(line, count).parse().ok(), row[count].as_u64(), "{name} {count}");
         }
         assert_eq!(cell(line, "error.mean_px.mean").parse().ok(), row["error"]["mean_px"]["mean"].as_f64(), "{name}");
-    }
-    // A row without numbers has no point in the chart.
-    let drawing = out.join("plot.svg");
-    let plot = pxpl5("plot", &[path, "--x", "pipeline", "--y", "not_shown", "--out", drawing.to_str().expect("plain")]);
-    assert!(plot.status.success(), "{}", String::from_utf8_lossy(&plot.stderr));
-    let points = std::fs::read_to_string(out.join("plot.csv")).expect("written");
-    let mut lines = points.lines();
-    let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
-    let place = |name: &str| names.iter().position(|column| *column == name).expect("a column");
-    for line in lines {
-        let cells: Vec<&str> = line.split(',').collect();
-        let has_count = row(&json, cells[place("pipeline")])["not_shown"].is_u64();
-        assert_eq!((cells[place("mean")].is_empty(), cells[place("n")] == "0"), (!has_count, !has_count), "{line}");
     }
     let _ = std::fs::remove_dir_all(&out);
 }
