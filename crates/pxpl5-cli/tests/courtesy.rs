@@ -46,16 +46,13 @@ fn times_of_the_timing_table_at_the_cycle_level_cause_a_warning() {
     };
     let pipeline = ["arp-cells-warp"];
     assert_eq!([run(&pipeline, "transaction"), run(&pipeline, "cycle")], [0, 1], "{pipeline:?}");
-    let by_code: [&[&str]; 9] = [
+    let by_code: [&[&str]; 6] = [
         &["jitp-field"],
         // With strips of one line, no strip is drawn in time by executed code.
-        &["jitp-scanline", "--set", "strip_rows=32"],
         &["jitp-dual-view", "--set", "strip_rows=32"],
         &["frameless"],
-        &["rendering-control"],
         &["slats"],
         &["rendering-control", "--display", "hires"],
-        &["arp-full"],
         &["arp-cells"],
     ];
     for pipeline in by_code {
