@@ -4,7 +4,7 @@ use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Study;
 use crate::output::OutputFile;
-use crate::terminal::{advance, print, progress};
+use crate::terminal::{print, progress};
 use clap::Args;
 use pxpl5::Level;
 use pxpl5::figures::{
@@ -71,19 +71,19 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     let bar = progress(0, "figures", false);
     let print_row = |table, row: &FigureRow| {
         if !has_intervals && printed.is_ok() {
-            printed = bar.suspend(|| printer.row(table, row));
+            printed = bar.above(|| printer.row(table, row));
         }
     };
-    let figures = run_all_in_order(&bench, |done, of| advance(&bar, done, of), print_row).map_err(CliError::failure);
-    bar.finish_and_clear();
+    let figures = run_all_in_order(&bench, |done, of| bar.advance(done, of), print_row).map_err(CliError::failure);
+    bar.clear();
     let figures = figures?;
     printed?;
     chart_file.map(|file| file.write(chart(&figures.rows).svg().as_bytes())).transpose()?;
     // Only the document and the JSON output have the figures under other assumptions.
     if is_document {
         let bar = progress(0, "figures under other assumptions", false);
-        let alternatives = alternatives_with(&bench, |done, of| advance(&bar, done, of)).map_err(CliError::failure);
-        bar.finish_and_clear();
+        let alternatives = alternatives_with(&bench, |done, of| bar.advance(done, of)).map_err(CliError::failure);
+        bar.clear();
         let alternatives = alternatives?;
         let document = markdown(&figures, &alternatives);
         file.map(|file| file.write(document.as_bytes())).transpose()?;

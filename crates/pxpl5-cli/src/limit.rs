@@ -6,7 +6,7 @@ use crate::estimate::RunWork;
 use crate::numbers::{count_of, were, whole};
 use crate::options::{PipelineOptions, option_of, registry};
 use crate::scenes;
-use crate::terminal::{advance, print, progress, warn};
+use crate::terminal::{print, progress, warn};
 use clap::Args;
 use pxpl5::limit::{CEILING, Limit, LimitQuery, Model, OverLimit, OverQuery, USUAL_SIZES, USUAL_VALUES};
 use pxpl5::{ExperimentFile, Goal, Level, LimitCriterion, Plan, StopFlag, TestScene};
@@ -94,16 +94,16 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
     }
     let query = args.query()?;
     let bar = progress(USUAL_SIZES, "sizes", args.quiet);
-    let limit = query.search_with(|tried, of| advance(&bar, tried, of))?;
-    bar.finish_and_clear();
+    let limit = query.search_with(|tried, of| bar.advance(tried, of))?;
+    bar.clear();
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
 
 fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
     let (query, plan) = args.over_query(key)?;
     let bar = progress(USUAL_VALUES, "values", args.quiet);
-    let limit = query.search(|tried, of| advance(&bar, tried, of)).map_err(CliError::failure)?;
-    bar.finish_and_clear();
+    let limit = query.search(|tried, of| bar.advance(tried, of)).map_err(CliError::failure)?;
+    bar.clear();
     print(&if args.json { over_json(&query, &plan, &limit)? } else { over_text(&query, &plan, &limit) })
 }
 

@@ -116,11 +116,10 @@ impl SweepFolderArgs {
         install_interrupt_handler(self.again(command))?;
         let total = self.shard.share_of(sweep.space().points());
         let bar = progress(total, "points", self.quiet);
-        bar.set_position(store.finished(self.shard));
-        bar.reset_eta();
+        bar.begin_at(store.finished(self.shard));
         let options = RunOptions { shard: self.shard, threads: command.parallel };
-        pxpl5::sweep::run(sweep, &mut store, options, |_| bar.inc(1))?;
-        bar.finish_and_clear();
+        pxpl5::sweep::run(sweep, &mut store, options, |_| bar.add_one())?;
+        bar.clear();
         // A sweep succeeds if at least one point could be simulated.
         let failed = report_failures(&store, self.shard, total, command.verb)?;
         if !self.quiet {

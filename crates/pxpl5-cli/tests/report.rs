@@ -28,17 +28,6 @@ fn a_report_page_contains_all_files_of_its_folder_and_loads_nothing_else() {
 }
 
 #[test]
-fn a_report_of_the_demo_has_a_section_for_each_run() {
-    let folder = Folder::new("report-demo");
-    assert!(folder.run(&["demo", "--quiet"]).status.success());
-    assert!(folder.run(&["report", "out", "--quiet", "--write", "page.html"]).status.success());
-    let page = std::fs::read_to_string(folder.0.join("page.html")).expect("written");
-    assert_eq!(page.matches("<h2>").count(), 3);
-    assert_eq!(page.matches("data:image/png;base64,").count(), 6);
-    assert!(page.contains("figure 9, TR94, I3D95"));
-}
-
-#[test]
 fn a_folder_without_a_report_is_refused_with_what_was_expected() {
     let folder = Folder::new("report-none");
     for (contents, expected) in [(None, "report.json"), (Some("{\"schema\""), "EOF"), (Some("{}"), "schema missing")] {

@@ -6,7 +6,7 @@ use super::settings::WalkArgs;
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
-use crate::terminal::{advance, answer, json_text, print_error, progress};
+use crate::terminal::{answer, json_text, print_error, progress};
 use clap::Args;
 use pxpl5::arp::{ArpComparison, ComparedRow, compare, variant_count};
 use pxpl5::views::results::csv_table;
@@ -39,8 +39,8 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     args.walk.admit(&plan, &scene, variant_count())?;
     // Walk once for each variant, then write files before anything is printed.
     let bar = progress(variant_count(), "walks", args.walk.quiet);
-    let comparison = compare(&scene, &plan, |done, of| advance(&bar, done, of));
-    bar.finish_and_clear();
+    let comparison = compare(&scene, &plan, |done, of| bar.advance(done, of));
+    bar.clear();
     let json = json_text(&comparison)?;
     if let Some(mut folder) = folder {
         folder.put("comparison.json", json.as_bytes())?;
