@@ -1,13 +1,24 @@
 //! Printer of results to standard output and of messages to standard error.
 
 use crate::error::CliError;
+use crate::interrupt;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
+use std::borrow::Cow;
 use std::io::{ErrorKind, IsTerminal, Write};
 
 /// Prints a result to standard output. Returns no error if the pipe is closed (`| head`).
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
-    print_bytes(text.as_bytes())
+    print_bytes(printable(text).as_bytes())
+}
+
+/// Replaces control characters by their escapes, such as `\u{1b}`. Names in files could otherwise change the terminal.
+fn printable(text: &str) -> Cow<'_, str> {
+    let is_plain = |c: char| !c.is_control() || matches!(c, '\n' | '\t' | '\r');
+    if text.chars().all(is_plain) {
+        return Cow::Borrowed(text);
+    }
+    text.chars().map(|c| if is_plain(c) { c.to_string() } else { c.escape_default().to_string() }).collect()
 }
 
 /// Formats a value as JSON for readers, with a line end.
@@ -36,7 +47,7 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
 
 /// Prints a message to standard error. Errors are ignored, because no other channel is left to report them.
 pub(crate) fn print_error(text: &str) {
-    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+    let _ = std::io::stderr().lock().write_all(printable(text).as_bytes());
 }
 
 pub(crate) fn warn(warnings: &[String], quiet: bool) {
@@ -56,5 +67,7 @@ pub(crate) fn progress(total: u64, what: &str, quiet: bool) -> ProgressBar {
     let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
     let bar = ProgressBar::with_draw_target(Some(total), target).with_message(what.to_owned());
     let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len}, {eta} to go");
-    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    interrupt::follows(&bar);
+    bar
 }
