@@ -106,6 +106,33 @@ fn ctrl_c_of_a_sweep_prints_a_command_that_resumes_the_sweep() {
 }
 
 #[test]
+fn an_interrupted_search_ends_with_130_and_says_how_far_it_came() {
+    let folder = Folder::new("interrupted-search");
+    let search = ["limit", "--pipeline", "slats", "--fields", "3000", "--level", "cycle"];
+    let child = command(&search).current_dir(&folder.0).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let child = child.expect("the command starts");
+    // The handler is installed before the command reads its settings.
+    std::thread::sleep(Duration::from_secs(2));
+    let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupt.expect("there is a kill").success());
+    let output = child.wait_with_output().expect("it ends");
+    let text = err(&output);
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{text}");
+    assert!(text.contains("interrupted") && text.contains("nothing was written"), "{text}");
+}
+
+#[test]
+fn a_run_whose_pictures_all_belong_to_the_warm_up_fails_with_a_number_of_fields() {
+    let folder = Folder::new("warm-up");
+    let run = ["run", "--pipeline", "slats", "--scene", "mig", "--triangles", "10", "--pixels", "off", "--fields"];
+    let output = folder.run(&with(&run, &["8"]));
+    assert_eq!(output.status.code(), Some(1), "{}", err(&output));
+    let text = err(&output);
+    let needed = text.split("simulate about ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a number");
+    assert!(folder.run(&with(&run, &[needed])).status.success(), "{text}");
+}
+
+#[test]
 fn machines_lists_the_pipelines_of_each_machine() {
     let folder = Folder::new("machines");
     let listed = json(&folder.run(&["machines", "--json"]));
