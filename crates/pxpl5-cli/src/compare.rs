@@ -8,6 +8,7 @@ mod table;
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::RunWork;
+use crate::interrupt;
 use crate::numbers::{confidence, count_of, whole};
 use crate::output::OutputFolder;
 use crate::run::MIN_COVERED;
@@ -127,6 +128,9 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let rows_of = |out: &PathBuf| query.open_store(&out.join(ROWS_FOLDER), args.resume);
     let store = args.out.as_ref().map(rows_of).transpose()?;
     let found = store.as_ref().map_or(0, CompareStore::found);
+    if store.is_some() {
+        interrupt::keeps("the finished rows are kept; the same command with --resume continues".to_owned());
+    }
     let progress = CompareProgress::new(found, query.rows()?.len(), args.quiet);
     let (finished, ended) = (|done, of| progress.finished(done, of), |row: &ComparisonRow| progress.ended(row));
     let comparison = query.run_into(store.as_ref(), &StopFlag::default(), finished, ended);

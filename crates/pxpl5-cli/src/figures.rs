@@ -3,6 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Study;
+use crate::interrupt;
 use crate::output::OutputFile;
 use crate::terminal::{print, progress};
 use clap::Args;
@@ -68,6 +69,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     // Rows are printed as they come, unless the output needs their intervals or is JSON.
     let mut printer = RowPrinter::default();
     let mut printed = Ok(());
+    interrupt::keeps("nothing was written, and the rows that were printed are complete".to_owned());
     let bar = progress(0, "figures", false);
     let print_row = |table, row: &FigureRow| {
         if !has_intervals && printed.is_ok() {

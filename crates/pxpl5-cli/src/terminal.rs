@@ -1,15 +1,26 @@
 //! Printer of results to standard output and of messages to standard error.
 
 use crate::error::CliError;
+use crate::interrupt;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
+use std::borrow::Cow;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Prints a result to standard output. Returns no error if the pipe is closed (`| head`).
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
-    print_bytes(text.as_bytes())
+    print_bytes(printable(text).as_bytes())
+}
+
+/// Replaces control characters by their escapes, such as `\u{1b}`. Names in files could otherwise change the terminal.
+fn printable(text: &str) -> Cow<'_, str> {
+    let is_plain = |c: char| !c.is_control() || matches!(c, '\n' | '\t' | '\r');
+    if text.chars().all(is_plain) {
+        return Cow::Borrowed(text);
+    }
+    text.chars().map(|c| if is_plain(c) { c.to_string() } else { c.escape_default().to_string() }).collect()
 }
 
 /// Formats a value as JSON for readers, with a line end.
@@ -38,7 +49,7 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
 
 /// Prints a message to standard error. Errors are ignored, because no other channel is left to report them.
 pub(crate) fn print_error(text: &str) {
-    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+    let _ = std::io::stderr().lock().write_all(printable(text).as_bytes());
 }
 
 pub(crate) fn warn(warnings: &[String], quiet: bool) {
@@ -69,6 +80,7 @@ pub(crate) fn progress(total: u64, what: &'static str, is_quiet: bool) -> Progre
     let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len}, {eta} to go");
     let bar = ProgressBar::with_draw_target(Some(total), target).with_message(what);
     let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    interrupt::follows(&bar);
     Progress { bar, what, is_quiet, begun: Instant::now(), found: AtomicU64::new(0), told: AtomicU64::new(0) }
 }
 

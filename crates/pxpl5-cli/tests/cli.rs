@@ -286,9 +286,9 @@ fn bad_model_files_are_refused_with_file_and_place() {
         let folder = Folder::new(name);
         let path = folder.file(name, contents);
         let path = path.to_str().expect("text");
-        refused(&["run", "--pipeline", "slats", "--scene", path, "--out", "out"], 1, &[name, says]);
+        refused(&["run", "--pipeline", "slats", "--scene", path, "--out", "out"], 2, &[name, says]);
     }
-    refused(&["run", "--pipeline", "slats", "--scene", "missing.ply"], 1, &["missing.ply", "readable file"]);
+    refused(&["run", "--pipeline", "slats", "--scene", "missing.ply"], 2, &["missing.ply", "readable file"]);
     let folder = Folder::new("good");
     let good = folder.file("good.ply", whole);
     let report = json(&folder.run(&[
@@ -339,7 +339,7 @@ fn an_experiment_file_reaches_every_setting_and_its_errors_name_the_line() {
         let path = folder.file("bad.toml", text);
         refused(&["run", path.to_str().expect("text")], 2, &["bad.toml", line, says]);
     }
-    refused(&["run", "missing.toml"], 1, &["missing.toml", "readable experiment file"]);
+    refused(&["run", "missing.toml"], 2, &["missing.toml", "readable experiment file"]);
 }
 
 #[test]

@@ -103,6 +103,21 @@ fn ctrl_c_of_a_sweep_prints_a_command_that_resumes_the_sweep() {
 }
 
 #[test]
+fn an_interrupted_search_ends_with_130_and_says_how_far_it_came() {
+    let folder = Folder::new("interrupted-search");
+    let search = ["limit", "--pipeline", "slats", "--fields", "3000", "--level", "cycle"];
+    let child = command(&search).current_dir(&folder.0).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let child = child.expect("the command starts");
+    // The handler is installed before the command reads its settings.
+    std::thread::sleep(Duration::from_secs(2));
+    let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupt.expect("there is a kill").success());
+    let output = child.wait_with_output().expect("it ends");
+    let text = err(&output);
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{text}");
+    assert!(text.contains("interrupted") && text.contains("nothing was written"), "{text}");
+}
+
 fn without_fit_a_model_stays_where_its_file_places_it() {
     let folder = Folder::new("no-fit");
     folder.file("m.obj", "v -1 -1 -5\nv 1 -1 -5\nv 0 1 -5\nf 1 2 3\n");

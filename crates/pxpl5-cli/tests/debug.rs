@@ -133,7 +133,7 @@ fn the_debugger_executes_a_script_file_and_writes_pictures() {
     assert!(output.status.success(), "{}", err(&output));
     assert_eq!(folder.names(), ["ideal.png", "left.png", "session.txt"]);
     let missing = folder.run(&[&SLATS[..], &["--do-file", "none.txt"]].concat());
-    assert_eq!(missing.status.code(), Some(1));
+    assert_eq!(missing.status.code(), Some(2));
     assert!(err(&missing).contains("none.txt"));
 }
 

@@ -35,7 +35,7 @@ fn a_folder_without_a_report_is_refused_with_what_was_expected() {
             folder.file("report.json", text);
         }
         let output = folder.run(&["report", "."]);
-        assert_eq!(output.status.code(), Some(1));
+        assert_eq!(output.status.code(), Some(2));
         assert!(err(&output).contains(expected) && err(&output).contains("run --out"), "{}", err(&output));
         assert!(!folder.names().contains(&"report.html".to_owned()));
     }
@@ -138,7 +138,7 @@ fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
     folder.file("results/manifest.json", &manifest);
     folder.file("results/report.json", "{}");
     let output = folder.run(&["report", "results"]);
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(2));
     assert!(err(&output).contains("report.json") && err(&output).contains("other contents"), "{}", err(&output));
 }
 

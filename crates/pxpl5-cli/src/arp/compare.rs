@@ -36,7 +36,7 @@ pub(super) struct CompareArgs {
 pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp compare")).transpose()?;
     let (scene, plan) = args.walk.gather()?;
-    args.walk.admit(&plan, &scene, variant_count())?;
+    args.walk.admit(&plan, &scene, variant_count(), false)?;
     // Walk once for each variant, then write files before anything is printed.
     let bar = progress(variant_count(), "walks", args.walk.quiet);
     let comparison = compare(&scene, &plan, |done, of| bar.advance(done, of));

@@ -42,7 +42,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     // Open the output first, so that a bad path fails before the walk.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp run")).transpose()?;
     let (scene, plan) = args.walk.gather()?;
-    args.walk.admit(&plan, &scene, 1)?;
+    args.walk.admit(&plan, &scene, 1, args.out.is_some())?;
     let bar = progress(plan.walk.frames, "frames", args.walk.quiet);
     let outcome = WalkOutcome::of(&scene, &plan, |done, of| bar.advance(done, of));
     bar.clear();
