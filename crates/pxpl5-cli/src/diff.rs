@@ -68,8 +68,7 @@ fn report(path: &Path) -> Result<Value, CliError> {
         std::fs::read(path).map_err(|error| error.to_string())
     };
     let bytes = read.map_err(|error| CliError::usage(format!("{name}: {error}; expected a {REPORT_FILE}")))?;
-    let report: Value =
-        serde_json::from_slice(&bytes).map_err(|error| CliError::usage(format!("{name}: {error}")))?;
+    let report: Value = serde_json::from_slice(&bytes).map_err(|error| CliError::usage(format!("{name}: {error}")))?;
     match report["schema"].as_str() {
         Some(schema) if schema.starts_with("pxpl5-report/") => Ok(report),
         found => Err(CliError::usage(format!(

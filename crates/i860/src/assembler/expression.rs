@@ -130,7 +130,9 @@ fn number(word: &str) -> Result<i64, String> {
         i64::from_str_radix(digits, 2)
     } else if lower.len() > 1 && lower.starts_with('0') {
         // Other assemblers read such a number as octal, so ten would be a silent surprise.
-        return Err(format!("`{word}` has a leading zero: write it without the zero, or 0x before a hexadecimal number"));
+        return Err(format!(
+            "`{word}` has a leading zero: write it without the zero, or 0x before a hexadecimal number"
+        ));
     } else {
         lower.parse()
     };

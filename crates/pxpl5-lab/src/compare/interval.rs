@@ -106,6 +106,8 @@ impl MeanInterval {
     /// no interval, because its parts share errors that last: a bias, or the errors of a slow filter.
     pub(super) fn of_one_motion(values: &[f64], series: &[f64], is_noisy: bool, confidence: f64) -> Self {
         let over_seeds = Self::of_either_sign(values, confidence);
+        // Equal seeds have no random errors to show.
+        let over_seeds = if over_seeds.width() == Some(0.0) { over_seeds.without_interval() } else { over_seeds };
         if values.len() < 2 && is_noisy || series.len() < MIN_FIELDS {
             return over_seeds;
         }

@@ -113,7 +113,8 @@ pub(super) struct Scan {
 
 impl Scan {
     pub(super) fn open(path: &Path) -> Result<Self, FileError> {
-        let file = File::open(path).map_err(|error| FileError::unreadable(path.display(), "a readable file of rows", error))?;
+        let file = File::open(path)
+            .map_err(|error| FileError::unreadable(path.display(), "a readable file of rows", error))?;
         let (file, text) = (BufReader::new(file), Vec::new());
         let mut scan = Self { path: path.to_owned(), file, text, line: 0, points: 0, header: None, whole_bytes: 0 };
         if scan.read_line()? {
