@@ -319,7 +319,7 @@ impl CompareQuery {
         }
         if self.until.is_some() && !self.shared.has_motion_for_each_seed()? {
             return Err(SettingError::combination(
-                "this motion is the same for all seeds: its interval is a bootstrap over time, which more seeds do not make narrower; \
+                "this motion is the same for all seeds: its interval also shows how the motion varies, which more seeds do not make narrower; \
                  use head.motion = synthetic or a longer recording, or compare without a precision",
             )
             .into());
