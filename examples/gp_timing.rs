@@ -578,9 +578,9 @@ the scheduled loops fit into its 4 KB and unoptimised code does not.
 
 ## The kernels
 
-Three i860 programs (*kernels*, in crates/pxpl5-geometry/kernels), and a fourth for Slats, read a triangle of the display list. They
-write the words of a renderer command, and an entry into the bin of each region that the triangle touches.
-Each of them
+Three i860 programs (*kernels*, in crates/pxpl5-geometry/kernels), and a fourth for Slats, read a triangle of the
+display list. They write the words of a renderer command, and an entry into the bin of each region that the triangle
+touches. Each of them
 
 - transforms three corners and tests whether they are inside the guard band,
 

@@ -28,14 +28,14 @@ fn equal_seeds_give_equal_traces_and_different_seeds_different_traces() {
     assert_ne!(hash(&with_mig), hash(&with_mig.clone().seed(2)));
 }
 
-/// Runs a hundred random orders, each with one of the three pipelines. `PXPL5_ALL_CASES=1` runs each order with all
+/// Runs random orders, each with one of the three pipelines. `PXPL5_ALL_CASES=1` runs a hundred orders, each with all
 /// pipelines.
 #[test]
-fn a_hundred_shuffles_of_simultaneous_events_change_nothing() {
+fn no_order_of_simultaneous_events_changes_the_trace() {
     let experiments = pipelines().map(|experiment| experiment.pixels(Pixels::Off));
     let unshuffled = experiments.each_ref().map(hash);
     let all = support::runs_all_cases();
-    (0..100).into_par_iter().for_each(|seed| {
+    (0..support::sample_or_all(36, 100)).into_par_iter().for_each(|seed| {
         for (number, (experiment, expected)) in experiments.iter().zip(&unshuffled).enumerate() {
             if all || seed as usize % experiments.len() == number {
                 assert_eq!(hash(&experiment.clone().shuffle_ties(seed)), *expected, "{seed}");

@@ -120,18 +120,18 @@ fn misses(machine: &str, pipeline: Slats, triangles: usize) -> bool {
 }
 
 #[test]
-fn figure_12_without_the_copy_optimisation_the_limit_is_110_triangles() {
-    // The time of a triangle was fitted to this figure.
-    assert!(!misses("slats", Slats::whole(), 110));
-    assert!(misses("slats", Slats::whole(), 111));
+fn figure_12_without_the_copy_optimisation_the_code_draws_114_triangles_where_110_were_measured() {
+    // The limit is 4 % too high, and nothing was fitted to it.
+    assert!(!misses("slats", Slats::whole(), 114));
+    assert!(misses("slats", Slats::whole(), 115));
 }
 
 #[test]
-fn figure_13_with_the_copy_optimisation_the_model_draws_146_triangles_where_140_were_measured() {
-    // FIXME(accuracy): the limit is 4 % too high, although no number was fitted to it.
+fn figure_13_with_the_copy_optimisation_the_code_draws_158_triangles_where_140_were_measured() {
+    // FIXME(accuracy): the limit is 13 % too high, although no number was fitted to it.
     assert!(!misses("slats", Slats::split(), 140));
-    assert!(!misses("slats", Slats::split(), 146));
-    assert!(misses("slats", Slats::split(), 147));
+    assert!(!misses("slats", Slats::split(), 158));
+    assert!(misses("slats", Slats::split(), 159));
 }
 
 #[test]
@@ -152,12 +152,12 @@ fn first_copy_ms(triangles: usize) -> f64 {
     (begin - video(&outcome).retrace(PeriodNumber(5)).0) as f64 * 1e-9
 }
 
-/// I3D95 prints "about 12.8 ms". The latest possible begin is 16.683 - 5 x 0.78 = 12.78 ms. 146 triangles are the most
-/// that are in time. One more triangle begins later than a renderer's acknowledgement (two messages of 12 us and their
+/// I3D95 prints "about 12.8 ms". The latest possible begin is 16.683 - 5 x 0.78 = 12.78 ms. 158 triangles are the most
+/// that are in time. One more triangle begins later than a renderer's acknowledgement (two messages of 16 us and their
 /// way) allows.
 #[test]
 fn figure_15_the_first_copy_begins_about_12_8_ms_after_the_retrace() {
-    let [most, too_many] = [146, 147].map(first_copy_ms);
+    let [most, too_many] = [158, 159].map(first_copy_ms);
     let latest = 16.683 - 5.0 * 0.78;
     assert!((most / 12.8 - 1.0).abs() < 0.03, "{most} ms");
     assert!(most < latest && too_many > latest - 0.05, "{most} and {too_many} ms, at the latest {latest}");

@@ -7,9 +7,8 @@ use pxpl5::tracking::motion::{Axes, Columns, End};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::{
     Aim, Board, Cause, Code, CodeVersion, CopySchedule, DisplayEntry, Every, Eye, Fingerprint, FinishedRegions,
-    HeadPlace, KeptRecords, Level, Measure, Optimization, PRESETS, PipelineEntry, Pixels, Preset, Provenance,
-    QUANTITIES, Raster, RegionBinning, Registry, Reprojection, Resource, SettingError, SlatsLighting, TestScene,
-    TraceHash, Warp,
+    HeadPlace, KeptRecords, Level, Measure, Optimization, PRESETS, PipelineEntry, Pixels, Provenance, QUANTITIES,
+    Raster, RegionBinning, Registry, Reprojection, Resource, SettingError, SlatsLighting, TestScene, TraceHash, Warp,
 };
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -126,12 +125,4 @@ fn every_choice_of_volumes_is_parsed_as_printed() {
     listed(Strobes::ALL);
     listed(Combine::ALL);
     listed(Rotation::ALL);
-}
-
-#[test]
-fn every_preset_name_gives_a_machine() {
-    let preset: Preset = "slats-1995".parse().expect("listed");
-    assert_eq!((preset.name, preset.to_string().as_str()), ("slats-1995", "slats-1995"));
-    let error = "slats1995".parse::<Preset>().expect_err("not listed");
-    assert_eq!(&*error.nearest, "slats-1995");
 }

@@ -112,13 +112,3 @@ fn a_disabled_optimization_costs_more_events() {
     assert!(after(&slats.clone().without(Optimization::IdleBoards), 3).events() > 10 * with);
     assert!(after(&slats.clone().without(Optimization::Transfers), 3).events() > 10 * with);
 }
-
-#[test]
-fn optimizations_are_found_by_their_names() {
-    for saving in Optimization::ALL {
-        assert_eq!(saving.name().parse(), Ok(saving));
-    }
-    let error = "idleness".parse::<Optimization>().expect_err("no saving");
-    let expected = "expected idle-boards, transfers, empty-regions or repeated-code, found `idleness`";
-    assert_eq!(error.to_string(), expected);
-}

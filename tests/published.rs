@@ -148,15 +148,20 @@ fn twenty_field_regions_take_eleven_region_times_and_ten_field_regions_take_five
 }
 
 #[test]
-fn limits_used_for_fitting_are_reproduced_exactly() {
-    within("12", 110.0, 110.0);
+fn the_limit_used_for_fitting_is_reproduced_exactly() {
     within("14", 100.0, 100.0);
 }
 
 #[test]
-fn the_copy_optimisation_raises_the_limit_by_seven_triangles_more_than_published() {
+fn the_code_of_slats_draws_four_triangles_more_than_published_without_the_copy_optimisation() {
+    // The published value is 110, to which nothing is fitted.
+    within("12", 113.0, 115.0);
+}
+
+#[test]
+fn the_copy_optimisation_raises_the_limit_by_fourteen_triangles_more_than_published() {
     // FIXME(accuracy): the published value is 140.
-    within("13", 146.0, 147.0);
+    within("13", 157.0, 159.0);
 }
 
 #[test]

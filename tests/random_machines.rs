@@ -3,7 +3,7 @@
 //!
 //! Reports of random runs must be consistent. Counts add up, rates are possible, means lie between least and greatest,
 //! and pictures that were not shown have no values. Each case follows from a number, which a failure prints.
-//! `PXPL5_FUZZ=100` tries a hundred times as many cases, and `PXPL5_FUZZ_FROM` begins at another number. `PXPL5_FUZZ=25
+//! `PXPL5_FUZZ=100` tries a hundred times as many cases, and `PXPL5_FUZZ_FROM` begins at another number. `PXPL5_FUZZ=50
 //! cargo test -p pxpl5 --test main reports` checks 1,000 reports.
 
 use crate::support;
@@ -192,7 +192,7 @@ fn assert_no_shown_buffer_is_written(outcome: &Outcome, case: &str) {
 #[test]
 fn the_rules_of_the_ring_hold_and_every_region_arrives_on_random_machines() {
     let (mut ran, mut swapped) = (0, 0);
-    each_case(support::sample_or_all(40, 60), SHORT, |experiment, case| {
+    each_case(support::sample_or_all(24, 60), SHORT, |experiment, case| {
         let (outcome, error) = outcome(experiment, case);
         // A machine that a pipeline cannot use must be refused with a reason. Such a machine must never come to a
         // deadlock.
@@ -393,7 +393,7 @@ fn assert_the_table_of_quantities_agrees(results: &Results, report: &Value, case
 #[test]
 fn reports_of_random_runs_are_consistent() {
     let (mut shown, mut heavy, mut heads, mut without_window) = (0, 0, 0, 0);
-    each_case(support::sample_or_all(25, 40), REPORTED, |experiment, case| {
+    each_case(support::sample_or_all(20, 40), REPORTED, |experiment, case| {
         let (outcome, _) = outcome(&experiment.clone().record_traffic(false), case);
         let report = serde_json::to_value(outcome.report()).expect("it is data");
         assert_statistics_are_in_order("", &report, case);

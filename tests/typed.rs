@@ -96,19 +96,6 @@ fn events_have_their_boards_and_are_in_order_of_time() {
     }
 }
 
-#[test]
-fn a_quantity_is_read_by_its_name_and_the_error_for_a_wrong_name_suggests_the_nearest_name() {
-    let scene = scene::builtin("full-screen:12").expect("built in");
-    let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
-    let outcome = experiment.run().expect("it fits");
-    // Slats has one NTSC field of latency: 1001/60000 s.
-    let latency = outcome.quantity("latency_ms.mean").expect("listed").expect("pictures were shown");
-    assert!((latency - 1001.0 / 60.0).abs() < 0.01, "{latency}");
-    assert_eq!(outcome.quantity("error_px.mean"), Ok(None), "no head is tracked");
-    let error = outcome.quantity("latency.mean").expect_err("not listed").to_string();
-    assert_eq!(error, "there is no quantity `latency.mean`; did you mean `latency_ms.mean`?");
-}
-
 /// A scene that is far too heavy shows nothing, so the latency is missing and has no substitute number.
 #[test]
 fn a_run_that_shows_nothing_has_no_latency() {

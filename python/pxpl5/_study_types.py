@@ -108,26 +108,19 @@ class IntervalData(TypedDict):
     low: float | None
     high: float | None
     n: int
-    #: Method of the interval, such as student_t or moving_block_bootstrap.
+    #: Method of the interval, such as student_t or student_t_of_parts.
     method: str
-
-
-class BootstrapData(TypedDict):
-    """Size of a bootstrap over time."""
-
-    fields: int
-    block_fields: int
-    resamples: int
 
 
 class ErrorSpreadData(TypedDict):
     """Pixel errors of a compared pipeline."""
 
     mean_px: IntervalData
-    bootstrap: BootstrapData | None
     mean_deg: IntervalData
     pixels: PercentilesData
     n: int
+    #: Share of the pixels whose content has left the picture.
+    outside_share: float | None
     distribution_px: list[float]
 
 
@@ -165,6 +158,11 @@ class ComparedData(TypedDict):
     not_shown: int | None
     late_regions: int | None
     error: ErrorSpreadData
+    #: Mean error of each seed.
+    seed_px: list[float]
+    #: Difference to the row with the least error.
+    above_best_px: IntervalData | None
+    covered_share: float | None
     window: WindowData | None
     causes: list[CauseData]
     predictors: list[PredictorMeanData]
@@ -179,6 +177,12 @@ class ComparisonData(TypedDict):
     """The object of ``pxpl5 compare --json``."""
 
     schema: str
+    version: str
+    commit: str | None
+    config_hash: str
+    #: Every key that was set, options, and hashes of files.
+    settings: dict[str, str]
+    warnings: list[str]
     machine: str
     #: Numbers of graphics processors and renderers.
     boards: list[int]

@@ -13,7 +13,7 @@ const MAX_KEYWORDS: usize = 5;
 const MAX_KEYWORD: usize = 20;
 
 /// Returns the name, version and features of each package below the default members, without or with those for tests:
-/// `no-dev` or `all`.
+/// `no-dev` or `normal,build,dev`.
 pub(crate) fn features(edges: &str) -> BTreeSet<String> {
     let output = Command::new(env!("CARGO"))
         .args(["tree", "--offline", "--edges", edges, "--prefix", "none", "--format", "{p}|{f}"])

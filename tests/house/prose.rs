@@ -112,7 +112,8 @@ fn comments(source: &str) -> Vec<String> {
 fn documents(folder: &Path, visit: &mut impl FnMut(&str, &str)) {
     for path in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        let is_made = ["target", "out", "node_modules"].contains(&name) || name.starts_with('.') && name != ".github";
+        let is_made =
+            ["target", "out", "node_modules", "data"].contains(&name) || name.starts_with('.') && name != ".github";
         if path.is_dir() && !is_made {
             documents(&path, visit);
         } else if name.ends_with(".md") {

@@ -1,7 +1,5 @@
-//! Freezes: hazards that stop the issue of instructions. This module contains the rules, and [`FreezeClocks`] contains
-//! the delays in clocks.
+//! Freezes: hazards that stop the issue of instructions, their rules, and their delays in clocks.
 
-use crate::timing::FreezeClocks;
 use pxpl5_sim::parameters::{ParameterInfo, ParameterTable};
 
 /// One row of the freeze table [`FREEZES`]: a condition that stops the issue of instructions, and its delay.
@@ -18,6 +16,91 @@ pub struct FreezeRow {
     /// Description of the constant part of the delay: value, range and source. The value itself is in the field of
     /// [`FreezeClocks`] with the same position.
     pub clocks: &'static ParameterInfo,
+}
+
+pxpl5_sim::parameters::parameter_table! {
+    /// The constant part of the delay of each row of [`FREEZES`], in the same order. Intel's list is quoted as the
+    /// authors remember it, so a value that no published figure narrows has a range of one clock less to one clock
+    /// more.
+    pub struct FreezeClocks {
+        /// Delay by row 1a of the freeze table: a miss of the instruction cache.
+        instruction_miss: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";
+        /// Delay by row 1b of the freeze table: instruction-cache miss while a cache-line fill of the data cache is
+        /// running.
+        instruction_miss_behind_data: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 2 of the freeze table: an instruction uses the destination of an integer load that missed the
+        /// data cache.
+        load_miss_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 3 of the freeze table: an fld misses the data cache.
+        floating_load_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 4 of the freeze table: call, calli, ixfr, fxfr, ld.c or st.c while a cache-line fill of the
+        /// data cache is running.
+        transfer_during_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 5 of the freeze table: load, store or pfld while a cache-line fill of the data cache is
+        /// running.
+        access_during_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 6 of the freeze table: an instruction uses the destination of the previous instruction, which
+        /// is ld, ld.c, call, calli or fxfr.
+        load_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 7 of the freeze table: one of the next two instructions uses the destination of an fld, pfld or
+        /// ixfr.
+        floating_load_use: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected; period matrix code issues an extra operation because loads need time";
+        /// Delay by row 8 of the freeze table: bc, bnc, bc.t or bnc.t right after addu, adds, subu, subs or a compare.
+        condition_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 9 of the freeze table: a multiplier operation has the result of the previous operation as its
+        /// first source.
+        multiplier_first_source: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 10a of the freeze table: a floating-point operation or fst is issued before the end of a scalar
+        /// fadd, fsub, fix, ftrunc, famov, fmlow, fmul.ss or fmul.sd.
+        scalar_busy: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected; a measured square root of 48.4 clocks needs it";
+        /// Delay by row 10b of the freeze table: a floating-point operation or fst is issued before the end of a scalar
+        /// fmul.dd.
+        scalar_double_multiply_busy: 3, "clocks", Assumed, 2..=4 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 10c of the freeze table, in addition to row 10a or 10b: the new operation has another
+        /// precision.
+        scalar_precision_change: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 10d of the freeze table, in addition to row 10a or 10b: the new operation is pipelined and has
+        /// a destination.
+        scalar_then_pipelined: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 11 of the freeze table: a multiplier operation right after a double-precision multiply.
+        double_multiply: 1, "clocks", Assumed, 1..=1 in 0..=1_000_000, "Intel's list, recollected; the published peak of 60 MFLOPS double at 40 MHz needs it";
+        /// Delay by row 12 of the freeze table: TLB miss. This row applies only while address translation is on.
+        tlb_miss: 5, "clocks", Assumed, 4..=6 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 13 of the freeze table: a pfld is issued while three earlier pfld are outstanding.
+        load_pipe_full: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 14 of the freeze table: a pfld hits the data cache.
+        pipelined_load_hit: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 15 of the freeze table: a store misses while three stores wait or a write-back is pending.
+        store_pipe_full: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 16 of the freeze table: a bus request is issued while three requests are outstanding.
+        address_pipe_full: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";
+        /// Delay by row 17 of the freeze table: ld or fld right after a store that hit the data cache.
+        load_after_store_hit: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 18 of the freeze table: a bc.t, bnc.t or bla is not taken.
+        delayed_branch_not_taken: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected; a taken bnc.t costs no more than its slot in period code";
+        /// Delay by row 19a of the freeze table: a bc or bnc is taken.
+        branch_taken: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 19b of the freeze table: a bte or btne is taken.
+        compare_branch_taken: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 20 of the freeze table: a bri or calli is executed.
+        indirect_branch: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 21 of the freeze table: an st.c to any control register is executed.
+        control_store: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 22a of the freeze table: the next adder or multiplier operation uses a result of the graphics
+        /// unit.
+        graphics_to_floating: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 22b of the freeze table: the next graphics operation uses a result of the graphics unit (except
+        /// by fmov.dd).
+        graphics_to_graphics: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 23 of the freeze table: a flush right after another flush.
+        flush_after_flush: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 24 of the freeze table: a pipelined operation overwrites the register that the previous
+        /// instruction, fst or pst, stores.
+        store_then_overwrite: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
+        /// Delay by row 25 of the freeze table: an instruction uses the result of the previous instruction, which is
+        /// frcp or frsqr.
+        seed_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list leaves the seeds out of row 10; a three-way root of 39 clocks allows 0 to 2";
+    }
 }
 
 macro_rules! freezes {

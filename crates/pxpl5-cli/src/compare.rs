@@ -8,6 +8,7 @@ mod table;
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::RunWork;
+use crate::interrupt;
 use crate::numbers::{confidence, count_of, whole};
 use crate::output::OutputFolder;
 use crate::run::MIN_COVERED;
@@ -20,7 +21,7 @@ use pxpl5::compare::{
     RecordedLength, RowChoice, UntilPrecise, edge_pictures,
 };
 use pxpl5::views::png_bytes;
-use pxpl5::{ExperimentFile, MachineConfig};
+use pxpl5::{ExperimentFile, MachineConfig, StopFlag};
 use std::path::PathBuf;
 
 /// Arguments of `pxpl5 compare`.
@@ -127,8 +128,12 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let rows_of = |out: &PathBuf| query.open_store(&out.join(ROWS_FOLDER), args.resume);
     let store = args.out.as_ref().map(rows_of).transpose()?;
     let found = store.as_ref().map_or(0, CompareStore::found);
+    if store.is_some() {
+        interrupt::keeps("the finished rows are kept; the same command with --resume continues".to_owned());
+    }
     let progress = CompareProgress::new(found, query.rows()?.len(), args.quiet);
-    let comparison = query.run_into(store.as_ref(), |done, of| progress.finished(done, of), |row| progress.ended(row));
+    let (finished, ended) = (|done, of| progress.finished(done, of), |row: &ComparisonRow| progress.ended(row));
+    let comparison = query.run_into(store.as_ref(), &StopFlag::default(), finished, ended);
     progress.clear();
     let comparison = comparison?;
     terminal::warn(&comparison.warnings, args.quiet);

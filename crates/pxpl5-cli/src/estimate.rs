@@ -49,6 +49,8 @@ pub(crate) struct WalkWork {
     pub(crate) primitives: u64,
     /// Number of texels along one edge of a cube face.
     pub(crate) face_texels: u64,
+    /// True if the command also draws the pictures of the walk.
+    pub(crate) has_pictures: bool,
 }
 
 /// Bytes for each pixel in the buffer of a slice while the slice is drawn: three colour channels and one stencil bit.
@@ -82,6 +84,14 @@ const WALKED: f64 = 2e3;
 const FACE_S: f64 = 15e-9;
 /// Seconds to process one primitive for one frame of a walk.
 const FRAME_S: f64 = 65e-9;
+/// Bytes for one texel of a cube face in the pictures of a walk.
+const DRAWN_TEXEL: f64 = 90.0;
+/// Seconds to draw the pictures of a walk without its frames and texels.
+const PICTURES_S: f64 = 0.5;
+/// Seconds to draw one texel of a cube face for the pictures of a walk.
+const DRAWN_FACE_S: f64 = 150e-9;
+/// Seconds to process one primitive for one frame for the pictures of a walk.
+const DRAWN_FRAME_S: f64 = 600e-9;
 
 impl VolumeWork {
     /// Returns the quantities that determine the cost of a volume, which `threads` threads draw. The settings must be
@@ -116,16 +126,21 @@ impl VolumeWork {
 }
 
 impl WalkWork {
-    pub(crate) fn of(plan: &WalkPlan, scene: &Scene) -> Self {
+    pub(crate) fn of(plan: &WalkPlan, scene: &Scene, has_pictures: bool) -> Self {
         let face_texels = plan.settings().map_or(0, |settings| settings.display.timing.face_texels);
-        Self { frames: plan.walk.frames, primitives: scene.primitives() as u64, face_texels }
+        Self { frames: plan.walk.frames, primitives: scene.primitives() as u64, face_texels, has_pictures }
     }
 
     pub(crate) fn estimate(&self) -> Estimate {
         let [frames, primitives] = [self.frames, self.primitives].map(|number| number as f64);
         let texels = 6.0 * (self.face_texels as f64).powi(2);
         let bytes = BASE + TEXEL * texels + FRAME * frames + WALKED * primitives;
-        Estimate { bytes, seconds: BUSY * (FACE_S * texels + FRAME_S * frames * primitives) }
+        let seconds = FACE_S * texels + FRAME_S * frames * primitives;
+        let (more_bytes, more_seconds) = match self.has_pictures {
+            true => (DRAWN_TEXEL * texels, PICTURES_S + DRAWN_FACE_S * texels + DRAWN_FRAME_S * frames * primitives),
+            false => (0.0, 0.0),
+        };
+        Estimate { bytes: bytes + more_bytes, seconds: BUSY * (seconds + more_seconds) }
     }
 }
 
@@ -170,12 +185,18 @@ mod tests {
 
     /// Measured costs of walks: the work, the peak memory in MB, and the processor time in seconds, measured like
     /// [`VOLUMES`].
-    const WALKS: [(WalkWork, f64, f64); 4] = [
-        (WalkWork { frames: 120, primitives: 740, face_texels: 512 }, 36.8, 0.05),
-        (WalkWork { frames: 1_800, primitives: 740, face_texels: 512 }, 41.6, 0.13),
-        (WalkWork { frames: 600, primitives: 1_480, face_texels: 512 }, 36.5, 0.09),
-        (WalkWork { frames: 60, primitives: 740, face_texels: 2_048 }, 251.2, 0.38),
+    const WALKS: [(WalkWork, f64, f64); 8] = [
+        (WALK, 36.8, 0.05),
+        (WalkWork { frames: 1_800, ..WALK }, 41.6, 0.13),
+        (WalkWork { frames: 600, primitives: 1_480, ..WALK }, 36.5, 0.09),
+        (WalkWork { frames: 60, face_texels: 2_048, ..WALK }, 251.2, 0.38),
+        // With pictures, in a program of the profile `dev`.
+        (WalkWork { frames: 600, has_pictures: true, ..WALK }, 194.9, 2.03),
+        (WalkWork { frames: 3_000, has_pictures: true, ..WALK }, 199.6, 4.76),
+        (WalkWork { frames: 600, primitives: 1_480, has_pictures: true, ..WALK }, 195.3, 2.45),
+        (WalkWork { frames: 60, face_texels: 2_048, has_pictures: true, ..WALK }, 2_031.9, 7.46),
     ];
+    const WALK: WalkWork = WalkWork { frames: 120, primitives: 740, face_texels: 512, has_pictures: false };
 
     /// Tests that estimates of memory are from 0.8 to 5 times the measured memory. An estimate may be too high, because
     /// the process reserves memory for dark slices and does not use it.

@@ -3,8 +3,9 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Study;
+use crate::interrupt;
 use crate::output::OutputFile;
-use crate::terminal::{advance, print, progress};
+use crate::terminal::{print, progress};
 use clap::Args;
 use pxpl5::Level;
 use pxpl5::figures::{
@@ -68,22 +69,23 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     // Rows are printed as they come, unless the output needs their intervals or is JSON.
     let mut printer = RowPrinter::default();
     let mut printed = Ok(());
+    interrupt::keeps("nothing was written, and the rows that were printed are complete".to_owned());
     let bar = progress(0, "figures", false);
     let print_row = |table, row: &FigureRow| {
         if !has_intervals && printed.is_ok() {
-            printed = bar.suspend(|| printer.row(table, row));
+            printed = bar.above(|| printer.row(table, row));
         }
     };
-    let figures = run_all_in_order(&bench, |done, of| advance(&bar, done, of), print_row).map_err(CliError::failure);
-    bar.finish_and_clear();
+    let figures = run_all_in_order(&bench, |done, of| bar.advance(done, of), print_row).map_err(CliError::failure);
+    bar.clear();
     let figures = figures?;
     printed?;
     chart_file.map(|file| file.write(chart(&figures.rows).svg().as_bytes())).transpose()?;
     // Only the document and the JSON output have the figures under other assumptions.
     if is_document {
         let bar = progress(0, "figures under other assumptions", false);
-        let alternatives = alternatives_with(&bench, |done, of| advance(&bar, done, of)).map_err(CliError::failure);
-        bar.finish_and_clear();
+        let alternatives = alternatives_with(&bench, |done, of| bar.advance(done, of)).map_err(CliError::failure);
+        bar.clear();
         let alternatives = alternatives?;
         let document = markdown(&figures, &alternatives);
         file.map(|file| file.write(document.as_bytes())).transpose()?;

@@ -54,7 +54,15 @@ enum Whose {
 }
 
 pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
-    let plan = args.settings.gather()?.resolve()?;
+    let ending = args.out.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    if let Some(other) = ending.filter(|ending| !["png", "apng"].contains(&ending.as_str())) {
+        return Err(CliError::usage(format!("--out: expected a name that ends in .png or .apng, found .{other}")));
+    }
+    let file = args.settings.gather()?;
+    if let Some(place) = file.place_of("fields") {
+        warn(&[format!("{place}: fields has no effect; --from and --length set the fields of a film")], args.quiet);
+    }
+    let plan = file.resolve()?;
     warn(&plan.warnings(), args.quiet);
     let eyes = match args.eye {
         Whose::Left => FilmSurfaces::One(Eye::Left.into()),

@@ -5,7 +5,7 @@ use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Study;
 use crate::numbers::whole;
-use crate::terminal::{advance, answer, json_text, progress};
+use crate::terminal::{answer, json_text, progress};
 use clap::Args;
 use pxpl5::Level;
 use pxpl5::figures::Bench;
@@ -51,8 +51,8 @@ pub(crate) fn run(args: InterpretationsArgs) -> Result<(), CliError> {
     args.budget.admit_study(study, "take fewer --seeds, --frames or --best")?;
     let bench = Bench::new(Level::Analytic).with_mig(args.seeds, args.frames);
     let bar = progress(0, "interpretations", args.quiet);
-    let interpretations = rank(&bench, args.best as usize, |done, of| advance(&bar, done, of));
-    bar.finish_and_clear();
+    let interpretations = rank(&bench, args.best as usize, |done, of| bar.advance(done, of));
+    bar.clear();
     let interpretations = interpretations?;
     answer(args.json, args.quiet, &json_text(&interpretations)?, || text(&interpretations, args.rows))
 }

@@ -4,7 +4,7 @@ use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Study;
 use crate::output::OutputFile;
-use crate::terminal::{advance, json_text, print, progress};
+use crate::terminal::{json_text, print, progress};
 use clap::Args;
 use pxpl5::levels::{LevelQuery, LevelRecord, LevelReport, compare_with};
 use pxpl5::views::charts::{SpeedAndError, level_chart};
@@ -67,8 +67,8 @@ fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
     args.budget.admit_study(study, "take fewer --experiments")?;
     let bar = progress(0, "experiments and figures at all levels", false);
     let query = LevelQuery { experiments: args.experiments, speeds: !args.errors_only, ..LevelQuery::default() };
-    let record = compare_with(query, |done, of| advance(&bar, done, of));
-    bar.finish_and_clear();
+    let record = compare_with(query, |done, of| bar.advance(done, of));
+    bar.clear();
     // Speeds depend on the host, so the record describes the host.
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let host = format!("{}, {threads} threads", std::env::consts::ARCH);

@@ -27,6 +27,7 @@ mod figures;
 mod film;
 mod i860;
 mod interpretations;
+mod interrupt;
 mod levels;
 mod limit;
 mod machines;
@@ -79,7 +80,7 @@ const EXAMPLES: &str = "Examples:
   pxpl5 run --pipeline rendering-control --scene bunny.ply --gps 24 --out out/bunny
   pxpl5 run experiments/figure-04.toml --set seed=7 --json
 
-Exit codes: 0 success, 1 failure, 2 wrong command line or file, 75 another process writes to the folder.";
+Exit codes: 0 success, 1 failure, 2 wrong command line or file, 75 another process writes to the folder,\n130 Ctrl-C.";
 
 #[derive(Subcommand, Debug)]
 enum Command {
@@ -149,6 +150,7 @@ pub fn run_arguments(registry: Arc<Registry>, arguments: impl IntoIterator<Item 
         Ok(cli) => cli,
         Err(error) => return error::usage(&error),
     };
+    interrupt::listen();
     match run(cli.command) {
         Ok(()) => 0,
         Err(error) => {

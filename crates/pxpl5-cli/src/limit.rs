@@ -6,10 +6,12 @@ use crate::estimate::RunWork;
 use crate::numbers::{count_of, were, whole};
 use crate::options::{PipelineOptions, option_of, registry};
 use crate::scenes;
-use crate::terminal::{advance, print, progress, warn};
+use crate::terminal::{print, progress, warn};
 use clap::Args;
 use pxpl5::limit::{CEILING, Limit, LimitQuery, Model, OverLimit, OverQuery, USUAL_SIZES, USUAL_VALUES};
+use pxpl5::tracking::time::PS_PER_S;
 use pxpl5::{ExperimentFile, Goal, Level, LimitCriterion, Plan, StopFlag, TestScene};
+use pxpl5_sim::Time;
 use serde_json::json;
 
 /// Find the largest number of triangles that a pipeline draws in time, or the values of a setting that reach a goal.
@@ -94,16 +96,16 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
     }
     let query = args.query()?;
     let bar = progress(USUAL_SIZES, "sizes", args.quiet);
-    let limit = query.search_with(|tried, of| advance(&bar, tried, of))?;
-    bar.finish_and_clear();
+    let limit = query.search_with(|tried, of| bar.advance(tried, of))?;
+    bar.clear();
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
 
 fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
     let (query, plan) = args.over_query(key)?;
     let bar = progress(USUAL_VALUES, "values", args.quiet);
-    let limit = query.search(|tried, of| advance(&bar, tried, of)).map_err(CliError::failure)?;
-    bar.finish_and_clear();
+    let limit = query.search(|tried, of| bar.advance(tried, of)).map_err(CliError::failure)?;
+    bar.clear();
     print(&if args.json { over_json(&query, &plan, &limit)? } else { over_text(&query, &plan, &limit) })
 }
 
@@ -113,6 +115,7 @@ const MIN_FIELDS: u64 = 10;
 impl LimitArgs {
     fn query(&self) -> Result<LimitQuery, CliError> {
         let plan = self.file()?.resolve()?;
+        self.check_rate(&plan)?;
         // An option replaces one part of the pipeline's own criterion.
         warn(&plan.warnings(), false);
         let query = LimitQuery::of_plan(&plan);
@@ -136,6 +139,20 @@ impl LimitArgs {
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
     }
 
+    /// Returns an error for a rate that the display cannot show.
+    fn check_rate(&self, plan: &Plan) -> Result<(), CliError> {
+        let periods = plan.display_periods(Time(1_000 * PS_PER_S));
+        let Some((asked, shown)) = self.rate.zip(periods.map(|periods| periods as f64 / 1e3)) else { return Ok(()) };
+        // As in goals, 60 stand for the 59.94 Hz of NTSC.
+        if asked * 0.999 <= shown + 1e-3 {
+            return Ok(());
+        }
+        let display = plan.display();
+        Err(CliError::usage(format!(
+            "--rate: expected at most {shown:.2}, the rate of the display {display}, found {asked}"
+        )))
+    }
+
     /// Returns the setting that the search varies, or `None` if the search varies the number of triangles.
     fn key(&self) -> Option<&str> {
         self.over.as_deref().filter(|key| *key != "triangles")
@@ -155,6 +172,9 @@ impl LimitArgs {
         let first = file.resolve()?;
         let fields = self.fields.unwrap_or(first.limit.fields).max(MIN_FIELDS);
         file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "--fields")?;
+        // An unknown key is named as such, before its range is looked up.
+        file.clone().set_text(&format!("{key}=1"), "--over")?;
+        self.check_rate(&first)?;
         // A missing end of the range comes from the sources of the parameter.
         let values = OverQuery::values(&first, key, self.from, self.to).map_err(|e| e.at("--from and --to"))?;
         // The largest experiment must be valid and within the budget before the search starts.
@@ -239,13 +259,18 @@ fn over_text(query: &OverQuery, plan: &Plan, limit: &OverLimit) -> String {
         (Some(because), Some(at)) => format!(": with {}, {because}", text(at)),
         _ => String::new(),
     };
+    let islands: Vec<String> = limit.islands.iter().map(|value| text(*value)).collect();
+    let again = match &islands[..] {
+        [] => String::new(),
+        all => format!("Beyond values that miss, these reach the goal again: {}.\n", all.join(", ")),
+    };
     let tried: Vec<String> = limit
         .tried
         .iter()
         .map(|(value, hit)| format!("{}{}", text(*value), if *hit { " reached" } else { "" }))
         .collect();
     format!(
-        "{} with {}: {key} {answer}{because}\nGoal: {}.\n{} simulated for {}: {}.\n",
+        "{} with {}: {key} {answer}{because}\n{again}Goal: {}.\n{} simulated for {}: {}.\n",
         plan.pipeline.name(),
         plan.scene.name,
         goal_text(query.goal),

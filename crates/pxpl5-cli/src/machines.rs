@@ -34,9 +34,9 @@ pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
     let mut machines = Vec::new();
     for preset in &PRESETS {
         machines.push(Listed::new(preset).map_err(CliError::usage)?);
-        bar.inc(1);
+        bar.add_one();
     }
-    bar.finish_and_clear();
+    bar.clear();
     print(&if args.json { all_json(&machines) } else { all_text(&machines) })
 }
 

@@ -138,8 +138,6 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
 /// object in a list appears by the value of its member `cause` or `kind`.
 fn flatten(path: &str, value: Value, row: &mut Row) {
     match value {
-        // Without a bootstrap the column stays, because rows.csv has it for every row.
-        Value::Null if path == "error.bootstrap" => row.push((format!("{path}.block_fields"), Value::Null)),
         Value::Object(inner) => {
             for (key, value) in inner {
                 let path = if path.is_empty() { key } else { format!("{path}.{key}") };

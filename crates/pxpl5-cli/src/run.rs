@@ -9,6 +9,7 @@ use crate::simulate::{How, Simulated, simulate};
 use crate::table::{Comparison, table};
 use crate::terminal::{print, warn};
 use clap::Args;
+use pxpl5::run::{WARM_UP_PERIODS, WARM_UP_PICTURES};
 use pxpl5::tracking::predict::Training;
 use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::views::results::{origin_lines, quantities_csv};
@@ -91,6 +92,8 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     match too_short {
         Some(error) => Err(error),
         None if report.shown == 0 => Err(nothing_shown(report)),
+        // A still head needs no updates of display memories, so such a run may have no latency.
+        None if report.latency_ms.n == 0 && report.arp.is_none() => Err(nothing_measured(report)),
         None => Ok(()),
     }
 }
@@ -132,6 +135,19 @@ fn nothing_shown(report: &Report) -> CliError {
         "no complete picture was shown in {}: {} came after their deadline; {advice}",
         count_of(report.fields, "field"),
         count_of(report.late_regions, "region")
+    ))
+}
+
+/// Returns the error for a run in which all pictures belong to the warm-up. The number of fields that the error advises
+/// has two pictures after the warm-up at the rate of this run.
+fn nothing_measured(report: &Report) -> CliError {
+    let every = report.fields.div_ceil(report.shown.max(1));
+    let needed = WARM_UP_PERIODS.max((WARM_UP_PICTURES as u64 + 1) * every) + 2 * every;
+    CliError::failure(format!(
+        "no picture has a latency: the warm-up takes {WARM_UP_PERIODS} fields and {WARM_UP_PICTURES} pictures, and the run has {} \
+         with {}; simulate about {needed} fields",
+        count_of(report.fields, "field"),
+        count_of(report.shown, "picture")
     ))
 }
 

@@ -52,9 +52,10 @@ pub(crate) struct SettingArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     renderers: Option<i64>,
     /// Motion of a head with a tracker: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED,
-    /// walk:M_PER_S along the scene's path, walk:M_PER_S:SEED (a walk that looks around as synthetic:SEED does),
-    /// recorded:NAME (a real head: vive-tracked or vive-dev), or a recording. A recording is a FILE.csv, .txt, .tum or .jsonl: a table with time_s,x,y,z,qw,qx,qy,qz, a file of
-    /// EuRoC or TUM, a pose log, or any table with --columns.
+    /// walk:M_PER_S along the scene's path, walk:M_PER_S:SEED (which looks around as synthetic:SEED does), or a
+    /// recording. The heads recorded:vive-tracked and recorded:vive-dev are real. Any other recording is a FILE.csv,
+    /// .txt, .tum or .jsonl: a table with time_s,x,y,z,qw,qx,qy,qz, a file of EuRoC or TUM, a pose log, or any table
+    /// with --columns.
     #[arg(long, value_name = "MOTION", allow_hyphen_values = true)]
     head: Option<String>,
     /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz. The time is t,
@@ -72,9 +73,9 @@ pub(crate) struct SettingArgs {
     /// Predictor of the head's pose: none, velocity, acceleration or kalman; default kalman.
     #[arg(long)]
     predict: Option<String>,
-    /// Meaning of the poses of --head: scene (the motion begins where the scene's own motion begins), world (the poses
-    /// are metres in the scene's coordinates) or content (the head faces the scene as long as it can); default scene, and
-    /// content for a model file.
+    /// Meaning of the poses of --head. With scene, the motion begins where the scene's own motion begins. With world,
+    /// the poses are metres in the scene's coordinates. With content, the default before a model file, the head faces
+    /// the scene as long as it can.
     #[arg(long)]
     place: Option<String>,
     /// Instant during a picture's display for which the head's pose is predicted: middle, first-pixel, last-pixel or

@@ -75,9 +75,9 @@ pub(crate) fn simulate(plan: &Plan, how: How<'_>) -> Result<Simulated, CliError>
     let watch = how.budget.watch(plan.fields);
     let outcome = experiment.run_stopping(&stops, |field, machine| {
         let done = field.since(PeriodNumber::FIRST);
-        bar.set_position(done);
+        bar.advance(done, plan.fields);
         watch.check(done, trace_bytes(machine.record().observation())).map_err(ExperimentError::Stopped)
     });
-    bar.finish_and_clear();
+    bar.clear();
     Simulated::of(outcome)
 }

@@ -199,6 +199,7 @@ impl Scripts {
         let command = std::env::current_exe();
         let command = command.map_err(|error| CliError::failure(format!("the path of this command: {error}")))?;
         let (command, file, out) = (absolute(&command)?, absolute(jobs.file)?, absolute(jobs.out)?);
+        let here = absolute(Path::new("."))?;
         let sets: String = jobs.sets.iter().map(|set| format!(" --set {}", quoted(set))).collect();
         // The command is the executable of this process; PXPL5 in the environment of a job overrides the path.
         let Resources { tasks, threads, minutes, megabytes, merge_minutes, merge_megabytes } = resources;
@@ -220,6 +221,8 @@ impl Scripts {
 set -u
 pxpl5=${{PXPL5:-{command}}}
 out={out}
+# Paths in --set count from the folder in which the sweep was prepared.
+cd {here} || exit
 # Exit code {BUSY}: another process writes into the shard. It is an earlier start of this task, on a node that was lost but still runs.
 while :; do
     \"$pxpl5\" sweep {file}{sets} --out \"$out/shard-$SLURM_ARRAY_TASK_ID\" --shard \"$SLURM_ARRAY_TASK_ID/{tasks}\" \\

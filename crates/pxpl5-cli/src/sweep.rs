@@ -3,6 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Estimate;
+use crate::interrupt;
 use crate::numbers::{are, count_of, whole};
 use crate::options::registry;
 use crate::slurm::{self, Jobs, quoted};
@@ -113,14 +114,13 @@ impl SweepFolderArgs {
     pub(crate) fn run(&self, sweep: &impl Swept, header: Header, command: &SweepCommand) -> Result<(), CliError> {
         // The store keeps finished rows, so that Ctrl-C loses only the points in progress.
         let mut store = Store::open(&self.out, header, self.resume)?;
-        install_interrupt_handler(self.again(command))?;
+        interrupt::keeps(format!("the finished points are kept. To continue:\n  {}", self.again(command)));
         let total = self.shard.share_of(sweep.space().points());
         let bar = progress(total, "points", self.quiet);
-        bar.set_position(store.finished(self.shard));
-        bar.reset_eta();
+        bar.begin_at(store.finished(self.shard));
         let options = RunOptions { shard: self.shard, threads: command.parallel };
-        pxpl5::sweep::run(sweep, &mut store, options, |_| bar.inc(1))?;
-        bar.finish_and_clear();
+        pxpl5::sweep::run(sweep, &mut store, options, |_| bar.add_one())?;
+        bar.clear();
         // A sweep succeeds if at least one point could be simulated.
         let failed = report_failures(&store, self.shard, total, command.verb)?;
         if !self.quiet {
@@ -172,21 +172,6 @@ fn supposed(sweep: &Sweep) -> Vec<String> {
     let mut all: Vec<String> = ends.into_iter().flatten().flatten().collect();
     all.dedup();
     all
-}
-
-/// Exit code of a sweep that was ended by Ctrl-C: 128 plus the number of the signal, as in shells.
-const INTERRUPTED: i32 = 130;
-
-/// Installs a handler that ends the sweep on Ctrl-C and prints the command in `again`, which resumes the sweep. Rows of
-/// finished points are already in the file.
-fn install_interrupt_handler(again: String) -> Result<(), CliError> {
-    let listening = ctrlc::set_handler(move || end_interrupted(&again));
-    listening.map_err(|error| CliError::failure(format!("Ctrl-C cannot be handled: {error}")))
-}
-
-fn end_interrupted(again: &str) {
-    print_error(&format!("\npxpl5: interrupted; the finished points are kept. To continue:\n  {again}\n"));
-    std::process::exit(INTERRUPTED);
 }
 
 /// Prints the number of failed points of a shard (part of a sweep), and the error of the first failed point. Returns

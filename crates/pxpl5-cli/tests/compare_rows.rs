@@ -121,7 +121,8 @@ fn a_recording_determines_the_number_of_fields_and_a_long_recording_gives_an_int
     let folder = Folder::new("compare-recording");
     recording(&folder, "head.csv", 200);
     recording(&folder, "long.csv", 3_000);
-    let usual = ["compare", "--scene", "full-screen:2", "--only", "slats,jitp-field", "--json", "--head"];
+    let usual =
+        ["compare", "--scene", "full-screen:2", "--only", "slats,jitp-field", "--tracker", "ideal", "--json", "--head"];
     let run = |more: &[&str]| folder.run(&[&usual, more].concat());
     for (more, fields) in [
         (&["head.csv", "--seeds", "1"][..], 119),
@@ -144,11 +145,9 @@ fn a_recording_determines_the_number_of_fields_and_a_long_recording_gives_an_int
                 assert!(mean["method"] == "none" && mean["low"].is_null() && mean["high"].is_null(), "{row}");
                 continue;
             }
-            assert_eq!(mean["method"], "moving_block_bootstrap", "{row}");
+            assert_eq!(mean["method"], "student_t_of_parts", "{row}");
             let [low, mean, high] = ["low", "mean", "high"].map(|name| mean[name].as_f64().expect(name));
             assert!(0.0 < low && low < mean && mean < high, "{row}");
-            let size = &row["error"]["bootstrap"];
-            assert!(size["fields"].as_u64() <= Some(fields) && size["block_fields"].as_u64() >= Some(1), "{row}");
         }
     }
     let refused = run(&["head.csv", "--until-precision", "10%"]);

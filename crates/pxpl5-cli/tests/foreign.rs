@@ -188,3 +188,42 @@ fn columns_of_comparisons_have_the_same_names_in_tables_plots_and_json() {
         assert!(columns.iter().any(|name| name == column), "{column} is not in {columns:?}");
     }
 }
+
+/// Wrong inputs of every kind, with a part of the message. All end with exit code 2.
+#[test]
+fn every_wrong_input_ends_with_exit_code_2_and_the_reason() {
+    let folder = Folder::new("foreign-wrong");
+    folder.file("bad.obj", "v 1 2\nf 1 1 1\n");
+    folder.file("late.csv", "time_s,x,y,z,qw,qx,qy,qz\n20,0,0,0,1,0,0,0\n20.1,0,0,0,1,0,0,0\n");
+    folder.file("head.bvh", "HIERARCHY\n");
+    folder.file("zero.s", "start: adds 010, r0, r4\n");
+    folder.file("escape.toml", "pipeline = \"slats\"\nscene = \"\\u001b]0;title\\u0007.obj\"\n");
+    let slats = ["run", "--pipeline", "slats", "--pixels", "off", "--fields", "12", "--scene"];
+    let head = |file| [&slats[..], &["room", "--head", file]].concat();
+    for (args, says) in [
+        ([&slats[..], &["none.obj"]].concat(), "none.obj: expected a readable file"),
+        ([&slats[..], &["bad.obj"]].concat(), "bad.obj: line 1"),
+        (vec!["run", "none.toml"], "none.toml"),
+        (vec!["run", "escape.toml"], "\\u{1b}]0;title\\u{7}.obj"),
+        (head("late.csv"), "no pose from 0.000 s to 20.000 s"),
+        (head("head.bvh"), "ends in .csv, .txt, .tum or .jsonl, found `head.bvh`"),
+        (head("jumped"), "there is no motion `jumped`"),
+        (vec!["report", "none"], "report.json"),
+        (vec!["diff", "none", "none"], "expected a report.json"),
+        (vec!["plot", "none", "--x", "a", "--y", "b", "--out", "p.svg"], "neither rows.jsonl nor comparison.json"),
+        (vec!["arp", "run", "none.toml"], "cannot be read"),
+        (vec!["i860", "asm", "zero.s"], "`010` has a leading zero"),
+        (vec!["film", "--pipeline", "slats", "--scene", "mig", "--out", "z.gif"], "ends in .png or .apng, found .gif"),
+        (
+            vec!["limit", "--pipeline", "rendering-control", "--rate", "90"],
+            "at most 59.94, the rate of the display ntsc",
+        ),
+        (vec!["limit", "--scene", "mig", "--over", "gps"], "there is no key `gps`"),
+        ([&slats[..], &["mig", "--set", "hmd.horizontal_fov_deg=90"]].concat(), "did you mean `hmd."),
+    ] {
+        let output = folder.run(&args);
+        let text = err(&output);
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {text}");
+        assert!(text.contains(says) && !text.contains('\u{1b}'), "{args:?}: {text}");
+    }
+}

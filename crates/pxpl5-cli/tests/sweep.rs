@@ -117,7 +117,7 @@ fn a_torn_last_line_is_repaired_and_a_damaged_one_before_it_is_refused() {
     assert!(read(&folder, "a/rows.jsonl") == whole);
     fs::write(folder.0.join("a/rows.jsonl"), whole.replacen("\"point\":7,", "\"pint\":7,", 1)).expect("ours");
     let output = sweep(&folder, &["--out", "a", "--resume"]);
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(2));
     assert!(err(&output).contains("a/rows.jsonl, line 9: expected a row of a sweep"), "{}", err(&output));
 }
 
@@ -157,7 +157,7 @@ fn merge_finds_missing_duplicate_and_contradicting_points() {
     fs::write(folder.0.join("3/rows.jsonl"), rows.replacen("\"missed_retraces\":0.0", "\"missed_retraces\":9.0", 1))
         .expect("ours");
     let contradiction = folder.run(&["merge", "1", "2", "3", "--out", "other"]);
-    assert_eq!(contradiction.status.code(), Some(1));
+    assert_eq!(contradiction.status.code(), Some(2));
     assert!(
         err(&contradiction).contains("point 0 has different rows in 1/rows.jsonl and 3/rows.jsonl"),
         "{}",
@@ -346,7 +346,7 @@ fn a_header_with_too_many_points_is_reported_as_damage() {
     let rows = read(&folder, "a/rows.jsonl").replacen("\"points\":64", "\"points\":9000000000000000000", 1);
     fs::write(folder.0.join("a/rows.jsonl"), rows).expect("ours");
     let output = folder.run(&["merge", "a", "--out", "b"]);
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(2));
     assert!(err(&output).contains("a/rows.jsonl, line 1: "), "{}", err(&output));
 }
 

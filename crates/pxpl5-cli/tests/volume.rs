@@ -118,10 +118,10 @@ fn model_files_are_drawn_and_bad_files_are_refused_with_the_reason() {
     assert_eq!(report["triangles"], 1);
     folder.file("bad.obj", "v -1 -1 -5\nv 1 nan -5\nv 0 1 -5\nf 1 2 3\n");
     let output = folder.run(&volume("run", &["--scene", "bad.obj", "--out", "o"]));
-    assert_eq!(output.status.code(), Some(1), "{}", err(&output));
+    assert_eq!(output.status.code(), Some(2), "{}", err(&output));
     folder.file("index.obj", "v -1 -1 -5\nv 1 0 -5\nv 0 1 -5\nf 1 2 9\n");
     let output = folder.run(&volume("run", &["--scene", "index.obj", "--out", "o"]));
-    assert_eq!(output.status.code(), Some(1), "{}", err(&output));
+    assert_eq!(output.status.code(), Some(2), "{}", err(&output));
     assert!(!folder.0.join("o").exists(), "what failed leaves nothing");
 }
 

@@ -280,7 +280,10 @@ impl GpBoard {
     /// Returns the CPU time up to `now`, by kind of work. `now` must not be earlier than the last handled event.
     pub fn used(&self, now: Time) -> GpUse {
         let shared = self.shared.borrow();
-        GpUse { busy: shared.cpu.busy_at(now), messages: shared.message_software, tokens: shared.answer_work }
+        // Messages and answers are counted when they begin. Only the part before `now` belongs to the busy time.
+        let busy = shared.cpu.busy_at(now);
+        let messages = shared.message_software.min(busy);
+        GpUse { busy, messages, tokens: shared.answer_work.min(Span(busy.0 - messages.0)) }
     }
 
     /// Returns the number of vertices that the programs have transformed

@@ -69,7 +69,6 @@ const OF_CODE: &str = "mean time of this project's i860 code over three scenes (
 impl GpTiming {
     /// Returns the source of a time that the table of the papers does not have, if the time belongs to another table of
     /// this module.
-    #[must_use]
     pub fn source_of(name: &str, value: Value) -> Option<&'static str> {
         const OTHERS: [(GpTiming, &str); 8] = [
             (GpTiming::SLATS_1994, OF_CODE),

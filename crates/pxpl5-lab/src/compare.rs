@@ -4,7 +4,6 @@
 //! head to display, the prediction interval, and the error in pixels by cause. The row also has the largest number of
 //! triangles that the pipeline can draw in time.
 
-mod bootstrap;
 mod contender;
 mod gallery;
 mod interval;
@@ -22,7 +21,6 @@ mod trial;
 pub use crate::head_names::{
     MOTIONS, Replay, TRACKERS, is_recording, is_walk, motion, predictor, replayed, tracker, tracker_by, walk,
 };
-pub use bootstrap::{BlockBootstrap, BootstrapSize, MIN_BOOTSTRAP_VALUES, RESAMPLES};
 pub use contender::RowChoice;
 pub use gallery::LastPicture;
 pub use interval::{CONFIDENCE, IntervalMethod, MeanInterval};

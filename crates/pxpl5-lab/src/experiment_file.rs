@@ -290,15 +290,6 @@ impl ExperimentFile {
         self.settings.keys().map(String::as_str)
     }
 
-    /// Copies all settings of another file into this file. The copied settings replace the current settings.
-    pub fn overlay(&mut self, other: Self) {
-        if other.is_sweep() {
-            self.sweep = other.sweep;
-            self.sweep_places = other.sweep_places;
-        }
-        self.settings.extend(other.settings);
-    }
-
     /// Returns true if the file describes a sweep, which runs an experiment at many points of a parameter space.
     pub const fn is_sweep(&self) -> bool {
         self.sweep.is_some()

@@ -157,8 +157,9 @@ impl Manifest {
             let expected = format_args!("the file that {MANIFEST_FILE} lists");
             FileError::new(FileErrorKind::Damaged, expected, found).in_file(path.display())
         };
-        if !path.is_file() {
-            return Err(changed("no file"));
+        // A manifest from elsewhere must not bring a file from behind a link into a page.
+        if !path.symlink_metadata().is_ok_and(|found| found.is_file()) {
+            return Err(changed("no file of this folder"));
         }
         let bytes = fs::read(&path).map_err(|_| changed("a file that cannot be read"))?;
         if entry.is_of(&bytes) { Ok(Some(bytes)) } else { Err(changed("other contents")) }

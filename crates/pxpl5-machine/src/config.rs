@@ -326,16 +326,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn parameters_are_reached_by_path_and_a_wrong_path_names_the_nearest() {
-        let mut config = MachineConfig::small_hmd();
-        config.set("gp.triangle_ns", 30_000).expect("known");
-        config.set("n_gps", 24).expect("known");
-        assert_eq!((config.gp.triangle_ns, config.n_gps), (30_000, 24));
-        let error = config.set("gp.triange_ns", 1).expect_err("misspelt");
-        assert!(error.to_string().contains("`gp.triangle_ns`"), "{error}");
-    }
-
     pxpl5_sim::parameters::parameter_table! {
         struct Numbers {
             /// A time that is only used in this test.
@@ -359,36 +349,10 @@ mod tests {
     }
 
     #[test]
-    fn a_value_outside_its_range_is_reported_with_range_and_source() {
-        let mut config = MachineConfig::small_hmd();
-        assert!(config.out_of_range().is_empty());
-        config.set("gp.triangle_ns", 3).expect("within the limits");
-        config.check().expect("the model can take it");
-        let [found] = &config.out_of_range()[..] else { panic!("{:?}", config.out_of_range()) };
-        let (low, high) = found.info.range;
-        let text = found.warning();
-        assert!(
-            text.starts_with(&format!("gp.triangle_ns = 3 ns is outside its range, {low} to {high} ns (")),
-            "{text}"
-        );
-        assert!(text.contains(found.info.source), "{text}");
-        let inside = low.whole().expect("nanoseconds are whole");
-        config.set("gp.triangle_ns", inside).expect("known");
-        assert!(config.out_of_range().is_empty());
-    }
-
-    #[test]
     fn no_preset_causes_a_warning() {
         for preset in crate::PRESETS {
             let config = MachineConfig::preset(preset.name).expect("it is listed");
             assert!(config.out_of_range().is_empty(), "{}: {:?}", preset.name, config.out_of_range());
         }
-    }
-
-    #[test]
-    fn a_machine_without_renderers_is_refused_with_the_expected_number() {
-        let config = MachineConfig { n_renderers: 0, ..MachineConfig::small_hmd() };
-        let error = config.check().expect_err("none");
-        assert_eq!(error.to_string(), "n_renderers must be 1 to 1000, found 0");
     }
 }

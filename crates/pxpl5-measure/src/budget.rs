@@ -29,6 +29,9 @@ pub struct Budget {
     #[serde(deserialize_with = "number_or_nan")]
     pub showing_ms: f64,
     /// Time from the start of the display of the picture until the display's beam reaches the middle of the picture.
+    ///
+    /// The time is negative if a picture arrives in parts, and the beam reaches its middle before the last part is
+    /// shown.
     #[serde(deserialize_with = "number_or_nan")]
     pub scanning_ms: f64,
     /// Time from the instant at which a pixel begins to light until the middle of its light: half of the persistence, and

@@ -81,40 +81,44 @@ pub(crate) const CENTRE: usize = (GRID * GRID / 2) as usize;
 /// Returns the evaluated pixels of a display period in the order of the scan, with the times at which the pixels are
 /// lit.
 pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
-    let mut pixels = spread(display, period, (GRID, GRID), (0.5, 0.5));
+    let mut pixels = spread(display, period, (GRID, GRID), |_| (0.5, 0.5));
     // Some scans do not begin at the top. The middle pixel stays in the middle of the list.
     pixels.sort_by_key(|(_, _, at)| *at);
     pixels
 }
 
 /// Numbers of columns and rows of the screen positions at which empty and covered parts of the picture are counted.
-const LATTICE: (u32, u32) = (8, 6);
+const LATTICE: (u32, u32) = (16, 12);
 
-/// Steps of the lattice from one display period to the next, relative to the distance of two positions: the powers of
-/// the inverse of the plastic number. All parts of the picture, edges included, are thus met equally often.
-const LATTICE_STEP: (f64, f64) = (0.754_877_666_246_693, 0.569_840_290_998_053);
+/// Steps of the lattice from row to row and from one display period to the next, relative to the distance of two
+/// positions: the golden ratio and the plastic number. All parts of the picture, edges included, are met equally often.
+const LATTICE_STEP: (f64, f64) = (0.618_033_988_749_895, 0.754_877_666_246_693);
 
 /// Returns evenly spread pixels that move from period to period, with the times at which the pixels are lit.
 pub(crate) fn lattice(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
-    let part = |step: f64| (0.5 + period.0 as f64 * step).fract();
-    spread(display, period, LATTICE, (part(LATTICE_STEP.0), part(LATTICE_STEP.1)))
+    let down = (0.5 + period.0 as f64 * LATTICE_STEP.1).fract();
+    let rows = period.0 * u64::from(LATTICE.1);
+    spread(display, period, LATTICE, |row| ((0.5 + (rows + u64::from(row)) as f64 * LATTICE_STEP.0).fract(), down))
 }
 
 /// Returns pixels that are spread evenly over columns and rows of a picture, with the times at which the pixels are
-/// lit. `part` is the place of a pixel between two places, from 0 to 1.
+/// lit. `part` gives the place of a row's pixels between two columns and between two rows, each from 0 to 1.
 fn spread(
     display: &dyn Display,
     period: PeriodNumber,
     (columns, rows): (u32, u32),
-    part: (f64, f64),
+    part: impl Fn(u32) -> (f64, f64),
 ) -> Vec<(u32, u32, Time)> {
     let Some(surface) = display.surfaces().first() else { return Vec::new() };
     let lit = Rows::lit(display, period);
     let place =
         |i: u32, part: f64, of: u32, size: u32| ((f64::from(i) + part) * f64::from(size) / f64::from(of)) as u32;
-    // Move each row to a row that this period lights.
-    let rows = (0..rows).map(|j| lit.beside(place(j, part.1, rows, surface.height)));
-    let places = rows.flat_map(|y| (0..columns).map(move |i| (place(i, part.0, columns, surface.width), y)));
+    let places = (0..rows).flat_map(|j| {
+        let (along, down) = part(j);
+        // Move each row to a row that this period lights.
+        let y = lit.beside(place(j, down, rows, surface.height));
+        (0..columns).map(move |i| (place(i, along, columns, surface.width), y))
+    });
     places.filter_map(|(x, y)| Some((x, y, display.lights(0, x, y, period)?))).collect()
 }
 

@@ -154,7 +154,8 @@ fn the_empty_share_is_the_part_rotated_in_from_beyond_the_edge() {
             let found = EyeReport::shown(&outcome, device(by, Every::Line)).expect("a device");
             let share = found.reprojection.expect("a device").empty_share.expect("checked");
             println!("{rate} rad/s, {by:?}: {share:.5} of {beyond:.5}");
-            assert!((share - beyond).abs() < 0.003, "{rate} rad/s, {by:?}: {share} of {beyond}");
+            let most = if by == Warp::Depth { 0.005 } else { 0.002 };
+            assert!((share - beyond).abs() < most, "{rate} rad/s, {by:?}: {share} of {beyond}");
         }
     }
 }
@@ -266,7 +267,7 @@ fn vdrt_is_reported_as_a_reprojection_device_without_empty_pixels() {
     assert_eq!(Raster::Vdrt.reprojection(), Some(Reprojection::VDRT));
     let outcome = fields(head(turning(2.0)).with_raster(Raster::Vdrt), "full-screen:2");
     let eye = outcome.report().eye.expect("a device").reprojection.expect("a device");
-    assert_eq!((eye.device, eye.checked_pixels), (Reprojection::VDRT, 8 * 6 * (FIELDS - WARM_UP_PERIODS)));
+    assert_eq!((eye.device, eye.checked_pixels), (Reprojection::VDRT, 16 * 12 * (FIELDS - WARM_UP_PERIODS)));
     assert!(eye.pose_age_ms.mean > 0.0);
     assert_eq!(outcome.pixel_errors().expect("a head").empty, 0, "its picture goes on beyond the edge");
 }

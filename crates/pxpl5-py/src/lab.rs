@@ -128,7 +128,7 @@ pub(crate) fn compare<'py>(
     let waits = folder.is_some();
     let comparison = in_background(py, progress, waits, move |watch| {
         let store = folder.map(|folder| query.open_store(&folder, resume)).transpose()?;
-        query.run_stoppable(store.as_ref(), &watch.stop_flag(), |done, of| watch.report(done, of), |_| {})
+        query.run_into(store.as_ref(), &watch.stop_flag(), |done, of| watch.report(done, of), |_| {})
     })?;
     python(py, &comparison.map_err(wrong_study)?)
 }

@@ -38,7 +38,7 @@ pub enum HeadPlace {
     Scene,
     /// The motion has the coordinates of the scene's world, in metres. No pose is moved.
     World,
-    /// The mean position of the motion is placed at the start of the scene's own motion, and the head is turned about the
+    /// The mean position of the motion is placed at the start of the scene's own motion. The head is turned about the
     /// vertical axis so that it faces the middle of the scene as long as it can.
     Content,
 }

@@ -3,8 +3,8 @@
 
 use pxpl5_machine::{LateRegion, MachineConfig};
 use pxpl5_run::{
-    Experiment, FacePipeline, FacePolicy, FaceSource, Frameless, Head, Jitp, KeptRecords, Outcome, Pipeline, Pixels,
-    RenderingControl, Samples, Slats, Viewpoint,
+    Experiment, FacePipeline, FacePolicy, Frameless, Head, KeptRecords, Outcome, Pipeline, Pixels, RenderingControl,
+    Samples, Slats,
 };
 use pxpl5_scene::Scene;
 use rayon::prelude::*;
@@ -33,37 +33,25 @@ fn experiment(machine: MachineConfig, pipeline: impl Pipeline, scene: Scene, fie
         .least_records(MIN_RECORDS)
 }
 
-fn faces(name: &'static str, policy: FacePolicy, source: FaceSource, fields: u64) -> (&'static str, Experiment) {
-    let pipeline = FacePipeline { source, ..FacePipeline::new(policy) };
-    (name, experiment(MachineConfig::small_hmd(), pipeline, scene("gallery", 0), fields))
-}
-
 /// Returns a moving head with a tracker and a predictor.
 fn tracked() -> Head {
     let motion = Arc::new(Synthetic::recorded_use(2));
     Head::new(motion, TrackerConfig::fastrak(), PredictorKind::Kalman, 1).expect("in range")
 }
 
-/// Returns experiments of every kind, each with so many fields that records are discarded several times.
-/// tests/long_runs.rs of pxpl5-measure covers the results for heads. `PXPL5_ALL_CASES=1` makes the runs longer.
-fn experiments() -> [(&'static str, Experiment); 9] {
+/// Returns experiments without a tracked head, each with so many fields that records are discarded several times.
+/// tests/long_runs.rs of pxpl5-measure runs every family with heads. `PXPL5_ALL_CASES=1` makes the runs longer.
+fn experiments() -> [(&'static str, Experiment); 4] {
     let small = MachineConfig::small_hmd;
-    let slats = MachineConfig::slats;
     let long = sample_or_all(500, 2_500);
-    let of_faces = sample_or_all(400, 1_600);
+    let one_eye = experiment(small(), RenderingControl::mono(), scene("mig", 60), sample_or_all(800, 4_000));
+    let too_much = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 250), long);
+    let faces = FacePipeline::new(FacePolicy::Objects);
     [
-        ("rendering control", experiment(small(), RenderingControl::stereo(), scene("mig", 0), long)),
-        ("one eye", experiment(small(), RenderingControl::mono(), scene("mig", 60), sample_or_all(800, 4_000))),
-        ("slats", experiment(slats(), Slats::split(), scene("mig", 60), long)),
-        ("slats with too much", experiment(slats(), Slats::split(), scene("mig", 250), long)),
+        ("one eye", one_eye),
+        ("slats with too much", too_much),
         ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 150)),
-        (
-            "jitp",
-            experiment(small(), Jitp::new(Viewpoint::Strip, true), scene("full-screen:4", 0), sample_or_all(200, 400)),
-        ),
-        faces("all faces", FacePolicy::Full, FaceSource::PixelPlanes, of_faces),
-        faces("faces by priority", FacePolicy::Objects, FaceSource::PixelPlanes, of_faces),
-        faces("faces by priority, drawn at once", FacePolicy::Objects, FaceSource::Ideal, of_faces),
+        ("faces by priority", experiment(small(), faces, scene("gallery", 0), sample_or_all(400, 1_600))),
     ]
 }
 

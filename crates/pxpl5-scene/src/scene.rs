@@ -210,8 +210,8 @@ impl Scene {
         self
     }
 
-    /// Returns the scene turned about the vertical axis by `turn_deg` degrees, scaled so that the longest side of its
-    /// bounding box has `size_m` metres, and moved so that the middle of this box is at `at`. What is `None` stays.
+    /// Returns the scene turned about the vertical axis by `turn_deg` degrees, scaled and moved. The longest side of
+    /// its bounding box then has `size_m` metres, and the middle of this box is at `at`. Whatever is `None` stays.
     #[must_use]
     pub fn placed(&self, at: [Option<f64>; 3], size_m: Option<f64>, turn_deg: f64) -> Self {
         let of_spheres = self.spheres().iter().map(|sphere| (sphere.centre.as_dvec3(), f64::from(sphere.radius)));

@@ -13,9 +13,10 @@
 //! - SEND: the host sends viewing transforms for every new report of the tracker. Each field uses the newest transforms
 //!   that have arrived at its start. If no new transforms have arrived, the field uses the transforms of the previous
 //!   field. Primitives are in memory from the start.
-//! - TRANSFORM: the primitives are divided into *clumps* of 30. A clump goes to all regions of both eyes
-//!   ([`pphigs::RegionBinning::All`], as in the prototype) or only to the regions that it touches. Each GP has one
-//!   clump buffer.
+//! - TRANSFORM: one pass of compiled code makes the commands of both eyes, with planes in single precision
+//!   (crates/pxpl5-geometry/kernels/slats_rules.md). The primitives are divided into *clumps* of 30. A clump goes to
+//!   all regions of both eyes ([`pphigs::RegionBinning::All`], as in the prototype) or only to the regions that it
+//!   touches. Each GP has one clump buffer.
 //! - RENDER: every region has a fixed renderer, and only the lines of the coming field are drawn. A renderer holds up
 //!   to four region contexts in the 208 bits of its pixels. This memory is sufficient only for Gouraud shading.
 //! - COPY, whole ([`CopySchedule::Whole`]): all regions are copied before the retrace.

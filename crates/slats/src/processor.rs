@@ -413,6 +413,3 @@ impl SlatsProcessor {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

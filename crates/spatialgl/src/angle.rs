@@ -37,35 +37,3 @@ fn first_eighth(part: i64, whole: i64) -> (f64, f64) {
     }
     libm::sincos(FRAC_PI_4 * (part as f64 / whole as f64))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::sin_cos_of_turn;
-    use proptest::prelude::*;
-
-    #[test]
-    fn sine_and_cosine_of_quarter_turns_and_eighth_turns_are_exact() {
-        assert_eq!(sin_cos_of_turn(0, 4), (0.0, 1.0));
-        assert_eq!(sin_cos_of_turn(1, 4), (1.0, 0.0));
-        assert_eq!(sin_cos_of_turn(2, 4), (0.0, -1.0));
-        assert_eq!(sin_cos_of_turn(-1, 4), (-1.0, 0.0));
-        let (s, c) = sin_cos_of_turn(99, 792);
-        assert_eq!(s.to_bits(), c.to_bits());
-    }
-
-    proptest! {
-        #[test]
-        fn half_a_turn_changes_only_the_signs_of_sine_and_cosine(n in -5000i64..5000, half in 2u32..1000) {
-            let (s, c) = sin_cos_of_turn(n, 2 * half);
-            let (t, d) = sin_cos_of_turn(n + i64::from(half), 2 * half);
-            prop_assert_eq!((t, d), (-s, -c));
-        }
-
-        #[test]
-        fn the_functions_of_a_fraction_of_a_turn_approximate_sine_and_cosine(n in -5000i64..5000, whole in 1u32..2000) {
-            let (s, c) = sin_cos_of_turn(n, whole);
-            let angle = std::f64::consts::TAU * n as f64 / f64::from(whole);
-            prop_assert!((s - angle.sin()).abs() < 1e-11 && (c - angle.cos()).abs() < 1e-11);
-        }
-    }
-}

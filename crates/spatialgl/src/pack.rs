@@ -55,32 +55,3 @@ pub fn unpack_dense(words: &[u32], count: usize) -> Vec<u8> {
     let pixels = words.iter().flat_map(|word| (0..DENSE_PIXELS).map(move |i| (word >> (3 * i) & 7) as u8));
     pixels.take(count).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    #[test]
-    fn the_reversed_bit_order_mirrors_the_bits_of_each_byte() {
-        assert_eq!(in_bit_order(packed_word(0x80, 0x40, 0x03), BitOrder::LeftIsLow), packed_word(0x01, 0x02, 0xC0));
-    }
-
-    proptest! {
-        #[test]
-        fn dense_words_are_unpacked_to_their_pixels(pixels in prop::collection::vec(0u8..8, 0..64)) {
-            let words = pack_dense(&pixels);
-            prop_assert_eq!(words.len(), pixels.len().div_ceil(10));
-            prop_assert_eq!(unpack_dense(&words, pixels.len()), pixels);
-        }
-
-        #[test]
-        fn a_word_is_unpacked_to_its_pixels(pixels: [u8; 8]) {
-            let byte = |channel: u32| (0..8).fold(0, |byte, i| byte << 1 | (pixels[i] >> channel & 1));
-            let word = packed_word(byte(0), byte(1), byte(2));
-            for i in 0..8 {
-                prop_assert_eq!(pixel_of_word(word, i), pixels[i as usize] & 7);
-            }
-        }
-    }
-}

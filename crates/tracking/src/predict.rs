@@ -12,8 +12,6 @@ mod orientation_kalman;
 mod position_kalman;
 mod predicting;
 mod propagation;
-#[cfg(test)]
-mod tests;
 mod tune;
 
 pub use config::{Decay, PredictorConfig, PredictorKind, Start};
@@ -45,3 +43,6 @@ pub trait Predictor: Send {
     /// Returns the counts of accepted and rejected reports so far.
     fn counts(&self) -> ReportCounts;
 }
+
+#[cfg(test)]
+mod tests;

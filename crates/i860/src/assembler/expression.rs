@@ -172,6 +172,7 @@ mod tests {
             ("1/0", "division by zero"),
             ("1 << 64", "shift by 64"),
             ("0xg", "not a number"),
+            ("010", "leading zero"),
             ("1 2", "unexpected"),
         ] {
             let found = evaluate(text, &none).expect_err(text);

@@ -6,7 +6,7 @@ use super::settings::WalkArgs;
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
-use crate::terminal::{advance, answer, json_text, print_error, progress};
+use crate::terminal::{answer, json_text, print_error, progress};
 use clap::Args;
 use pxpl5::arp::{ArpComparison, ComparedRow, compare, variant_count};
 use pxpl5::views::results::csv_table;
@@ -36,11 +36,11 @@ pub(super) struct CompareArgs {
 pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp compare")).transpose()?;
     let (scene, plan) = args.walk.gather()?;
-    args.walk.admit(&plan, &scene, variant_count())?;
+    args.walk.admit(&plan, &scene, variant_count(), false)?;
     // Walk once for each variant, then write files before anything is printed.
     let bar = progress(variant_count(), "walks", args.walk.quiet);
-    let comparison = compare(&scene, &plan, |done, of| advance(&bar, done, of));
-    bar.finish_and_clear();
+    let comparison = compare(&scene, &plan, |done, of| bar.advance(done, of));
+    bar.clear();
     let json = json_text(&comparison)?;
     if let Some(mut folder) = folder {
         folder.put("comparison.json", json.as_bytes())?;

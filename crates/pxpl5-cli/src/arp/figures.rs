@@ -43,7 +43,7 @@ pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp figures")).transpose()?;
     let bar = progress(2, "walks and pictures", args.quiet);
     let (experiments, rows) = figures::all()?;
-    bar.inc(1);
+    bar.add_one();
     let markdown = figures::markdown(&experiments, &rows);
     document.map(|document| document.write(markdown.as_bytes())).transpose()?;
     if let Some(mut folder) = folder {
@@ -51,7 +51,7 @@ pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
         put(&mut folder, &pictures::all(&experiments)?, &origin)?;
         folder.commit()?;
     }
-    bar.finish_and_clear();
+    bar.clear();
     // `--check` fails if the document in the repository differs from the new document.
     if let Some(path) = &args.check {
         fresh(path, &markdown, "arp figures")?;

@@ -2,7 +2,7 @@
 //! ways. The command ranks these interpretations.
 
 use crate::error::CliError;
-use crate::terminal::{advance, answer, json_text, progress};
+use crate::terminal::{answer, json_text, progress};
 use clap::Args;
 use pxpl5::arp::figures::{Interpretations, interpretations_text};
 
@@ -24,8 +24,8 @@ pub(super) struct InterpretationsArgs {
 
 pub(super) fn run(args: InterpretationsArgs) -> Result<(), CliError> {
     let bar = progress(0, "rules and halls", args.quiet);
-    let all = Interpretations::run(|done, of| advance(&bar, done, of));
-    bar.finish_and_clear();
+    let all = Interpretations::run(|done, of| bar.advance(done, of));
+    bar.clear();
     let all = all?;
     answer(args.json, args.quiet, &json_text(&all)?, || interpretations_text(&all).trim_start().to_owned())
 }

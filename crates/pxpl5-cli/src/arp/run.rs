@@ -4,7 +4,7 @@ use super::settings::{WalkArgs, put};
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
-use crate::terminal::{advance, answer, json_text, progress};
+use crate::terminal::{answer, json_text, progress};
 use crate::version::{VERSION, commit_text};
 use clap::Args;
 use pxpl5::Fingerprint;
@@ -42,10 +42,10 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     // Open the output first, so that a bad path fails before the walk.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp run")).transpose()?;
     let (scene, plan) = args.walk.gather()?;
-    args.walk.admit(&plan, &scene, 1)?;
+    args.walk.admit(&plan, &scene, 1, args.out.is_some())?;
     let bar = progress(plan.walk.frames, "frames", args.walk.quiet);
-    let outcome = WalkOutcome::of(&scene, &plan, |done, of| advance(&bar, done, of));
-    bar.finish_and_clear();
+    let outcome = WalkOutcome::of(&scene, &plan, |done, of| bar.advance(done, of));
+    bar.clear();
     let outcome = outcome?;
     let json = json_text(&outcome.report)?;
     if let Some(mut folder) = folder {

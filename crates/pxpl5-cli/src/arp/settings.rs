@@ -96,8 +96,8 @@ impl WalkArgs {
 
     /// Returns an error if the estimated time or memory of this number of walks exceeds the budget. The error contains
     /// the estimate and advice to reduce the work.
-    pub(super) fn admit(&self, plan: &WalkPlan, scene: &Scene, walks: u64) -> Result<(), CliError> {
-        let one = WalkWork::of(plan, scene).estimate();
+    pub(super) fn admit(&self, plan: &WalkPlan, scene: &Scene, walks: u64, has_pictures: bool) -> Result<(), CliError> {
+        let one = WalkWork::of(plan, scene, has_pictures).estimate();
         let all = Estimate { seconds: walks as f64 * one.seconds, ..one };
         self.budget.admit_estimate(all, "walk fewer frames (--set walk.frames)")
     }

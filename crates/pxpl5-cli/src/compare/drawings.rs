@@ -82,7 +82,7 @@ fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAx
 
 type Column = (&'static str, fn(&ComparisonRow) -> String);
 
-const COLUMNS: [Column; 34] = [
+const COLUMNS: [Column; 33] = [
     ("pipeline", |row| row.pipeline.clone()),
     ("settings", |row| row.settings.clone()),
     ("latency_ms.mean", |row| number(row.latency_ms.mean)),
@@ -103,7 +103,6 @@ const COLUMNS: [Column; 34] = [
     ("error.mean_px.high", |row| number(row.error.mean_px.high)),
     ("error.mean_px.n", |row| row.error.mean_px.n.to_string()),
     ("error.mean_px.method", |row| written(serde_json::to_value(row.error.mean_px.method))),
-    ("error.bootstrap.block_fields", |row| count(row.error.bootstrap.map(|size| size.block_fields))),
     ("error.pixels.p50", |row| number(row.error.pixels.p50)),
     ("error.pixels.p90", |row| number(row.error.pixels.p90)),
     ("error.pixels.p95", |row| number(row.error.pixels.p95)),

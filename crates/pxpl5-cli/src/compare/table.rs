@@ -62,7 +62,7 @@ fn intervals(comparison: &Comparison) -> String {
     let mut text = String::new();
     for method in IntervalMethod::ALL {
         let rows = comparison.pipelines.iter().filter(|row| row.was_evaluated() && row.error.mean_px.method == method);
-        let names: Vec<String> = rows.map(with_blocks).collect();
+        let names: Vec<&str> = rows.map(|row| row.pipeline.as_str()).collect();
         if !names.is_empty() {
             let _ = writeln!(text, "Intervals of {confidence} %, {}: {}.", method.words(), names.join(", "));
         }
@@ -74,14 +74,6 @@ fn intervals(comparison: &Comparison) -> String {
 /// and 100 can have rounding errors.
 fn percent(share: f64) -> f64 {
     (share * 1e8).round() / 1e6
-}
-
-/// Returns the name of a row. If the confidence interval comes from a bootstrap, two lengths in fields follow. The
-/// first is the length of the series of errors. The second is the length of the blocks of the bootstrap.
-fn with_blocks(row: &ComparisonRow) -> String {
-    let blocks =
-        row.error.bootstrap.map(|size| format!(" ({} fields in blocks of {})", size.fields, size.block_fields));
-    format!("{}{}", row.pipeline, blocks.unwrap_or_default())
 }
 
 /// Returns sentences about the number of seeds of each row. The text is empty without the option `--until-precision`.

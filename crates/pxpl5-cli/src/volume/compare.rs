@@ -5,7 +5,7 @@ use super::settings::VolumeSettingArgs;
 use crate::error::CliError;
 use crate::numbers::{count_of, whole};
 use crate::output::OutputFolder;
-use crate::terminal::{advance, answer, json_text, progress};
+use crate::terminal::{answer, json_text, progress};
 use clap::Args;
 use pxpl5::views::charts::{ChartAxes, Curve, curve_chart};
 use pxpl5::views::png_bytes;
@@ -47,8 +47,8 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let viewpoint =
         folder.is_some().then_some(ComparePoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: args.size });
     let bar = progress(variant_count(), "volumes", options.quiet);
-    let comparison = compare(&settings, &scene, viewpoint, &options.threads(), |done, of| advance(&bar, done, of));
-    bar.finish_and_clear();
+    let comparison = compare(&settings, &scene, viewpoint, &options.threads(), |done, of| bar.advance(done, of));
+    bar.clear();
     let comparison = comparison?;
     let json = json_text(&comparison)?;
     if let Some(folder) = &mut folder {

@@ -4,7 +4,7 @@ use super::settings::load;
 use crate::error::CliError;
 use crate::figures::{fresh, rows_text};
 use crate::output::{OutputFile, OutputFolder};
-use crate::terminal::{advance, answer, json_text, progress};
+use crate::terminal::{answer, json_text, progress};
 use clap::Args;
 use pxpl5::scene::Scene;
 use pxpl5::views::png_bytes;
@@ -48,8 +48,8 @@ pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
     // Rows are measured on all scenes; drawings use the first scene.
     let scenes = SCENES.iter().map(|name| load(name, None)).collect::<Result<Vec<_>, _>>()?;
     let bar = progress(0, "scenes", args.quiet);
-    let figures = all(&scenes, &Threads::all(), |done, of| advance(&bar, done, of));
-    bar.finish_and_clear();
+    let figures = all(&scenes, &Threads::all(), |done, of| bar.advance(done, of));
+    bar.clear();
     let figures = figures?;
     if let Some(document) = document {
         document.write(markdown(&figures).as_bytes())?;

@@ -71,9 +71,9 @@ pub(super) fn run(
     let bar = progress(u64::from(args.frames), "pictures", options.settings.quiet);
     for time_ps in instants {
         film.add(&before.picture(time_ps, side, exposure, &threads)?).map_err(CliError::failure)?;
-        bar.inc(1);
+        bar.add_one();
     }
-    bar.finish_and_clear();
+    bar.clear();
     film.finish().map_err(CliError::failure)?;
     folder.put("eyes.png", &bytes)?;
     folder.commit()?;

@@ -6,7 +6,7 @@ use crate::error::CliError;
 use crate::estimate::{Estimate, VolumeWork};
 use crate::numbers::whole;
 use crate::scenes;
-use crate::terminal::{advance, progress, warn};
+use crate::terminal::{progress, warn};
 use crate::version::{VERSION, commit_text};
 use clap::Args;
 use image::RgbImage;
@@ -133,10 +133,10 @@ impl VolumeSettingArgs {
         let scene = self.load_scene()?;
         self.settings.admit(settings, &scene, 1)?;
         let bar = progress(0, "batches of slices", self.settings.quiet);
-        let finished = |done, of| advance(&bar, done, of);
+        let finished = |done, of| bar.advance(done, of);
         let threads = self.settings.threads();
         let volume = Volume::draw(settings, &scene, &Counted::new(&threads, &finished));
-        bar.finish_and_clear();
+        bar.clear();
         Ok(volume?)
     }
 }

@@ -139,9 +139,9 @@ pub(super) fn film(args: FilmArgs) -> Result<(), CliError> {
     let bar = progress(u64::from(args.frames), "pictures", args.volume.settings.quiet);
     for picture in view.film(&volume, args.frames, &threads) {
         animation.add(&picture?).map_err(CliError::failure)?;
-        bar.inc(1);
+        bar.add_one();
     }
-    bar.finish_and_clear();
+    bar.clear();
     animation.finish().map_err(CliError::failure)?;
     file.write(&bytes)?;
     say(

@@ -1,7 +1,5 @@
 //! Exact geometry, hard cases, and measurements of the pipeline on them.
-//!
-//! The tests and the example that writes docs/numerics.md share this module. Each of them uses a part of the module.
-#![allow(dead_code, unreachable_pub, missing_docs)]
+#![allow(unreachable_pub, reason = "a module of tests")]
 
 pub mod cases;
 pub mod exact;

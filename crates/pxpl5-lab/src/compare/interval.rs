@@ -1,6 +1,5 @@
 //! A mean with its confidence interval.
 
-use super::bootstrap::{BlockBootstrap, BootstrapSize};
 use distrs::StudentsT;
 use pxpl5_run::{Statistics, number_or_nan};
 use serde::{Deserialize, Serialize};
@@ -16,13 +15,13 @@ pub enum IntervalMethod {
     /// Interval of Student's t distribution, computed from one mean for each seed, for the logarithm of the mean (delta
     /// method).
     StudentTOfLogarithm,
-    /// Moving-block bootstrap over the fields of one motion of the head ([`BlockBootstrap`](super::BlockBootstrap)).
-    MovingBlockBootstrap,
+    /// Interval of Student's t distribution over the means of successive parts of one motion of the head.
+    StudentTOfParts,
 }
 
 impl IntervalMethod {
     /// All methods.
-    pub const ALL: [Self; 4] = [Self::StudentTOfLogarithm, Self::StudentT, Self::MovingBlockBootstrap, Self::None];
+    pub const ALL: [Self; 4] = [Self::StudentTOfLogarithm, Self::StudentT, Self::StudentTOfParts, Self::None];
 
     /// Returns the name of the method in words, for tables.
     pub const fn words(self) -> &'static str {
@@ -30,7 +29,7 @@ impl IntervalMethod {
             Self::None => "no interval",
             Self::StudentT => "Student's t over the seeds",
             Self::StudentTOfLogarithm => "Student's t over the seeds, of the logarithm",
-            Self::MovingBlockBootstrap => "moving-block bootstrap over the fields",
+            Self::StudentTOfParts => "Student's t over ten parts of the motion",
         }
     }
 }
@@ -52,6 +51,13 @@ pub struct MeanInterval {
     /// Method of the interval.
     pub method: IntervalMethod,
 }
+
+/// Number of parts into which one motion is divided for an interval (assumed, 8 to 30). With fewer parts Student's t is
+/// wide, and the means of more parts depend on each other.
+const PARTS: usize = 10;
+
+/// Minimum number of display fields for an interval over parts of a motion (assumed): parts of a sixth of a second.
+const MIN_FIELDS: usize = 100;
 
 /// Default confidence of an interval, as a probability.
 pub const CONFIDENCE: f64 = 0.95;
@@ -96,24 +102,24 @@ impl MeanInterval {
     /// mean number of each display field, in the order of time. `is_noisy` is true if the runs have random errors.
     ///
     /// The interval is the wider one of two. The interval over the seeds shows the random errors, such as the noise of the
-    /// tracker, and the bootstrap over the fields shows the motion. One run with random errors has no interval, because
-    /// its fields share errors that last long: a bias for the whole run, or the errors of a slow filter.
-    pub(super) fn of_one_motion(
-        values: &[f64],
-        series: &[f64],
-        is_noisy: bool,
-        confidence: f64,
-    ) -> (Self, Option<BootstrapSize>) {
+    /// tracker. The interval over [`PARTS`] parts of the motion shows how the motion varies. One run with random errors has
+    /// no interval, because its parts share errors that last: a bias, or the errors of a slow filter.
+    pub(super) fn of_one_motion(values: &[f64], series: &[f64], is_noisy: bool, confidence: f64) -> Self {
         let over_seeds = Self::of_either_sign(values, confidence);
-        if values.len() < 2 && is_noisy {
-            return (over_seeds, None);
+        // Equal seeds have no random errors to show.
+        let over_seeds = if over_seeds.width() == Some(0.0) { over_seeds.without_interval() } else { over_seeds };
+        if values.len() < 2 && is_noisy || series.len() < MIN_FIELDS {
+            return over_seeds;
         }
-        let Some(bootstrap) = BlockBootstrap::of(series) else { return (over_seeds, None) };
-        let (low, high) = bootstrap.interval(over_seeds.mean, confidence);
+        // Successive fields depend on each other, so only means of long parts count as numbers of their own.
+        let parts = series.chunks_exact(series.len() / PARTS).take(PARTS);
+        let means: Vec<f64> = parts.map(|part| part.iter().sum::<f64>() / part.len() as f64).collect();
+        let Self { mean, low, high, .. } = Self::of_either_sign(&means, confidence);
         if over_seeds.width().is_some_and(|width| width > high - low) {
-            return (over_seeds, None);
+            return over_seeds;
         }
-        (Self { low, high, method: IntervalMethod::MovingBlockBootstrap, ..over_seeds }, Some(bootstrap.size()))
+        let shift = over_seeds.mean - mean;
+        Self { low: low + shift, high: high + shift, method: IntervalMethod::StudentTOfParts, ..over_seeds }
     }
 
     /// Computes the interval of [`Self::of`] for numbers that are not negative, and of [`Self::of_signed`] for others.
@@ -222,7 +228,7 @@ mod tests {
                 let means: Vec<f64> = runs.iter().map(|run| run.iter().sum::<f64>() / run.len() as f64).collect();
                 let field = |n: usize| runs.iter().map(|run| run[n]).sum::<f64>() / SEEDS as f64;
                 let series: Vec<f64> = (0..fields as usize).map(field).collect();
-                let (interval, _) = MeanInterval::of_one_motion(&means, &series, true, CONFIDENCE);
+                let interval = MeanInterval::of_one_motion(&means, &series, true, CONFIDENCE);
                 (interval.low..=interval.high).contains(&20.0)
             };
             let share = (0..ROWS).filter(|row| covers(*row)).count() as f64 / ROWS as f64;
@@ -232,11 +238,11 @@ mod tests {
     }
 
     #[test]
-    fn one_run_with_noise_has_no_interval_and_one_without_has_that_of_the_bootstrap() {
+    fn one_run_with_noise_has_no_interval_and_one_without_has_that_of_its_parts() {
         let series: Vec<f64> = (0..400).map(|n| 10.0 + normal(1, n)).collect();
         let [noisy, exact] =
-            [true, false].map(|is_noisy| MeanInterval::of_one_motion(&[10.0], &series, is_noisy, CONFIDENCE).0);
-        assert_eq!((noisy.method, exact.method), (IntervalMethod::None, IntervalMethod::MovingBlockBootstrap));
+            [true, false].map(|is_noisy| MeanInterval::of_one_motion(&[10.0], &series, is_noisy, CONFIDENCE));
+        assert_eq!((noisy.method, exact.method), (IntervalMethod::None, IntervalMethod::StudentTOfParts));
         assert!(noisy.may_be_zero() && !exact.may_be_zero());
     }
 }

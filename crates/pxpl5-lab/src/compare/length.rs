@@ -4,7 +4,6 @@ use super::query::CompareQuery;
 use crate::error::StudyError;
 use crate::experiment_file::Plan;
 use pxpl5_sim::Time;
-use pxpl5_wire::NodeId;
 
 /// Length of the runs if the head replays a recorded motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,10 +48,6 @@ impl CompareQuery {
 /// not a recording, if the recording is repeated without end, or if the display cannot be built.
 fn recorded_fields(plan: &Plan) -> Option<u64> {
     let head = plan.head.as_ref().filter(|head| head.is_recording())?.head();
-    let ends = Time(head.motion().moves_until_ps()?);
-    let config = plan.machine.displays.first()?;
-    let ports = config.ports(plan.pipeline.eyes());
-    let nodes: Vec<NodeId> = (0..ports).filter_map(|n| Some(NodeId(n.try_into().ok()?))).collect();
     // A period that begins when the recording ends is the first that is not simulated.
-    Some(config.build(&nodes, plan.machine.ring.word()).ok()?.period_at(ends).0)
+    plan.display_periods(Time(head.motion().moves_until_ps()?))
 }

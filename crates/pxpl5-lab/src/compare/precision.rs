@@ -32,7 +32,7 @@ impl UntilPrecise {
     /// Returns true if the interval exists and is narrow enough. An interval over the fields of one seed does not
     /// count, because it leaves out the differences between motions of the head.
     pub fn is_reached(&self, error: &MeanInterval) -> bool {
-        let is_over_seeds = error.method != IntervalMethod::MovingBlockBootstrap;
+        let is_over_seeds = error.method != IntervalMethod::StudentTOfParts;
         is_over_seeds && error.width().is_some_and(|width| width <= self.greatest_width(error.mean))
     }
 
@@ -102,7 +102,7 @@ mod tests {
         let pixels = UntilPrecise { width: Precision::Pixels(0.2), max_seeds: 50 };
         assert!(pixels.is_reached(&error(0.0999)) && !pixels.is_reached(&error(0.11)));
         assert!(!TENTH.is_reached(&MeanInterval::of(&[5.0], 0.95)), "one seed has no interval");
-        let over_time = MeanInterval { method: IntervalMethod::MovingBlockBootstrap, ..error(0.1) };
+        let over_time = MeanInterval { method: IntervalMethod::StudentTOfParts, ..error(0.1) };
         assert!(
             !TENTH.is_reached(&over_time) && TENTH.seeds_to_add(&over_time, 1) > 0,
             "one motion tells nothing of others"

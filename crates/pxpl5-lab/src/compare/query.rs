@@ -151,45 +151,17 @@ impl CompareQuery {
     ///
     /// Returns [`StudyError`] when a setting is invalid, or when the run is too short to evaluate.
     pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, StudyError> {
-        self.run_with(finished, |_| {})
+        self.run_into(None, &StopFlag::default(), finished, |_| {})
     }
 
-    /// Runs each row with each seed, as [`CompareQuery::run`] does. Calls `ended` with each row after the last run of
-    /// the row.
+    /// Runs each row that is not yet in `store`, the folder of finished rows, until another thread sets `stop`. Each row
+    /// is stored after its last run. Runs in progress end after at most 60 fields, and their rows are not stored. Calls
+    /// `ended` with each stored row.
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`CompareQuery::run`].
-    pub fn run_with(
-        &self,
-        finished: impl Fn(u64, u64) + Sync,
-        ended: impl Fn(&ComparisonRow) + Sync,
-    ) -> Result<Comparison, StudyError> {
-        self.run_into(None, finished, ended)
-    }
-
-    /// Runs each row that is not yet in `store`, the folder of finished rows. Each row is stored after its last run.
-    /// Calls `ended` with each stored row.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`CompareQuery::run`], and if a row cannot be stored.
+    /// Fails in the same cases as [`CompareQuery::run`], if a row cannot be stored, and with [`ExperimentError::Stopped`](pxpl5_run::ExperimentError::Stopped).
     pub fn run_into(
-        &self,
-        store: Option<&CompareStore>,
-        finished: impl Fn(u64, u64) + Sync,
-        ended: impl Fn(&ComparisonRow) + Sync,
-    ) -> Result<Comparison, StudyError> {
-        self.run_stoppable(store, &StopFlag::default(), finished, ended)
-    }
-
-    /// Runs each row as [`CompareQuery::run_into`] does, until another thread sets `stop`. Runs in progress then end
-    /// after at most 60 fields, and their rows are not stored.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`CompareQuery::run_into`], and with [`ExperimentError::Stopped`](pxpl5_run::ExperimentError::Stopped).
-    pub fn run_stoppable(
         &self,
         store: Option<&CompareStore>,
         stop: &StopFlag,
@@ -347,7 +319,7 @@ impl CompareQuery {
         }
         if self.until.is_some() && !self.shared.has_motion_for_each_seed()? {
             return Err(SettingError::combination(
-                "this motion is the same for all seeds: its interval is a bootstrap over time, which more seeds do not make narrower; \
+                "this motion is the same for all seeds: its interval also shows how the motion varies, which more seeds do not make narrower; \
                  use head.motion = synthetic or a longer recording, or compare without a precision",
             )
             .into());

@@ -75,12 +75,12 @@ mod tests {
         // The first finished run stops the comparison, so each row has at least one run without a result.
         let stop_soon = |_, _| stop.stop();
         let store = query.open_store(&folder, true).expect("a folder");
-        let stopped = query.run_stoppable(Some(&store), &stop, stop_soon, |row| panic!("{} ended", row.pipeline));
+        let stopped = query.run_into(Some(&store), &stop, stop_soon, |row| panic!("{} ended", row.pipeline));
         assert!(matches!(stopped, Err(StudyError::Experiment(pxpl5_run::ExperimentError::Stopped(_)))), "{stopped:?}");
         drop(store);
         let store = query.open_store(&folder, true).expect("a folder");
         assert_eq!(store.found(), 0);
-        let resumed = query.run_into(Some(&store), |_, _| {}, |_| {}).expect("it runs");
+        let resumed = query.run_into(Some(&store), &StopFlag::default(), |_, _| {}, |_| {}).expect("it runs");
         assert_eq!(resumed.pipelines.len(), 2);
         let _ = std::fs::remove_dir_all(&folder);
     }

@@ -1,6 +1,5 @@
 //! A row of a comparison: the results of one method, combined from the runs of all seeds.
 
-use super::bootstrap::BootstrapSize;
 use super::contender::{ComparedPipeline, DELAYED_VIDEO, IDEAL};
 use super::gallery::LastPicture;
 use super::interval::MeanInterval;
@@ -17,9 +16,6 @@ use tracking::predict::PredictorKind;
 pub struct ErrorSpread {
     /// Mean distance of a pixel's content from its ideal position, in pixels.
     pub mean_px: MeanInterval,
-    /// Size of the moving-block bootstrap that gave the interval of `mean_px`. `None` if another method gave the
-    /// interval.
-    pub bootstrap: Option<BootstrapSize>,
     /// Mean distance of a pixel's content from its ideal position, in degrees.
     pub mean_deg: MeanInterval,
     /// Percentiles of the error over all evaluated pixels of all seeds, in pixels.
@@ -289,11 +285,11 @@ impl ErrorSpread {
         let deg: Vec<f64> = evaluated.iter().map(|trial| trial.errors.degrees.mean).collect();
         let mut all: Vec<f64> = evaluated.iter().flat_map(|trial| &trial.errors.all_px).copied().collect();
         all.sort_by(f64::total_cmp);
-        let (mean_px, bootstrap) = if sampling.is_one_motion {
+        let mean_px = if sampling.is_one_motion {
             let series: Vec<f64> = mean_of_fields(&evaluated).iter().map(|field| field.mean_px).collect();
             MeanInterval::of_one_motion(&px, &series, sampling.is_noisy, confidence)
         } else {
-            (MeanInterval::of(&px, confidence), None)
+            MeanInterval::of(&px, confidence)
         };
         let mean_deg = MeanInterval::of(&deg, confidence);
         let evaluated_n: u64 = evaluated.iter().map(|trial| trial.errors.evaluated).sum();
@@ -303,9 +299,8 @@ impl ErrorSpread {
         };
         Self {
             mean_px,
-            bootstrap,
             // Angles are not kept for each field, so their mean has no interval over time.
-            mean_deg: if bootstrap.is_some() { mean_deg.without_interval() } else { mean_deg },
+            mean_deg: if sampling.is_one_motion { mean_deg.without_interval() } else { mean_deg },
             pixels: Percentiles::of(all.iter().copied()),
             n: evaluated_n,
             outside_share: share(|trial| trial.errors.outside),
@@ -324,7 +319,7 @@ pub(super) fn difference(row: &ComparisonRow, best: &ComparisonRow, sampling: Sa
     let of_best: BTreeMap<PeriodNumber, f64> = best.by_field.iter().map(|one| (one.field, one.mean_px)).collect();
     let paired = row.by_field.iter().filter_map(|one| Some(one.mean_px - of_best.get(&one.field)?));
     let series: Vec<f64> = paired.filter(|px| px.is_finite()).collect();
-    MeanInterval::of_one_motion(&seeds, &series, sampling.is_noisy, sampling.confidence).0
+    MeanInterval::of_one_motion(&seeds, &series, sampling.is_noisy, sampling.confidence)
 }
 
 fn seed_means(trials: &[&Trial]) -> Vec<f64> {

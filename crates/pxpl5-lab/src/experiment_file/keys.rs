@@ -269,7 +269,9 @@ pub(super) fn unknown(registry: &Registry, found: &str) -> SettingError {
     let parameters = parameters(registry);
     let long = parameters.iter().map(|path| format!("machine.{path}"));
     let own = keys(registry).into_iter().map(|key| key.path);
-    let of_trackers = tracking_parameters().into_iter().map(|parameter| parameter.path);
+    // Published facts cannot be set.
+    let of_trackers = tracking_parameters().into_iter().filter(|parameter| !parameter.read_only);
+    let of_trackers = of_trackers.map(|parameter| parameter.path);
     let all = own.chain(long).chain(parameters.iter().cloned()).chain(of_trackers);
     SettingError::unknown_path("key", found, all)
 }

@@ -79,7 +79,6 @@ impl Origin {
 impl Plan {
     /// Returns the effective value of each setting and the origin of the results, for an experiment file in `folder`. File
     /// names are relative to the folder where both have a common parent.
-    #[must_use]
     pub fn settings_in(&self, folder: &Path, experiment: &Experiment) -> Settings {
         let mut all = self.settings_for_any_folder();
         all.make_relative(folder);

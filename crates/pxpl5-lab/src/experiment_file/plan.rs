@@ -16,7 +16,9 @@ use pxpl5_run::{
     Registry, check_coverage, out_of_range, warning_without_code,
 };
 use pxpl5_scene::{Hmd, Scene};
+use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{Parameter, SettingError, Value as Number};
+use pxpl5_wire::NodeId;
 use std::sync::Arc;
 
 /// Files that a run writes in addition to its report.
@@ -299,6 +301,15 @@ impl Plan {
     /// Returns the name of the display on which the pipeline shows its pictures.
     pub fn display(&self) -> &'static str {
         self.machine.displays.first().map_or("", |display| display.name())
+    }
+
+    /// Returns the number of whole periods of the display until the instant `time`. Returns `None` if the display cannot
+    /// be built.
+    pub fn display_periods(&self, time: Time) -> Option<u64> {
+        let config = self.machine.displays.first()?;
+        let ports = config.ports(self.pipeline.eyes());
+        let nodes: Vec<NodeId> = (0..ports).filter_map(|n| Some(NodeId(n.try_into().ok()?))).collect();
+        Some(config.build(&nodes, self.machine.ring.word()).ok()?.period_at(time).0)
     }
 
     /// Returns the experiment with its loaded scene, for a run on this computer.

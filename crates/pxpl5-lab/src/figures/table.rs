@@ -196,9 +196,9 @@ pub const FIGURES: [Figure; 26] = [
     )
     .because(
         "The COPY optimisation saves 4.68 ms. In the paper TR94, the saved 4.68 ms are enough for 30 more triangles, so each \
-         triangle takes 156 us. In the model, each triangle takes 126 us. Of the 126 us, 60 us are code for both eyes, and the \
+         triangle takes 156 us. In the model, each triangle takes 106 us. Of the 106 us, 55 us are code for both eyes, and the \
          rest is the wait until all renderers have begun with a clump (a group of 30 triangles). If each board could use one \
-         channel instead of two, the limit of the same code would be 127 triangles",
+         channel instead of two, the limit of the same code would be 139 triangles",
     ),
     figure(
         "14",

@@ -94,6 +94,9 @@ pub struct OverLimit {
     pub reached: bool,
     /// All tried values in ascending order. The boolean is true if the value reaches the goal.
     pub tried: Vec<(f64, bool)>,
+    /// Tried values beyond the limits that reach the goal again.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub islands: Vec<f64>,
     /// A value that misses the goal: the value next to the limit, or the best value if all values miss.
     pub missed_at: Option<f64>,
     /// Resource that limits the experiment with the value `missed_at`, in words.
@@ -160,8 +163,10 @@ impl OverQuery {
     /// all values.
     ///
     /// The search first tries the ends of the range and three values between them. If one of these values reaches the
-    /// goal, the search bisects the range on both sides of this value. The limit is exact if all values on one side of
-    /// the limit reach the goal and all values on the other side miss.
+    /// goal, the search bisects the range on both sides of this value. Values that miss may separate values that reach
+    /// the goal. Then the limits are those of the largest group, and of two equal groups those of the group at an end
+    /// of the range. The limit is exact if all values on one side of the limit reach the goal and all values on the
+    /// other side miss.
     ///
     /// # Errors
     ///
@@ -176,8 +181,7 @@ impl OverQuery {
         }
         // The values after a stop were not tried.
         self.stop.check()?;
-        let reached = search.trials.iter().filter(|(_, trial)| trial.reached).map(|(number, _)| *number).max();
-        let Some(inside) = reached else { return search.none() };
+        let Some(inside) = search.largest_group() else { return search.none() };
         // Search towards smaller values, then towards greater values.
         let misses = |search: &Search<'_>, down: bool| {
             let of = search.trials.iter().filter(|(_, trial)| !trial.reached).map(|(number, _)| *number);
@@ -201,12 +205,17 @@ impl OverQuery {
         self.stop.check()?;
         let [least, most] = ends;
         let miss = least.or(most).map(|(_, miss)| miss);
+        let is_beyond =
+            |number: u64| least.is_some_and(|(hit, _)| number < hit) || most.is_some_and(|(hit, _)| number > hit);
+        let again = search.trials.iter().filter(|(number, trial)| trial.reached && is_beyond(**number));
+        let islands = again.map(|(number, _)| self.values.value(*number)).collect();
         Ok(OverLimit {
             least: least.map(|(hit, _)| self.values.value(hit)),
             most: most.map(|(hit, _)| self.values.value(hit)),
             reached: true,
             missed_at: miss.map(|miss| self.values.value(miss)),
             because: miss.and_then(|miss| search.trials[&miss].because.clone()),
+            islands,
             tried: search.tried(),
         })
     }
@@ -276,6 +285,19 @@ impl Search<'_> {
         Ok(scene)
     }
 
+    /// Returns a value of the largest group of tried values that all reach the goal. An end of the range makes a group
+    /// larger, because monotony ends there only.
+    fn largest_group(&self) -> Option<u64> {
+        let last = self.query.values.count - 1;
+        let trials: Vec<(u64, bool)> = self.trials.iter().map(|(number, trial)| (*number, trial.reached)).collect();
+        let groups = trials.chunk_by(|a, b| a.1 == b.1).filter(|group| group[0].1);
+        let size = |group: &&[(u64, bool)]| {
+            let has_end = group.iter().any(|(number, _)| [0, last].contains(number));
+            (group.len(), has_end)
+        };
+        groups.max_by_key(size).map(|group| group[group.len() - 1].0)
+    }
+
     fn report(&self, progress: &mut impl FnMut(u64, u64)) {
         let tried = self.trials.len() as u64;
         progress(tried, tried.max(USUAL_VALUES));
@@ -302,6 +324,7 @@ impl Search<'_> {
             tried: self.tried(),
             missed_at,
             because: because.flatten(),
+            islands: Vec::new(),
         })
     }
 }
@@ -325,7 +348,12 @@ fn because(outcome: &Outcome) -> Option<String> {
     let Utilisation { renderers, gps, ports, ring, .. } = Utilisation::of(outcome.record())?;
     let (renderer, gp) = (("renderer", renderers.executing), ("GP", gps.busy));
     let (port, channel) = (("port", ports.busy), ("channel", ring.channels));
-    if let Some(full) = [&renderer, &gp, &port, &channel].into_iter().find(|(_, shares)| shares.max >= FULL) {
+    // The ring fills the first channels first, so only all channels together can limit the machine.
+    let is_full = |(board, shares): &&(&str, Shares)| {
+        let share = if *board == "channel" { shares.mean } else { shares.max };
+        share >= FULL
+    };
+    if let Some(full) = [&renderer, &gp, &port, &channel].into_iter().find(is_full) {
         return Some(busy(full));
     }
     let Some(path) = CriticalPath::of(outcome) else {

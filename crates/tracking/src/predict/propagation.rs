@@ -10,8 +10,8 @@ const LARGEST_DECAY: f64 = 0.125;
 
 /// The change of value, velocity and acceleration over a time, and of their covariance.
 ///
-/// Velocity and acceleration decay as in the model of Singer 1970, and jerk is white noise: x' = v, v' = a - b v,
-/// a' = w - c a with the rates of decay b and c.
+/// Velocity and acceleration decay as in the model of Singer 1970, and jerk is white noise. With the rates of decay b
+/// and c, x' = v, v' = a - b v, and a' = w - c a.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Propagation {
     /// Matrix that gives the new state from the old one.

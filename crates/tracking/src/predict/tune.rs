@@ -263,9 +263,9 @@ impl TrainingData {
 
     /// Returns the settings with the memory and the decays in `shapes`, for position and orientation.
     ///
-    /// A filter ignores noise at angular frequencies above 1/memory. There the spectral density of the motion, which is
-    /// that of the jerk divided by w^2 (w^2 + b^2) (w^2 + c^2) with the rates of decay b and c, equals the density of
-    /// the reports' noise.
+    /// A filter ignores noise at angular frequencies above 1/memory. There the spectral density of the motion equals
+    /// that of the reports' noise. The density of the motion is that of the jerk divided by w^2 (w^2 + b^2) (w^2 +
+    /// c^2), with the rates of decay b and c.
     fn shaped(&self, base: &PredictorConfig, shapes: [Shape; 2]) -> PredictorConfig {
         let interval_s = crate::time::seconds(self.interval_ps).max(self.report_s);
         let rate = |relative: f64| (relative / interval_s).min(LARGEST_RATE);

@@ -32,10 +32,10 @@ const TUM_ORDER: [usize; 8] = [0, 1, 2, 3, 7, 4, 5, 6];
 const LENGTH_TOLERANCE: f64 = 1e-2;
 
 /// Fastest movement of a head between two samples, m/s: twice the fastest of four real recordings. Assumed, 5 to 20.
-const MOST_M_PER_S: f64 = 8.0;
+const MAX_M_PER_S: f64 = 8.0;
 /// Fastest turn of a head between two samples, rad/s: 2,000 degrees, twice the fastest of four real recordings.
 /// Assumed, 1,000 to 4,000 degrees.
-const MOST_RAD_PER_S: f64 = 2_000.0 / PER_RAD;
+const MAX_RAD_PER_S: f64 = 2_000.0 / PER_RAD;
 const PER_RAD: f64 = 180.0 / std::f64::consts::PI;
 /// Noise of a tracker. A shorter way shows no speed, because two samples may be only microseconds apart. Assumed.
 const NOISE_M: f64 = 0.002;
@@ -218,7 +218,7 @@ impl Fast {
         let moved_m = (sample.1.position - before.position).length();
         let turned = rotation::difference(before.orientation, sample.1.orientation).length();
         let speeds =
-            [(moved_m, MOST_M_PER_S, NOISE_M, "m/s", 1.0), (turned, MOST_RAD_PER_S, NOISE_RAD, "deg/s", PER_RAD)];
+            [(moved_m, MAX_M_PER_S, NOISE_M, "m/s", 1.0), (turned, MAX_RAD_PER_S, NOISE_RAD, "deg/s", PER_RAD)];
         let fast = speeds.into_iter().find(|(way, most, noise, ..)| *way > most * seconds && way > noise);
         // A tracker that has lost the head repeats its pose, and after some time this pose is no longer too fast.
         let is_lost = self.left_out == Some(sample.1);

@@ -1,13 +1,14 @@
 //! Tests of the graphics processor that leads Slats, as the only processor of the machine. The tests choose the times
 //! at which the renderers acknowledge copies.
 
-use super::*;
-use pphigs::{DisplayList, DisplayStructure, EyeView, ModelFrame, RegionBinning, Shading};
+use pphigs::{DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, RegionBinning, Shading, Share};
 use pxpl5_geometry::Culling;
-use pxpl5_gp::{BoardBench, GpBoard, GpEvent, GpTiming};
+use pxpl5_gp::{BoardBench, GpBoard, GpEvent, GpTiming, Priority};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Message, ViewNumber, read_swap_request};
+use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, Message, NodeId, PeriodNumber, ViewNumber, read_swap_request};
+use slats::{CLUMP, CopySchedule, SlatsConfig, processor};
+use std::sync::Arc;
 
 const BOARD: NodeId = NodeId(1);
 const FRAME_BUFFERS: [NodeId; 2] = [NodeId(2), NodeId(3)];
