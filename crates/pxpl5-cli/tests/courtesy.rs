@@ -118,6 +118,7 @@ fn an_interrupted_search_ends_with_130_and_says_how_far_it_came() {
     assert!(text.contains("interrupted") && text.contains("nothing was written"), "{text}");
 }
 
+#[test]
 fn without_fit_a_model_stays_where_its_file_places_it() {
     let folder = Folder::new("no-fit");
     folder.file("m.obj", "v -1 -1 -5\nv 1 -1 -5\nv 0 1 -5\nf 1 2 3\n");
