@@ -3,12 +3,13 @@
 use crate::support;
 use jitp::JitpTiming;
 use pxpl5::limit::test_scene;
-use pxpl5::run::{FacePipeline, FacePolicy, SlatsLighting};
+use pxpl5::run::{FacePipeline, FacePolicy};
 use pxpl5::{
     CodeVersion, Experiment, ExperimentError, Frameless, Interpolation, Jitp, Level, MachineConfig, Measured, Outcome,
     PictureNumber, Pipeline, Pixels, RenderingControl, Slats, TestScene, TraceHash, Viewpoint, Workstation, scene,
 };
 use pxpl5_gp::Stage;
+use pxpl5_run::SlatsLighting;
 use rayon::prelude::*;
 use std::sync::Arc;
 
