@@ -17,10 +17,10 @@ use pxpl5_sim::{Time, mix};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
 
 /// Number of slaves from which the closed form holds for any number of renderers. With fewer slaves, it holds for fewer
-/// than [`MOST_RENDERERS_A_SLAVE`] renderers for each slave. Measured with `typical:2000` on 1 to 8 slaves and 2 to 24
+/// than [`MAX_RENDERERS_A_SLAVE`] renderers for each slave. Measured with `typical:2000` on 1 to 8 slaves and 2 to 24
 /// renderers: the rate is then at most 10 % too high, and up to 37 % beyond.
 const FEW_SLAVES: usize = 3;
-const MOST_RENDERERS_A_SLAVE: usize = 4;
+const MAX_RENDERERS_A_SLAVE: usize = 4;
 
 /// Number of words of a message between master and slaves, such as a token.
 const ORDER_WORDS: f64 = 6.0;
@@ -132,10 +132,10 @@ impl StereoModel {
         // One or two slaves are busy without a break. Each region costs them time that the closed form leaves out, and
         // with more renderers a frame has more regions at a time.
         let slaves = config.n_gps - 1;
-        if slaves < FEW_SLAVES && config.n_renderers >= MOST_RENDERERS_A_SLAVE * slaves {
+        if slaves < FEW_SLAVES && config.n_renderers >= MAX_RENDERERS_A_SLAVE * slaves {
             return Err(no_form(&format!(
                 "Rendering Control with {slaves} slaves and {} renderers, where its rate would be more than 10 % too high \
-                 (expected {FEW_SLAVES} slaves, or fewer than {MOST_RENDERERS_A_SLAVE} renderers for each)",
+                 (expected {FEW_SLAVES} slaves, or fewer than {MAX_RENDERERS_A_SLAVE} renderers for each)",
                 config.n_renderers
             )));
         }
