@@ -21,8 +21,8 @@ const ROWS: [(&str, &str, &str); 7] = [
     ("arp-full", "arp-full", ""),
 ];
 
-/// Recordings with the number of fields that they cover, at most 15 s.
-const HEADS: [(&str, i64); 2] = [("recorded:vive-tracked", 900), ("recorded:vive-dev", 540)];
+/// Recordings with the number of fields that they cover, at most 10 s.
+const HEADS: [(&str, i64); 2] = [("recorded:vive-tracked", 600), ("recorded:vive-dev", 540)];
 
 const PREDICTORS: [&str; 3] = ["none", "velocity", "kalman"];
 

@@ -27,7 +27,8 @@ use std::path::PathBuf;
 /// Arguments of `pxpl5 compare`.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
-  pxpl5 compare --head recorded:vive-tracked --scene mig --place content --in-room
+  pxpl5 compare --head recorded:vive-tracked
+  pxpl5 compare --head recorded:vive-dev --scene sphere:60 --model-size 1.5 --model-at 0,0,-2 --place content
   pxpl5 compare --head head.csv --predict none --out out/compare
   pxpl5 compare --machine design-maximum --gps 34 --set gp.triangle_ns=20000 --seeds 10 --json
   pxpl5 compare --fields 60 --seeds 1

@@ -1,6 +1,6 @@
 //! A place for a head's motion from which the head faces the scene as long as it can.
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, Vec3};
 use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
 use std::f64::consts::{PI, TAU};
@@ -26,7 +26,7 @@ pub(crate) fn content(motion: &dyn Motion, scene: &Scene, hmd: &Hmd, until: Time
     let best: Vec<f64> = yaws.iter().copied().filter(|yaw| beside(*yaw) == most).collect();
     let facing = best.get(best.len() / 2).copied().unwrap_or(0.0);
     let begin = scene.motion().pose(0);
-    let way = scene.bounding_sphere().0.as_dvec3() - begin.position;
+    let way = middle(scene) - begin.position;
     // From the middle of a room, every direction shows content.
     let towards = match DVec3::new(way.x, 0.0, way.z).try_normalize() {
         Some(way) => yaw(&Pose::facing(DQuat::from_rotation_arc(DVec3::NEG_Z, way))),
@@ -36,6 +36,15 @@ pub(crate) fn content(motion: &dyn Motion, scene: &Scene, hmd: &Hmd, until: Time
         Pose { position, orientation: rotation::about_y(facing) },
         Pose { position: begin.position, orientation: rotation::about_y(towards) },
     )
+}
+
+/// Returns the middle of the box around the first structure. Later structures can surround the viewer.
+fn middle(scene: &Scene) -> DVec3 {
+    let Some(first) = scene.structures().first() else { return DVec3::ZERO };
+    let vertices = scene.vertices()[first.vertices.clone()].iter().map(|vertex| vertex.position);
+    let points = vertices.chain(scene.spheres()[first.spheres.clone()].iter().map(|sphere| sphere.centre));
+    let (low, high) = points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+    if low.x > high.x { DVec3::ZERO } else { ((low + high) / 2.0).as_dvec3() }
 }
 
 /// Returns the direction of a head about the vertical axis, in radians. A positive angle is to the left.
@@ -66,7 +75,7 @@ mod tests {
             (yaw(&from) - 0.2).abs() < 1e-9 && from.position.distance(DVec3::new(4.0, 1.0, 2.0)) < 1e-9,
             "{from:?}"
         );
-        let centre = to.view_of(scene.bounding_sphere().0.as_dvec3());
+        let centre = to.view_of(middle(&scene));
         assert!(centre.x.abs() < 1e-6 && centre.z < 0.0, "the content is ahead: {centre}");
         assert_eq!(to.position, scene.motion().pose(0).position);
     }

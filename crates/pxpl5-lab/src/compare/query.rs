@@ -411,6 +411,8 @@ impl CompareQuery {
             && !contender.is_reference()
         {
             let experiment = common.experiment(&plan).with_dry_run(first.dry_run.clone());
+            // All predictors are evaluated over the periods of the row.
+            let experiment = experiment.results_from(common_window_from(plan.fields));
             // The dry run of the first trial is reused for every predictor.
             row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }

@@ -1,7 +1,8 @@
 use super::ExperimentFile;
 use super::motion::MotionChoice;
 use super::read::{beside, wrong};
-use pxpl5_scene::{Format, Placement, Scene};
+use glam::{Mat4, Vec3};
+use pxpl5_scene::{Edit, Format, Placement, Scene};
 use pxpl5_sim::parameters::SettingError;
 use std::path::Path;
 use std::sync::Arc;
@@ -40,6 +41,13 @@ pub struct ModelPlace {
     pub in_room: bool,
 }
 
+/// Distance of the walls of the scene `room` from the viewer, m.
+const ROOM_WALL_M: f32 = 2.0;
+/// Distance of the walls that `model.room` adds, relative to the farthest point of the scene, and at least in metres
+/// (assumed, so that a viewer can walk).
+const BEHIND_THE_SCENE: f32 = 1.5;
+const MIN_WALL_M: f32 = 4.0;
+
 const AT: [&str; 3] = ["model.x", "model.y", "model.z"];
 
 impl ModelPlace {
@@ -65,7 +73,16 @@ impl ModelPlace {
             return Ok(scene);
         }
         let placed = scene.placed(self.at_m, self.size_m, self.turn_deg.unwrap_or(0.0));
-        let whole = if self.in_room { placed.together_with(&pxpl5_scene::builtin("room")?)? } else { placed };
+        if !self.in_room {
+            return Ok(Arc::new(placed));
+        }
+        // The walls stand around the start of the viewer, behind the scene.
+        let viewer = placed.motion().pose(0).position.as_vec3();
+        let (middle, radius) = placed.bounding_sphere();
+        let size = ((viewer.distance(middle) + radius) * BEHIND_THE_SCENE).max(MIN_WALL_M) / ROOM_WALL_M;
+        let model = Mat4::from_translation(viewer) * Mat4::from_scale(Vec3::splat(size));
+        let room = pxpl5_scene::builtin("room")?.posed(&[Edit { structure: 0, model }]);
+        let whole = placed.together_with(&room)?;
         Ok(Arc::new(whole))
     }
 }
