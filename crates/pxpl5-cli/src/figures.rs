@@ -3,6 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Study;
+use crate::interrupt;
 use crate::output::OutputFile;
 use crate::terminal::{print, print_error, progress};
 use crate::{arp, volume};
