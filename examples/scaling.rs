@@ -1,6 +1,6 @@
 //! Measures how host time and simulated latency grow with the size of scenes and machines.
 //!
-//! Prints docs/scaling.md: `cargo run --release --example scaling > docs/scaling.md`.
+//! Prints tables of growth in Markdown: `cargo run --release --example scaling`.
 
 use pxpl5::limit::test_scene;
 use pxpl5::{
@@ -182,10 +182,10 @@ fn exponent(points: &[(f64, f64)]) -> f64 {
     products / logs.iter().map(|p| (p.0 - mean_x) * (p.0 - mean_x)).sum::<f64>()
 }
 
-/// Returns the text of docs/scaling.md: tables, exponents and a chart.
+/// Returns a text in Markdown: tables, exponents and a chart.
 fn markdown(triangles: &[Point], machines: &[Point], applications: &[Application]) -> String {
     let mut text = format!(
-        "# Growth\n\nThe example `scaling` generates this file. All runs use Rendering Control in stereo. Each\n\
+        "# Growth\n\nThe example `scaling` wrote this text. All runs use Rendering Control in stereo. Each\n\
          triangle covers 18 pixels, and the runs compute no pixels. The GPs have 1 GB of memory instead of 8 MB. The host time is\n\
          the computing time of the simulation, the fastest of three runs on one computer.\n\n\
          ## Triangles, on 50 GPs and 5 renderers\n\n\

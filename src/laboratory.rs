@@ -138,6 +138,6 @@ pub mod lab {
     pub use pxpl5_lab::FileKey;
 
     pub use pxpl5_lab::{
-        PREDICTORS, PathChoice, TRACKERS, application_time, diff, estimate, manifest, motion, predictor, tracker,
+        NEAR_FIELDS, PREDICTORS, PathChoice, TRACKERS, diff, estimate, manifest, motion, near_edges, predictor, tracker,
     };
 }

@@ -31,7 +31,7 @@ fn a_complete_field_goes_to_the_other_buffer_and_is_shown() {
     assert!(buffers.contains(&0) && buffers.contains(&1));
 }
 
-/// With a backup, the requests for a field take two messages more than a split copy. The limit of a split copy is 158
+/// With a backup, the requests for a field take two messages more than a split copy. The limit of a split copy is 190
 /// triangles.
 #[test]
 fn with_a_backup_140_triangles_have_no_late_region() {

@@ -1,7 +1,7 @@
 //! Measures the gain from more cores: independent work on one thread and on all threads, in turns, in wall-clock time.
 
 use crate::timing::Fallible;
-use pxpl5::figures::{Bench, run_all};
+use pxpl5::figures::{Bench, Figures};
 use pxpl5::sweep::{RunOptions, Shard, Store, Sweep, run};
 use pxpl5::{ExperimentFile, Level};
 use std::fmt::Write;
@@ -80,6 +80,6 @@ fn sweep(folder: &Path, threads: usize) -> Fallible<()> {
 
 fn figures(threads: usize) -> Fallible<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    black_box(pool.install(|| run_all(&Bench::new(Level::Transaction)))?);
+    black_box(pool.install(|| Figures::run(&Bench::new(Level::Transaction), |_, _| {}, |_, _| {}))?);
     Ok(())
 }

@@ -68,7 +68,7 @@ FIGURE_DEFINITIONS = {
     "error_percent": "(simulated - published) / published, percent",
     "low": "least value when open parameters are varied within their ranges",
     "high": "greatest value when open parameters are varied within their ranges",
-    "provenance": "free check, fitted, or rule",
+    "provenance": "free, interpretation, fitted, rule or derived",
     "misses": "outside of the printed range, or off by more than 3 percent",
 }
 

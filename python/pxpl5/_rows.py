@@ -186,8 +186,8 @@ class VolumeFigureRow(PublishedFigure):
 class FigureRow(VolumeFigureRow):
     """A figure of the machine, with its interval over the open parameters."""
 
-    #: The parameter or rule that was chosen to reproduce the figure.
-    fitted: str | None
+    #: The parameter, rule or row that decides the figure.
+    chosen: str | None
     misses: bool
     low: float | None
     high: float | None

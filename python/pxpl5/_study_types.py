@@ -262,7 +262,7 @@ class InterpretationFitData(TypedDict):
 
 
 class LeaveOneOutData(TypedDict):
-    """The interpretation that fits best without one figure."""
+    """The interpretation under which all other figures are likeliest."""
 
     id: str
     chosen: dict[str, object]
@@ -277,8 +277,6 @@ class InterpretationsData(TypedDict):
     analytic: list[InterpretationFitData]
     transaction: list[InterpretationFitData]
     left_out: list[LeaveOneOutData]
-    as_good: int
-    rounding_percent: float | None
 
 
 class SweepHeaderData(TypedDict):

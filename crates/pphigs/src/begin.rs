@@ -89,7 +89,7 @@ impl PassStartWork {
         let bins = match picture.binning {
             // Spheres always have bins.
             RegionBinning::All if list.spheres.is_empty() => 0,
-            RegionBinning::All | RegionBinning::Touched => picture.viewport.grid().regions(),
+            _ => picture.viewport.grid().regions(),
         };
         Self { list: Arc::clone(list), eyes, bins, chosen: None }
     }

@@ -109,7 +109,7 @@ impl BinningSink for PrimitiveCounter {
     }
 
     fn piece(&mut self, touched: RegionMask, _: BinEntry) {
-        if self.binning == RegionBinning::Touched {
+        if self.binning != RegionBinning::All {
             touched.iter().for_each(|region| self.in_region(region).triangles += 1);
         }
         self.on_screen.triangles += 1;
@@ -159,7 +159,7 @@ impl BinningSink for BinFiller {
 
     fn piece(&mut self, touched: RegionMask, entry: BinEntry) {
         match self.binning {
-            RegionBinning::Touched => {
+            RegionBinning::Touched | RegionBinning::Boxes => {
                 touched.iter().for_each(|region| self.bins[usize::from(region.0)].triangles.push(entry));
             }
             RegionBinning::All => self.bins.iter_mut().for_each(|bin| bin.triangles.push(entry)),
@@ -223,7 +223,9 @@ impl Walk {
         let list = &self.share.list;
         let first = place.structure.triangles.start;
         let touched = place.touched(list, transform);
-        let binned = self.picture.binning == RegionBinning::Touched;
+        let binned = self.picture.binning != RegionBinning::All;
+        let has_boxes = self.picture.binning == RegionBinning::Boxes;
+        let columns = self.picture.viewport.grid().columns();
         let mut in_one_region = 0;
         for number in self.share.held_triangles(&place.structure.triangles) {
             let triangle = number as u32;
@@ -233,7 +235,8 @@ impl Walk {
                 continue;
             }
             let mut pieces = 0;
-            let mut put = |mask| {
+            let mut put = |mask: RegionMask| {
+                let mask = if has_boxes { mask.rectangle(columns) } else { mask };
                 take.piece(mask, BinEntry { triangle, piece: Some(pieces) });
                 pieces += 1;
             };
@@ -365,7 +368,7 @@ impl Pass {
     /// Returns those triangles at the indices `places` of a bin that touch the region. Without [`RegionBinning::All`],
     /// these are all triangles of the bin.
     pub(crate) fn triangles_touching(&self, region: RegionId, places: &Range<u32>) -> Cow<'_, [BinEntry]> {
-        if self.walk.picture.binning == RegionBinning::Touched {
+        if self.walk.picture.binning != RegionBinning::All {
             return Cow::Borrowed(self.triangles_in(region, places));
         }
         let all = &self.touching.get_or_init(|| self.found_touching()).entries[usize::from(region.0)];

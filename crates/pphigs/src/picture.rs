@@ -17,8 +17,10 @@ pub enum Shading {
 /// Choice of the regions that receive a primitive's commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegionBinning {
-    /// The regions that the primitive touches.
+    /// The regions that the primitive touches, found by its edges.
     Touched,
+    /// The regions under the bounding box of the primitive. No i860 code exists for this choice.
+    Boxes,
     /// All regions (Slats prototype, TR94). An invisible triangle takes as much time as a visible triangle.
     ///
     /// Spheres go only to the regions that they touch. Elsewhere, a sphere's quadratic expression would exceed the
@@ -27,8 +29,8 @@ pub enum RegionBinning {
 }
 
 impl RegionBinning {
-    /// Both choices with their names in experiment files.
-    pub const ALL: [(&str, Self); 2] = [("all", Self::All), ("touched", Self::Touched)];
+    /// All choices with their names in experiment files.
+    pub const ALL: [(&str, Self); 3] = [("all", Self::All), ("touched", Self::Touched), ("boxes", Self::Boxes)];
 }
 
 pxpl5_sim::parameters::named!(RegionBinning, "choice of regions", RegionBinning::ALL);
@@ -54,6 +56,11 @@ impl Picture {
             Shading::Precomputed => KernelSurface::Precomputed,
             Shading::Phong => KernelSurface::Phong,
         };
-        Kernel::for_picture(schedule, surface, &self.viewport, self.binning == RegionBinning::Touched)
+        let is_binned = match self.binning {
+            RegionBinning::Touched => true,
+            RegionBinning::All => false,
+            RegionBinning::Boxes => return None,
+        };
+        Kernel::for_picture(schedule, surface, &self.viewport, is_binned)
     }
 }

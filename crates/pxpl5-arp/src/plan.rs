@@ -21,8 +21,8 @@ pxpl5_sim::parameters::parameter_table! {
 
 /// Settings of a walk. Each setting has a path such as `priority.theta_deg`. Some defaults depend on other settings.
 ///
-/// A *cascade* lets an update of a memory also update all more often drawn memories. By default, only walks with warped
-/// cells have a cascade, and only the policy `cells` cuts objects. `priority.threshold` in pixels or texels overrides
+/// A *cascade* lets an update of a memory also update all more often drawn memories. By default, walks with the
+/// policy `cells` have a cascade, and only the policy `cells` cuts objects. `priority.threshold` in pixels or texels overrides
 /// `priority.theta_deg`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkPlan {
@@ -154,8 +154,7 @@ impl WalkPlan {
         // Fill in the defaults that depend on other settings.
         let is_of_cells = settings.policy == PolicyKind::Cells;
         settings.is_segmented = self.is_segmented.unwrap_or(is_of_cells);
-        let is_warped = is_of_cells && settings.is_segmented && settings.falloff != Falloff::None;
-        settings.has_cascade = self.has_cascade.unwrap_or(is_warped);
+        settings.has_cascade = self.has_cascade.unwrap_or(is_of_cells);
         if let Some(threshold) = self.threshold {
             settings.numbers.theta_deg = threshold.degrees(&settings.display);
         }

@@ -73,20 +73,19 @@ pub struct WalkSettings {
 
 impl WalkSettings {
     /// Settings with objects that are cut but not warped, and with an ideal renderer. The side of a cell is fitted to
-    /// table 1 of the paper CPR05.
+    /// table 1 of the paper CPR05. An update of a memory also updates all more often drawn memories.
     pub const CELLS: Self = Self {
         policy: PolicyKind::Cells,
         is_segmented: true,
         falloff: Falloff::None,
-        has_cascade: false,
+        has_cascade: true,
         numbers: PriorityTiming::PAPERS,
         display: ArpConfig::IDEAL,
         source: SourceKind::Ideal,
     };
 
-    /// The settings of [`Self::CELLS`] with warping. An update of a memory then also updates all more often drawn
-    /// memories.
-    pub const WARPED: Self = Self { falloff: Falloff::Linear, has_cascade: true, ..Self::CELLS };
+    /// The settings of [`Self::CELLS`] with warping.
+    pub const WARPED: Self = Self { falloff: Falloff::Linear, ..Self::CELLS };
 
     /// Settings with one memory, in which everything is drawn in every frame.
     pub const FULL: Self = Self {

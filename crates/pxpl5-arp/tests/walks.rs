@@ -12,14 +12,17 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use tracking::motion::Walk;
 
-/// Settings with the cell size of the scene, a threshold of 90/512 degrees, and the default rings of cells.
-const CELLS: WalkSettings = five_metres(WalkSettings::CELLS);
+/// Settings with the cell size of the scene, a threshold of 90/512 degrees, rings of cells that double, and a cascade only
+/// with warping.
+const CELLS: WalkSettings = WalkSettings { has_cascade: false, ..five_metres(WalkSettings::CELLS) };
 const WARPED: WalkSettings = five_metres(WalkSettings::WARPED);
 const OBJECTS: WalkSettings = five_metres(WalkSettings::OBJECTS);
 
 const fn five_metres(settings: WalkSettings) -> WalkSettings {
     let mut settings = settings.with_cells(5.0);
     settings.numbers.theta_deg = 90.0 / 512.0;
+    settings.numbers.inner_rings = 1;
+    settings.numbers.ring_growth = 2;
     settings
 }
 

@@ -8,6 +8,7 @@ mod settings;
 mod texel;
 
 use crate::error::CliError;
+use crate::figures::{ADDRESS_RECALCULATION, FiguresArgs};
 use clap::{Args, Subcommand};
 
 /// Walk through a scene with a display that follows the head's rotation (address recalculation, priority rendering,
@@ -17,7 +18,7 @@ use clap::{Args, Subcommand};
   pxpl5 arp run --scene gallery --warp linear --out out/walk
   pxpl5 arp run --policy objects --set walk.frames=3600 --json
   pxpl5 arp compare --scene gallery --out out/policies
-  pxpl5 arp figures
+  pxpl5 figures --group address-recalculation
   pxpl5 arp interpretations
   pxpl5 arp texel 0 0 --yaw 30
 
@@ -34,8 +35,9 @@ enum ArpCommand {
     Run(run::RunArgs),
     /// Compare all policies and warps on one walk through a scene.
     Compare(compare::CompareArgs),
-    /// Compare the figures of the papers with an ideal renderer, and draw the pictures of the papers.
-    Figures(figures::FiguresArgs),
+    /// Former spelling of `pxpl5 figures --group address-recalculation`.
+    #[command(hide = true)]
+    Figures(FiguresArgs),
     /// Rank the possible answers to the questions that the paper on priority rendering leaves open about its table 1.
     /// As a check, each update rate of the table is left out in turn.
     Interpretations(interpretations::InterpretationsArgs),
@@ -43,11 +45,15 @@ enum ArpCommand {
     Texel(texel::TexelArgs),
 }
 
+pub(crate) fn figures(args: &FiguresArgs) -> Result<(), CliError> {
+    figures::run(args)
+}
+
 pub(crate) fn run(args: ArpArgs) -> Result<(), CliError> {
     match args.command {
         ArpCommand::Run(args) => run::run(args),
         ArpCommand::Compare(args) => compare::run(args),
-        ArpCommand::Figures(args) => figures::run(args),
+        ArpCommand::Figures(args) => figures::run(&args.of_former("arp", ADDRESS_RECALCULATION)),
         ArpCommand::Interpretations(args) => interpretations::run(args),
         ArpCommand::Texel(args) => texel::run(args),
     }

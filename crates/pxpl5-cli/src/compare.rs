@@ -139,6 +139,11 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let comparison = comparison?;
     terminal::warn(&comparison.warnings, args.quiet);
     terminal::warn(out_of_view(&comparison).as_slice(), args.quiet);
+    let near = comparison
+        .pipelines
+        .iter()
+        .flat_map(|row| row.near_edges.iter().map(|edge| format!("{}: {edge}", row.pipeline)));
+    terminal::warn(&near.collect::<Vec<_>>(), args.quiet);
     // Write all files, then publish the folder in one step.
     let json = json_text(&comparison)?;
     if let Some(folder) = &mut folder {

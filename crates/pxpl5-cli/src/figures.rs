@@ -5,12 +5,12 @@ use crate::error::CliError;
 use crate::estimate::Study;
 use crate::interrupt;
 use crate::output::OutputFile;
-use crate::terminal::{print, progress};
+use crate::terminal::{print, print_error, progress};
+use crate::{arp, volume};
 use clap::Args;
 use pxpl5::Level;
 use pxpl5::figures::{
-    Alternatives, Basis, Bench, FIGURES, FigureRow, FigureTable, Figures, alternatives_with, markdown,
-    mean_error_percent, run_all_in_order,
+    Alternatives, Basis, Bench, Documents, FigureRow, Figures, Headline, Measurement, TOPICS, all, documents,
 };
 use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 use pxpl5_sim::figures::column::range;
@@ -20,44 +20,82 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Simulate every published figure, and compare the result with the published value.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 #[command(after_help = "Examples:
   pxpl5 figures
   pxpl5 figures --intervals              takes twice as long
-  pxpl5 figures --only 4,7               these figures, without their intervals
+  pxpl5 figures --only 4,7,R1            these figures, without their intervals
+  pxpl5 figures --group rates            these figures, without their intervals
   pxpl5 figures --json
-  pxpl5 figures --write ACCURACY.md
+  pxpl5 figures --write ACCURACY.md --pages docs
+  pxpl5 figures --check ACCURACY.md      fails if the file is out of date
   pxpl5 figures --chart errors.svg       errors with their intervals
-  pxpl5 figures --check ACCURACY.md      fails if the file is out of date")]
+  pxpl5 figures --group address-recalculation --write docs/address-recalculation.md
+  pxpl5 figures --group volumetric --out out/figures    the paper's drawings, redrawn")]
 pub(crate) struct FiguresArgs {
+    /// Measure only the figures of one topic: rendering-control, slats, head-to-light, rates, jitp, trackers,
+    /// address-recalculation or volumetric. The last two have documents and pictures of their own.
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["only", "chart", "intervals", "pages"])]
+    group: Option<String>,
     /// Print one JSON object.
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
     /// Write the document with all figures (ACCURACY.md) to this file.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
-    write: Option<PathBuf>,
+    pub(crate) write: Option<PathBuf>,
     /// Fail if this file differs from the document that --write would write.
     #[arg(long, value_name = "FILE")]
-    check: Option<PathBuf>,
+    pub(crate) check: Option<PathBuf>,
+    /// With --write or --check, write or check also interpretations.md and the chapter "Time" of numerics.md in this
+    /// folder.
+    #[arg(long, value_name = "DIR")]
+    pages: Option<PathBuf>,
+    /// Write the pictures of the group into this folder.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
     /// Print also the interval of each figure while unpublished parameters vary.
     #[arg(long)]
     intervals: bool,
     /// Write a chart of the errors and their intervals (SVG) to this file.
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
-    /// Measure only these figures of the main table, separated by commas. Each row is printed as soon as it is
-    /// measured.
+    /// Measure only these figures, separated by commas. Each row is printed as soon as it is measured.
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with_all = ["write", "check", "json", "chart", "intervals"])]
     only: Vec<String>,
+    /// Print nothing but errors and, with --json, the JSON object.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
     #[command(flatten)]
     budget: BudgetArgs,
 }
 
+impl FiguresArgs {
+    /// Returns the arguments of a former command, which measured one group. Prints a note with the new spelling.
+    pub(crate) fn of_former(self, former: &str, group: &str) -> Self {
+        print_error(&format!("pxpl5: note: `pxpl5 {former} figures` is now `pxpl5 figures --group {group}`\n"));
+        Self { group: Some(group.to_owned()), ..self }
+    }
+}
+
+/// Group of the papers on address recalculation.
+pub(crate) const ADDRESS_RECALCULATION: &str = "address-recalculation";
+/// Group of the paper on the volumetric display.
+pub(crate) const VOLUMETRIC: &str = "volumetric";
+
 pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
-    // Open the output first, so that a bad path fails before the simulations.
+    match args.group.as_deref() {
+        Some(ADDRESS_RECALCULATION) => return arp::figures(&args),
+        Some(VOLUMETRIC) => return volume::figures(&args),
+        Some(name) => return of_group(name, &args),
+        None if args.out.is_some() => {
+            return Err(CliError::usage(format!("--out: expected --group {ADDRESS_RECALCULATION} or {VOLUMETRIC}")));
+        }
+        None => {}
+    }
     if !args.only.is_empty() {
         return chosen(&args.only);
     }
+    // Open the output first, so that a bad path fails before the simulations.
     args.budget.admit_study(Study::Figures, "measure some of them with --only")?;
     let file = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let chart_file = args.chart.as_deref().map(|path| OutputFile::open(path, "--chart")).transpose()?;
@@ -70,55 +108,104 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     let mut printer = RowPrinter::default();
     let mut printed = Ok(());
     interrupt::keeps("nothing was written, and the rows that were printed are complete".to_owned());
-    let bar = progress(0, "figures", false);
-    let print_row = |table, row: &FigureRow| {
-        if !has_intervals && printed.is_ok() {
-            printed = bar.above(|| printer.row(table, row));
+    let bar = progress(0, "figures", args.quiet);
+    let print_row = |title, row: &FigureRow| {
+        if !has_intervals && !args.quiet && printed.is_ok() {
+            printed = bar.above(|| printer.row(title, row));
         }
     };
-    let figures = run_all_in_order(&bench, |done, of| bar.advance(done, of), print_row).map_err(CliError::failure);
+    let figures = Figures::run(&bench, |done, of| bar.advance(done, of), print_row).map_err(CliError::failure);
     bar.clear();
     let figures = figures?;
     printed?;
-    chart_file.map(|file| file.write(chart(&figures.rows).svg().as_bytes())).transpose()?;
-    // Only the document and the JSON output have the figures under other assumptions.
+    let rows: Vec<FigureRow> = figures.rows().cloned().collect();
+    chart_file.map(|file| file.write(chart(&rows).svg().as_bytes())).transpose()?;
+    // Only the documents and the JSON output have the figures under other assumptions.
     if is_document {
-        let bar = progress(0, "figures under other assumptions", false);
-        let alternatives = alternatives_with(&bench, |done, of| bar.advance(done, of)).map_err(CliError::failure);
+        let bar = progress(0, "figures under other assumptions", args.quiet);
+        let alternatives = Alternatives::run(&bench, |done, of| bar.advance(done, of)).map_err(CliError::failure);
         bar.clear();
         let alternatives = alternatives?;
-        let document = markdown(&figures, &alternatives);
-        file.map(|file| file.write(document.as_bytes())).transpose()?;
-        // `--check` fails if the repository's document is stale.
-        args.check.as_deref().map(|path| fresh(path, &document, "figures")).transpose()?;
+        let texts = documents(&figures, &alternatives);
+        file.map(|file| file.write(texts.accuracy.as_bytes())).transpose()?;
+        if let Some(folder) = &args.pages {
+            pages(folder, &texts, args.check.is_some())?;
+        }
+        // `--check` fails if a document of the repository is stale.
+        args.check.as_deref().map(|path| fresh(path, &texts.accuracy, "figures")).transpose()?;
         if args.json {
             return print(&json_text(&figures, &alternatives));
         }
     }
+    if args.quiet {
+        return Ok(());
+    }
     if has_intervals {
-        figures.each_row(|table, row| printer.row(table, row))?;
+        for group in &figures.groups {
+            group.rows.iter().try_for_each(|row| printer.row(group.title, row))?;
+        }
     }
     printer.end_table()?;
+    print(&volume::figures_table()?)?;
+    print(&format!("\n{}\n", figures.headline()))?;
     if has_intervals { Ok(()) } else { print(WITHOUT_INTERVALS) }
 }
 
 const WITHOUT_INTERVALS: &str =
     "\nThe intervals of the figures are in ACCURACY.md. Option --intervals computes them.\n";
 
-/// Measures and prints the figures with these numbers in the main table of ACCURACY.md.
+/// Writes or checks the pages of a folder of documents.
+fn pages(folder: &Path, texts: &Documents, is_check: bool) -> Result<(), CliError> {
+    let numerics = folder.join("numerics.md");
+    let page = fs::read_to_string(&numerics).map_err(|e| CliError::failure(format!("{}: {e}", numerics.display())))?;
+    for (path, text) in
+        [(folder.join("interpretations.md"), texts.interpretations.clone()), (numerics, texts.with_time(&page))]
+    {
+        if is_check {
+            fresh(&path, &text, "figures")?;
+        } else {
+            OutputFile::open(&path, "--pages")?.write(text.as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// Measures and prints the figures of one topic of Pixel-Planes 5.
+fn of_group(name: &str, args: &FiguresArgs) -> Result<(), CliError> {
+    let names = TOPICS.iter().map(|topic| topic.name).chain([ADDRESS_RECALCULATION, VOLUMETRIC]);
+    let topic = TOPICS.iter().find(|topic| topic.name == name).ok_or_else(|| {
+        CliError::usage(format!("--group: expected {}, found {name}", names.collect::<Vec<_>>().join(", ")))
+    })?;
+    if args.write.is_some() || args.check.is_some() || args.out.is_some() {
+        return Err(CliError::usage(format!("--group {name} has no document and no pictures of its own")));
+    }
+    if args.json {
+        let bench = Bench::new(Level::Transaction);
+        let rows = topic.figures.iter().map(|figure| figure.measured_row(&bench));
+        let rows = rows.collect::<Result<Vec<_>, _>>().map_err(CliError::failure)?;
+        return print(&format!("{:#}\n", json!({ "schema": SCHEMA, "figures": rows })));
+    }
+    measure(topic.figures)
+}
+
+/// Measures and prints the figures with these numbers.
 fn chosen(numbers: &[String]) -> Result<(), CliError> {
-    let all = FIGURES.map(|figure| figure.id).join(", ");
     let find = |number: &String| {
-        let figure = FIGURES.iter().find(|figure| figure.id == number.as_str());
-        figure.ok_or_else(|| CliError::usage(format!("--only: expected numbers among {all}, found {number}")))
+        let known = || all().map(|figure| figure.id).collect::<Vec<_>>().join(", ");
+        let figure = all().find(|figure| figure.id == number.as_str());
+        figure
+            .copied()
+            .ok_or_else(|| CliError::usage(format!("--only: expected numbers among {}, found {number}", known())))
     };
     // All numbers are checked before the first experiment runs.
-    let figures = numbers.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+    measure(&numbers.iter().map(find).collect::<Result<Vec<_>, _>>()?)
+}
+
+fn measure(figures: &[Measurement]) -> Result<(), CliError> {
     let bench = Bench::new(Level::Transaction);
     print(HEADER)?;
     for figure in figures {
-        let measured = bench.measure(figure.id).map_err(CliError::failure)?;
-        print(&row_text(&figure.row(measured)))?;
+        print(&row_text(&figure.measured_row(&bench).map_err(CliError::failure)?))?;
     }
     Ok(())
 }
@@ -133,14 +220,18 @@ pub(crate) fn fresh(path: &Path, document: &str, subcommand: &str) -> Result<(),
     Err(CliError::failure(format!("{path} is stale: run `pxpl5 {subcommand} --write {path}`")))
 }
 
+const SCHEMA: &str = "pxpl5-figures/3";
+
 fn json_text(figures: &Figures, alternatives: &Alternatives) -> String {
     let object = json!({
-        "schema": "pxpl5-figures/2",
-        "mean_error_percent_of_free_checks": mean_error_percent(&figures.rows),
-        "figures": figures.rows,
-        "figures_with_times_of_code": alternatives.of_code,
-        "families": figures.families,
+        "schema": SCHEMA,
+        "headline": figures.headline(),
         "groups": figures.groups,
+        "figures_with_times_of_code": alternatives.of_code,
+        "headline_with_times_of_code": Headline::of(&alternatives.of_code),
+        "figures_with_the_other_rule": alternatives.other_rule,
+        "fifo_sizes": alternatives.fifo,
+        "host_times": alternatives.host,
         "intervals": figures.intervals,
     });
     format!("{object:#}\n")
@@ -149,40 +240,27 @@ fn json_text(figures: &Figures, alternatives: &Alternatives) -> String {
 /// Printer of the tables of figures, row by row.
 #[derive(Default)]
 struct RowPrinter {
-    table: Option<FigureTable>,
+    title: &'static str,
     /// Printed rows of the current table.
     rows: Vec<FigureRow>,
 }
 
 impl RowPrinter {
     /// Prints a row. A row of another table ends the current table and begins the other table.
-    fn row(&mut self, table: FigureTable, row: &FigureRow) -> Result<(), CliError> {
-        if self.table != Some(table) {
+    fn row(&mut self, title: &'static str, row: &FigureRow) -> Result<(), CliError> {
+        if self.title != title {
             self.end_table()?;
-            self.table = Some(table);
-            print(&format!("{}{HEADER}", title(table)))?;
+            let gap = if self.title.is_empty() { "" } else { "\n" };
+            self.title = title;
+            print(&format!("{gap}{title}\n{HEADER}"))?;
         }
         self.rows.push(row.clone());
         print(&row_text(row))
     }
 
     fn end_table(&mut self) -> Result<(), CliError> {
-        let Some(table) = self.table.take() else { return Ok(()) };
         let rows = std::mem::take(&mut self.rows);
-        print(&count_text(&rows))?;
-        if table != FigureTable::Main {
-            return Ok(());
-        }
-        print(&format!("mean absolute error of the free checks: {:.1} %\n", mean_error_percent(&rows)))
-    }
-}
-
-/// Returns the title of a table, with an empty line before it. The main table comes first and has no title.
-fn title(table: FigureTable) -> String {
-    match table {
-        FigureTable::Main => String::new(),
-        FigureTable::Group { title } => format!("\n{title}\n"),
-        FigureTable::Family { title, document } => format!("\n{title} ({document})\n"),
+        if rows.is_empty() { Ok(()) } else { print(&count_text(&rows)) }
     }
 }
 
@@ -221,7 +299,8 @@ fn row_text(row: &FigureRow) -> String {
 
 const fn provenance(basis: Basis) -> &'static str {
     match basis {
-        Basis::Interpretation => "interval",
+        Basis::Interpretation(_) => "interpret.",
+        Basis::Unprinted => "interval",
         Basis::Shape => "shape",
         _ => basis.name(),
     }

@@ -9,7 +9,7 @@ use crate::terminal::{answer, json_text, progress};
 use clap::Args;
 use pxpl5::Level;
 use pxpl5::figures::Bench;
-use pxpl5::interpretations::{Fit, Interpretations, LeaveOneOut, run as rank};
+use pxpl5::interpretations::{ALIKE, Fit, Interpretations, LeaveOneOut, run as rank};
 use std::fmt::Write;
 
 /// Rank all interpretations of the papers' open questions by how well they explain the figures of Rendering Control.
@@ -24,7 +24,7 @@ use std::fmt::Write;
   pxpl5 interpretations --best 5 --rows 40
   pxpl5 interpretations --json > interpretations.json")]
 pub(crate) struct InterpretationsArgs {
-    /// Number of the best interpretations that are also simulated at the transaction level.
+    /// Number of the likeliest interpretations that are also simulated at the transaction level.
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = whole::<u64>(0, 256))]
     best: u64,
     /// Number of interpretations printed for each level.
@@ -63,17 +63,16 @@ fn text(interpretations: &Interpretations, rows: usize) -> String {
         [("analytic level", &interpretations.analytic), ("transaction level", &interpretations.transaction)]
     {
         if let Some(first) = fits.first() {
-            let _ = write!(text, "\n{level}, sorted by mean error\n{}", header(first));
+            let _ = write!(text, "\n{level}, the likeliest first\n{}", header(first));
             fits.iter().take(rows).for_each(|fit| text.push_str(&line(fit)));
         }
     }
-    // The summary gives the number of interpretations that are as good as the best one.
     let _ = writeln!(
         text,
-        "\nThe number of interpretations that equal the best one within the printed digits ({:.2} % of a mean error) is {}.",
-        interpretations.rounding_percent, interpretations.as_good
+        "\nThe figures cannot tell the first {} apart (within a factor of {ALIKE:.1} of the likeliest).",
+        interpretations.alike().len()
     );
-    let _ = writeln!(text, "\nEach figure, predicted by the interpretation that fits the other figures best:");
+    let _ = writeln!(text, "\nEach figure, predicted by the interpretation under which the others are likeliest:");
     interpretations.left_out.iter().for_each(|one| text.push_str(&left_out(one)));
     text
 }

@@ -98,6 +98,9 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
     let bar = progress(USUAL_SIZES, "sizes", args.quiet);
     let limit = query.search_with(|tried, of| bar.advance(tried, of))?;
     bar.clear();
+    if limit.has_limit() && limit.triangles > 1 {
+        warn(query.near_edge(limit.triangles)?.as_slice(), args.quiet);
+    }
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
 

@@ -9,6 +9,7 @@ use crate::simulate::{How, Simulated, simulate};
 use crate::table::{Comparison, table};
 use crate::terminal::{print, print_error, warn};
 use clap::Args;
+use pxpl5::lab::near_edges;
 use pxpl5::run::{WARM_UP_PERIODS, WARM_UP_PICTURES};
 use pxpl5::tracking::predict::Training;
 use pxpl5::tracking::time::PS_PER_MS;
@@ -93,6 +94,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     // A file from a folder of results says whether the run repeats those results.
     warn(plan.origin.changes(&Origin::of(outcome.experiment())).as_slice(), args.quiet);
     warn(out_of_view(report).as_slice(), args.quiet);
+    warn(&near_edges(&outcome.summary()), args.quiet);
     // A run without a latency still writes its files and its report, and then ends with an error.
     let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;
     let more = if args.what_if { Some(more(&plan)?) } else { None };

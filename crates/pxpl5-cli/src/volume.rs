@@ -10,6 +10,7 @@ mod sweep;
 mod view;
 
 use crate::error::CliError;
+use crate::figures::{FiguresArgs, VOLUMETRIC};
 use clap::{Args, Subcommand};
 
 /// Draw a scene as the 396 slices of a spinning volumetric display (SpatialGL on Perspecta, 2005).
@@ -19,7 +20,7 @@ use clap::{Args, Subcommand};
   pxpl5 volume slice 50 --scene head --out slice.png
   pxpl5 volume view --scene head --azimuth 40 --elevation 25 --cut 0:90 --out view.png
   pxpl5 volume compare --scene mig --out out/variants
-  pxpl5 volume figures
+  pxpl5 figures --group volumetric
 
 The display does not draw a picture for one eye. It lights everything within a slice, and an eye at any position sees the sum of one turn.")]
 pub(crate) struct VolumeArgs {
@@ -43,8 +44,17 @@ enum VolumeCommand {
     Compare(compare::CompareArgs),
     /// Draw a volume at every point of a parameter space.
     Sweep(sweep::SweepArgs),
-    /// Compare the figures of the SpatialGL paper with the model, and redraw the drawings of the paper.
-    Figures(figures::FiguresArgs),
+    /// Former spelling of `pxpl5 figures --group volumetric`.
+    #[command(hide = true)]
+    Figures(FiguresArgs),
+}
+
+pub(crate) fn figures(args: &FiguresArgs) -> Result<(), CliError> {
+    figures::run(args)
+}
+
+pub(crate) fn figures_table() -> Result<String, CliError> {
+    figures::table()
 }
 
 pub(crate) fn run(args: VolumeArgs) -> Result<(), CliError> {
@@ -56,6 +66,6 @@ pub(crate) fn run(args: VolumeArgs) -> Result<(), CliError> {
         VolumeCommand::Film(args) => view::film(args),
         VolumeCommand::Compare(args) => compare::run(args),
         VolumeCommand::Sweep(args) => sweep::run(args),
-        VolumeCommand::Figures(args) => figures::run(args),
+        VolumeCommand::Figures(args) => figures::run(&args.of_former("volume", VOLUMETRIC)),
     }
 }

@@ -471,8 +471,8 @@ fn assert_agrees_with_accuracy(published: &serde_json::Value) {
     let id = published["source"].as_str().and_then(|source| source.strip_prefix("figure ")?.split(',').next());
     let (printed, found) = accuracy(id.expect("a figure"));
     let [value, simulated] = ["published", "simulated"].map(|name| published[name].as_f64().expect("a number"));
-    assert_eq!(value, printed, "{published}");
-    assert!((simulated / found - 1.0).abs() < 0.001, "{published}: in ACCURACY.md {found}");
+    // Shares are compared, because the units may differ: ACCURACY.md has figure 7 in fields.
+    assert!((simulated / value / (found / printed) - 1.0).abs() < 0.002, "{published}: in ACCURACY.md {found}");
 }
 
 /// Beginning of the comment in an experiment file that explains a difference from ACCURACY.md.

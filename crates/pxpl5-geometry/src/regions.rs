@@ -47,6 +47,18 @@ impl RegionMask {
         self.0
     }
 
+    /// Returns the smallest rectangle of regions that contains the set, in a picture with `columns` regions across. For the
+    /// regions that a triangle touches, these are the regions under its bounding box.
+    #[must_use]
+    pub fn rectangle(self, columns: u32) -> Self {
+        let places = || self.iter().map(|region| (u32::from(region.0) % columns, u32::from(region.0) / columns));
+        let ends = |all: Vec<u32>| Some(all.iter().min().copied()?..=all.iter().max().copied()?);
+        let [across, down] = [places().map(|place| place.0).collect(), places().map(|place| place.1).collect()].map(ends);
+        let (Some(across), Some(down)) = (across, down) else { return self };
+        let all = down.flat_map(|row| across.clone().map(move |column| RegionId((row * columns + column) as u16)));
+        all.fold(Self::EMPTY, |set, region| set.union(Self::only(region)))
+    }
+
     /// Returns the regions of the set in ascending order.
     pub fn iter(self) -> impl Iterator<Item = RegionId> {
         let mut rest = self.0;
@@ -69,5 +81,13 @@ mod tests {
         assert_eq!((mask.len(), found), (3, vec![0, 5, 127]));
         assert!(RegionMask::only(RegionId(128)).is_empty());
         assert!(!mask.contains(RegionId(128)));
+    }
+
+    #[test]
+    fn the_rectangle_of_a_diagonal_of_three_regions_has_nine_regions() {
+        let diagonal = [1, 7, 13].into_iter().fold(RegionMask::EMPTY, |m, r| m.union(RegionMask::only(RegionId(r))));
+        let found: Vec<u16> = diagonal.rectangle(5).iter().map(|r| r.0).collect();
+        assert_eq!(found, [1, 2, 3, 6, 7, 8, 11, 12, 13]);
+        assert_eq!(RegionMask::EMPTY.rectangle(5), RegionMask::EMPTY);
     }
 }

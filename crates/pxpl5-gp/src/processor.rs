@@ -19,11 +19,11 @@ use std::sync::Arc;
 pub enum CodeVersion {
     /// Code like the output of a compiler without optimization. It is nearly twice as large as the instruction cache.
     Unoptimised,
-    /// Code like the output of a good compiler of about 1990. The code of Slats in 1994 and 1995 was of this kind, and
-    /// was too large for the instruction cache (I3D95).
+    /// Code like the output of a good compiler of about 1990. The code of Slats in 1994 and 1995 was not
+    /// optimized for the instruction cache (I3D95), and is assumed to be of this kind.
     Compiled,
-    /// Code that is scheduled by hand in dual-instruction mode and fits in the instruction cache. Optimized PPHIGS used
-    /// code of this kind (TR94). It would have made Slats about 3 times faster (I3D95).
+    /// Code that is scheduled by hand in dual-instruction mode and fits in the instruction cache. Optimized PPHIGS
+    /// fitted in the cache too, which made it about 3 times faster (I3D95).
     Scheduled,
 }
 

@@ -1,116 +1,163 @@
 //! Published figures compared with the model: the printed value, the simulated value and their difference.
 //!
 //! ```text
-//!   FIGURES (data) --> Bench::measure (one experiment each) --> Row: published, simulated, error, interval, provenance
+//!   TOPICS: lists of Measurement (data and one experiment each) --Bench--> FigureRow: published, simulated, error,
+//!                                                                          interval, provenance
 //! ```
 //!
-//! Papers about other systems have separate families of rows ([`FigureFamily`]), measured together with the figures of
-//! Pixel-Planes 5.
+//! A figure is one entry ([`Measurement`]) in the list of its topic: the printed value, its experiment, the definition
+//! of its latency, its provenance with the reason, and the parameters that move it. Tables, documents, commands,
+//! intervals and the ranking of interpretations read the entries, so a new figure changes one file and ACCURACY.md.
 //!
 //! All rows come from the same machine parameters. Rows 3, 5 and 6 describe machines with other loads or costs than the
 //! presets. The experiments of these rows change only the parameters that the paper's statement changes.
 //!
-//! Sources: TR94, I3D95. This project chose the loads of the experiments.
+//! Sources: TR94, I3D95, JITP, F89 and others. This project chose the loads of the experiments.
 
 mod applications;
+mod bench;
 mod document;
 mod family;
-mod group;
+mod groups;
+mod headline;
 mod heads;
 mod interpretation;
 mod jitp;
-mod measure;
-mod measured;
+mod measurement;
 mod rates;
-mod row;
-mod table;
-mod tables;
+mod rendering_control;
+mod slats;
 mod trackers;
 
-pub use document::markdown;
-pub use family::FigureFamily;
-pub use group::FigureGroup;
+pub use bench::Bench;
+pub use document::{Documents, TIME_MARK, documents};
+pub use groups::{FigureGroup, Figures, TOPICS, Topic, all, at_all_levels};
+pub use headline::{Counted, Headline};
 pub use heads::PHOTODIODE_LINE;
 pub use interpretation::{FieldCount, Interpretation, LatencySamples, ROOM};
-pub use measure::Bench;
-pub use measured::FigureValue;
+pub use measurement::{FigureValue, LatencyDefinition, MISS_PERCENT, Measurement, Varied};
+use pxpl5_run::Level;
 pub use pxpl5_sim::figures::{Basis, Detail, FigureRow};
-pub use row::{MISS_PERCENT, mean_error_percent};
-pub use table::{FIGURES, Figure, WITHOUT_CLOSED_FORM};
-pub use tables::{FigureTable, figure_groups, run_all, run_all_in_order, run_all_with};
+pub(crate) use rendering_control::DEVIATION;
 
-use crate::application_time::{ApplicationTime, application_times};
 use crate::error::StudyError;
 use crate::interpretations::{self, Interpretations};
-use crate::intervals::Interval;
 use crate::parallel;
+use groups::{HEAD, RC, SLATS, row_of, stepped};
+use pxpl5_run::FinishedRegions;
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// All published figures with the model's values and intervals.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Figures {
-    /// Rows of the main table, in the order of [`FIGURES`].
-    pub rows: Vec<FigureRow>,
-    /// Interval of each figure while the unpublished parameters vary. Figures that depend only on scenes have no
-    /// interval. The list is empty if the settings leave out intervals ([`Bench::without_intervals`]).
-    pub intervals: Vec<Interval>,
-    /// Figures of papers about other systems than Pixel-Planes 5.
-    pub families: Vec<FigureFamily>,
-    /// Other figures of Pixel-Planes 5 by topic: peak rates, just-in-time pixels, trackers.
-    pub groups: Vec<FigureGroup>,
-}
-
-/// Published figures under other assumptions than in [`Figures`]. ACCURACY.md shows all members. The JSON of `pxpl5
-/// figures` has only the member `of_code`.
+/// Published figures under other assumptions than in [`Figures`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Alternatives {
-    /// Rows of the main table with the times of executed i860 code, without intervals.
+    /// Rows of Rendering Control, Slats and the head, with the times of executed i860 code.
     pub of_code: Vec<FigureRow>,
-    /// Fit of the model to the published figures of Rendering Control, for each interpretation of the papers, at the
-    /// analytic level.
+    /// Rows that depend on the interpretation, with the other rule for finished regions.
+    pub other_rule: Vec<FigureRow>,
+    /// Rates and limits for each size of a renderer's FIFO.
+    pub fifo: Vec<Effect>,
+    /// Latency of the pendulum rig for several times of the host.
+    pub host: Vec<Effect>,
+    /// Fit of the model to the published figures of Rendering Control, for each interpretation of the papers.
     pub interpretations: Interpretations,
     /// Latencies of the fly-throughs for several times of the application on the host, at the analytic level.
-    pub application_times: Vec<ApplicationTime>,
+    pub application: Vec<Effect>,
+}
+
+/// Values of some figures with changed parameters.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Effect {
+    /// Paths and values of the parameters.
+    pub changes: Vec<(&'static str, u64)>,
+    /// Numbers of the figures with their values and standard deviations, which are NaN for a single number.
+    pub figures: Vec<(&'static str, f64, f64)>,
 }
 
 /// Number of seeds for each application scene in the ranking of interpretations of the papers.
-const SEEDS: u64 = 6;
+const SEEDS: u64 = 2;
 /// Number of frames for each seed in the ranking of interpretations of the papers.
-const FRAMES: u64 = 150;
+const FRAMES: u64 = 60;
+/// Number of interpretations that are simulated with events, those that the formulas find likeliest.
+const SIMULATED: usize = 20;
 
-/// Measures the members of [`Alternatives`] in parallel. Calls `finished` with the number of finished members and the
-/// number of all members.
-///
-/// # Errors
-///
-/// Returns the first [`StudyError`].
-pub fn alternatives_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Alternatives, StudyError> {
-    let done = AtomicU64::new(0);
-    let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, 3);
-    let by_code = bench.clone().with_times_of_code();
-    let ranked = bench.clone().with_mig(SEEDS, FRAMES);
-    let of_code = || {
-        let rows = stepped(&step, || parallel::map(&FIGURES, |figure| row_of(&by_code, figure)));
-        rows.into_iter().collect::<Result<Vec<_>, _>>()
+/// Sizes of FIFO chips that were sold from 1988 to 1990, in words (recollected).
+const CHIPS: [u64; 4] = [256, 512, 1_024, 2_048];
+/// Rates and limits that depend on the size of the FIFO.
+const OF_FIFO: [&str; 6] = ["R1", "R2", "R3", "12", "13", "14"];
+
+/// Times of the host in milliseconds for one message, or for the application.
+const HOST_MS: [u64; 4] = [2, 4, 6, 8];
+
+/// Mean times of the application in milliseconds. Assumed: from no application to a loop of 25 frames a second.
+const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
+/// Jitters of the application's time in milliseconds, at most the mean. Assumed: up to 30 ms, the period at which a Unix
+/// host polled its serial ports (TR94).
+const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
+
+impl Alternatives {
+    /// Measures all members in parallel. Calls `finished` with the number of finished members and the number of all
+    /// members.
+    ///
+    /// # Errors
+    ///
+    /// Returns the first [`StudyError`].
+    pub fn run(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Self, StudyError> {
+        let done = AtomicU64::new(0);
+        let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, 6);
+        let rows = |bench: &Bench, figures: Vec<&Measurement>| {
+            let rows = parallel::map(&figures, |figure| row_of(figure, bench));
+            rows.into_iter().collect::<Result<Vec<_>, _>>()
+        };
+        let of_code = || stepped(&step, || rows(&bench.clone().with_times_of_code(), at_all_levels().collect()));
+        let other_rule = || {
+            let other = Interpretation { finished: FinishedRegions::Wait, ..bench.interpretation };
+            stepped(&step, || rows(&bench.with(other), all().filter(|figure| figure.is_interpreted).collect()))
+        };
+        let effects = |bench: &Bench, ends: &[Vec<(&'static str, u64)>], ids: &[&'static str]| {
+            stepped(&step, || effects(bench, ends, ids))
+        };
+        let fifo = || effects(bench, &CHIPS.map(|words| vec![(rates::FIFO_WORDS, words)]), &OF_FIFO);
+        let ms = |path| HOST_MS.map(|ms| vec![(path, ms * MS)]);
+        let host = || effects(bench, &[ms("host.message_ns"), ms(APPLICATION)].concat(), &["17"]);
+        let ranked = bench.clone().with_mig(SEEDS, FRAMES);
+        let interpretations = || stepped(&step, || interpretations::run(&ranked, SIMULATED, |_, _| {}));
+        let of_application = || {
+            let times = MEANS_MS.iter().flat_map(|mean| JITTERS_MS.iter().map(move |jitter| (*mean, *jitter)));
+            // A jitter greater than the mean would need negative times.
+            let times = times.filter(|(mean, jitter)| jitter <= mean);
+            let ends = times.map(|(mean, jitter)| vec![(APPLICATION, mean * MS), (JITTER, jitter * MS)]);
+            let bench = Bench { level: Level::Analytic, ..ranked.clone() };
+            effects(&bench, &ends.collect::<Vec<_>>(), &["7", "7b", "7c"])
+        };
+        let both = || parallel::both(other_rule, of_code);
+        let ((other_rule, of_code), ((fifo, host), (interpretations, times))) = parallel::both(both, || {
+            parallel::both(|| parallel::both(fifo, host), || parallel::both(interpretations, of_application))
+        });
+        Ok(Self {
+            of_code: of_code?,
+            other_rule: other_rule?,
+            fifo: fifo?,
+            host: host?,
+            interpretations: interpretations.map_err(StudyError::of_figure("7"))?,
+            application: times?,
+        })
+    }
+}
+
+const APPLICATION: &str = "host.application_ns";
+const JITTER: &str = "host.application_jitter_ns";
+const MS: u64 = 1_000_000;
+
+/// Measures the figures `ids` with the changes of each element of `ends`.
+fn effects(bench: &Bench, ends: &[Vec<(&'static str, u64)>], ids: &[&'static str]) -> Result<Vec<Effect>, StudyError> {
+    let effect = |changes: &Vec<(&'static str, u64)>| {
+        let moved = bench.with_changes(changes.iter().map(|(path, value)| ((*path).to_owned(), *value)));
+        let figure = |id: &&'static str| {
+            let measured = moved.measure(id).map_err(StudyError::of_figure(id))?;
+            Ok::<_, StudyError>((*id, measured.value, measured.detail(DEVIATION).unwrap_or(f64::NAN)))
+        };
+        Ok(Effect { changes: changes.clone(), figures: ids.iter().map(figure).collect::<Result<_, _>>()? })
     };
-    let interpretations = || stepped(&step, || interpretations::run(&ranked, 0, |_, _| {}));
-    let of_application = || stepped(&step, || application_times(&ranked));
-    let (of_code, (interpretations, times)) =
-        parallel::both(of_code, || parallel::both(interpretations, of_application));
-    Ok(Alternatives {
-        of_code: of_code?,
-        interpretations: interpretations.map_err(StudyError::of_figure("7"))?,
-        application_times: times.map_err(StudyError::of_figure("7"))?,
-    })
-}
-
-fn stepped<T>(step: &impl Fn(), part: impl FnOnce() -> T) -> T {
-    let result = part();
-    step();
-    result
-}
-
-fn row_of(bench: &Bench, figure: &Figure) -> Result<FigureRow, StudyError> {
-    bench.measure(figure.id).map(|measured| figure.row(measured)).map_err(StudyError::of_figure(figure.id))
+    parallel::map(ends, effect).into_iter().collect()
 }

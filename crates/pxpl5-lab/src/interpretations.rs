@@ -1,14 +1,15 @@
 //! Ranking of the interpretations of the papers: all figures of Rendering Control under every combination of answers.
 //!
 //! ```text
-//!   Interpretation::all() --Bench, analytic level--> Fit of each --the best, transaction level--> Interpretations
+//!   Interpretation::all() --Bench, analytic level--> Fit of each --the likeliest, transaction level--> Interpretations
 //!                                                   |
 //!                                                   +--without one figure in turn--> LeaveOneOut: its prediction
 //! ```
 //!
 //! Among hundreds of combinations, some may fit a dozen figures by chance. Every figure is therefore also predicted by
-//! the interpretation that fits all other figures best. The result also counts the interpretations that are as good as
-//! the best within the printed digits. The text of the papers decides between these interpretations.
+//! the interpretation under which all other figures are likeliest, and the result lists the interpretations that the
+//! figures cannot tell apart. The ranking decides nothing by itself: where the text of the papers gives an answer, this
+//! project takes it, and rows that depend on other answers are marked.
 //!
 //! Source of the questions: TR94, which does not answer these questions.
 
@@ -16,7 +17,12 @@ mod fit;
 mod rank;
 
 pub use fit::{FigureFit, Fit};
-pub use rank::{Interpretations, LeaveOneOut, run};
+pub use rank::{ALIKE, Interpretations, LeaveOneOut, run};
 
-/// Numbers, in ACCURACY.md, of the Rendering Control figures that depend on the interpretation of the papers.
-pub const FIGURES: [&str; 12] = ["3", "4", "4b", "5", "6", "7", "7b", "7c", "16", "16b", "16c", "17"];
+use crate::figures::{Basis, Measurement, all};
+
+/// Returns the figures that decide the ranking: all that depend on the interpretation, except those that follow from
+/// other rows and would count twice.
+pub fn figures() -> impl Iterator<Item = &'static Measurement> {
+    all().filter(|figure| figure.is_interpreted && !matches!(figure.basis, Basis::Derived(_)))
+}

@@ -11,11 +11,12 @@
 //! varies within the range that reproduces the figure exactly. The interval of a fitted figure therefore shows the
 //! figure's error without a new fit.
 //!
-//! Some figures need a simulation with events. For these figures, only two machine parameters without a source vary:
-//! the depth of the FIFO and the number of channels of a sender. For the figure of the pendulum rig, the photodiode's
-//! position and the interpretations vary too.
+//! Some figures need a simulation with events ([`Varied::ByEvents`]). For these figures, a few parameters vary one at a
+//! time, and the interpretations too if they change the figure. The fly-throughs are among them, because the formulas
+//! deviate from the simulation by more than the distance of these latencies to the next retrace.
 
-use crate::figures::{Bench, FIGURES, Interpretation, PHOTODIODE_LINE, WITHOUT_CLOSED_FORM};
+use crate::figures::{Bench, Interpretation, Measurement, PHOTODIODE_LINE, Varied, all};
+use crate::parallel;
 use pxpl5_gp::GpTiming;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
@@ -31,6 +32,10 @@ const SEED: u64 = 0x5EED_0F05;
 
 /// Number of seeds and of frames of the scene "mig" for each random machine.
 const MIG: (u64, u64) = (6, 150);
+
+/// Number of seeds and of frames of the scene "mig" for each machine that is simulated with events. The latencies of a
+/// machine hardly depend on the seed, except for the scene "head".
+const MIG_OF_EVENTS: (u64, u64) = (1, 30);
 
 /// A parameter that varies within its range.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -61,7 +66,7 @@ pub struct Effect {
 /// Interval of a figure's value due to the ranges of all unpublished parameters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interval {
-    /// Number of the figure in [`FIGURES`].
+    /// Number of the figure in ACCURACY.md.
     pub id: &'static str,
     /// Value of the figure for the presets at the analytic level. A figure without a closed form is simulated with
     /// events instead.
@@ -98,7 +103,7 @@ impl Interval {
 /// ACCURACY.md), and any time within its range reproduces the figure exactly.
 const OF_SLATS: [(&str, u64, (u64, u64)); 2] = [
     ("slats:gp.triangle_ns", GpTiming::SLATS_1994.triangle_ns, (27_066, 27_539)),
-    ("slats-1995:gp.triangle_ns", 55_800, (55_400, 56_300)),
+    ("slats-1995:gp.triangle_ns", GpTiming::SLATS_1995.triangle_ns, (59_500, 60_000)),
 ];
 
 /// Returns all parameters that are derived or assumed, have a range, and can change a figure at the analytic level.
@@ -122,42 +127,39 @@ pub fn variations() -> Vec<Variation> {
     of_machine.chain(of_slats).collect()
 }
 
-/// Measures all figures with changed parameters. A figure without a result is `None`.
-fn measure(bench: &Bench, changes: Vec<(String, u64)>) -> Vec<Option<f64>> {
-    let bench = Bench { changes, ..bench.clone() };
-    FIGURES.iter().map(|figure| value_of(&bench, figure.id)).collect()
-}
-
-/// Returns the value of a figure, or `None` if the figure has no closed form or no finite value.
-fn value_of(bench: &Bench, id: &str) -> Option<f64> {
-    if WITHOUT_CLOSED_FORM.contains(&id) {
-        return None;
-    }
-    Some(bench.measure(id).ok()?.value).filter(|value| value.is_finite())
-}
-
-/// Computes the intervals of all figures at the analytic level. `bench` has the settings of all measurements. The list
-/// is empty if another thread sets the flag of `bench`.
+/// Computes the intervals of all figures. `bench` has the settings of all measurements. The list is empty if another
+/// thread sets the flag of `bench`.
 pub fn intervals(bench: &Bench) -> Vec<Interval> {
+    let by_events: Vec<&Measurement> = all().filter(|figure| matches!(figure.varied, Varied::ByEvents(_))).collect();
+    let of_events = || parallel::map(&by_events, |figure| with_events(bench, figure));
+    let (mut intervals, of_events) = parallel::both(|| by_formula(bench), of_events);
+    intervals.extend(of_events.into_iter().flatten());
+    // After a stop, values are missing.
+    if bench.stop.is_stopped() { Vec::new() } else { intervals }
+}
+
+/// Computes the intervals at the analytic level.
+fn by_formula(bench: &Bench) -> Vec<Interval> {
+    let figures: Vec<&Measurement> = all().filter(|figure| figure.varied == Varied::ByFormula).collect();
     let bench = Bench { level: Level::Analytic, ..bench.clone() }.with_mig(MIG.0, MIG.1);
+    // A figure without a result is `None`.
+    let measure = |bench: &Bench| -> Vec<Option<f64>> {
+        let value = |figure: &&Measurement| Some(figure.value(bench).ok()?.value).filter(|value| value.is_finite());
+        figures.iter().map(value).collect()
+    };
     let variations = variations();
-    let nominal = measure(&bench, Vec::new());
+    let nominal = measure(&bench);
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     // Measure at both ends of each range, one parameter at a time.
-    let at_ends = crate::parallel::map(&ends, |(v, value)| measure(&bench, vec![(v.path.clone(), *value)]));
+    let at_ends = parallel::map(&ends, |(v, value)| measure(&bench.with_changes([(v.path.clone(), *value)])));
     let samples: Vec<u64> = (0..SAMPLES).collect();
     // Measure machines with all parameters drawn at random.
-    let joint = crate::parallel::map(&samples, |sample| measure(&bench, draw(&variations, *sample)));
+    let joint = parallel::map(&samples, |sample| measure(&bench.with_changes(draw(&variations, *sample))));
     let neighbours = bench.interpretation.neighbours();
     // Measure with other interpretations, each with another answer to one question.
-    let results = crate::parallel::map(&neighbours, |interpretation| measure(&bench.with(*interpretation), Vec::new()));
-    // After a stop, values are missing.
-    if bench.stop.is_stopped() {
-        return Vec::new();
-    }
+    let results = parallel::map(&neighbours, |interpretation| measure(&bench.with(*interpretation)));
     // Collect the results for each figure. A missing value counts as the value for the presets.
-    let mut intervals = Vec::new();
-    for (index, figure) in FIGURES.iter().enumerate().filter(|(_, figure)| !WITHOUT_CLOSED_FORM.contains(&figure.id)) {
+    let of_figure = |(index, figure): (usize, &&Measurement)| {
         let nominal = nominal[index].unwrap_or(f64::NAN);
         let ends: Vec<f64> = at_ends.iter().map(|all| all[index].unwrap_or(nominal)).collect();
         let joint = joint.iter().filter_map(|all| all[index]).collect();
@@ -165,65 +167,40 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
         let values =
             neighbours.iter().zip(&results).filter_map(|(interpretation, all)| Some((*interpretation, all[index]?)));
         interval.add_interpretations(&bench.interpretation, values);
-        intervals.push(interval);
-    }
-    intervals.extend(of_rig(&bench));
-    intervals.extend(WITH_A_TRACKER.iter().filter_map(|id| with_events(&bench, id)));
-    intervals
+        interval
+    };
+    figures.iter().enumerate().map(of_figure).collect()
 }
 
-/// Figures of a tracker combined with a pipeline, which are always simulated with events.
-const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
-
-/// Machine parameters without a source, which vary for figures that need a simulation with events.
-const OF_EVENTS: [&str; 2] = ["renderer.fifo_words", "ring.source_channels"];
-
-/// Computes the interval of a figure that needs a simulation with events. One parameter of [`OF_EVENTS`] at a time is
-/// set to each end of its range.
-fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
-    let variations: Vec<_> = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str())).collect();
-    let nominal = bench.measure(id).ok()?.value;
-    let ends = ends_with_events(bench, id, &variations, nominal);
-    Some(interval(id, nominal, &ends, vec![nominal], &variations))
-}
-
-/// Returns the values of a figure at both ends of each parameter's range, while all other parameters have their
-/// presets. `nominal` replaces the result of a failed experiment.
-fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: f64) -> Vec<f64> {
+/// Computes the interval of a figure with events. One parameter at a time is set to each end of its range, while all
+/// others have their presets. If the figure depends on the interpretation, each other answer to one question is tried
+/// too. The value for the presets replaces the result of a failed experiment.
+fn with_events(bench: &Bench, figure: &Measurement) -> Option<Interval> {
+    let Varied::ByEvents(paths) = figure.varied else { return None };
+    let bench = bench.clone().with_mig(MIG_OF_EVENTS.0, MIG_OF_EVENTS.1);
+    let nominal = figure.value(&bench).ok()?.value;
+    let all = variations().into_iter().chain(photodiode_line());
+    let variations: Vec<_> = all.filter(|v| paths.contains(&v.path.as_str())).collect();
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
-    crate::parallel::map(&ends, |(v, value)| {
-        let changes = bench.changes.iter().cloned().chain([(v.path.clone(), *value)]).collect();
-        let moved = Bench { changes, ..bench.clone() };
+    let ends = parallel::map(&ends, |(v, value)| {
+        let moved = bench.with_changes([(v.path.clone(), *value)]);
         // The end of a range can be the value that all machines have.
         if bench.has_machines_of(&moved) {
             return nominal;
         }
-        moved.measure(id).map_or(nominal, |measured| measured.value)
-    })
-}
-
-/// Number in [`FIGURES`] of the figure from the pendulum rig.
-const OF_RIG: &str = "17";
-
-/// Computes the interval of the pendulum rig's figure by simulation with events. The photodiode's position, machine
-/// parameters and interpretations vary.
-fn of_rig(bench: &Bench) -> Option<Interval> {
-    let value = |bench: Bench| Some(bench.measure(OF_RIG).ok()?.value);
-    let of_machine = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str()));
-    let variations: Vec<_> = [photodiode_line()?].into_iter().chain(of_machine).collect();
-    let nominal = value(bench.clone())?;
-    let ends = ends_with_events(bench, OF_RIG, &variations, nominal);
-    let mut interval = interval(OF_RIG, nominal, &ends, vec![nominal], &variations);
-    let neighbours = bench.interpretation.neighbours();
-    let results = crate::parallel::map(&neighbours, |interpretation| value(bench.with(*interpretation)));
-    let values =
-        neighbours.into_iter().zip(results).filter_map(|(interpretation, value)| Some((interpretation, value?)));
-    interval.add_interpretations(&bench.interpretation, values);
+        figure.value(&moved).map_or(nominal, |measured| measured.value)
+    });
+    let mut interval = interval(figure.id, nominal, &ends, vec![nominal], &variations);
+    if figure.is_interpreted {
+        let neighbours = bench.interpretation.neighbours();
+        let results = parallel::map(&neighbours, |other| Some((*other, figure.value(&bench.with(*other)).ok()?.value)));
+        interval.add_interpretations(&bench.interpretation, results.into_iter().flatten());
+    }
     Some(interval)
 }
 
 /// Returns the line of the screen under the photodiode as a parameter that varies. The preset's value is assumed.
-pub(crate) fn photodiode_line() -> Option<Variation> {
+fn photodiode_line() -> Option<Variation> {
     let line = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE)?;
     let (value, range) = (line.value.whole()?, line.info.whole_range()?);
     Some(Variation { path: line.path, value, range, provenance: line.info.provenance })
@@ -301,13 +278,13 @@ impl Effect {
     }
 }
 
-/// Copies the computed intervals into the rows of the figures. At the analytic level, a figure without a closed form
-/// has no value.
-pub fn fill(rows: &mut [FigureRow], intervals: &[Interval]) {
+/// Copies the computed intervals into the rows of the figures. Only intervals of formulas have a value of the analytic
+/// level.
+pub(crate) fn fill(rows: &mut [FigureRow], intervals: &[Interval]) {
     for row in rows {
         let interval = intervals.iter().find(|interval| interval.id == row.id);
-        let of_model = interval.filter(|interval| !WITHOUT_CLOSED_FORM.contains(&interval.id));
-        row.analytic = of_model.map(|interval| interval.nominal);
+        let is_formula = all().any(|figure| figure.id == row.id && figure.varied == Varied::ByFormula);
+        row.analytic = interval.filter(|_| is_formula).map(|interval| interval.nominal);
         row.interval = interval.map(Interval::bounds);
     }
 }
@@ -315,12 +292,16 @@ pub fn fill(rows: &mut [FigureRow], intervals: &[Interval]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::{Figure, FigureValue};
+    use crate::figures::FigureValue;
+
+    fn figure(id: &str) -> &'static Measurement {
+        all().find(|figure| figure.id == id).expect("listed")
+    }
 
     /// Returns row 2 of ACCURACY.md for a simulated value. The published value of this row is 31.2 ms. The interval of
     /// the analytic level is 20 to 22 ms, with 21 ms for the presets.
     fn row_of_figure_2(simulated: f64) -> FigureRow {
-        let figure: &Figure = FIGURES.iter().find(|figure| figure.id == "2").expect("listed");
+        let figure = figure("2");
         let interval = Interval {
             id: figure.id,
             nominal: 21.0,
@@ -356,8 +337,7 @@ mod tests {
 
     #[test]
     fn the_figure_without_a_closed_form_has_no_interval() {
-        let figure = FIGURES.iter().find(|figure| figure.id == "8").expect("listed");
-        let mut rows = [figure.row(FigureValue::from(9.0))];
+        let mut rows = [figure("8").row(FigureValue::from(9.0))];
         fill(&mut rows, &[]);
         assert_eq!((rows[0].interval, rows[0].analytic), (None, None));
         assert!(!rows[0].is_out_of_reach());
@@ -367,13 +347,12 @@ mod tests {
     /// 63.56 us after the first line.
     #[test]
     fn the_figure_of_the_pendulum_rig_moves_with_the_line_of_the_photodiode() {
-        let interval = of_rig(&Bench::new(Level::Analytic)).expect("it is measured");
+        let interval = with_events(&Bench::new(Level::Analytic), figure("17")).expect("it is measured");
         let line = interval.effects.iter().find(|effect| effect.path == PHOTODIODE_LINE).expect("it moves");
         let [low, high] = line.ends;
         assert!((high - low - 239.0 * 0.063_556).abs() < 0.01, "{low} to {high}");
         assert!(low < interval.nominal && interval.nominal < high);
-        let figure = FIGURES.iter().find(|figure| figure.id == OF_RIG).expect("listed");
-        let mut rows = [figure.row(FigureValue::from(interval.nominal))];
+        let mut rows = [figure("17").row(FigureValue::from(interval.nominal))];
         fill(&mut rows, std::slice::from_ref(&interval));
         assert_eq!((rows[0].interval, rows[0].analytic), (Some(interval.bounds()), None));
     }

@@ -6,12 +6,12 @@
 //! |---|---|
 //! | values of the published figures in the model, with intervals | [`figures`], [`intervals`], [`pipeline_figures`] |
 //! | the interpretation of the papers that explains the figures best | [`interpretations`] |
-//! | effect of the host application's time, which no paper prints | [`application_time`] |
 //! | differences between the levels of detail | [`levels`] |
 //! | largest number of triangles drawn in time | [`limit`] |
 //! | range of any setting in which an experiment reaches a goal | [`limit::OverQuery`] |
 //! | differences between two results | [`diff`] |
 //! | effect of 10 % more of each resource | [`what_if`] |
+//! | results that a small change moves by a whole field | [`near_edges`] |
 //! | comparison of all low-latency methods | [`compare`] |
 //! | latency measured from outside | [`rig`] |
 //! | memory and time of an experiment on this computer | [`estimate`] |
@@ -24,9 +24,9 @@
 
 #![warn(missing_docs)]
 
-pub mod application_time;
 pub mod compare;
 pub mod diff;
+mod edges;
 mod error;
 pub mod estimate;
 mod experiment_file;
@@ -46,6 +46,7 @@ mod suitability;
 pub mod sweep;
 mod what_if;
 
+pub use edges::{NEAR_FIELDS, near_edges};
 pub use error::StudyError;
 pub use experiment_file::{
     ExperimentFile, FileKey, HeadChoice, ModelPlace, MotionChoice, Origin, Outputs, PathChoice, Plan, Published,

@@ -19,6 +19,7 @@ pub use over::{OverLimit, OverQuery, STEPS, USUAL_VALUES, Values};
 pub use search::{Hints, Limit, about, most, most_triangles};
 
 use crate::StopFlag;
+use crate::edges::{NEAR_FIELDS, to_other_retraces};
 use crate::experiment_file::{Plan, SceneChoice};
 use crate::levels::summarise;
 use pxpl5_machine::MachineConfig;
@@ -284,6 +285,33 @@ impl LimitQuery {
             Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => Ok(false),
             Err(error) => Err(error),
         }
+    }
+
+    /// Returns a warning if the answer `triangles` lies within [`NEAR_FIELDS`] of its edge: how near, and how many
+    /// triangles this distance is worth.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`search`](Self::search).
+    pub fn near_edge(&self, triangles: u32) -> Result<Option<String>, ExperimentError> {
+        // The same scene with fewer triangles shows how much of a field a triangle takes.
+        let fewer = triangles - triangles.div_ceil(4).min(60);
+        let distance = |triangles: u32| -> Result<Option<f64>, ExperimentError> {
+            let summary = self.summary(triangles)?;
+            Ok(match self.criterion.goal {
+                Goal::NoMissedRetrace => to_other_retraces(&summary).map(|[later, _]| later),
+                Goal::LatencyFields(most) => Some(most - summary.latency_fields().mean),
+                Goal::RateHz(_) => None,
+            })
+        };
+        let (Some(at_limit), Some(below)) = (distance(triangles)?, distance(fewer.max(1))?) else { return Ok(None) };
+        let of_triangle = (below - at_limit) / f64::from((triangles - fewer).max(1));
+        Ok((at_limit < NEAR_FIELDS && of_triangle > 0.0).then(|| {
+            format!(
+                "the limit lies {at_limit:.3} field before its edge: {NEAR_FIELDS} field more work is worth about {:.0} triangles",
+                NEAR_FIELDS / of_triangle
+            )
+        }))
     }
 }
 

@@ -23,9 +23,8 @@ pub struct PipelineFigure {
 /// the stages have the published ratios. For TR94's figure 4, this project also chose the number of triangles and the
 /// time per triangle. TRANSFORM, RENDER and COPY then take 15.6 ms each, as in row 5 of ACCURACY.md.
 ///
-/// TR94's figures 3 and 4 show theory. Like rows 3 and 5 of ACCURACY.md, both figures follow the rules in the text of
-/// TR94. A renderer with a finished region continues with another region (`finished = "store"`). By default renderers
-/// wait, which agrees with TR94's measurements.
+/// TR94's figures 3 and 4 show theory. Like all rows of ACCURACY.md, both figures follow the rules in the text of TR94: a
+/// renderer with a finished region continues with another region.
 pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
     PipelineFigure {
         name: "tr94-1-rendering-control-mono",
@@ -45,14 +44,14 @@ pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
         name: "tr94-3-rendering-control-trivial",
         source: "TR94 figure 3, I3D95 figure 7",
         shows: "Trivial scene, theory: COPY is the bottleneck",
-        experiment: "pipeline = \"rendering-control\"\nscene = \"full-screen:12\"\ntriangles = 1\nfinished = \"store\"\npixels = \"off\"\nfields = 60",
+        experiment: "pipeline = \"rendering-control\"\nscene = \"full-screen:12\"\ntriangles = 1\npixels = \"off\"\nfields = 60",
         fields: None,
     },
     PipelineFigure {
         name: "tr94-4-rendering-control-balanced",
         source: "TR94 figure 4",
         shows: "Stages of equal length, theory: everything busy",
-        experiment: "pipeline = \"rendering-control\"\nscene = \"full-screen:516\"\nfinished = \"store\"\npixels = \"off\"\nfields = 60\n\
+        experiment: "pipeline = \"rendering-control\"\nscene = \"full-screen:516\"\npixels = \"off\"\nfields = 60\n\
                      [machine]\ngp.triangle_ns = 342_674",
         fields: None,
     },

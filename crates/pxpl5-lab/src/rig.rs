@@ -5,8 +5,8 @@
 //! As in I3D95, the host starts a frame when the host detects that the pendulum passes its lowest point. Frames
 //! alternate between dark and light. The output of a D/A converter (the D/A line) changes when the program starts a
 //! frame. Frames therefore come on demand, the pipeline is not full, and the latency contains no wait for an earlier
-//! frame. Under Rendering Control, the host drives the D/A line, so SEND and EDIT belong to the rendering part of the
-//! latency. Under Slats and other firmware that starts frames itself, the D/A line changes when the firmware samples
+//! frame. Under Rendering Control, the host drives the D/A line when it detects the low point, so the application's time, SEND
+//! and EDIT belong to the rendering part of the latency. Under Slats and other firmware that starts frames itself, the D/A line changes when the firmware samples
 //! the pose of a frame.
 //!
 //! The traces of the simulated oscilloscope do not use the pipeline's own records of its pictures. The instants of the
@@ -107,13 +107,13 @@ impl Rig {
     ) -> Result<Measurement, StudyError> {
         let rig = PendulumRig { photodiode_line: photodiode.line, ..self.rig };
         let frames = frames_asked_for(outcome, sightings)?;
-        let dac =
-            ScopeTrace::toggling("D/A line", frames.iter().map(|frame| started(outcome.record(), frame).0).collect());
+        let begun = |(sighting, frame): (&LowPointReport, &PictureTimes)| started(outcome.record(), frame, sighting).0;
+        let dac = ScopeTrace::toggling("D/A line", sightings.iter().zip(&frames).map(begun).collect());
         let screen = ScopeTrace::sampled("screen", photodiode.samples);
         let oscilloscope = Oscilloscope::of(&rig, dac, screen);
         let inside = sightings.iter().zip(&frames).map(|(sighting, frame)| InsidePass {
             sighting: *sighting,
-            started_ps: frame.sampled_at.unwrap_or(frame.transform_at).0,
+            started_ps: started(outcome.record(), frame, sighting).0,
             shown_ps: frame.shown_at.0,
         });
         // Compare the oscilloscope's times with the pipeline's time stamps.
@@ -294,14 +294,21 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<V
     Err(SettingError::value("", expected, format_args!("it for {}", found.len())))
 }
 
-/// Returns the time at which a program sampled the head pose of a frame and changed the D/A line. Under Rendering
-/// Control, this is the time at which the host begins SEND. Under Slats, this is the time at which a graphics processor
-/// begins a field.
-fn started(record: &Record, frame: &PictureTimes) -> Time {
+/// Returns the time at which a program started a frame and changed the D/A line. Under Rendering Control, the host does so
+/// when it detects the low point; its application then takes its time, and SEND begins. Under Slats, a graphics processor
+/// does so when it begins a field.
+fn started(record: &Record, frame: &PictureTimes, sighting: &LowPointReport) -> Time {
     let marks = record.observation().marks.iter();
     let begun = marks
         .filter(|mark| mark.stage == Stage::Sample && mark.edge == StageEdge::Begin && mark.picture == frame.picture);
-    begun.map(|mark| mark.time).min().unwrap_or(frame.transform_at)
+    let Some(mark) = begun.min_by_key(|mark| mark.time) else { return frame.transform_at };
+    if mark.node != record.ports().host {
+        return mark.time;
+    }
+    // The application takes at most this time, and less only by its jitter.
+    let host = &record.config().host;
+    let application_ps = (host.application_ns + host.application_jitter_ns.min(host.application_ns)) * 1_000;
+    Time(mark.time.0 - application_ps.min(mark.time.0.saturating_sub(sighting.arrives_ps)))
 }
 
 #[cfg(test)]

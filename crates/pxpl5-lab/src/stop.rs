@@ -46,7 +46,7 @@ impl Host for StopFlag {
 mod tests {
     use super::*;
     use crate::experiment_file::ExperimentFile;
-    use crate::figures::{Bench, run_all_with};
+    use crate::figures::{Bench, Figures};
     use crate::levels::{LevelQuery, compare_with};
     use crate::limit::{LimitQuery, OverQuery};
     use crate::{StudyError, interpretations};
@@ -95,7 +95,7 @@ mod tests {
         let bench = || Bench::new(Level::Analytic).with_mig(1, 12).with_stop(stop.clone());
         let ended = interpretations::run(&bench(), 2, |_, _| stop.stop()).map(|_| ());
         assert!(matches!(ended, Err(ExperimentError::Stopped(_))), "{ended:?}");
-        assert!(run_all_with(&bench(), |_, _| {}).is_err_and(|error| error.to_string().contains("stopped")));
+        assert!(Figures::run(&bench(), |_, _| {}, |_, _| {}).is_err_and(|error| error.to_string().contains("stopped")));
 
         let stop = StopFlag::default();
         let levels = LevelQuery { experiments: 2, speeds: false, stop: stop.clone() };

@@ -6,13 +6,13 @@ use pxpl5_machine::{MachineConfig, PRESETS};
 /// Sources are TR94 (small-hmd, slats), I3D95 (slats-1995, slats-optimised, large) and F89 (design-maximum).
 ///
 /// The time of `slats` is that of its code, and code that fits into the cache takes a third of it. The published limit of
-/// 100 triangles per field (I3D95) corresponds to a time of 55.8 us.
+/// 100 triangles per field (I3D95) corresponds to a time of 59.8 us.
 #[test]
 fn presets_have_the_boards_and_times_that_were_published() {
     let expected = [
         ("small-hmd", [13, 5], 21_700),
         ("slats", [1, 5], GpTiming::PAPERS.of_compiled_precomputed().triangle_ns),
-        ("slats-1995", [1, 5], 55_800),
+        ("slats-1995", [1, 5], 59_800),
         ("slats-optimised", [1, 5], GpTiming::PAPERS.of_compiled_precomputed().triangle_ns / 3),
         ("medium", [24, 10], 21_700),
         ("design-maximum", [32, 16], 21_700),

@@ -144,7 +144,7 @@ fn a_fault_of_a_program_stops_the_machine_with_its_board_and_time() {
     assert_eq!((error.time(), machine.step_before(LONG)), (us(7), Err(error.clone())));
 }
 
-/// Messages have at most 1,024 words (TR94), and the test machine has six ports.
+/// Messages have at most 1,024 words (derived), and the test machine has six ports.
 #[test]
 fn a_message_too_long_for_the_ring_stops_the_machine() {
     for (receiver, length, reason) in

@@ -6,7 +6,7 @@ use crate::errors::{failed_run, failed_sweep, wrong_setting};
 use crate::settings::Settings;
 use pxpl5::Statistics;
 use pxpl5::compare::{CONFIDENCE, CompareQuery, MAX_SEEDS, Precision, RowChoice, UntilPrecise};
-use pxpl5::figures::{Bench, FIGURES, FigureRow, run_all_with};
+use pxpl5::figures::{Bench, FigureRow, Figures, all};
 use pxpl5::interpretations::run as rank;
 use pxpl5::lab::diff::Changed;
 use pxpl5::levels::{LevelQuery, LevelRecord, compare_with};
@@ -25,7 +25,7 @@ fn level(name: &str) -> PyResult<Level> {
 /// Returns the identifiers of the published figures, such as 4b, each with the statement of its paper.
 #[pyfunction]
 pub(crate) fn figure_ids() -> Vec<(&'static str, &'static str)> {
-    FIGURES.iter().map(|figure| (figure.id, figure.statement)).collect()
+    all().map(|figure| (figure.id, figure.statement)).collect()
 }
 
 /// Measures a published figure at a level of modelling. ``id`` is the figure's identifier, such as 4b. Returns a
@@ -41,14 +41,13 @@ pub(crate) fn figure<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let level = self::level(level)?;
-    let Some(figure) = FIGURES.iter().find(|figure| figure.id == id) else {
-        return Err(wrong_setting(SettingError::unknown("figure", id, FIGURES.iter().map(|figure| figure.id))));
+    let Some(figure) = all().find(|figure| figure.id == id) else {
+        return Err(wrong_setting(SettingError::unknown("figure", id, all().map(|figure| figure.id))));
     };
     let measured = in_background(py, progress, false, move |watch| {
-        bench(level, &watch).measure(figure.id).map_err(|e| e.to_string())
+        figure.measured_row(&bench(level, &watch)).map_err(|e| e.to_string())
     })?;
-    let measured = measured.map_err(|error| failed_run(format!("figure {id}: {error}")))?;
-    python(py, &row(&figure.row(measured)))
+    python(py, &row(&measured.map_err(|error| failed_run(format!("figure {id}: {error}")))?))
 }
 
 fn bench(level: Level, watch: &Progress) -> Bench {
@@ -79,9 +78,9 @@ pub(crate) fn figures<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let level = self::level(level)?;
     let figures = in_background(py, progress, false, move |watch| {
-        run_all_with(&bench(level, &watch), |done, of| watch.report(done, of))
+        Figures::run(&bench(level, &watch), |done, of| watch.report(done, of), |_, _| {})
     })?;
-    let rows: Vec<serde_json::Value> = figures.map_err(failed_run)?.rows.iter().map(row).collect();
+    let rows: Vec<serde_json::Value> = figures.map_err(failed_run)?.rows().map(row).collect();
     python(py, &rows)
 }
 
@@ -349,9 +348,8 @@ pub(crate) fn levels<'py>(
 
 /// Ranks the interpretations of the papers' open questions by their fit to the figures of Rendering Control. The best
 /// ``best`` interpretations are also simulated with events. ``seeds`` and ``frames`` are the size of the fly-throughs.
-/// Returns a dictionary with analytic, transaction, left_out, as_good and rounding_percent. ``left_out`` predicts each
-/// figure by the interpretation that fits all other figures best. ``as_good`` is the number of interpretations with the
-/// same mean error as the best, within the rounding of the printed digits.
+/// Returns a dictionary with analytic, transaction and left_out. ``left_out`` predicts each figure by the interpretation
+/// under which all other figures are likeliest.
 ///
 /// Raises :class:`pxpl5.RunError` if a figure cannot be simulated.
 #[pyfunction]

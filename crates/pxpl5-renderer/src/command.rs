@@ -19,8 +19,8 @@
 //!
 //! | kind | words | clocks | published or assumed clocks |
 //! |---|---|---|---|
-//! | triangle (Gouraud) | 30 | 258 | 267 at 150,000 triangles a second (TR94); the published steps need 256 |
-//! | Phong triangle | 32 | 292 | the same rate; the published steps need 262 to 292, with 28 for the object's colour |
+//! | triangle (Gouraud) | 30 | 258 | the published steps need 256 |
+//! | Phong triangle | 32 | 292 | 267 at 150,000 triangles a second (F89); the published steps need 262 to 292, with 28 for the object's colour |
 //! | sphere | 53 | 810 (748 for Slats) | assumed "a little dearer than a triangle"; see [`SphereCommand`] |
 //! | Phong sphere | 38 | 504 | the same |
 //! | shade | 89 | 3,790 = 95 us | assumed 4,000 to 8,000 (100 to 200 us); see [`Shade`] |

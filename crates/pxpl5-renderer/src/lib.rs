@@ -26,10 +26,9 @@
 //!
 //! # Numbers
 //!
-//! A triangle takes 258 clocks with interpolated colour and 292 with normals, where the published 150,000 triangles a
-//! second (TR94) are 267 clocks each. Most of it follows from the number formats, since each of their bits takes one
-//! clock: 220 of the 258, and 250 of the 292. [`isa::timing`] derives the numbers, and [`command`] lists the other
-//! commands.
+//! A triangle takes 258 clocks with interpolated colour and 292 with normals. The design rate is 150,000 Phong triangles
+//! per second (F89), which is 267 clocks per triangle. Each bit of the number formats takes one clock: 220 of the 258
+//! clocks, and 250 of the 292 clocks. [`isa::timing`] derives the numbers, and [`command`] lists the other commands.
 //!
 //! # Faults
 //!

@@ -11,11 +11,11 @@ pxpl5_sim::parameters::parameter_table! {
     /// Times and sizes of a renderer board.
     pub struct RendererTiming {
         /// Clock rate of the controller and the array.
-        clock_hz: 40_000_000, "Hz", Published, 40000000..=40000000 in 1_000..=MAX, "F89, TR94";
+        clock_hz: 40_000_000, "Hz", Published, 40000000..=40000000 in 1_000..=MAX, "F89";
         /// Execution time of a triangle with interpolated colour, in each region to which it is sent.
-        triangle_clocks: 258, "clocks", Derived, 250..=300 in 0..=MAX, "its program; the 150,000 triangles/s of TR94 are 267 clocks";
+        triangle_clocks: 258, "clocks", Derived, 250..=300 in 0..=MAX, "its program; no paper prints a rate for interpolated colours";
         /// Execution time of a triangle with interpolated normals, in each region to which it is sent.
-        phong_triangle_clocks: 292, "clocks", Derived, 250..=300 in 0..=MAX, "its program; the 150,000 triangles/s of TR94 are 267 clocks, and a count of bits gives 262 to 292";
+        phong_triangle_clocks: 292, "clocks", Derived, 250..=300 in 0..=MAX, "its program; the design rate of 150,000 Phong triangles/s (F89) is 267 clocks, and a count of bits gives 262 to 292";
         /// Execution time of a sphere with interpolated colour. In the layout of Slats, the program of the command
         /// takes 748 clocks.
         sphere_clocks: 810, "clocks", Derived, 318..=810 in 0..=MAX, "its program, with an exact root; a paraboloid takes 318";
@@ -35,7 +35,7 @@ pxpl5_sim::parameters::parameter_table! {
         /// Number of bits of each pixel's backing store that a finished region occupies until the region is copied.
         kept_bits: 32, "bits", Derived, 32..=256 in 1..=MAX, "24 bits of colour, moved in blocks of 32 bits (F89); 256 if all 208 bits of a pixel were kept";
         /// Capacity of the input FIFO in words.
-        fifo_words: 448, "words", Assumed, 256..=2048 in 128..=1_048_576, "no source gives the value. The range comes from FIFO chips of 9 bits that were sold from 1988 to 1990. A port of 32 bits needs four chips, and these chips had 256, 512, 1,024 or 2,048 words (recollected). An earlier model with one kept region fitted 448 words to the 56.5 ms of a trivial scene (TR94). The value no longer affects this figure";
+        fifo_words: 1_024, "words", Assumed, 256..=2048 in 128..=1_048_576, "no source gives the value. FIFO chips of 9 bits that were sold from 1988 to 1990 had 256, 512, 1,024 or 2,048 words (recollected), and a port of 32 bits needs four of them. 1,024 words is the smallest chip that takes a whole message of maximum size, which TR94 recommends to senders; a smaller FIFO would hold the message's channel until the array has worked through the rest. docs/interpretations.md has the other sizes";
     }
 }
 

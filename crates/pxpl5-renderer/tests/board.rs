@@ -194,7 +194,7 @@ fn an_observed_fifo_counts_a_word_until_the_command_of_the_word_starts() {
         assert_eq!([BEGIN, first, Time(second.0 - 1)].map(words), [Some(0); 3]);
         assert_eq!([second, Time(started.0 - 1)].map(words), [Some(30); 2]);
         assert_eq!(words(started), Some(0));
-        assert_eq!(bench.device.snapshot(BEGIN).fifo_depth_words, 448);
+        assert_eq!(bench.device.snapshot(BEGIN).fifo_depth_words, 1_024);
         let mut changes = bench.device.take_fifo_changes();
         changes.sort_unstable();
         assert_eq!(changes, [(first, -30), (first, 30), (second, 30), (started, -30)]);

@@ -91,10 +91,11 @@ impl Experiment {
         if !self.on_demand {
             return Ok((setup, Some(head)));
         }
-        // With frames on demand, a frame begins with the first report at which the host is ready.
+        // With frames on demand, the first report at which the host is ready asks for a frame. The application then
+        // takes its time.
         let asked = Arc::clone(&head);
-        let free = Arc::clone(&setup.starts);
-        Ok((Setup { starts: Arc::new(move |ready| asked.report_from(free(ready)?)), ..setup }, Some(head)))
+        let after = Arc::clone(&setup.starts);
+        Ok((Setup { starts: Arc::new(move |ready| after(asked.report_from(ready)?)), ..setup }, Some(head)))
     }
 }
 

@@ -2,7 +2,7 @@ use pxpl5_wire::PeriodNumber;
 
 /// Number of pictures at the start of a run that are not evaluated, because the pipeline is still filling.
 ///
-/// TR94 also discards the first frames.
+/// I3D95 also discards the first frames.
 pub const WARM_UP_PICTURES: usize = 4;
 
 /// The possible results of a picture that was begun, from best to worst.

@@ -39,7 +39,8 @@ fn machine(preset: &str, pipeline: FacePipeline, numbers: &[(&str, u64)]) -> Mac
     for (path, value) in [("priority.theta_deg", 90.0 / 512.0), ("priority.cell_m", 5.0)] {
         config.set(path, value).expect("a number of the policy");
     }
-    for (path, value) in numbers {
+    // The tests compute distances for one inner ring, and for rings that double.
+    for (path, value) in [("priority.inner_rings", 1), ("priority.ring_growth", 2)].iter().chain(numbers) {
         config.set(path, *value).expect("a number of the machine");
     }
     config

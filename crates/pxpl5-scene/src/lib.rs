@@ -22,12 +22,12 @@
 //! |---|---|---|---|
 //! | `aircraft` | 100 | | assumed: few enough for Slats to draw in one field |
 //! | `mig` | 417 | | published TR94 |
-//! | `molecules` | 2,620 | 1,219 | assumed |
-//! | `head` | 59,592 | | assumed |
+//! | `molecules` | 2,620 | 1,219 | published TR94 |
+//! | `head` | 59,592 | | published TR94 |
 //! | `room` | 4 | | assumed |
 //! | `gallery`, `gallery:full` | 112, 572 | | assumed |
 //! | `full-screen:N` | N | | published TR94 for N = 12 |
-//! | `typical:N` | N | | published TR94 for their size |
+//! | `typical:N` | N | | their size is derived from the 1.3 regions of TR94 |
 //! | `sphere:N` | N | | |
 //!
 //! - [`HeadMotion::pose`] returns the [`Pose`] of the head at any picosecond. [`Hmd::stereo`] returns the [`View`]s of

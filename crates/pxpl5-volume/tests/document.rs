@@ -69,7 +69,7 @@ fn missed_rows_are_called_missed() {
 fn the_document_is_fresh() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/volumetric.md");
     let kept = std::fs::read_to_string(path).expect("it is there");
-    assert!(kept == markdown(&FIGURES), "stale: run `pxpl5 volume figures --write docs/volumetric.md`");
+    assert!(kept == markdown(&FIGURES), "stale: run `pxpl5 figures --group volumetric --write docs/volumetric.md`");
 }
 
 /// Checks the drawings of figures 4 to 12. The enlarged volumes have more pixels in the colour of slice 1 than the

@@ -35,7 +35,7 @@ pub use number::{PeriodNumber, PictureNumber, ViewNumber};
 pub use region::{Eye, RegionGrid, RegionId, SurfaceId};
 pub use video::{Video, VideoNumbers, frame_line};
 
-/// One word of the ring: 32 bits (TR94).
+/// One word of the ring: 32 bits, since 160 million words a second are 5 gigabits (TR94, F89).
 pub type Word = u32;
 
 /// Greatest length of a message in words. The value is derived: a region of a field has 128 x 120 = 15 x 1,024 pixels.

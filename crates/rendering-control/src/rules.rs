@@ -80,9 +80,10 @@ impl Completed {
 
     /// Returns true if TRANSFORM of a drawing may begin. A drawing is the picture of one eye.
     ///
-    /// Let n be the number of the drawing. All slaves must have finished EDIT of its frame, although TR94 only demands
-    /// that this EDIT has begun. RENDER of drawing n - 2 and COPY of drawing n - 3 must have finished. This rule is for
-    /// the right eye: each slave begins TRANSFORM of the left eye directly after EDIT.
+    /// Let n be the number of the drawing. EDIT of its frame must have finished, and RENDER of drawing n - 2 and COPY of
+    /// drawing n - 3 as well. The master applies the rule to the right eye and waits for all slaves. Each slave begins
+    /// TRANSFORM of the left eye by itself, directly after its own EDIT: TR94 needs no synchronization there, because
+    /// EDIT began under the same conditions.
     pub const fn may_transform(&self, drawing: Drawing) -> bool {
         self.edited > drawing.picture(self.eyes).0 && self.buffers_free(drawing)
     }
@@ -100,7 +101,7 @@ impl Completed {
     }
 
     /// Returns true if the hidden buffer for a drawing is free. The buffer is free when a swap has made the previous
-    /// frame visible.
+    /// frame visible, so that the hidden half holds a frame that was scanned out earlier (TR94).
     pub const fn frame_buffer_available(&self, drawing: Drawing) -> bool {
         self.swapped >= drawing.picture(self.eyes).0
     }
@@ -108,8 +109,8 @@ impl Completed {
     /// Returns true if COPY of a drawing (the picture of one eye) may begin. The hidden buffer must be free, and COPY
     /// of the previous drawing must have finished.
     ///
-    /// Each frame buffer has its own ring port, so the hardware could make two copies at the same time. The rule of
-    /// TR94 nevertheless permits only one copy at a time.
+    /// Each frame buffer has its own ring port, so the hardware could make two copies at the same time. TR94 says that
+    /// Rendering Control works on one eye after the other and therefore copies to one frame buffer at a time.
     pub const fn may_copy(&self, drawing: Drawing) -> bool {
         self.frame_buffer_available(drawing) && self.copied >= drawing.0
     }

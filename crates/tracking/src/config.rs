@@ -121,6 +121,11 @@ parameter_table! {
         /// Constant orientation error of the Fastrak. Each run draws the error once from its seed. The value is the
         /// root mean square about each axis, over all seeds.
         orientation_bias: f64 = 0.15, "deg", Published, 0.0..=0.5 in 0.0..=90.0, "PF";
+        /// Position error that metal in the floor causes at 1 m from the Fastrak's transmitter, as for the 3Space.
+        bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl of both Polhemus trackers, not its depth";
+        /// Distance from the Fastrak's transmitter at which the error by metal is half of `bowl` times the squared
+        /// distance in metres.
+        bowl_reach: f64 = 2.0, "m", Assumed, 0.5..=10.0 in 0.001..=1000.0, "keeps the error finite out of range";
     }
 }
 
@@ -188,7 +193,7 @@ parameter_table! {
         orientation_bias: f64 = 0.5, "deg", Assumed, 0.0..=1.0 in 0.0..=90.0, "as the Flock";
         /// Position error that metal in the floor causes at 1 m from the transmitter. With this error, measured
         /// positions on a flat surface form a bowl.
-        bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl, not its depth";
+        bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl of both Polhemus trackers, not its depth";
         /// Distance from the transmitter at which the position error by metal is half of `bowl` times the squared
         /// distance in metres. Much farther away, the error is nearly constant.
         bowl_reach: f64 = 2.0, "m", Assumed, 0.5..=10.0 in 0.001..=1000.0, "keeps the error finite out of range";
@@ -240,16 +245,16 @@ parameter_table! {
     /// point.
     pub struct RigNumbers {
         /// Length of the pendulum's arm.
-        pendulum_arm: f64 = 0.5, "m", Assumed, 0.1..=2.0 in 0.001..=1000.0, "TR94 gives none";
+        pendulum_arm: f64 = 0.5, "m", Assumed, 0.1..=2.0 in 0.001..=1000.0, "I3D95 gives none";
         /// Greatest angle of the pendulum from the vertical.
-        pendulum_amplitude: f64 = 20.0, "deg", Assumed, 1.0..=90.0 in 0.001..=179.0, "TR94 gives none";
+        pendulum_amplitude: f64 = 20.0, "deg", Assumed, 1.0..=90.0 in 0.001..=179.0, "I3D95 gives none";
         /// Standard gravity.
         gravity: f64 = 9.80665, "m/s^2", Published, 9.78..=9.84, "CGPM 1901";
         /// Width of the light beam at the pendulum. The LED's beam is interrupted when the pendulum passes its low
         /// point.
-        led_beam: f64 = 2.0, "mm", Assumed, 0.1..=20.0, "TR94 gives none";
+        led_beam: f64 = 2.0, "mm", Assumed, 0.1..=20.0, "I3D95 gives none";
         /// Index of the visible scanline that the photodiode on the screen covers.
-        photodiode_line: 120, "lines", Assumed, 0..=239, "middle of a 240-line field; TR94 gives none";
+        photodiode_line: 120, "lines", Assumed, 0..=239, "middle of a 240-line field; I3D95 gives none";
     }
 }
 

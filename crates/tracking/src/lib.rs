@@ -67,7 +67,7 @@
 //!
 //! [`config`] lists the sources of all numbers. Prediction is by Azuma and Bishop 1995, just-in-time pixels by Mine and
 //! Bishop, UNC TR93-005. The raster offset is by Breglia 1981, and frameless rendering by Bishop, Fuchs, McMillan and
-//! Scher Zagier 1994. The pendulum rig is by Cohen and Olano, UNC TR94-028. Elliptic functions follow Abramowitz and
+//! Scher Zagier 1994. The pendulum rig is described by Olano, Cohen, Mine and Bishop, I3D 1995. Elliptic functions follow Abramowitz and
 //! Stegun, chapters 16 and 17.
 
 #![warn(missing_docs)]

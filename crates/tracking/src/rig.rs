@@ -1,4 +1,4 @@
-//! The pendulum rig, which measures latency from outside the machine (TR94).
+//! The pendulum rig, which measures latency from outside the machine (I3D95).
 //!
 //! An LED and a photodiode detect each pass of a pendulum through its lowest point. A tracker on the pendulum sends
 //! reports to the host. When the host detects a pass in the reports, the host starts a new frame and switches its D/A

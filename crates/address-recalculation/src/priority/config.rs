@@ -8,10 +8,10 @@ pxpl5_sim::parameters::parameter_table! {
         /// Largest accepted angle between the displayed and the correct direction of a point.
         theta_deg: f64 = 0.3515625, "deg", Assumed, 0.09..=0.88 in 1e-9..=90.0, "CPR05 2.2: the spacing of pixels in the display memory, not printed; 90/256, so that tears are 3.75 pixels of 60/640 deg (CPR05 5: a few). Range: one such pixel to five texels of 90/512 deg";
         /// Number of rings of cells (squares of the floor) around the viewer's cell in the most often drawn memory.
-        inner_rings: 1, "rings", Derived, 0..=2 in 0..=100, "with 0, the second memory of table 1 would be as fast as the first";
+        inner_rings: 2, "rings", Derived, 0..=2 in 0..=100, "the rules that predict a left-out rate of table 1 best (docs/address-recalculation.md); with 0, the second memory of table 1 would be as fast as the first";
         /// Number of rings of cells of each memory, divided by the number of rings of cells of the memory that is drawn
         /// twice as often. Memory 1 holds one ring.
-        ring_growth: 2, "1", Derived, 1..=2 in 1..=8, "CPR05 2.2: each memory has half the rate of the one before, so it may begin twice as far away; 1 gives equal rings";
+        ring_growth: 1, "1", Derived, 1..=2 in 1..=8, "equal rings, the rules that predict a left-out rate of table 1 best; 2 gives rings that double";
         /// Choice of the distance from the eye that determines when a memory is due. With 0, the distance ends at the
         /// border beyond which the cells of the memory lie. With 1, the distance ends at the memory's nearest occupied
         /// cell.

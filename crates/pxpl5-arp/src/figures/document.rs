@@ -46,6 +46,10 @@ pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
             ("best", best(&all.interpretations)),
             ("usual", Rules::USUAL.text()),
             ("rank", usual.map_or_else(String::new, |(rank, _)| rank.to_string())),
+            (
+                "usual_left_out",
+                usual.map_or_else(String::new, |(_, rules)| format!("{:.1}", rules.mean_left_out_percent)),
+            ),
             ("usual_error", usual.map_or_else(String::new, |(_, rules)| format!("{:.1}", rules.mean_error_percent))),
             ("product", format!("{:.2}", all.fits[0].cell_m * PriorityTiming::PAPERS.theta_deg)),
             ("thresholds", thresholds(all)),

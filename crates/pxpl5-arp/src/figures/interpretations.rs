@@ -151,7 +151,7 @@ pub struct LeftOutRate {
 /// All interpretations of table 1 of the paper CPR05 (update rates), best first.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interpretations {
-    /// Sets of rules with their results, in ascending order of the mean error.
+    /// Sets of rules with their results, in ascending order of the mean error of prediction.
     pub ranked: Vec<RankedRules>,
     /// Predictions of the three update rates. For each rate, the rules, the hall, the path and the cell side are chosen
     /// to fit the other two rates.
@@ -228,19 +228,14 @@ impl Interpretations {
             ranked.push(RankedRules { rules, mean_error_percent, mean_left_out_percent, tried });
         }
         // Rank the rules, then cross-validate.
-        ranked.sort_by(|a, b| a.mean_error_percent.total_cmp(&b.mean_error_percent));
+        ranked.sort_by(|a, b| a.mean_left_out_percent.total_cmp(&b.mean_left_out_percent));
         let left_out = COMPARED.into_iter().filter_map(|memory| left_out(&ranked, memory)).collect();
         Ok(Self { ranked, left_out })
     }
 
     /// Returns the rules of this project with their rank, counted from 1.
-    ///
-    /// With a *cascade*, an update of a memory makes all more often drawn memories due. The ranking has two parts:
-    /// rules with a cascade, and rules without. The rank counts only within the part that contains this project's
-    /// rules.
     pub fn usual(&self) -> Option<(usize, &RankedRules)> {
-        let alike = self.ranked.iter().filter(|ranked| ranked.rules.has_cascade == Rules::USUAL.has_cascade);
-        (1..).zip(alike).find(|(_, ranked)| ranked.rules == Rules::USUAL)
+        (1..).zip(&self.ranked).find(|(_, ranked)| ranked.rules == Rules::USUAL)
     }
 }
 

@@ -35,7 +35,7 @@ pub const fn verdict(row: &FigureRow) -> &'static str {
     match (row.is_met, row.basis) {
         (false, _) => "**missed**",
         (true, Basis::Shape) => "shape",
-        (true, Basis::Interpretation) => "within",
+        (true, Basis::Unprinted) => "within",
         (true, _) => "met",
     }
 }

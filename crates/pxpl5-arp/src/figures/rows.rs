@@ -48,7 +48,7 @@ fn sizes(all: &Experiments) -> Vec<FigureRow> {
     let statement = format!(
         "size over the distance of the nearest point above which size may decide (interpretations: {least:.1} to {most:.1})"
     );
-    let of_size = row("A8", &statement, "1", [10.0, ours], Basis::Interpretation);
+    let of_size = row("A8", &statement, "1", [10.0, ours], Basis::Unprinted);
     vec![FigureRow { is_met: (least..=most).contains(&10.0), ..of_size }]
 }
 
@@ -75,8 +75,8 @@ fn table_1(all: &Experiments) -> Vec<FigureRow> {
 
 fn rate(all: &Experiments, memory: usize) -> FigureRow {
     let basis = if memory == RATE_FITTED { Basis::Fitted("priority.cell_m") } else { Basis::Free };
-    let CellFit { cell_m, rates_hz, .. } = &all.fits[0];
-    let statement = format!("update rate of memory {memory} (rings that double, cells of {cell_m:.1} m)");
+    let CellFit { rules, cell_m, rates_hz } = &all.fits[0];
+    let statement = format!("update rate of memory {memory} ({}; cells of {cell_m:.1} m)", rules.text());
     row("A12", &statement, "Hz", [RATES_HZ[memory], rates_hz[memory]], basis)
 }
 

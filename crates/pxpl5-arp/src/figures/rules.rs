@@ -19,12 +19,12 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// The rules that this project uses by default.
+    /// The rules that this project uses by default, because they have the smallest error of prediction.
     pub const USUAL: Self = Self {
         inner_rings: PriorityTiming::PAPERS.inner_rings,
         ring_growth: PriorityTiming::PAPERS.ring_growth,
         to_held_cells: PriorityTiming::PAPERS.to_held_cells == 1,
-        has_cascade: false,
+        has_cascade: true,
     };
 
     /// Returns all sets of rules that are compared.

@@ -1,56 +1,24 @@
-//! The command `pxpl5 volume figures`, which compares figures of the SpatialGL paper with the model.
+//! The figures of the SpatialGL paper, as a table, a document and drawings.
 
 use super::settings::load;
 use crate::error::CliError;
-use crate::figures::{fresh, rows_text};
+use crate::figures::{FiguresArgs, fresh, rows_text};
 use crate::output::{OutputFile, OutputFolder};
 use crate::terminal::{answer, json_text, progress};
-use clap::Args;
 use pxpl5::scene::Scene;
 use pxpl5::views::png_bytes;
 use pxpl5::volume::figures::{FigureDrawing, VolumeFigures, all, drawings, markdown};
 use pxpl5::volume::spatialgl::Threads;
 use std::fmt::Write as _;
-use std::path::PathBuf;
 use std::sync::Arc;
-
-/// Compare the figures of the SpatialGL paper with the model, and redraw the drawings of the paper.
-#[derive(Args, Debug)]
-#[command(after_help = "Examples:
-  pxpl5 volume figures
-  pxpl5 volume figures --json
-  pxpl5 volume figures --out out/figures                  its figures 4 to 12, redrawn from the model
-  pxpl5 volume figures --write docs/volumetric.md
-  pxpl5 volume figures --check docs/volumetric.md         fails if the file is out of date")]
-pub(super) struct FiguresArgs {
-    /// Print one JSON object.
-    #[arg(long)]
-    json: bool,
-    /// Write the document with all figures to this file.
-    #[arg(long, value_name = "FILE", conflicts_with = "check")]
-    write: Option<PathBuf>,
-    /// Fail if this file differs from the document that --write would write.
-    #[arg(long, value_name = "FILE")]
-    check: Option<PathBuf>,
-    /// Write the redrawn figures 4 to 12 into this folder.
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Print nothing but errors and, with --json, the JSON object.
-    #[arg(long, short)]
-    quiet: bool,
-}
 
 const SCENES: [&str; 3] = ["mig", "head", "molecules"];
 
-pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
+/// Measures the group of the volumetric display: `pxpl5 figures --group volumetric`.
+pub(super) fn run(args: &FiguresArgs) -> Result<(), CliError> {
     let document = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
-    let mut folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "volume figures")).transpose()?;
-    // Rows are measured on all scenes; drawings use the first scene.
-    let scenes = SCENES.iter().map(|name| load(name, None)).collect::<Result<Vec<_>, _>>()?;
-    let bar = progress(0, "scenes", args.quiet);
-    let figures = all(&scenes, &Threads::all(), |done, of| bar.advance(done, of));
-    bar.clear();
-    let figures = figures?;
+    let mut folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "figures")).transpose()?;
+    let (scenes, figures) = measured(args.quiet)?;
     if let Some(document) = document {
         document.write(markdown(&figures).as_bytes())?;
     }
@@ -59,9 +27,23 @@ pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
     }
     folder.map(OutputFolder::commit).transpose()?;
     if let Some(path) = &args.check {
-        fresh(path, &markdown(&figures), "volume figures")?;
+        fresh(path, &markdown(&figures), "figures --group volumetric")?;
     }
     answer(args.json, args.quiet, &json_text(&figures)?, || text(&figures))
+}
+
+/// Returns the scenes and the figures of all of them. Drawings use the first scene.
+fn measured(quiet: bool) -> Result<(Vec<Arc<Scene>>, VolumeFigures), CliError> {
+    let scenes = SCENES.iter().map(|name| load(name, None)).collect::<Result<Vec<_>, _>>()?;
+    let bar = progress(0, "scenes", quiet);
+    let figures = all(&scenes, &Threads::all(), |done, of| bar.advance(done, of));
+    bar.clear();
+    Ok((scenes, figures?))
+}
+
+/// Returns the table of the figures with its title, for `pxpl5 figures`.
+pub(super) fn table() -> Result<String, CliError> {
+    Ok(format!("\nVolumetric slices (docs/volumetric.md)\n{}", rows_text(&measured(false)?.1.figures)))
 }
 
 fn draw(folder: &mut OutputFolder, scenes: &[Arc<Scene>]) -> Result<(), CliError> {

@@ -129,6 +129,9 @@ pub struct ComparisonRow {
     pub failure: Option<String>,
     /// Seconds that the runs took on this computer.
     pub host_seconds: f64,
+    /// Warnings about times of the first seed that a small change moves by a whole field. Empty for resumed rows.
+    #[serde(skip)]
+    pub near_edges: Vec<String>,
     /// Pixel errors of each display field for the first motion: in the run with the first seed, or as a mean over all seeds
     /// if they share the motion.
     #[serde(skip)]
@@ -190,6 +193,7 @@ impl ComparisonRow {
             triangles_definition: String::new(),
             failure: None,
             host_seconds: trials.iter().map(|trial| trial.host_seconds).sum(),
+            near_edges: trials.first().map(|trial| trial.near_edges.clone()).unwrap_or_default(),
             by_field: if sampling.is_one_motion {
                 mean_of_fields(trials)
             } else {

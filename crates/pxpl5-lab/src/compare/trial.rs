@@ -2,6 +2,7 @@
 
 use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
+use crate::edges::near_edges;
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing, tracking_and_rendering_ms};
 use pxpl5_run::{Coverage, DryRun, DuePictures, Experiment, Outcome, ResultWindow, WARM_UP_PERIODS};
@@ -27,6 +28,8 @@ pub(super) struct Trial {
     /// Number of complete pictures in the evaluated part of the run.
     pub(super) shown: usize,
     pub(super) late_regions: usize,
+    /// Warnings about results near an edge ([`near_edges`]).
+    pub(super) near_edges: Vec<String>,
     pub(super) host_seconds: f64,
     pub(super) dry_run: Option<Arc<DryRun>>,
     /// Last picture of the run. `None` if the run computed no pixels or showed no picture.
@@ -83,6 +86,7 @@ impl Trial {
             window: report.window,
             shown: report.pictures,
             late_regions: report.late_regions,
+            near_edges: if is_timed { near_edges(&outcome.summary()) } else { Vec::new() },
             host_seconds: outcome.host_seconds().unwrap_or_default(),
             dry_run: outcome.experiment().dry_run().cloned(),
             picture: LastPicture::of(outcome, report.ends_complete).filter(|_| is_timed),

@@ -2,7 +2,7 @@
 //! their fly-throughs, measurements of the pendulum rig, and results of experiments.
 
 use super::heads::RigLines;
-use super::measured::{FigureValue, Result, scene_named};
+use super::measurement::{FigureValue, Result, scene_named};
 use pxpl5_analytic::Load;
 use pxpl5_run::{Experiment, FinishedRegions, Summary};
 use pxpl5_scene::Scene;

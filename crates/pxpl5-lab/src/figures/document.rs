@@ -1,293 +1,415 @@
-//! Writer of ACCURACY.md from the published figures and the model's values.
+//! Writer of ACCURACY.md and docs/interpretations.md: the texts are Markdown files with marks, which the writer replaces
+//! by tables and numbers.
 
-use super::{Alternatives, Basis, FigureRow, Figures, Interpretation, MISS_PERCENT, mean_error_percent};
-use crate::application_time::{ApplicationTime, FlyThroughLatency, published};
-use crate::interpretations::{self, FigureFit, Fit, Interpretations};
+use super::measurement::{EARLIER, LATER};
+use super::{
+    Alternatives, Basis, Effect, FigureGroup, FigureRow, Figures, Headline, MISS_PERCENT, Measurement, TOPICS, all,
+};
+use super::{Interpretation, rendering_control::WHOLE};
+use crate::edges::NEAR_FIELDS;
+use crate::interpretations::{ALIKE, FigureFit, Fit, Interpretations, figures as ranked_figures};
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
 use pxpl5_sim::figures::column::{
-    DETAILS, EXPERIMENT, INTERVAL, NUMBER, PROVENANCE, PUBLISHED, SIMULATED, STATEMENT, error, four, range,
+    DETAILS, EXPERIMENT, NUMBER, PROVENANCE, PUBLISHED, SIMULATED, STATEMENT, error, four, range,
 };
-use pxpl5_sim::figures::{TableColumn, table};
-use std::fmt::Write as _;
+use pxpl5_sim::figures::{filled, lines, table};
 
-/// Returns the text of ACCURACY.md: a table of all figures, and the cause of each missed figure.
-pub fn markdown(figures: &Figures, alternatives: &Alternatives) -> String {
+/// The texts of both documents.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Documents {
+    /// ACCURACY.md: tables, misses, and definitions.
+    pub accuracy: String,
+    /// docs/interpretations.md: open questions, effects of parameters, and reasons.
+    pub interpretations: String,
+    /// The chapter "Time" of docs/numerics.md.
+    pub time: String,
+}
+
+/// Mark before the chapter "Time" of docs/numerics.md. The chapter ends the page.
+pub const TIME_MARK: &str = "<!-- time: made by pxpl5 figures -->\n";
+
+impl Documents {
+    /// Returns a page with its chapter "Time" replaced by this one.
+    pub fn with_time(&self, page: &str) -> String {
+        let before = page.split(TIME_MARK).next().unwrap_or(page);
+        format!("{before}{TIME_MARK}{}", self.time)
+    }
+}
+
+/// Writes both documents.
+pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
+    let rows: Vec<&FigureRow> = figures.rows().collect();
+    let of_code: Vec<&FigureRow> = alternatives.of_code.iter().collect();
+    let of_table = Headline::of(rows.iter().copied().filter(|row| of_code.iter().any(|other| other.id == row.id)));
+    let code_headline = format!(
+        "Over the rows of the first three tables, the mean error is {:.1} % with the timing table ({} rows) and {:.1} % with the times of the code ({} rows).",
+        of_table.mean_error_percent(),
+        of_table.free.rows + of_table.interpretation.rows,
+        Headline::of(of_code.iter().copied()).mean_error_percent(),
+        Headline::of(of_code.iter().copied()).free.rows + Headline::of(of_code.iter().copied()).interpretation.rows,
+    );
+    let accuracy = filled(
+        include_str!("accuracy.md"),
+        &[
+            ("headline", headline(figures)),
+            ("miss", MISS_PERCENT.to_string()),
+            ("tables", tables(figures, alternatives)),
+            ("fields", fields(&rows)),
+            ("misses", misses(&rows)),
+            ("definitions", definitions()),
+            ("code_headline", code_headline),
+            ("code", moved_by_code(&rows, &of_code)),
+            ("others", figures.groups.iter().filter(|group| group.document.is_some()).map(other).collect()),
+        ],
+    );
+    let ranking = &alternatives.interpretations;
+    let interpretations = filled(
+        include_str!("interpretations.md"),
+        &[
+            ("count", ranking.analytic.len().to_string()),
+            ("ranking", ranked(ranking)),
+            ("confidence", confidence(ranking)),
+            ("left_out", left_out(ranking)),
+            ("application", of_application(&alternatives.application)),
+            ("host", host(&alternatives.host)),
+            ("fifo", fifo(&alternatives.fifo)),
+            ("samples", SAMPLES.to_string()),
+            ("sensitivity", sensitivity(&figures.intervals)),
+            ("provenance", reasons()),
+            ("about", about()),
+            ("experiments", table(&[NUMBER, EXPERIMENT, DETAILS], rows.iter().copied())),
+        ],
+    );
+    let time = filled(include_str!("time.md"), &[("edges", edges(&rows))]);
+    Documents { accuracy, interpretations, time }
+}
+
+/// Returns how near each figure comes to another retrace, and what happens there.
+fn edges(rows: &[&FigureRow]) -> String {
+    let near = |row: &&FigureRow| {
+        let detail = |name: &str| row.details.iter().find(|detail| detail.name == name).map(|detail| detail.value);
+        let (later, earlier) = (detail(LATER)?, detail(EARLIER)?);
+        let fields = match row.unit {
+            "ms" => row.simulated / FIELD_MS,
+            "fields" => row.simulated,
+            _ => f64::NAN,
+        };
+        let percent = |fields_more: f64| format!("{fields_more:+.0} field, {:+.0} %", 100.0 * fields_more / fields);
+        let effect = |distance: f64, more: f64| match (distance.is_finite(), fields.is_finite()) {
+            (false, _) => "nothing".to_owned(),
+            (true, true) => percent(more),
+            (true, false) => "one triangle less".to_owned(),
+        };
+        let mark = if later.min(earlier) < NEAR_FIELDS { " **near**" } else { "" };
+        Some([
+            row.id.to_owned(),
+            SIMULATED.1(row),
+            if fields.is_finite() { four(fields) } else { "-".to_owned() },
+            format!("{}{mark}", four(later)),
+            effect(later, 1.0),
+            if earlier.is_finite() { four(earlier) } else { "-".to_owned() },
+            effect(earlier, -1.0),
+        ])
+    };
+    let headings =
+        ["#", "simulated", "fields", "a retrace later after", "effect", "a retrace earlier before", "effect"];
+    rows_of(headings, rows.iter().filter_map(near))
+}
+
+/// Duration of an NTSC field in ms.
+const FIELD_MS: f64 = 1001.0 / 60.0;
+
+/// Returns a Markdown table from its headings and the cells of its rows.
+fn rows_of<const N: usize>(headings: [&str; N], rows: impl IntoIterator<Item = [String; N]>) -> String {
+    let head = lines([headings.map(str::to_owned)]) + &format!("|{}\n", "---|".repeat(N));
+    head + &lines(rows)
+}
+
+fn headline(figures: &Figures) -> String {
+    let Headline { free, interpretation } = figures.headline();
+    let rows = figures.rows().count();
+    let whole = Headline::of(&in_whole_fields(figures));
+    format!(
+        "Of {rows} published figures, {} are **free** checks: their mean error is **{:.1} %**, and {} of them are missed.\n\
+         Another {} are decided by an **interpretation**: their mean error is **{:.1} %** with {} misses, or {:.1} % with {} misses\n\
+         if TR94 counted whole fields.",
+        free.rows,
+        free.mean_error_percent,
+        free.misses,
+        interpretation.rows,
+        interpretation.mean_error_percent,
+        interpretation.misses,
+        whole.interpretation.mean_error_percent,
+        whole.interpretation.misses,
+    )
+}
+
+/// Returns all rows, those of the fly-throughs in whole fields.
+fn in_whole_fields(figures: &Figures) -> Vec<FigureRow> {
+    let counted = |row: &FigureRow| {
+        let whole = row.details.iter().find(|detail| detail.name == WHOLE)?;
+        let figure = all().find(|figure| figure.id == row.id)?;
+        Some(FigureRow { basis: row.basis, ..figure.row(whole.value.into()) })
+    };
+    figures.rows().map(|row| counted(row).unwrap_or_else(|| row.clone())).collect()
+}
+
+fn tables(figures: &Figures, alternatives: &Alternatives) -> String {
     let mut text = String::new();
-    let rows = &figures.rows;
-    // The order of sections: table, misses, then the comparisons that qualify the table.
-    head(&mut text, rows);
-    text.push_str(&table(&COLUMNS, rows));
-    misses(&mut text, rows);
-    of_code(&mut text, rows, &alternatives.of_code);
-    figures.groups.iter().for_each(|group| text.push_str(&group.markdown()));
-    figures.families.iter().for_each(|family| text.push_str(&family.markdown()));
-    of_interpretations(&mut text, &alternatives.interpretations);
-    of_application(&mut text, &alternatives.application_times);
-    sensitivity(&mut text, &figures.intervals);
-    let _ = write!(text, "\n## Experiments\n\n{}", table(&[NUMBER, EXPERIMENT, DETAILS], rows));
+    for group in figures.groups.iter().filter(|group| group.document.is_none()) {
+        let rows = group.rows.iter().map(|row| {
+            let wait = alternatives.other_rule.iter().find(|other| other.id == row.id);
+            let wait = wait.filter(|other| four(other.simulated) != four(row.simulated));
+            [
+                row.id.to_owned(),
+                format!("{} ({})", row.statement, row.source.rsplit_once(", ").map_or("", |(paper, _)| paper)),
+                PUBLISHED.1(row),
+                SIMULATED.1(row),
+                format!("{}{}", error(row), if row.is_met { "" } else { " **miss**" }),
+                wait.map_or_else(String::new, |other| four(other.simulated)),
+                row.interval.map_or_else(|| "-".to_owned(), range)
+                    + if row.is_out_of_reach() { ", **out of reach**" } else { "" },
+                PROVENANCE.1(row),
+            ]
+        });
+        let headings = ["#", "figure", "published", "simulated", "error", "`wait`", "interval", "provenance"];
+        text += &format!("## {}\n\n{}\n", group.title, rows_of(headings, rows));
+    }
     text
+}
+
+fn fields(rows: &[&FigureRow]) -> String {
+    let of_fly_through = |figure: &Measurement| {
+        let row = rows.iter().find(|row| row.id == figure.id)?;
+        let detail = |name: &str| row.details.iter().find(|detail| detail.name == name).map_or(f64::NAN, |d| d.value);
+        let with_sd = |mean, sd| format!("{} ({})", four(mean), significant_sd(sd));
+        let percent = |mean: f64| format!("{:+.1} %", 100.0 * (mean / figure.value - 1.0));
+        let whole = detail(WHOLE);
+        Some([
+            row.id.to_owned(),
+            with_sd(figure.value, figure.deviation?),
+            with_sd(row.simulated, detail(super::DEVIATION)),
+            percent(row.simulated),
+            with_sd(whole, detail("their deviation")),
+            percent(whole),
+        ])
+    };
+    rows_of(
+        ["#", "published (sd)", "exact fields (sd)", "error", "whole fields (sd)", "error"],
+        all().filter_map(of_fly_through),
+    )
+}
+
+fn significant_sd(sd: f64) -> String {
+    format!("{sd:.2}")
+}
+
+fn misses(rows: &[&FigureRow]) -> String {
+    let mut causes: Vec<(String, Vec<String>)> = Vec::new();
+    for row in rows.iter().filter(|row| !row.is_met) {
+        let out = if row.is_out_of_reach() { ", out of reach" } else { "" };
+        let missed = format!("**{}** ({}{out})", row.id, error(row));
+        let cause = row.cause_or_unknown().trim_end_matches('.').to_owned();
+        // Neighbours with the same cause share a line.
+        match causes.last_mut().filter(|(last, _)| *last == cause) {
+            Some((_, all)) => all.push(missed),
+            None => causes.push((cause, vec![missed])),
+        }
+    }
+    causes.iter().map(|(cause, missed)| format!("- {}: {cause}.\n\n", missed.join(", "))).collect()
+}
+
+fn definitions() -> String {
+    let defined = all().filter_map(|figure| Some((figure.id, figure.latency?)));
+    let mut rows: Vec<(Vec<&str>, super::LatencyDefinition)> = Vec::new();
+    for (id, latency) in defined {
+        // Neighbours with the same definition share a line.
+        match rows.last_mut().filter(|(_, last)| *last == latency) {
+            Some((ids, _)) => ids.push(id),
+            None => rows.push((vec![id], latency)),
+        }
+    }
+    let cells = rows.into_iter().map(|(ids, latency)| {
+        [&ids.join(", "), latency.from, latency.to, latency.eyes, latency.statistic, latency.sentence]
+            .map(str::to_owned)
+    });
+    rows_of(["rows", "from", "to", "eyes", "statistic", "what the paper says"], cells)
 }
 
 /// Minimum change of a figure, in percent, for which the document lists the figure. The change results if the times of
 /// primitives are measured by executing i860 code instead of taken from the timing table.
-const MOVED_PERCENT: f64 = 0.05;
+const MOVED_PERCENT: f64 = 0.5;
 
-/// Writes the figures that change if the times of primitives are measured by executing i860 code. Also writes why these
-/// times are not the default.
-fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
-    let _ = write!(
-        text,
-        "\n## Times of primitives from the code instead\n\n\
-         The timing table takes 21.7 us for a triangle of optimised PPHIGS, which is the published rate. For a triangle of Slats,\n\
-         the timing table takes 30.0 us in 1994 and 55.8 us in 1995. The two times of Slats were fitted to figures 12 and 14.\n\n\
-         With `machine.times = \"code\"`, the simulator uses the times that the project's own i860 code needs. Each time from the\n\
-         code is a mean over the application scenes, and no time is fitted. The page docs/gp-timing.md describes how the times of\n\
-         the code were measured. The following table lists the figures that change with the times of the code, at the transaction\n\
-         level.\n\n\
-         | # | figure | published | table | error | code | error |\n|---|---|---|---|---|---|---|\n"
-    );
-    // Figures that do not depend on the times are left out.
-    let moved =
-        |(table, code): &(&FigureRow, &FigureRow)| deviation_percent(code.simulated, table.simulated) > MOVED_PERCENT;
-    for (table, code) in rows.iter().zip(of_code).filter(moved) {
+fn moved_by_code(rows: &[&FigureRow], of_code: &[&FigureRow]) -> String {
+    let pairs = of_code.iter().filter_map(|code| Some((*rows.iter().find(|row| row.id == code.id)?, code)));
+    let moved = pairs.filter(|(table, code)| deviation_percent(code.simulated, table.simulated) > MOVED_PERCENT);
+    let cells = moved.map(|(table, code)| {
         let of_code = if code.simulated.is_finite() { error(code) } else { "-100.0 %".to_owned() };
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} {} | {} | {} | {} | {of_code} |",
-            table.id,
-            table.statement,
-            four(table.published),
-            table.unit,
-            four(table.simulated),
-            error(table),
-            four(code.simulated),
-        );
-    }
-    let _ = write!(
-        text,
-        "\nThe mean error of the free checks is {:.1} % with the timing table and {:.1} % with the times of the code. A figure that\n\
-         cannot be computed with the times of the code counts with an error of 100 %. The limits of Slats change most, because\n\
-         the times of the project's code differ from the fitted times. No triangle of the figures in this table is clipped.\n\n\
-         The timing table with published and fitted times stays the default. Two of the three times in the timing table follow\n\
-         from the limits of triangles in the papers. The published limits depend on the code of the papers, which is not\n\
-         available. The project's code is different code for the same processor, and some rules for waits of the i860 (freezes)\n\
-         and for memory are assumed. The comparison of timing table and code shows how well the project's code reproduces the\n\
-         figures without any fitted number.\n",
-        mean_error_percent(rows),
-        mean_error_percent(of_code),
-    );
+        [table.id.to_owned(), PUBLISHED.1(table), four(table.simulated), error(table), four(code.simulated), of_code]
+    });
+    rows_of(["#", "published", "table", "error", "code", "error"], cells)
+}
+
+fn other(group: &FigureGroup) -> String {
+    let document = group.document.unwrap_or_default();
+    let printed = group.rows.iter().filter(|row| row.basis != Basis::Shape);
+    let missed: Vec<&FigureRow> = printed.clone().filter(|row| !row.is_met).collect();
+    let on_machine = group.rows.iter().filter(|row| row.experiment == "E1");
+    let list = |rows: &[&FigureRow]| {
+        rows.iter()
+            .map(|row| {
+                format!(
+                    "- {} {}: {}, ours {} {}\n",
+                    row.id,
+                    row.statement,
+                    four(row.published),
+                    four(row.simulated),
+                    row.unit
+                )
+            })
+            .collect::<String>()
+    };
+    format!(
+        "**{}** ([{document}]({document})). {} {} of {} rows with printed conditions are missed. These\n\
+         rows are measured on Pixel-Planes 5:\n\n{}\nThese are missed:\n\n{}\n\
+         **Volumetric slices** ([docs/volumetric.md](docs/volumetric.md)) have a page of their own, too.\n",
+        group.title,
+        group.about,
+        missed.len(),
+        printed.count(),
+        list(&on_machine.collect::<Vec<_>>()),
+        list(&missed),
+    )
 }
 
 /// Number of interpretations in the document.
 const BEST: usize = 12;
 
-/// Writes the table of interpretations with the figures that each interpretation explains, and the confidence of the
-/// choice.
-fn of_interpretations(text: &mut String, interpretations: &Interpretations) {
-    // State how likely the default interpretation is, compared with the most likely one.
-    let fits = &interpretations.analytic;
-    let likeliest = fits.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
-    let usual =
-        fits.iter().find(|fit| fit.interpretation == Interpretation::USUAL).map_or(f64::NAN, |fit| fit.log_likelihood);
-    let place = |interpretation: &Interpretation| {
-        fits.iter().position(|fit| fit.interpretation == *interpretation).map_or(0, |place| place + 1)
-    };
-    let _ = write!(
-        text,
-        "\n## Interpretations: questions that the papers leave open\n\n\
-         The papers leave seven questions open:\n\n\
-         - Does a printed mean latency average the first eyes of the frames, or all eyes?\n\n\
-         - Is a latency in fields an exact time, or a whole number of retraces?\n\n\
-         - How many finished regions does a renderer keep?\n\n\
-         - Does the master wait while the frame buffer is not available, or does it assign the next region?\n\n\
-         - Which machine drew the application scenes?\n\n\
-         - Were back faces culled?\n\n\
-         - Were the bins full with the triangles of one eye, or with the triangles of both eyes?\n\n\
-         The possible answers to the questions give {} combinations, which are called *interpretations*. In each interpretation,\n\
-         all figures use the same machine parameters. The table of interpretations has results of the analytic level. The command\n\
-         `pxpl5 interpretations` also measures the best interpretations with events.\n\n\
-         In the table of interpretations, the columns *mean* and *worst* give the mean and the largest error of the figures in\n\
-         percent. The column *log L* is the logarithm of the likelihood of the printed means and standard deviations. The\n\
-         likelihood allows an error of 2 % for the conditions that the papers do not print.\n\n\
-         The paper TR94 derives figures 3 and 5 from its rules and did not measure these figures. The table of interpretations\n\
-         therefore compares figures 3 and 5 with the rules alone. Figures 3, 4b, 5 and 17 do not distinguish one interpretation\n\
-         from another.\n\n\
-         | mean | worst | log L | {} | interpretation |\n|---|---|---|{}---|\n",
-        fits.len(),
-        interpretations::FIGURES.join(" | "),
-        "---|".repeat(interpretations::FIGURES.len()),
-    );
-    // The table lists only the best interpretations.
-    fits.iter().take(BEST).for_each(|fit| text.push_str(&fitted(fit)));
-    let _ = write!(
-        text,
-        "\nThe project uses the interpretation **{}**, which has rank {} in the list. The most likely interpretation is {:.2} times as likely as\n\
-         the interpretation of the project.\n\
-         The number of interpretations that equal the best interpretation within the printed digits ({:.2} % of a mean error) is {}.\n\n\
-         The following reasons decide the choice of the interpretation:\n\n\
-         - *each eye, whole fields*: The papers print the latencies of application scenes in fields. Equal numbers of latencies\n  \
-           of 4 and 5 fields give a mean of 4.5 and a standard deviation of 0.5. The paper TR94 prints a mean of 4.47 and a\n  \
-           deviation of 0.502. The other printed mean and deviation, 4.61 and 0.589, also need a few latencies of 6 fields. The\n  \
-           latencies of the first eyes alone have a deviation of 0.1.\n\n\
-         - *room for all*: The backing store of a renderer has 4,096 bits for each pixel, enough for 128 regions of 32 bits. A\n  \
-           renderer could keep fewer regions only if a rule of the software limited the number of regions.\n\n\
-         - *wait*: With the rule `store`, a renderer that has finished a region begins its next region at once. With this rule and\n  \
-           room for all regions, the latency of figure 4 is 6 % too long. With the rule `wait`, a renderer first waits for its\n  \
-           frame buffer, and this latency is 1 to 2 % too long. The text of the paper allows both rules.\n\n\
-         - *large, culled*: The scene `head` takes twice the printed time on the small machine. The scene `head` also takes\n  \
-           twice the printed time if back faces are drawn.\n\n\
-         - *bins of one eye*: If the bins hold the triangles of both eyes, 7,700 triangles take 454 ms instead of the printed 293\n  \
-           ms. No paper states the rule of bins for one eye, which was chosen for figures 16b and 16c and affects no other\n  \
-           figure.\n\n\
-         Each row of the next table leaves out one figure. The interpretation is chosen by the other figures and then predicts\n\
-         the figure that was left out.\n\n\
-         | # | error | the others' choice |\n|---|---|---|\n",
-        Interpretation::USUAL,
-        place(&Interpretation::USUAL),
-        (likeliest - usual).exp(),
-        interpretations.rounding_percent,
-        interpretations.as_good,
-    );
-    // Each figure is predicted without its own data.
-    for left_out in &interpretations.left_out {
-        let _ = writeln!(text, "| {} | {:+.1} % | {} |", left_out.id, left_out.error_percent, left_out.words);
+fn ranked(ranking: &Interpretations) -> String {
+    let fits = ranking.ranked();
+    let usual = fits.iter().enumerate().skip(BEST).find(|(_, fit)| fit.interpretation == Interpretation::USUAL);
+    let shown = fits.iter().enumerate().take(BEST).chain(usual);
+    let ids: Vec<&str> = ranked_figures().map(|figure| figure.id).collect();
+    let mut text =
+        format!("| rank | log L | {} | interpretation |\n|---|---|{}---|\n", ids.join(" | "), "---|".repeat(ids.len()));
+    for (place, fit) in shown {
+        let mark = if fit.interpretation == Interpretation::USUAL { "**" } else { "" };
+        let values: Vec<String> = fit.figures.iter().map(|figure| cell(fit, figure)).collect();
+        text += &format!(
+            "| {} | {:.1} | {} | {mark}{}{mark} |\n",
+            place + 1,
+            fit.log_likelihood,
+            values.join(" | "),
+            fit.words
+        );
     }
+    text
 }
 
-/// Returns a row of the table of interpretations. Figures that the interpretation does not explain are bold.
-fn fitted(fit: &Fit) -> String {
-    let value = |figure: &FigureFit| {
-        let sd = figure.simulated_sd.map_or(String::new(), |sd| format!(" ({sd:.2})"));
-        let text = format!("{}{sd}", four(figure.simulated));
-        if fit.unexplained.contains(&figure.id) { format!("**{text}**") } else { text }
-    };
-    let values: Vec<String> = fit.figures.iter().map(value).collect();
+fn cell(fit: &Fit, figure: &FigureFit) -> String {
+    let sd = figure.simulated_sd.map_or(String::new(), |sd| format!(" ({})", significant_sd(sd)));
+    let text = format!("{}{sd}", four(figure.simulated));
+    if fit.unexplained.contains(&figure.id) { format!("**{text}**") } else { text }
+}
+
+fn confidence(ranking: &Interpretations) -> String {
+    let fits = ranking.ranked();
+    let alike = ranking.alike();
+    let place = fits.iter().position(|fit| fit.interpretation == Interpretation::USUAL);
+    let behind = place.map_or(f64::NAN, |place| fits[0].log_likelihood - fits[place].log_likelihood);
+    let list: String = alike.iter().map(|fit| format!("- {}\n", fit.words)).collect();
     format!(
-        "| {:.2} | {:.1} | {:.1} | {} | {} |\n",
-        fit.mean_error_percent,
-        fit.greatest_error_percent,
-        fit.log_likelihood,
-        values.join(" | "),
-        fit.words
+        "The figures do not tell these interpretations apart, since their likelihoods lie within a factor of {ALIKE:.1} of the\n\
+         greatest:\n\n{list}\n\
+         The project's interpretation, **{}**, is simulated besides the {} that the\n\
+         formulas find likeliest. Its log L is {behind:.1} lower than the greatest. It follows the text where text and figures\n\
+         disagree: the likeliest interpretations count whole fields, which contradicts TR94's own conversions.",
+        Interpretation::USUAL,
+        fits.len() - 1,
     )
 }
 
-/// Writes the effect of the application's time on the mean and standard deviation of the fly-throughs' latencies.
-fn of_application(text: &mut String, times: &[ApplicationTime]) {
-    text.push_str(
-        "\n## The application's time a frame\n\n\
-         The host ran the viewer's application. For each frame, the application took some time before it requested the next\n\
-         frame. No paper prints the time of the application, and the presets set the time to zero. The parameters\n\
-         `host.application_ns` and `host.application_jitter_ns` set the time of the application and its spread.\n\n\
-         In the following table, the mean time of the application is 0 to 40 ms, and its spread is 0 to 30 ms. A Unix host polls\n\
-         its serial lines every 30 ms (TR94). The largest mean (40 ms) and the largest spread (30 ms) are assumed. The following\n\
-         table gives the mean latency in fields at the analytic level, with the deviation in brackets. No number is fitted. If\n\
-         the application always needs less than the 33.4 ms between two frames, the application hardly changes the latency. The\n\
-         reason for the small change is that the host works on the next frame while the machine draws the current frame.\n\n\
-         | mean of the application | evenly spread by | 7 | 7b | 7c |\n|---|---|---|---|---|\n",
-    );
-    let cells = |figures: &[FlyThroughLatency]| {
-        let cells = figures.iter().map(|figure| format!("{} ({:.3})", four(figure.mean), figure.sd));
-        cells.collect::<Vec<_>>().join(" | ")
+fn left_out(ranking: &Interpretations) -> String {
+    let rows = ranking.left_out.iter();
+    let cells = rows.map(|one| [one.id.to_owned(), format!("{:+.1} %", one.error_percent), one.words.clone()]);
+    rows_of(["#", "error", "chosen by the others"], cells)
+}
+
+fn of_application(effects: &[Effect]) -> String {
+    let cell = |(_, mean, sd): (&str, f64, f64)| format!("{} ({sd:.3})", four(mean));
+    let fly_throughs: Vec<&Measurement> = all().filter(|figure| figure.deviation.is_some()).collect();
+    let printed =
+        fly_throughs.iter().map(|figure| cell((figure.id, figure.value, figure.deviation.unwrap_or(f64::NAN))));
+    let first = [vec!["printed".to_owned(), String::new()], printed.collect()].concat();
+    let rows = effects.iter().map(|effect| {
+        let times = effect.changes.iter().map(|(_, ns)| format!("{} ms", ns / 1_000_000));
+        times.chain(effect.figures.iter().copied().map(cell)).collect::<Vec<_>>()
+    });
+    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let ids: Vec<&str> = fly_throughs.iter().map(|figure| figure.id).collect();
+    format!(
+        "| mean of the application | evenly spread by +- | {} |\n|---|---|{}\n",
+        ids.join(" | "),
+        "---|".repeat(ids.len())
+    ) + &std::iter::once(first).chain(rows).map(line).collect::<String>()
+}
+
+fn host(effects: &[Effect]) -> String {
+    let cells = effects.iter().filter_map(|effect| {
+        let ((path, value), (_, latency, _)) = (effect.changes.first()?, effect.figures.first()?);
+        Some([format!("`{path}`"), format!("{} ms", four(*value as f64 / 1e6)), format!("{} ms", four(*latency))])
+    });
+    rows_of(["parameter", "value", "row 17"], cells)
+}
+
+fn fifo(effects: &[Effect]) -> String {
+    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let ids = effects
+        .first()
+        .map_or_else(Vec::new, |effect| effect.figures.iter().map(|(id, ..)| (*id).to_owned()).collect());
+    let head = format!("| words {}|{}\n", line(ids.clone()), "---|".repeat(ids.len() + 1));
+    let row = |effect: &Effect| {
+        let words = effect.changes.iter().map(|(_, words)| words.to_string());
+        line(words.chain(effect.figures.iter().map(|(_, value, _)| four(*value))).collect())
     };
-    let _ = writeln!(text, "| printed latencies | | {} |", cells(&published()));
-    // One line for each setting of the application's time.
-    for time in times {
-        let _ = writeln!(text, "| {} ms | +- {} ms | {} |", time.mean_ms, time.jitter_ms, cells(&time.figures));
-    }
+    head + &effects.iter().map(row).collect::<String>()
 }
 
 /// Maximum number of parameters that the document lists for each figure.
 const STRONGEST: usize = 4;
 
-fn sensitivity(text: &mut String, intervals: &[Interval]) {
-    let _ = write!(
-        text,
-        "\n## Which parameter moves which figure\n\n\
-         For the column *one at a time*, each derived or assumed parameter is set to both ends of its range, and the others keep\n\
-         their values. For the column *joint*, random values within the ranges are chosen for all parameters of {SAMPLES} machines. For\n\
-         the column *rules*, one answer to an open question of the papers changes at a time. All results about parameters come\n\
-         from the analytic level. In the column *moved by*, the brackets give the figure at the low end and at the high end of\n\
-         the parameter's range, and then the elasticity. The elasticity is the relative change of the figure divided by the\n\
-         relative change of the parameter.\n\n\
-         | # | one at a time | joint | 5 % to 95 % | moved by | rules |\n|---|---|---|---|---|---|\n"
-    );
-    // Only the strongest parameters of each figure are listed.
-    for i in intervals {
-        let strongest = i.effects.iter().take(STRONGEST);
-        let effects: Vec<_> = strongest
-            .map(|e| format!("`{}` ({}, {}; {:+.2})", e.path, four(e.ends[0]), four(e.ends[1]), e.elasticity))
-            .collect();
-        let moved = if effects.is_empty() { "nothing".to_owned() } else { effects.join(", ") };
-        let single = range(i.one_at_a_time);
-        let joint = range(i.joint);
-        let likely = range(i.likely);
-        let rules: Vec<_> = i.rules.iter().map(|(rule, value)| format!("{rule}: {}", four(*value))).collect();
-        let rules = if rules.is_empty() { "nothing".to_owned() } else { rules.join(", ") };
-        let _ = writeln!(text, "| {} | {single} | {joint} | {likely} | {moved} | {rules} |", i.id);
-    }
+fn sensitivity(intervals: &[Interval]) -> String {
+    // Intervals are listed in the order of the figures.
+    let ordered = all().filter_map(|figure| intervals.iter().find(|interval| interval.id == figure.id));
+    let joined = |list: Vec<String>| if list.is_empty() { "nothing".to_owned() } else { list.join(", ") };
+    let cells = ordered.map(|i| {
+        let effects = i.effects.iter().take(STRONGEST);
+        let effects =
+            effects.map(|e| format!("`{}` ({}, {}; {:+.2})", e.path, four(e.ends[0]), four(e.ends[1]), e.elasticity));
+        let rules = i.rules.iter().map(|(rule, value)| format!("{rule}: {}", four(*value)));
+        [
+            i.id.to_owned(),
+            range(i.one_at_a_time),
+            range(i.joint),
+            range(i.likely),
+            joined(effects.collect()),
+            joined(rules.collect()),
+        ]
+    });
+    rows_of(["#", "one at a time", "joint", "5 % to 95 %", "moved by", "rules"], cells)
 }
 
-fn head(text: &mut String, rows: &[FigureRow]) {
-    let free = rows.iter().filter(|row| row.basis == Basis::Free).count();
-    let missed = rows.iter().filter(|row| !row.is_met).count();
-    let _ = write!(
-        text,
-        "# Accuracy\n\n\
-         The command `pxpl5 figures --write ACCURACY.md` generates this file. The command `pxpl5 figures --check ACCURACY.md`\n\
-         fails if the file is out of date.\n\n\
-         This file compares each published figure with the result of the model. All results come from the same machine\n\
-         parameters. The column *provenance* states whether a parameter or a rule of the model was chosen to reproduce the\n\
-         published figure of a row:\n\n\
-         - *free*: No parameter and no rule was chosen to reproduce the figure.\n\n\
-         - *fitted*: One parameter was chosen so that the model reproduces the figure.\n\n\
-         - *rule*: One rule of the model was chosen so that the model reproduces the figure.\n\n\
-         A simulated value is a *miss* if it lies outside of the range that the paper prints. If the paper prints no range, an\n\
-         error of more than {MISS_PERCENT} % is a miss.\n\n\
-         Some papers do not print a condition of an experiment, for example the position of a sensor. For an experiment with an\n\
-         unprinted condition, the brackets after the simulated value give the minimum and the maximum over all possible\n\
-         conditions. The column *error* uses the value for one assumed condition. A figure with an unprinted condition is a miss\n\
-         only if the model misses the figure under every condition.\n\n\
-         The column *interval* gives the smallest and the largest value of the figure when unpublished parameters and the\n\
-         interpretation of the papers vary. The parameters vary within their allowed ranges. The section \"Interpretations\" lists\n\
-         the interpretations of the papers. The analytic level (formulas instead of events) computes the interval. The column\n\
-         *analytic* gives the result of the analytic level with the normal parameters of the machines. The difference between\n\
-         *analytic* and *simulated* is the error of the analytic level.\n\n\
-         A published figure is *out of reach* if it lies outside of the interval by more than the error of the analytic level. A\n\
-         figure that is out of reach shows an error in the rules of the model, because no allowed parameter reproduces the\n\
-         figure. The interval of a figure is marked *not varied* if no parameter of the machine changes the figure. Such a\n\
-         figure depends only on the scenes or on a motion.\n\n\
-         The intervals of figures 17, 19 and 19b come from simulations with events. The simulations of figures 17, 19 and 19b\n\
-         vary the depth of a renderer's FIFO and the number of channels that a sender can use. The interval of figure 17 also\n\
-         covers the positions of the photodiode on the screen and the interpretations.\n\n\
-         The table has {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n",
-        rows.len(),
-        mean_error_percent(rows),
-    );
+/// Returns what the experiments of a topic have in common.
+fn about() -> String {
+    let topics = TOPICS.iter().filter(|topic| !topic.about.is_empty());
+    topics.map(|topic| format!("**{}.** {}\n\n", topic.title, topic.about)).collect()
 }
 
-const COLUMNS: [TableColumn<FigureRow>; 8] = [
-    NUMBER,
-    STATEMENT,
-    PUBLISHED,
-    SIMULATED,
-    ("error", |row| format!("{}{}", error(row), if row.is_met { "" } else { " **miss**" })),
-    ("analytic", |row| row.analytic.map_or("-".to_owned(), four)),
-    // A figure out of reach shows an error of the rules, not of a parameter.
-    ("interval", |row| INTERVAL.1(row) + if row.is_out_of_reach() { ", **out of reach**" } else { "" }),
-    PROVENANCE,
-];
-
-fn misses(text: &mut String, rows: &[FigureRow]) {
-    let _ = writeln!(text, "\n## Misses and their causes");
-    for row in rows.iter().filter(|row| !row.is_met) {
-        let cause = row.cause_or_unknown().trim_end_matches('.');
-        let out = if row.is_out_of_reach() {
-            " This is a modelling error, because no allowed parameter values reproduce the figure."
-        } else {
-            ""
-        };
-        let _ = writeln!(text, "\n- Figure **{}** has an error of {}. {cause}.{out}", row.id, error(row));
-    }
+fn reasons() -> String {
+    let cells = TOPICS.iter().flat_map(|topic| topic.figures).map(|figure| {
+        let row = figure.row(f64::NAN.into());
+        [figure.id.to_owned(), row.source.to_string(), PROVENANCE.1(&row), format!("{}.", figure.reason)]
+    });
+    rows_of(["#", "source", "provenance", "reason"], cells)
 }

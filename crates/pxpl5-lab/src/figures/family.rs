@@ -1,32 +1,18 @@
-//! Figures of papers about other systems than Pixel-Planes 5, which follow the figures of Pixel-Planes 5 in
-//! ACCURACY.md.
+//! Figures of the papers on address recalculation, a system other than Pixel-Planes 5.
 
-use super::Bench;
-use super::measured::{Result, scene_named};
+use super::measurement::{Result, scene_named};
+use super::{Bench, FigureGroup};
 use crate::error::StudyError;
 use crate::parallel;
-use pxpl5_arp::figures::{Experiments, missed, row, rows, shape, table};
+use pxpl5_arp::figures::{Experiments, row, rows, shape};
 use pxpl5_run::{
     Experiment, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, RenderingControl, RotationLatency,
 };
 use pxpl5_sim::figures::{Basis, FigureRow};
-use serde::Serialize;
-use std::fmt::Write as _;
 use std::sync::Arc;
 use tracking::motion::Pan;
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
-
-/// Figures of papers about one other system than Pixel-Planes 5.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FigureFamily {
-    /// Title of the section in ACCURACY.md.
-    pub title: &'static str,
-    /// Path of the document with more details.
-    pub document: &'static str,
-    /// Rows of the table, in the order of the experiments.
-    pub rows: Vec<FigureRow>,
-}
 
 /// Triangle counts of the spheres in experiment E1 (`turning`). The papers' diagram ends at 1,000 triangles.
 const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
@@ -40,50 +26,25 @@ const FIELDS: u64 = 60;
 /// because they are compared field by field.
 const COMPARED: usize = 55;
 
-impl FigureFamily {
-    /// Runs the experiments on address recalculation, priority rendering and region warping. Experiment E1 runs on
-    /// Pixel-Planes 5, experiments E2 to E9 run with an ideal renderer. Results that follow from the papers' tables by
-    /// arithmetic are stated only in the document `document`.
-    ///
-    /// # Errors
-    ///
-    /// Returns a [`StudyError`] that names the experiment.
-    pub fn address_recalculation(bench: &Bench) -> std::result::Result<Self, StudyError> {
-        let (turning, experiments) = parallel::both(|| turning(bench), Experiments::run);
-        let mut all = turning.map_err(StudyError::of_figure("E1"))?;
-        let experiments = experiments.map_err(StudyError::of_figure("E1"))?;
-        all.extend(rows(&experiments));
-        Ok(Self {
-            title: "Address recalculation and priority rendering",
-            document: "docs/address-recalculation.md",
-            rows: all,
-        })
-    }
-
-    /// Returns this family's section of ACCURACY.md.
-    pub fn markdown(&self) -> String {
-        let shapes = self.rows.iter().filter(|row| row.basis == Basis::Shape).count();
-        let mut text = String::new();
-        let _ = write!(
-            text,
-            "\n## {}\n\n\
-             This section compares experiments E1 to E9 with the papers by Regan, Pose and Chow. The page\n\
-             [{}]({}) has the details. The page docs/address-recalculation.md\n\
-             also has the pictures of experiment E10, and the numbers that follow from the papers' tables without a simulation.\n\
-             Experiment E1 runs on Pixel-Planes 5 with the display of address recalculation. The experiments E2 to E9 use an ideal\n\
-             renderer. A row is *met* if its error is at most 1 %. The papers do not print the conditions of {shapes} rows. For rows\n\
-             without printed conditions (*cannot be reproduced*), only the shape of the papers' drawings and tables is checked. The\n\
-             model misses {} of the {} rows with printed conditions.\n\n{}\n{}\n",
-            self.title,
-            self.document,
-            self.document,
-            self.rows.iter().filter(|row| row.basis != Basis::Shape && !row.is_met).count(),
-            self.rows.len() - shapes,
-            table(&self.rows),
-            missed(&self.rows).trim_end()
-        );
-        text
-    }
+/// Runs the experiments on address recalculation, priority rendering and region warping. Experiment E1 runs on
+/// Pixel-Planes 5, experiments E2 to E9 run with an ideal renderer. Results that follow from the papers' tables by
+/// arithmetic are stated only in the group's document.
+///
+/// # Errors
+///
+/// Returns a [`StudyError`] that names the experiment.
+pub(super) fn address_recalculation(bench: &Bench) -> std::result::Result<FigureGroup, StudyError> {
+    let (turning, experiments) = parallel::both(|| turning(bench), Experiments::run);
+    let mut all = turning.map_err(StudyError::of_figure("E1"))?;
+    let experiments = experiments.map_err(StudyError::of_figure("E1"))?;
+    all.extend(rows(&experiments));
+    Ok(FigureGroup {
+        name: "address-recalculation",
+        title: "Address recalculation and priority rendering",
+        about: "Experiment E1 runs on Pixel-Planes 5, experiments E2 to E9 run with an ideal renderer.",
+        document: Some("docs/address-recalculation.md"),
+        rows: all,
+    })
 }
 
 /// Runs experiment E1, which measures two latencies for growing numbers of triangles. One is the latency of the head's

@@ -2,14 +2,14 @@
 //! the duration of a line, the number of transforms, and the pictures of an edge.
 
 use super::Bench;
-use super::group::{Measurement, free};
-use super::measured::{FigureValue, Result, detail};
+use super::measurement::{FigureValue, Measurement, Result, detail, figure};
 use crate::compare::{edge_pictures, edge_scene};
 use crate::parallel;
 use image::RgbImage;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::Registration;
 use pxpl5_run::{Experiment, ExperimentError, Head, Jitp, Outcome, Pixels, Viewpoint};
+use pxpl5_sim::figures::Basis;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Aim;
 use std::sync::Arc;
@@ -42,49 +42,77 @@ const MIDDLE_LINE: u32 = 240;
 /// Last line of an even field in the 640 x 480 picture.
 const LAST_LINE: u32 = 478;
 
-pub(super) fn measurements() -> Vec<Measurement> {
-    // All figures of this group come from JITP and have no varied parameters.
-    let row = |id, statement, value, experiment, cause, measure| Measurement {
-        figure: free((id, "JITP", "raster"), statement, value, experiment, cause),
-        measure,
-        moved_by: &[],
-    };
-    let field = "jitp-field-racing runs on small-hmd with an aim at the first pixel. The error is that of the last line of a field.";
-    let line = "jitp-scanline-racing draws strips of one line. The error is that of both ends of the middle line.";
-    let rounded = "The paper rounds the time of a line to 65 us. A line of NTSC takes 63.56 us.";
-    vec![
-        row("J1", "error of one transform a field", (3.3, "deg", None), field, "", error_of_field),
-        row("J1b", "the same", (33.0, "px", None), field, "", |bench| in_pixels(error_of_field(bench)?)),
-        row("J2", "error of one transform a line", (0.013, "deg", None), line, "", error_of_line),
-        row("J2b", "the same", (0.13, "px", None), line, "", |bench| in_pixels(error_of_line(bench)?)),
-        row(
+const JITP: (&str, &str) = ("JITP", "raster");
+
+const OF_FIELD: &str = "jitp-field-racing runs on small-hmd with an aim at the first pixel. The error is that of the last line of a field.";
+const OF_LINE: &str =
+    "jitp-scanline-racing draws strips of one line. The error is that of both ends of the middle line.";
+
+const BY_TURN: Basis = Basis::Derived("200 deg/s and the times of NTSC");
+const OF_TURN: &str = "The paper multiplies the same numbers. The row shows that the pipeline's errors follow";
+
+/// The figures of just-in-time pixels, in the order of their numbers.
+pub(super) const FIGURES: &[Measurement] = &[
+    Measurement {
+        basis: BY_TURN,
+        reason: OF_TURN,
+        ..figure("J1", JITP, "error of one transform a field", (3.3, "deg"), OF_FIELD, error_of_field)
+    },
+    Measurement {
+        basis: BY_TURN,
+        reason: OF_TURN,
+        ..figure("J1b", JITP, "the same", (33.0, "px"), OF_FIELD, |bench| in_pixels(error_of_field(bench)?))
+    },
+    Measurement {
+        basis: BY_TURN,
+        reason: OF_TURN,
+        ..figure("J2", JITP, "error of one transform a line", (0.013, "deg"), OF_LINE, error_of_line)
+    },
+    Measurement {
+        basis: BY_TURN,
+        reason: OF_TURN,
+        ..figure("J2b", JITP, "the same", (0.13, "px"), OF_LINE, |bench| in_pixels(error_of_line(bench)?))
+    },
+    Measurement {
+        range: Some(1.5),
+        basis: Basis::Derived("the times of NTSC"),
+        reason: "The time of a line is an input",
+        ..figure(
             "J3",
+            JITP,
             "a line takes about",
-            (65.0, "us", Some(1.5)),
+            (65.0, "us"),
             "The result is the time between the first pixels of two lines of a field.",
-            rounded,
             time_of_line,
-        ),
-        row(
+        )
+    },
+    Measurement {
+        reason: "The paper shows a straight edge, and no rule was chosen to get it",
+        ..figure(
             "J4",
+            JITP,
             "share of the slant of a vertical edge that just-in-time pixels remove: seen straight",
-            (100.0, "%", None),
+            (100.0, "%"),
             "An edge is drawn by jitp-field and by jitp-scanline, as seen by an eye that turns with the head. The result is the slant of a \
              straight line through all rows.",
-            "",
             slant_removed,
-        ),
-        row(
+        )
+    },
+    Measurement {
+        basis: Basis::Derived("240 visible lines"),
+        reason: "Each visible line has one transform",
+        cause: "A field has 240 visible lines, and nothing is drawn for the lines of the retrace. JITP prints a round number",
+        ..figure(
             "J5",
+            JITP,
             "vertices transformed line by line, over those of one transform a field: about",
-            (256.0, "times", None),
+            (256.0, "times"),
             "Both jitp-scanline-racing and jitp-field-racing run with one slave. The software of the slave takes no time, so no line is late. The \
              result is the number of vertices transformed in 20 fields.",
-            "A field has 240 visible lines, and nothing is drawn for the lines of the retrace. The paper JITP prints a round number.",
             transforms,
-        ),
-    ]
-}
+        )
+    },
+];
 
 fn head() -> Result<Head> {
     Ok(Head::new(Arc::new(Pan::at(PAN)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1)?)

@@ -1,10 +1,10 @@
 //! Figures of trackers and of the host's serial line.
 
 use super::Bench;
-use super::group::{Measurement, free};
-use super::measured::{FigureValue, Result, detail, scene_named};
+use super::measurement::{FigureValue, Measurement, Result, detail, figure, scene_named};
 use pxpl5_measure::Budget;
 use pxpl5_run::{Experiment, ExperimentError, Head, Pixels};
+use pxpl5_sim::figures::Basis;
 use std::sync::Arc;
 use tracking::Pose;
 use tracking::config::Tables;
@@ -19,32 +19,39 @@ waits for the next poll, and until then the host uses the pose of the last poll.
 output a x + (1 - a) x' from the report x and the previous output x'. The constant a is the gain of the filter. For a gain a, \
 the filter delays a steady turn by dt (1 - a) / a. Here dt is the interval of 1/120 s between two reports.";
 
-pub(super) fn measurements() -> Vec<Measurement> {
-    let row = |id, (paper, section), statement, value, experiment, cause, measure| Measurement {
-        figure: free((id, paper, section), statement, value, experiment, cause),
-        measure,
-        moved_by: &[],
-    };
-    let filter = "A tracker without noise reports a head that turns by 2 degrees a second. The result is an angle divided by the rate of the turn. The \
-                  angle lies between the reported pose and the pose of the head when the first character of the report is sent.";
-    vec![
-        row(
+const PF: (&str, &str) = ("PF", "filter");
+
+const FILTER: &str = "A tracker without noise reports a head that turns by 2 degrees a second. The result is an angle divided by the rate of the turn. The \
+                      angle lies between the reported pose and the pose of the head when the first character of the report is sent.";
+
+const OF_FILTER: &str = "The rate of 120 Hz, the latency of 3.75 ms and the filter come from other pages of the manual";
+
+/// The figures of trackers, in the order of their numbers.
+pub(super) const FIGURES: &[Measurement] = &[
+    Measurement {
+        range: Some(0.25),
+        basis: Basis::Derived("the polling interval of 30 ms"),
+        reason: "The longest wait for a poll is one interval",
+        ..figure(
             "T1",
             ("TR94", "serial line"),
             "polling adds almost two fields (taken as 1.5 to 2)",
-            (1.75, "fields", Some(0.25)),
+            (1.75, "fields"),
             "A Fastrak runs with the polled and with the patched kernel, for 200 seeds of 2 s. The result is the longest wait of a report for the \
              kernel. The mean in a run is a difference between both kernels, for full-screen:12 on small-hmd. It compares the mean time from the \
              pose to the start of TRANSFORM.",
-            "",
             polling,
-        ),
-        row("T2", ("PF", "filter"), "apparent latency with a filter of 0.95", (4.2, "ms", None), filter, "", |_| {
-            apparent_latency(0.95)
-        }),
-        row("T3", ("PF", "filter"), "the same with 0.05", (162.0, "ms", None), filter, "", |_| apparent_latency(0.05)),
-    ]
-}
+        )
+    },
+    Measurement {
+        reason: OF_FILTER,
+        ..figure("T2", PF, "apparent latency with a filter of 0.95", (4.2, "ms"), FILTER, |_| apparent_latency(0.95))
+    },
+    Measurement {
+        reason: OF_FILTER,
+        ..figure("T3", PF, "the same with 0.05", (162.0, "ms"), FILTER, |_| apparent_latency(0.05))
+    },
+];
 
 fn model(config: TrackerConfig) -> Result<TrackerModel> {
     Ok(TrackerModel::new(config)?)
@@ -83,7 +90,7 @@ const FIELDS: u64 = 600;
 /// Returns the mean time in ms from the measurement of a head pose to the start of TRANSFORM for this pose.
 fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
     let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1)?;
-    let machine = bench.interpretation.on(bench.machine("small-hmd")?)?;
+    let machine = bench.interpreted("small-hmd")?;
     let experiment = Experiment::new(machine, bench.interpretation.pipeline(), scene_named("full-screen:12")?);
     let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, .. } = Budget::of(&outcome);

@@ -1,7 +1,7 @@
 //! The fit of one interpretation of the papers to the published figures.
 
-use super::FIGURES;
-use crate::figures::{Bench, Figure, Interpretation};
+use super::figures;
+use crate::figures::{Bench, DEVIATION, Interpretation, Measurement};
 use pxpl5_run::ExperimentError;
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ pub struct Fit {
     pub interpretation: Interpretation,
     /// The interpretation in words.
     pub words: String,
-    /// Fit of each figure, in the order of [`FIGURES`].
+    /// Fit of each figure of [`figures`](super::figures).
     pub figures: Vec<FigureFit>,
     /// Mean of the figures' absolute errors in percent.
     pub mean_error_percent: f64,
@@ -58,28 +58,21 @@ const DISCREPANCY: f64 = 0.02;
 /// 0.502. Samples of 4 or 5 fields have these values only if there are 67 to 119 samples.
 const SAMPLES: f64 = 87.0;
 
-/// Returns the standard deviation that the paper prints for an application scene. `None` for other figures.
-fn published_sd(figure: &Figure) -> Option<f64> {
-    ["7", "7b", "7c"].contains(&figure.id).then_some(figure.spread).flatten()
-}
-
 impl FigureFit {
-    fn new(bench: &Bench, figure: &Figure) -> Result<Self, ExperimentError> {
-        let measured = bench.measure(figure.id)?;
-        let published_sd = published_sd(figure);
-        let sd = measured.details.iter().find(|detail| detail.name == "standard deviation").map(|detail| detail.value);
+    fn new(bench: &Bench, figure: &Measurement) -> Result<Self, ExperimentError> {
+        let measured = figure.value(bench)?;
+        let sd = measured.detail(DEVIATION);
         let off = measured.value - figure.value;
         // A printed range counts as exact within its bounds.
-        let range = figure.spread.filter(|_| published_sd.is_none()).unwrap_or(0.0);
-        let beyond = off.signum() * (off.abs() - range).max(0.0);
+        let beyond = off.signum() * (off.abs() - figure.range.unwrap_or(0.0)).max(0.0);
         Ok(Self {
             id: figure.id,
             published: figure.value,
             simulated: measured.value,
             unit: figure.unit,
             error_percent: 100.0 * beyond / figure.value,
-            published_sd,
-            simulated_sd: sd.filter(|_| published_sd.is_some()),
+            published_sd: figure.deviation,
+            simulated_sd: sd.filter(|_| figure.deviation.is_some()),
         })
     }
 
@@ -113,12 +106,11 @@ impl Fit {
     /// Fails in the same cases as [`Bench::measure`].
     pub fn of(bench: &Bench, interpretation: Interpretation) -> Result<Self, ExperimentError> {
         let bench = Bench { interpretation, ..bench.clone() };
-        let of_interpretation = crate::figures::FIGURES.iter().filter(|figure| FIGURES.contains(&figure.id));
-        let figures = of_interpretation.map(|figure| FigureFit::new(&bench, figure)).collect::<Result<Vec<_>, _>>()?;
+        let figures = figures().map(|figure| FigureFit::new(&bench, figure)).collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             interpretation,
             words: interpretation.to_string(),
-            mean_error_percent: mean_without(&figures, None),
+            mean_error_percent: mean(&figures),
             greatest_error_percent: figures.iter().map(|figure| figure.error_percent.abs()).fold(0.0, f64::max),
             log_likelihood: figures.iter().map(FigureFit::log_likelihood).sum(),
             unexplained: figures.iter().filter(|figure| !figure.is_explained()).map(|figure| figure.id).collect(),
@@ -126,21 +118,19 @@ impl Fit {
         })
     }
 
-    /// Returns the mean of the absolute errors in percent over all figures except `id`.
-    pub fn mean_error_without(&self, id: &str) -> f64 {
-        mean_without(&self.figures, Some(id))
+    /// Returns the logarithm of the likelihood of the printed values of all figures except `id`.
+    pub fn log_likelihood_without(&self, id: &str) -> f64 {
+        self.figures.iter().filter(|figure| figure.id != id).map(FigureFit::log_likelihood).sum()
     }
 }
 
 /// Returns half of the last digit of a value with three printed digits.
-pub(super) fn half_a_digit(value: f64) -> f64 {
+fn half_a_digit(value: f64) -> f64 {
     0.5 * 10f64.powf(value.log10().floor() - 2.0)
 }
 
-fn mean_without(figures: &[FigureFit], left_out: Option<&str>) -> f64 {
-    let counted: Vec<f64> =
-        figures.iter().filter(|figure| Some(figure.id) != left_out).map(|figure| figure.error_percent.abs()).collect();
-    counted.iter().sum::<f64>() / counted.len().max(1) as f64
+fn mean(figures: &[FigureFit]) -> f64 {
+    figures.iter().map(|figure| figure.error_percent.abs()).sum::<f64>() / figures.len().max(1) as f64
 }
 
 #[cfg(test)]
@@ -166,11 +156,5 @@ mod tests {
         assert!((off.log_likelihood() - expected).abs() < 1e-12);
         assert!(off.is_explained() && !FigureFit { simulated_sd: Some(0.0), ..EXACT }.is_explained());
         assert!(!FigureFit { error_percent: -8.1, ..EXACT }.is_explained());
-    }
-
-    #[test]
-    fn an_omitted_figure_does_not_change_the_mean_error() {
-        let figures = [EXACT, FigureFit { id: "3", error_percent: -20.0, ..EXACT }];
-        assert_eq!((mean_without(&figures, None), mean_without(&figures, Some("3"))), (10.0, 0.0));
     }
 }

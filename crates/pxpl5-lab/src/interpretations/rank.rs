@@ -1,7 +1,7 @@
 //! Ranks all interpretations of the papers by their agreement with the published figures.
 
-use super::FIGURES;
-use super::fit::{Fit, half_a_digit};
+use super::figures;
+use super::fit::Fit;
 use crate::figures::{Bench, Interpretation};
 use crate::parallel;
 use pxpl5_run::{ExperimentError, Level};
@@ -11,13 +11,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Test of the interpretations on one published figure (leave-one-out cross-validation).
 ///
-/// An interpretation is a set of answers to the questions that the papers leave open. The interpretation that fits all
-/// other published figures best predicts the value of this figure.
+/// An interpretation is a set of answers to the questions that the papers leave open. The interpretation under which all
+/// other published figures are likeliest predicts the value of this figure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeaveOneOut {
     /// Number of the figure in ACCURACY.md.
     pub id: &'static str,
-    /// Interpretation with the smallest mean error over all other figures.
+    /// Interpretation under which all other figures are likeliest.
     pub chosen: Interpretation,
     /// The interpretation `chosen` in words.
     pub words: String,
@@ -30,20 +30,36 @@ pub struct LeaveOneOut {
 pub struct Interpretations {
     /// Name and version of the JSON layout.
     pub schema: &'static str,
-    /// Fits of all interpretations at the analytic level, by ascending mean error.
+    /// Fits of all interpretations at the analytic level, the likeliest first.
     pub analytic: Vec<Fit>,
-    /// Fits of the best interpretations at the transaction level, by ascending mean error.
+    /// Fits at the transaction level, the likeliest first: the interpretations that the analytic level finds likeliest,
+    /// and the interpretation of this project. The analytic level alone cannot rank them, because its error is larger
+    /// than the distance of some latencies to the next retrace.
     pub transaction: Vec<Fit>,
-    /// Prediction of each figure by the interpretation that fits all other figures best, at the analytic level.
+    /// Prediction of each figure by the interpretation under which all other figures are likeliest.
     pub left_out: Vec<LeaveOneOut>,
-    /// Number of interpretations with the same mean error as the best interpretation, within the printed digits.
-    pub as_good: usize,
-    /// Part of a mean error, in percent, that the rounding of printed digits can explain.
-    pub rounding_percent: f64,
 }
 
-/// Ranks all interpretations at the analytic level, with the numbers of seeds and frames in `bench`. The first `best`
-/// interpretations are then simulated at the transaction level. Calls `finished` with the number of finished runs and
+/// Ratio of two likelihoods up to which the figures do not tell two interpretations apart. A ratio below the root of 10
+/// is not worth more than a bare mention (Jeffreys 1961).
+pub const ALIKE: f64 = 3.162_277_66;
+
+impl Interpretations {
+    /// Returns the ranking at the most exact level that was simulated.
+    pub fn ranked(&self) -> &[Fit] {
+        if self.transaction.is_empty() { &self.analytic } else { &self.transaction }
+    }
+
+    /// Returns the interpretations that the figures do not tell apart from the likeliest ([`ALIKE`]).
+    pub fn alike(&self) -> &[Fit] {
+        let ranked = self.ranked();
+        let least = ranked.first().map_or(0.0, |fit| fit.log_likelihood) - ALIKE.ln();
+        &ranked[..ranked.partition_point(|fit| fit.log_likelihood >= least)]
+    }
+}
+
+/// Ranks all interpretations at the analytic level, with the numbers of seeds and frames in `bench`. The `best` likeliest
+/// interpretations, and the interpretation of this project, are then simulated at the transaction level. Calls `finished` with the number of finished runs and
 /// the number of all runs.
 ///
 /// # Errors
@@ -52,7 +68,7 @@ pub struct Interpretations {
 pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Result<Interpretations, ExperimentError> {
     let interpretations = Interpretation::all();
     let best = best.min(interpretations.len());
-    let steps = (interpretations.len() + best) as u64;
+    let steps = (interpretations.len() + best) as u64 + u64::from(best > 0);
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
     // The same steps serve both levels.
@@ -70,22 +86,16 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
         fits.into_iter().collect::<Result<Vec<_>, _>>().map(|fits| ranked(fits.concat()))
     };
     let analytic = fits(Level::Analytic, &interpretations)?;
-    // Only the best interpretations are simulated with all events, which takes long.
-    let chosen: Vec<Interpretation> = analytic.iter().take(best).map(|fit| fit.interpretation).collect();
+    // Only the likeliest interpretations are simulated with all events, which takes long.
+    let mut chosen: Vec<Interpretation> = analytic.iter().take(best).map(|fit| fit.interpretation).collect();
+    if best > 0 && !chosen.contains(&Interpretation::USUAL) {
+        chosen.push(Interpretation::USUAL);
+    }
     let transaction = fits(Level::Transaction, &chosen)?;
-    let rounding_percent = rounding_percent(&analytic);
-    let least = analytic.first().map_or(f64::NAN, |fit| fit.mean_error_percent);
-    // Errors within the rounding of printed digits are indistinguishable.
-    let as_good = analytic.iter().filter(|fit| fit.mean_error_percent <= least + rounding_percent).count();
-    let left_out = FIGURES.iter().filter_map(|id| left_out(&analytic, id)).collect();
-    Ok(Interpretations {
-        schema: "pxpl5-interpretations/1",
-        analytic,
-        transaction,
-        left_out,
-        as_good,
-        rounding_percent,
-    })
+    let mut ranking =
+        Interpretations { schema: "pxpl5-interpretations/2", analytic, transaction, left_out: Vec::new() };
+    ranking.left_out = figures().filter_map(|figure| left_out(ranking.ranked(), figure.id)).collect();
+    Ok(ranking)
 }
 
 /// Groups the interpretations that differ at most in the number of regions in a backing store. Each group begins with
@@ -103,14 +113,12 @@ fn groups(interpretations: &[Interpretation]) -> Vec<Vec<Interpretation>> {
 }
 
 fn ranked(mut fits: Vec<Fit>) -> Vec<Fit> {
-    fits.sort_by(|a, b| {
-        a.mean_error_percent.total_cmp(&b.mean_error_percent).then(a.interpretation.cmp(&b.interpretation))
-    });
+    fits.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood).then(a.interpretation.cmp(&b.interpretation)));
     fits
 }
 
 fn left_out(fits: &[Fit], id: &'static str) -> Option<LeaveOneOut> {
-    let chosen = fits.iter().min_by(|a, b| a.mean_error_without(id).total_cmp(&b.mean_error_without(id)))?;
+    let chosen = fits.iter().max_by(|a, b| a.log_likelihood_without(id).total_cmp(&b.log_likelihood_without(id)))?;
     let figure = chosen.figures.iter().find(|figure| figure.id == id)?;
     Some(LeaveOneOut {
         id,
@@ -118,14 +126,6 @@ fn left_out(fits: &[Fit], id: &'static str) -> Option<LeaveOneOut> {
         words: chosen.words.clone(),
         error_percent: figure.error_percent,
     })
-}
-
-/// Returns the mean rounding error of the figures in percent. The rounding error of a figure is half of its last digit,
-/// with three printed digits.
-fn rounding_percent(fits: &[Fit]) -> f64 {
-    let published = fits.first().into_iter().flat_map(|fit| &fit.figures).map(|figure| figure.published);
-    let halves: Vec<f64> = published.map(|value| 100.0 * half_a_digit(value) / value).collect();
-    halves.iter().sum::<f64>() / halves.len().max(1) as f64
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::random::{compared_ms, experiment};
 use super::record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
 use super::{deviation_percent, summarise};
 use crate::StopFlag;
-use crate::figures::{Bench, FIGURES, Figure, FigureRow, mean_error_percent};
+use crate::figures::{Bench, FigureRow, Headline, Measurement, at_all_levels};
 use crate::parallel;
 use pxpl5_run::{Experiment, ExperimentError, Level, Pixels, Summary};
 use std::sync::Arc;
@@ -53,7 +53,7 @@ impl Default for LevelQuery {
 ///
 /// Returns the first [`ExperimentError`], and [`ExperimentError::Stopped`] if another thread sets the query's flag.
 pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Result<LevelRecord, ExperimentError> {
-    let of_variant = FIGURES.len() as u64 + query.experiments;
+    let of_variant = at_all_levels().count() as u64 + query.experiments;
     let steps = VARIANTS.len() as u64 * of_variant;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
@@ -63,8 +63,8 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     let variants = || (0..VARIANTS.len()).rev();
     let experiments: Vec<(usize, u64)> =
         variants().flat_map(|variant| (0..query.experiments).map(move |number| (variant, number))).collect();
-    let figures: Vec<(usize, &Figure)> =
-        variants().flat_map(|variant| FIGURES.iter().map(move |figure| (variant, figure))).collect();
+    let figures: Vec<(usize, &Measurement)> =
+        variants().flat_map(|variant| at_all_levels().map(move |figure| (variant, figure))).collect();
     let value = |(variant, number): &(usize, u64)| {
         // Timed runs have a value already.
         let value = match timed[*variant].values.get(*number as usize) {
@@ -75,10 +75,10 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
         value
     };
     let benches = benches(&query.stop);
-    let row = |(variant, figure): &(usize, &Figure)| {
-        let measured = benches[*variant].measure(figure.id)?;
+    let row = |(variant, figure): &(usize, &Measurement)| {
+        let row = figure.measured_row(&benches[*variant]);
         step();
-        Ok(figure.row(measured))
+        row
     };
     let (values, rows) = parallel::both(|| parallel::map(&experiments, value), || parallel::map(&figures, row));
     let values = values.into_iter().collect::<Result<Vec<f64>, _>>()?;
@@ -96,7 +96,7 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
         LevelReport {
             level,
             times_of_code,
-            published_error_percent: Some(mean_error_percent(&rows)),
+            published_error_percent: Some(Headline::of(&rows).mean_error_percent()),
             from_cycle_percent: if level == Level::Cycle { None } else { Spread::of(deviations) },
             speeds: timed.speeds,
         }

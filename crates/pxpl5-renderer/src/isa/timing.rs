@@ -2,7 +2,7 @@
 //!
 //! | quantity | unit | value | provenance |
 //! |---|---|---|---|
-//! | [`CLOCK_HZ`] | Hz | 40,000,000 | published (F89, TR94) |
+//! | [`CLOCK_HZ`] | Hz | 40,000,000 | published (F89) |
 //! | [`SET_UP_CLOCKS`] | clocks an instruction | 4 | derived, see the constant |
 //! | [`CONTROL_CLOCKS`] | clocks | 2 | assumed (1 to 4) |
 //!
@@ -15,21 +15,21 @@
 
 use super::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, LINEAR_BITS, QUADRATIC_BITS};
 
-/// Clock rate of the array in Hz. Published: 40 MHz (F89, TR94).
+/// Clock rate of the array in Hz. Published: 40 MHz (F89).
 pub const CLOCK_HZ: u64 = 40_000_000;
 
 /// Number of clocks to fetch an instruction and to fill the pipeline of the expression evaluator.
 ///
-/// Derived: with no other whole number do both kinds of triangle take times in the ranges of the published steps, 256
-/// to 267 clocks (Gouraud) and 262 to 292 (Phong).
+/// Derived: 4 is the only whole number for which a Gouraud triangle takes at least the 256 clocks of its published steps,
+/// and a Phong triangle at most the 292 clocks of its steps.
 ///
 /// The bits of the number formats need 222 clocks in 9 instructions: 2 (enable), 3 x 32 (edges), 32 (compare Z), 32
 /// (store Z) and 3 x 20 (colour). With normals, the formats need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) =
 /// 252 clocks in 10 instructions. For n clocks of set-up, this gives 222 + 9 n >= 256 and 252 + 10 n <= 292.
 ///
-/// The published rate of 150,000 triangles per second means 267 clocks for each triangle (TR94, which does not state
-/// the kind of shading). This number lies between 258 (Gouraud) and 292 (Phong). Plausible values of this constant are
-/// 2 (Phong takes 272 clocks) to 5 (Gouraud takes 267 clocks).
+/// The design rate of 150,000 Phong triangles per second is 267 clocks for each triangle (F89). With 2 clocks of set-up, a
+/// Phong triangle would take 272 clocks, but then a Gouraud triangle would take fewer than its published steps. Plausible
+/// values of this constant are 2 to 4.
 pub const SET_UP_CLOCKS: u32 = 4;
 
 /// Number of clocks of an instruction that moves no bit field. The value 2 is assumed, with a range of 1 to 4. It

@@ -185,7 +185,7 @@ impl Pipeline for Slats {
     }
 
     fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        None
+        (self.binning == RegionBinning::Boxes).then_some("no code bins by bounding boxes")
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
@@ -353,7 +353,7 @@ fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
 }
 
 const COPIES: [(&str, CopySchedule); 3] = CopySchedule::ALL;
-const BINNINGS: [(&str, RegionBinning); 2] = RegionBinning::ALL;
+const BINNINGS: [(&str, RegionBinning); 3] = RegionBinning::ALL;
 const LIGHTINGS: [(&str, SlatsLighting); 2] = SlatsLighting::ALL;
 const CODES: [(&str, Code); 3] = Code::ALL;
 
@@ -380,7 +380,7 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
         .with_default("split"),
         Key::new(
             "binning",
-            "receivers of a clump: all regions, or the touched regions",
+            "receivers of a clump: all regions, the touched regions, or the regions under bounding boxes",
             KeyValues::Names(&const { names(&RegionBinning::ALL) }),
         )
         .with_default("all"),

@@ -30,7 +30,9 @@ pub const INTERVAL: TableColumn<FigureRow> =
 
 /// Provenance of the row, with the parameter or rule that was chosen.
 pub const PROVENANCE: TableColumn<FigureRow> = ("provenance", |row| match row.basis {
-    Basis::Fitted(chosen) | Basis::Rule(chosen) => format!("{}: {chosen}", row.basis.name()),
+    Basis::Fitted(chosen) | Basis::Rule(chosen) | Basis::Interpretation(chosen) | Basis::Derived(chosen) => {
+        format!("{}: {chosen}", row.basis.name())
+    }
     _ => row.basis.name().to_owned(),
 });
 

@@ -7,17 +7,21 @@ use std::borrow::Cow;
 
 /// Provenance of a row: the relation between a published figure and the choices made in the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(tag = "provenance", content = "fitted", rename_all = "lowercase")]
+#[serde(tag = "provenance", content = "chosen", rename_all = "lowercase")]
 pub enum Basis {
-    /// An independent check: no parameter and no rule of the model was chosen to reproduce the figure.
+    /// An independent check: no parameter and no rule of the model was chosen by comparison with a figure.
     Free,
     /// The named parameter was fitted to this figure, or derived from this figure.
     Fitted(&'static str),
-    /// The named rule of the model was chosen because of this figure.
+    /// The named rule of the model was chosen because of this figure alone.
     Rule(&'static str),
+    /// The named rule, statistic or machine decides the figure, and was chosen by comparison with several figures.
+    Interpretation(&'static str),
+    /// The figure follows from the named rows or inputs by arithmetic.
+    Derived(&'static str),
     /// The figure depends on facts that the papers do not print. The published number is compared with the range of
-    /// results over all interpretations of these facts.
-    Interpretation,
+    /// results over all possible facts.
+    Unprinted,
     /// The number cannot be reproduced, because the papers do not print its conditions. Only the shape of the curve or
     /// table is checked.
     Shape,
@@ -29,7 +33,9 @@ impl Basis {
             Self::Free => "free",
             Self::Fitted(_) => "fitted",
             Self::Rule(_) => "rule",
-            Self::Interpretation => "depends on the interpretation",
+            Self::Interpretation(_) => "interpretation",
+            Self::Derived(_) => "derived",
+            Self::Unprinted => "conditions not printed",
             Self::Shape => "cannot be reproduced, shape checked",
         }
     }
@@ -140,16 +146,8 @@ impl FigureRow {
     /// Replaces the smallest and largest simulated value that count as agreement with the paper.
     #[must_use]
     pub fn with_accepted(self, accepted: [f64; 2]) -> Self {
-        Self { accepted, ..self }.with_unprinted(None)
-    }
-
-    /// Sets the range of the figure over a condition of the experiment that the paper does not print. The row counts as
-    /// met if any value of this range is accepted.
-    #[must_use]
-    pub fn with_unprinted(self, unprinted: Option<[f64; 2]>) -> Self {
-        let [low, high] = unprinted.unwrap_or([self.simulated; 2]);
-        let is_met = low <= self.accepted[1] && high >= self.accepted[0];
-        Self { unprinted, is_met, ..self }
+        let is_met = (accepted[0]..=accepted[1]).contains(&self.simulated);
+        Self { accepted, is_met, ..self }
     }
 
     /// Returns true if the model cannot reproduce the published value with any values of the unpublished parameters. A

@@ -1,6 +1,6 @@
 use crate::tracker::TrackerReport;
 
-/// The method by which the host detects that the pendulum passes its lowest point, from the reported positions. TR94
+/// The method by which the host detects that the pendulum passes its lowest point, from the reported positions. I3D95
 /// does not state the method that was used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detection {

@@ -61,8 +61,8 @@ impl TrackerConfig {
         [self.position_noise_m, self.orientation_noise_deg, self.position_bias_m, self.orientation_bias_deg] != [0.0; 4]
     }
 
-    /// Returns the Polhemus Fastrak with one receiver, its filter off and 115,200 baud. The host's Unix kernel is
-    /// patched so that each character on the serial port causes an interrupt.
+    /// Returns the Polhemus Fastrak above a steel floor, with its transmitter at the origin, one receiver, its filter off
+    /// and 115,200 baud. The host's Unix kernel is patched so that each character on the serial port causes an interrupt.
     pub fn fastrak() -> Self {
         Self::fastrak_by(&Tables::PAPERS)
     }
@@ -76,6 +76,10 @@ impl TrackerConfig {
             orientation_latency_ps: latency_ps,
             serial: Some(SerialLine::fastrak_by(tables)),
             filter_gain: tables.fastrak.filter_gain,
+            distortion: Some(MagneticDistortion::floor_below(
+                [tables.fastrak.bowl, tables.fastrak.bowl_reach],
+                DVec3::ZERO,
+            )),
             ..Self::ideal_by(tables)
                 .named("Polhemus Fastrak", tables.fastrak.rate)
                 .with_noise(tables.fastrak.position_noise, tables.fastrak.orientation_noise)
@@ -141,7 +145,10 @@ impl TrackerConfig {
     pub fn polhemus_3space_by(tables: &Tables) -> Self {
         Self {
             host: SerialRead::unix_by(tables),
-            distortion: Some(MagneticDistortion::floor_below(tables, DVec3::ZERO)),
+            distortion: Some(MagneticDistortion::floor_below(
+                [tables.space.bowl, tables.space.bowl_reach],
+                DVec3::ZERO,
+            )),
             ..Self::ideal_by(tables)
                 .named("Polhemus 3Space", tables.space.rate)
                 .with_noise(tables.space.position_noise, tables.space.orientation_noise)

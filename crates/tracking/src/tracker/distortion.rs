@@ -2,7 +2,6 @@ use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
-use crate::config::Tables;
 use crate::error::{check, contradiction};
 use crate::pose::Pose;
 use crate::rotation;
@@ -28,16 +27,11 @@ pub struct MagneticDistortion {
 }
 
 impl MagneticDistortion {
-    /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`, with the numbers
-    /// of `tables`. Near the transmitter, the error at a distance of r metres is 0.02 r^2 metres for the papers' numbers
-    /// (assumed). Farther away than `reach_m`, the error grows more slowly.
-    pub fn floor_below(tables: &Tables, transmitter_m: DVec3) -> Self {
-        Self {
-            transmitter_m,
-            towards_metal: DVec3::NEG_Y,
-            depth_per_m2: tables.space.bowl / 1e3,
-            reach_m: tables.space.bowl_reach,
-        }
+    /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`. Near the
+    /// transmitter, the error at a distance of r metres is `bowl_mm` times r^2. Farther away than `reach_m`, the error
+    /// grows more slowly.
+    pub fn floor_below([bowl_mm, reach_m]: [f64; 2], transmitter_m: DVec3) -> Self {
+        Self { transmitter_m, towards_metal: DVec3::NEG_Y, depth_per_m2: bowl_mm / 1e3, reach_m }
     }
 
     /// Returns the pose that the tracker reports for the true pose `pose`.

@@ -1,0 +1,176 @@
+//! Figures of Slats: latency, copies, and the largest numbers of triangles.
+
+use super::measurement::{FigureValue, LatencyDefinition, Measurement, Result, Varied, detail, figure};
+use super::rendering_control::rate_hz;
+use super::{Bench, SLATS};
+use crate::edges::to_other_retraces;
+use crate::limit::LimitQuery;
+use pxpl5_run::{Slats, Summary};
+use pxpl5_sim::figures::Basis;
+use std::sync::Arc;
+
+const TR94: (&str, &str) = ("TR94", SLATS);
+const I3D95: (&str, &str) = ("I3D95", SLATS);
+const BOTH: (&str, &str) = ("TR94, I3D95", SLATS);
+
+/// The rule that decides the limits of Slats, and that was chosen by comparison with figures 12 and 13.
+pub(super) const CLUMP_RULE: &str = "when a clump's buffer is free";
+
+const OF_CLUMP: &str = "The time of a triangle is that of the project's code, without a fit. The rule for the buffer was chosen among three by comparison \
+                        with rows 12 and 13, because the paper is silent about it";
+const OF_FIFO: &str = "A renderer whose FIFO takes a whole message delays the next clump little. In TR94, the 4.68 ms that the COPY optimisation saves are enough \
+                       for 30 more triangles, so a triangle takes 156 us there, more than the code and the ring need here. Only a FIFO of 256 words gives \
+                       both limits within 6 %, while R1 and R2 ask for at least 1,024 (docs/interpretations.md, Findings)";
+
+const OF_FIELD: LatencyDefinition = LatencyDefinition {
+    from: "retrace at which TRANSFORM of a field begins",
+    to: "retrace at which its scan-out begins",
+    eyes: "both eyes together",
+    statistic: "mean, which equals least and greatest",
+    sentence: "TR94: from the begin of the transformation to that of the scan-out",
+};
+
+/// The figures of Slats, in the order of their numbers.
+pub(super) const FIGURES: &[Measurement] = &[
+    Measurement {
+        basis: Basis::Derived("the pipeline's definition"),
+        reason: "A field of Slats that is drawn in time is shown after one field, by design",
+        latency: Some(OF_FIELD),
+        varied: Varied::ByFormula,
+        ..figure(
+            "9",
+            BOTH,
+            "rendering latency, constant",
+            (1.0, "fields"),
+            "full-screen:100 on slats with the COPY optimisation",
+            latency,
+        )
+    },
+    Measurement {
+        basis: Basis::Derived("row 9 and the display's rate"),
+        reason: "One new picture in each field, if no field is missed",
+        varied: Varied::ByFormula,
+        ..figure(
+            "9b",
+            BOTH,
+            "updates per second",
+            (60.0, "Hz"),
+            "full-screen:100 on slats with the COPY optimisation",
+            |bench| run(bench, 100, Slats::split()).map(|summary| rate_hz(&summary).into()),
+        )
+    },
+    Measurement {
+        basis: Basis::Rule("a frame-buffer port serves in order of arrival"),
+        reason: "Any other order gives 12 region times",
+        varied: Varied::ByFormula,
+        ..figure(
+            "10",
+            TR94,
+            "20 field regions to two frame buffers",
+            (11.0, "region times"),
+            "full-screen:60 on slats without the COPY optimisation: the time from the first word to the last word, in units of 780 us",
+            |bench| run(bench, 60, Slats::whole()).map(|s| (s.first_copy_ms * 1e3 / s.region_copy_us).into()),
+        )
+    },
+    Measurement {
+        basis: Basis::Rule("odd renderers begin with the right eye"),
+        reason: "Otherwise ten regions take six region times, 4.7 ms",
+        varied: Varied::ByFormula,
+        ..figure(
+            "11",
+            I3D95,
+            "half of them",
+            (3.9, "ms"),
+            "full-screen:100 on slats with the COPY optimisation: the time from the first word to the last word of the bottom regions",
+            |bench| Ok(run(bench, 100, Slats::split())?.last_copy_ms.into()),
+        )
+    },
+    Measurement {
+        basis: Basis::Interpretation(CLUMP_RULE),
+        reason: OF_CLUMP,
+        varied: Varied::ByFormula,
+        cause: OF_FIFO,
+        ..figure(
+            "12",
+            TR94,
+            "most triangles without the COPY optimisation",
+            (110.0, "triangles"),
+            "limit of full-screen:N on slats",
+            |bench| limit(bench, "slats", Slats::whole()),
+        )
+    },
+    Measurement {
+        basis: Basis::Interpretation(CLUMP_RULE),
+        reason: OF_CLUMP,
+        varied: Varied::ByFormula,
+        cause: OF_FIFO,
+        ..figure(
+            "13",
+            TR94,
+            "most triangles with the COPY optimisation",
+            (140.0, "triangles"),
+            "limit of full-screen:N on slats",
+            |bench| limit(bench, "slats", Slats::split()),
+        )
+    },
+    Measurement {
+        basis: Basis::Fitted("gp.triangle_ns of slats-1995"),
+        reason: "The time of a triangle was chosen so that this limit follows",
+        varied: Varied::ByFormula,
+        ..figure(
+            "14",
+            I3D95,
+            "most triangles with the COPY optimisation, code of 1995: about",
+            (100.0, "triangles"),
+            "limit of full-screen:N on slats-1995",
+            |bench| limit(bench, "slats-1995", Slats::split()),
+        )
+    },
+    Measurement {
+        basis: Basis::Derived("a field less row 11"),
+        reason: "The largest scene that fits begins its copy as late as possible: 16.68 ms - 3.9 ms",
+        varied: Varied::ByFormula,
+        ..figure(
+            "15",
+            I3D95,
+            "time before the first copy in a field: about",
+            (12.8, "ms"),
+            "the largest scene of figure 13: the time from the retrace to the first word of the first copy",
+            time_before_copy,
+        )
+    },
+];
+
+fn run(bench: &Bench, triangles: u32, pipeline: Slats) -> Result<Arc<Summary>> {
+    bench.run(bench.machine("slats")?, pipeline, &format!("full-screen:{triangles}"), 40)
+}
+
+fn latency(bench: &Bench) -> Result<FigureValue> {
+    let summary = run(bench, 100, Slats::split())?;
+    let fields = summary.latency_fields();
+    let details = vec![detail("least", fields.min, "fields"), detail("greatest", fields.max, "fields")];
+    Ok(FigureValue::with(fields.mean, details).beside(to_other_retraces(&summary)))
+}
+
+fn limit(bench: &Bench, preset: &str, pipeline: Slats) -> Result<FigureValue> {
+    let most = most(bench, preset, pipeline)?;
+    let triangles = f64::from(most);
+    let details = vec![detail("both eyes, 60 fields a second", triangles * 120.0, "triangles/s")];
+    let at_limit = bench.run(bench.machine(preset)?, pipeline, &format!("full-screen:{most}"), 40)?;
+    Ok(FigureValue::with(triangles, details).beside(to_other_retraces(&at_limit)))
+}
+
+/// Returns the largest number of triangles that Slats draws in time. The result is cached, because two figures need the
+/// same search.
+fn most(bench: &Bench, preset: &str, pipeline: Slats) -> Result<u32> {
+    let (level, stop) = (bench.level, bench.stop.clone());
+    let query = LimitQuery { level, stop, ..LimitQuery::of_papers(bench.machine(preset)?, pipeline)? };
+    let key = format!("{:?} {pipeline:?} {:?}", query.level, query.config);
+    bench.applications.limit(key, || query.search_triangles())
+}
+
+fn time_before_copy(bench: &Bench) -> Result<FigureValue> {
+    let most = most(bench, "slats", Slats::split())?;
+    let summary = run(bench, most, Slats::split())?;
+    Ok(FigureValue::with(summary.copy_begins_ms, vec![detail("triangles", most.into(), "triangles")]))
+}
