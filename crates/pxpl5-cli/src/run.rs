@@ -93,7 +93,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
         Some(error) => Err(error),
         None if report.shown == 0 => Err(nothing_shown(report)),
         // A still head needs no updates of display memories, so such a run may have no latency.
-        None if report.latency_ms.n == 0 && report.arp.is_none() => Err(nothing_measured(report)),
+        None if report.latency_ms.statistics.n == 0 && report.arp.is_none() => Err(nothing_measured(report)),
         None => Ok(()),
     }
 }
