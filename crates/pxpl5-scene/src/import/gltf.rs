@@ -15,12 +15,12 @@ use std::collections::BTreeSet;
 
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use pxpl5_sim::parameters::FileError;
+use serde::Deserialize;
+use serde_json::Value;
 
 use self::buffers::Buffers;
 use self::container::Chunks;
-use self::document::{
-    COMPRESSION, Document, Extensions, Material, Mesh, Node, Primitive, Root, SceneNodes, Whole, parsed,
-};
+use self::document::{COMPRESSION, Document, Extensions, Mesh, Node, Primitive, Root, SceneNodes, Whole, parsed};
 use self::numbers::{ComponentType, Numbers};
 use super::Source;
 use super::model::{Model, Places, counted, direction, push_with_slow_growth};
@@ -40,6 +40,10 @@ const HARMLESS: [&str; 9] = [
     "EXT_lights_image_based",
 ];
 const HARMLESS_PREFIX: &str = "KHR_materials_";
+
+/// Paths of the base colour within a material. It is white if the material does not state it.
+const BASE_COLOURS: [&str; 2] =
+    ["/pbrMetallicRoughness/baseColorFactor", "/extensions/KHR_materials_pbrSpecularGlossiness/diffuseFactor"];
 
 fn is_harmless(extension: &str) -> bool {
     HARMLESS.contains(&extension) || extension.starts_with(HARMLESS_PREFIX)
@@ -325,8 +329,14 @@ impl<'a> Reader<'a> {
             let expected = format!("a material with the index {number}");
             return Err(self.document.source.part(format!("{part}.material"), expected, format!("{count} materials")));
         }
-        let material: Material = self.document.object("materials", number)?;
-        Ok(Some(material.base_colour()))
+        let material: Value = self.document.object("materials", number)?;
+        let Some(factor) = BASE_COLOURS.iter().find_map(|path| material.pointer(path)) else {
+            return Ok(Some([1.0; 3]));
+        };
+        let factor = <[f64; 4]>::deserialize(factor).map_err(|error| {
+            self.document.source.part(format!("materials[{number}]"), "a base colour of four numbers", error)
+        });
+        factor.map(|[red, green, blue, _]| Some([red, green, blue]))
     }
 
     fn finished(mut self) -> Model {

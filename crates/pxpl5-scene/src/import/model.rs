@@ -11,6 +11,7 @@ use super::mesh::{Fit, area, seen_by, unit};
 use super::polygon::{self, Cut, MAX_CORNERS, has_area};
 use super::{Placement, Source};
 use crate::config::{DEFAULT_COLOUR, MEMORY_FLOOR_BYTES, MEMORY_TIMES_FILE};
+use crate::error::FilePlace;
 use crate::scene::{Scene, Vertex};
 
 /// Positions of points. The positions are in single precision if this precision is exact for the file, and otherwise in
@@ -135,6 +136,8 @@ pub(super) struct Model {
     /// Number of bytes of other files that belong to the model, for example glTF buffers beside the model's file. These
     /// bytes count as part of the model's file.
     pub(super) more_file_bytes: usize,
+    /// Number of normals in the file that are NaN, and the position of the first such normal.
+    not_numbers: Option<(usize, FilePlace)>,
     /// Number of concave polygons with too many corners for correct triangles.
     too_long: usize,
 }
@@ -155,8 +158,17 @@ impl Model {
             triangles: Vec::new(),
             warnings: Vec::new(),
             more_file_bytes: 0,
+            not_numbers: None,
             too_long: 0,
         }
+    }
+
+    /// Adds a normal of the file. NaN gives a zero vector, so that the normal is computed as if the file had none.
+    pub(super) fn push_normal(&mut self, at: FilePlace, normal: DVec3) {
+        if !normal.is_finite() {
+            self.not_numbers.get_or_insert((0, at)).0 += 1;
+        }
+        self.normals.push(if normal.is_finite() { direction(normal) } else { Vec3::ZERO });
     }
 
     /// Replaces the triangles of a concave polygon, which begin at index `first`. The old triangles all share the
@@ -220,6 +232,11 @@ impl Model {
         file_bytes: usize,
         placement: Placement,
     ) -> Result<Scene, FileError> {
+        if let Some((count, first)) = self.not_numbers {
+            let what = counted(count, "normal");
+            let how = "computed from the faces instead";
+            self.warnings.insert(0, format!("{what} without numbers, first in {first}: {how}"));
+        }
         if self.too_long > 0 {
             self.warnings.push(format!(
                 "{} with a notch and more than {MAX_CORNERS} corners: the notch is filled",

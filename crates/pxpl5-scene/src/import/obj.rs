@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3};
 use pxpl5_sim::parameters::FileError;
 
 use super::Source;
-use super::model::{Model, Places, Vertices, counted, direction, push_with_slow_growth};
-use super::source::{excerpt, is_not_a_number, text};
+use super::model::{Model, Places, Vertices, push_with_slow_growth};
+use super::source::{excerpt, text};
 use crate::config::DEFAULT_COLOUR;
 use crate::error::FilePlace;
 
@@ -30,8 +30,6 @@ struct Reader<'a> {
     /// Number of points up to the current line. Negative indices count back from this number.
     points: usize,
     normals: usize,
-    /// Number of normals in the file that are NaN, and the position of the first such normal.
-    not_numbers: Option<(usize, FilePlace)>,
     /// Smoothing group that the last `s` statement has set, with the number that corners store for the group. `None`
     /// for flat faces.
     smoothing: Option<u32>,
@@ -124,25 +122,12 @@ impl<'a> Reader<'a> {
         model.places.reserve_exact(counts.points);
         model.normals.reserve_exact(counts.normals);
         model.triangles.reserve_exact(counts.triangles);
-        Ok(Self {
-            source,
-            counts,
-            points: 0,
-            normals: 0,
-            not_numbers: None,
-            smoothing: None,
-            vertices: Vertices::default(),
-            model,
-        })
+        Ok(Self { source, counts, points: 0, normals: 0, smoothing: None, vertices: Vertices::default(), model })
     }
 
     fn finished(self) -> Model {
         let mut model = self.model;
         model.corners.shrink_to_fit();
-        if let Some((count, first)) = self.not_numbers {
-            let what = counted(count, "normal");
-            model.warnings.push(format!("{what} without numbers, first in {first}: computed from the faces instead"));
-        }
         if self.counts.has_materials && model.colours.is_empty() {
             model.warnings.push("colours of materials (usemtl) are not read: faces have one colour".to_owned());
         }
@@ -158,8 +143,8 @@ impl<'a> Reader<'a> {
                 self.colour(at, words)
             }
             Some(b"vn") => {
-                let normal = self.normal(at, words)?;
-                self.model.normals.push(normal);
+                let normal = self.vector(at, &mut words)?;
+                self.model.push_normal(at, DVec3::from_array(normal));
                 Ok(())
             }
             _ => Ok(()),
@@ -218,26 +203,9 @@ impl<'a> Reader<'a> {
     fn vector<'w>(&self, at: FilePlace, words: &mut impl Iterator<Item = &'w [u8]>) -> Result<[f64; 3], FileError> {
         let mut v = [0.0; 3];
         for (x, axis) in v.iter_mut().zip(["x", "y", "z"]) {
-            *x = self.number(at, axis, words.next().unwrap_or_default())?;
+            *x = self.source.number(at, axis, words.next().unwrap_or_default())?;
         }
         Ok(v)
-    }
-
-    fn number(&self, at: FilePlace, what: &str, word: &[u8]) -> Result<f64, FileError> {
-        match text(word) {
-            word if is_not_a_number(word) => Ok(f64::NAN),
-            word => word.parse().map_err(|_| self.source.syntax(at, format!("a number for {what}"), excerpt(word))),
-        }
-    }
-
-    /// Reads the direction of a normal. NaN gives a zero vector. The normal is then computed as if the file had none.
-    fn normal<'w>(&mut self, at: FilePlace, mut words: impl Iterator<Item = &'w [u8]>) -> Result<Vec3, FileError> {
-        let normal = DVec3::from_array(self.vector(at, &mut words)?);
-        if normal.is_finite() {
-            return Ok(direction(normal));
-        }
-        self.not_numbers.get_or_insert((0, at)).0 += 1;
-        Ok(Vec3::ZERO)
     }
 
     /// Reads the colour that may follow the coordinates of a point. A single number after the coordinates is a weight
@@ -250,7 +218,7 @@ impl<'a> Reader<'a> {
                 let full = if self.counts.brightest > 1.0 && !self.counts.has_fractions { 1.0 } else { 255.0 };
                 let mut colour = [0; 3];
                 for (part, (name, word)) in colour.iter_mut().zip([("red", red), ("green", green), ("blue", blue)]) {
-                    *part = (self.number(at, name, word)? * full + 0.5) as u8;
+                    *part = (self.source.number(at, name, word)? * full + 0.5) as u8;
                 }
                 colour
             }

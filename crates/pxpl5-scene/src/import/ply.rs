@@ -7,7 +7,7 @@ use pxpl5_sim::parameters::FileError;
 use std::io::{Cursor, ErrorKind};
 use std::str::{FromStr, SplitAsciiWhitespace};
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
@@ -15,7 +15,7 @@ use ply_rs_bw::ply::{
 
 use self::row::{FaceRow, Skipped, VertexRow, has_colours};
 use super::Source;
-use super::model::{Detail, Model, Places, Vertices, counted, direction, push_with_slow_growth};
+use super::model::{Detail, Model, Places, Vertices, push_with_slow_growth};
 use super::source::{MARK, excerpt, is_not_a_number, text};
 use crate::error::FilePlace;
 
@@ -53,7 +53,9 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, FileError> {
             _ => rows.strips(element, &mut mesh)?,
         }
     }
-    rows.add_warnings(&mut mesh);
+    if rows.has_both_colours {
+        mesh.warnings.push("vertices and faces have colours: those of the vertices are drawn".to_owned());
+    }
     Ok(mesh)
 }
 
@@ -69,8 +71,6 @@ struct Rows<'a> {
     /// Greatest allowed length of a list, computed from the number of vertices in the file. No valid face or strip of
     /// these vertices needs a longer list.
     longest_list: usize,
-    /// Number of normals in the file that are NaN, and the position of the first such normal.
-    not_numbers: Option<(usize, FilePlace)>,
     /// True if the file has colours of vertices and of faces. The colours of faces are then ignored.
     has_both_colours: bool,
     coloured: Vertices,
@@ -156,7 +156,6 @@ impl<'a> Rows<'a> {
             line,
             text: "",
             longest_list: LIST,
-            not_numbers: None,
             has_both_colours: false,
             coloured: Vertices::default(),
         })
@@ -294,11 +293,7 @@ impl<'a> Rows<'a> {
             let (at, row) = self.next::<VertexRow>(element)?;
             mesh.places.push(self.source.coordinates(at, row.position)?.into());
             if has_normals {
-                let normal = DVec3::from_array(row.normal);
-                if !normal.is_finite() {
-                    self.not_numbers.get_or_insert((0, at)).0 += 1;
-                }
-                mesh.normals.push(if normal.is_finite() { direction(normal) } else { Vec3::ZERO });
+                mesh.push_normal(at, DVec3::from_array(row.normal));
             }
             if has_colours {
                 mesh.colours.push(row.colour());
@@ -349,16 +344,6 @@ impl<'a> Rows<'a> {
         // A point becomes one vertex for each colour of its faces.
         mesh.detail = Detail::Colour;
         Ok(self.coloured.of(&mut mesh.corners, (point, u32::from_le_bytes([red, green, blue, 0]))))
-    }
-
-    fn add_warnings(&self, mesh: &mut Model) {
-        if let Some((count, first)) = self.not_numbers {
-            let what = counted(count, "normal");
-            mesh.warnings.push(format!("{what} without numbers, first in {first}: computed from the faces instead"));
-        }
-        if self.has_both_colours {
-            mesh.warnings.push("vertices and faces have colours: those of the vertices are drawn".to_owned());
-        }
     }
 
     fn corner(&self, at: FilePlace, row: &FaceRow, n: usize, mesh: &Model) -> Result<u32, FileError> {

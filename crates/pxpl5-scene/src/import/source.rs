@@ -52,6 +52,14 @@ impl<'a> Source<'a> {
         self.error(FileErrorKind::Syntax, part, expected, found)
     }
 
+    /// Parses a number. `what` describes the number in errors.
+    pub(crate) fn number(&self, at: FilePlace, what: &str, word: &[u8]) -> Result<f64, FileError> {
+        match text(word) {
+            word if is_not_a_number(word) => Ok(f64::NAN),
+            word => word.parse().map_err(|_| self.syntax(at, format!("a number for {what}"), excerpt(word))),
+        }
+    }
+
     /// Returns the vector if all its coordinates are finite and not larger than the limit for imported models.
     /// Otherwise returns an error.
     pub(crate) fn coordinates(&self, at: FilePlace, v: [f64; 3]) -> Result<[f64; 3], FileError> {

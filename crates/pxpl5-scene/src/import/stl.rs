@@ -8,7 +8,7 @@ use pxpl5_sim::parameters::FileError;
 
 use super::Source;
 use super::model::{Model, Places, counted, push_with_slow_growth};
-use super::source::{MARK, excerpt, is_not_a_number, text, without_padding};
+use super::source::{MARK, excerpt, without_padding};
 use crate::error::FilePlace;
 
 /// Number of bytes before the first triangle of a binary file: a header of 80 bytes and the number of triangles.
@@ -200,15 +200,8 @@ fn read_text(source: &Source<'_>) -> Result<Model, FileError> {
 fn vertex(source: &Source<'_>, words: &mut Words<'_>) -> Result<[f64; 3], FileError> {
     let mut place = [0.0; 3];
     for (number, axis) in place.iter_mut().zip(["x", "y", "z"]) {
-        let word = text(words.next());
-        *number = match word.parse() {
-            _ if is_not_a_number(word) => f64::NAN,
-            Ok(number) => number,
-            Err(_) => {
-                let at = FilePlace::Line(words.line);
-                return Err(source.syntax(at, format!("a number for {axis}"), excerpt(word)));
-            }
-        };
+        let word = words.next();
+        *number = source.number(FilePlace::Line(words.line), axis, word)?;
     }
     Ok(place)
 }

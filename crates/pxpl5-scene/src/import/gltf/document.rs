@@ -117,41 +117,6 @@ pub(super) struct Attributes {
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Material {
-    pbr_metallic_roughness: Option<MetallicRoughness>,
-    extensions: Option<MaterialExtensions>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct MetallicRoughness {
-    base_color_factor: Option<[f64; 4]>,
-}
-
-#[derive(Deserialize)]
-struct MaterialExtensions {
-    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
-    specular_glossiness: Option<SpecularGlossiness>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct SpecularGlossiness {
-    diffuse_factor: Option<[f64; 4]>,
-}
-
-impl Material {
-    /// Returns the base colour in linear light. It is white if the material does not state it.
-    pub(super) fn base_colour(self) -> [f64; 3] {
-        let base = self.pbr_metallic_roughness.and_then(|pbr| pbr.base_color_factor);
-        let diffuse = || self.extensions?.specular_glossiness?.diffuse_factor;
-        let [red, green, blue, _] = base.or_else(diffuse).unwrap_or([1.0; 4]);
-        [red, green, blue]
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
 pub(super) struct Accessor {
     pub(super) buffer_view: Option<Whole>,
     #[serde(default)]

@@ -134,11 +134,11 @@ fn collect(lines: &[Line<'_>], layout: &Layout, format: &RecordingFormat) -> Res
     let axes = format.axes.unwrap_or(layout.axes);
     let mut first_ps = None;
     let mut samples: Vec<Sample> = Vec::new();
-    let mut repeated = Repeated::default();
+    let mut repeated = Lines::default();
     let mut fast = Fast::of(format.jumps);
     for line in lines.iter().filter(|line| line.number > layout.begins_after && !line.text.starts_with('#')) {
         if fast.leaves_out() && layout.has_no_pose(line) {
-            fast.add(line, "no pose".to_owned());
+            fast.lines.add(line, "no pose".to_owned());
             continue;
         }
         let (stamp_ps, pose) = layout.sample(line)?;
@@ -147,7 +147,7 @@ fn collect(lines: &[Line<'_>], layout: &Layout, format: &RecordingFormat) -> Res
         // Public ground truth files contain pairs of samples with one time stamp: the tracker reported twice within one
         // tick of its clock.
         if samples.last().is_some_and(|(before_ps, _)| *before_ps == t_ps) {
-            repeated.add(line.number);
+            repeated.add(line, String::new());
             continue;
         }
         let sample = (t_ps, axes.convert(pose));
@@ -155,56 +155,50 @@ fn collect(lines: &[Line<'_>], layout: &Layout, format: &RecordingFormat) -> Res
             samples.push(sample);
         }
     }
-    let warnings = repeated.warning().into_iter().chain(fast.warning(samples.len())).collect();
+    let warnings = repeated.repeated().into_iter().chain(fast.warning(samples.len())).collect();
     if samples.is_empty() { Err(no_sample()) } else { Ok(Samples { samples, warnings }) }
 }
 
+/// Number of lines of one kind, with the number of the first line and a text about it.
 #[derive(Default)]
-struct Repeated {
+struct Lines {
     count: usize,
-    first_line: u64,
+    first: Option<(u64, String)>,
 }
 
-impl Repeated {
-    fn add(&mut self, line: u64) {
-        self.first_line = if self.count == 0 { line } else { self.first_line };
+impl Lines {
+    fn add(&mut self, line: &Line<'_>, about: String) {
         self.count += 1;
+        self.first.get_or_insert((line.number, about));
     }
 
-    fn warning(&self) -> Option<String> {
-        let Self { count, first_line } = self;
-        match count {
-            0 => None,
-            1 => Some(format!("line {first_line} repeats the time of the line before: its pose is left out")),
-            _ => Some(format!(
-                "{count} lines repeat the time of the line before, first line {first_line}: their poses are left out"
-            )),
-        }
+    /// Returns the warning about lines that repeat the time of the line before.
+    fn repeated(&self) -> Option<String> {
+        let (line, _) = self.first.as_ref()?;
+        Some(match self.count {
+            1 => format!("line {line} repeats the time of the line before: its pose is left out"),
+            count => {
+                format!("{count} lines repeat the time of the line before, first line {line}: their poses are left out")
+            }
+        })
     }
 }
 
 /// The lines in which the head moves faster than a head can.
 struct Fast {
     jumps: Jumps,
-    count: usize,
-    /// The first such line, and its speed.
-    first: Option<(u64, String)>,
+    lines: Lines,
     /// Pose of the line before, if this line was left out.
     left_out: Option<Pose>,
 }
 
 impl Fast {
     fn of(jumps: Jumps) -> Self {
-        Self { jumps, count: 0, first: None, left_out: None }
+        Self { jumps, lines: Lines::default(), left_out: None }
     }
 
     fn leaves_out(&self) -> bool {
         self.jumps == Jumps::LeaveOut
-    }
-
-    fn add(&mut self, line: &Line<'_>, speed: String) {
-        self.count += 1;
-        self.first.get_or_insert((line.number, speed));
     }
 
     /// Returns true if a sample becomes a part of the recording.
@@ -226,11 +220,8 @@ impl Fast {
             self.left_out = None;
             return Ok(true);
         }
-        if let Some((way, _, _, unit, per)) = fast {
-            self.add(line, format!("{:.0} {unit}", way * per / seconds));
-        } else {
-            self.count += 1;
-        }
+        let speed = fast.map(|(way, _, _, unit, per)| format!("{:.0} {unit}", way * per / seconds));
+        self.lines.add(line, speed.unwrap_or_default());
         if !self.leaves_out() {
             let too_fast = [(moved_m / seconds, "m/s"), (turned / seconds, "rad/s")]
                 .into_iter()
@@ -251,8 +242,8 @@ impl Fast {
     }
 
     fn warning(&self, kept: usize) -> Option<String> {
-        let (line, speed) = self.first.as_ref()?;
-        let count = match self.count {
+        let (line, speed) = self.lines.first.as_ref()?;
+        let count = match self.lines.count {
             1 => format!("line {line}: the head moves too fast ({speed})"),
             count => format!("{count} lines in which the head moves too fast, first line {line} ({speed})"),
         };
@@ -260,7 +251,7 @@ impl Fast {
             Jumps::LeaveOut => "left out",
             Jumps::Keep => "a head stays below 8 m/s and 2,000 deg/s; head.jumps = \"leave-out\" leaves such lines out",
         };
-        let units = if 10 * self.count > kept { "; are positions in metres and times in seconds?" } else { "" };
+        let units = if 10 * self.lines.count > kept { "; are positions in metres and times in seconds?" } else { "" };
         Some(format!("{count}: {done}{units}"))
     }
 }
