@@ -10,7 +10,6 @@ use pxpl5::{
     PictureNumber, Pipeline, Pixels, RenderingControl, Slats, TestScene, TraceHash, Viewpoint, Workstation, scene,
 };
 use pxpl5_gp::Stage;
-use pxpl5_run::SlatsLighting;
 use rayon::prelude::*;
 use std::sync::Arc;
 

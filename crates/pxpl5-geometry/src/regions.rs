@@ -53,7 +53,8 @@ impl RegionMask {
     pub fn rectangle(self, columns: u32) -> Self {
         let places = || self.iter().map(|region| (u32::from(region.0) % columns, u32::from(region.0) / columns));
         let ends = |all: Vec<u32>| Some(all.iter().min().copied()?..=all.iter().max().copied()?);
-        let [across, down] = [places().map(|place| place.0).collect(), places().map(|place| place.1).collect()].map(ends);
+        let [across, down] =
+            [places().map(|place| place.0).collect(), places().map(|place| place.1).collect()].map(ends);
         let (Some(across), Some(down)) = (across, down) else { return self };
         let all = down.flat_map(|row| across.clone().map(move |column| RegionId((row * columns + column) as u16)));
         all.fold(Self::EMPTY, |set, region| set.union(Self::only(region)))

@@ -10,9 +10,7 @@ use crate::edges::NEAR_FIELDS;
 use crate::interpretations::{ALIKE, FigureFit, Fit, Interpretations, figures as ranked_figures};
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
-use pxpl5_sim::figures::column::{
-    DETAILS, EXPERIMENT, NUMBER, PROVENANCE, PUBLISHED, SIMULATED, STATEMENT, error, four, range,
-};
+use pxpl5_sim::figures::column::{DETAILS, EXPERIMENT, NUMBER, PROVENANCE, PUBLISHED, SIMULATED, error, four, range};
 use pxpl5_sim::figures::{filled, lines, table};
 
 /// The texts of both documents.

@@ -169,7 +169,7 @@ impl Pipeline for Slats {
     fn code_use(&self) -> CodeUse {
         match (self.lighting, self.binning) {
             (SlatsLighting::Precomputed, RegionBinning::All) => CodeUse::Slats,
-            (SlatsLighting::Precomputed, RegionBinning::Touched) => CodeUse::SlatsTouched,
+            (SlatsLighting::Precomputed, _) => CodeUse::SlatsTouched,
             (SlatsLighting::OnGp, _) => CodeUse::SlatsLit,
         }
     }
