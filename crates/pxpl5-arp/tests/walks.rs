@@ -14,9 +14,14 @@ use tracking::motion::Walk;
 
 /// Settings with the cell size of the scene, a threshold of 90/512 degrees, rings of cells that double, and a cascade only
 /// with warping.
-const CELLS: WalkSettings = WalkSettings { has_cascade: false, ..five_metres(WalkSettings::CELLS) };
+const CELLS: WalkSettings = without_cascade(five_metres(WalkSettings::CELLS));
 const WARPED: WalkSettings = five_metres(WalkSettings::WARPED);
 const OBJECTS: WalkSettings = five_metres(WalkSettings::OBJECTS);
+
+const fn without_cascade(mut settings: WalkSettings) -> WalkSettings {
+    settings.has_cascade = false;
+    settings
+}
 
 const fn five_metres(settings: WalkSettings) -> WalkSettings {
     let mut settings = settings.with_cells(5.0);
