@@ -219,7 +219,6 @@ fn every_wrong_input_ends_with_exit_code_2_and_the_reason() {
             "at most 59.94, the rate of the display ntsc",
         ),
         (vec!["limit", "--scene", "mig", "--over", "gps"], "there is no key `gps`"),
-        ([&slats[..], &["mig", "--set", "hmd.horizontal_fov_deg=90"]].concat(), "did you mean `hmd."),
     ] {
         let output = folder.run(&args);
         let text = err(&output);
