@@ -179,6 +179,10 @@ impl Pipeline for Slats {
         let has_times_of_code = config.gp == GpTiming::SLATS_1994;
         let config = if has_times_of_code { config.with_times_of_code(self.code_use()) } else { config };
         let Some(code) = self.code else { return config };
+        // The fitted program of 1995 has no times of its own per pass and structure.
+        if has_times_of_code && matches!(code, Code::Of1995) {
+            return MachineConfig { gp: code.timing(), code: Some(code.version()), ..config };
+        }
         let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
         let gp = GpTiming { triangle_ns, sphere_ns, bin_entry_ns, ..config.gp };
         MachineConfig { gp, code: Some(code.version()), ..config }
