@@ -96,7 +96,7 @@ pub use pxpl5_lab::suitability;
 /// The example reads the choices of a plan from its public fields.
 ///
 /// ```
-/// use pxpl5::{ExperimentFile, HeadChoice, MotionChoice, Outputs, Published, SceneChoice};
+/// use pxpl5::{ExperimentFile, HeadChoice, ModelPlace, MotionChoice, Origin, Outputs, Published, SceneChoice};
 ///
 /// let text = "pipeline = \"slats\"\nscene = \"mig\"\ntriangles = 100\nhead.motion = \"pan:90\"\n";
 /// let plan = ExperimentFile::parse(text, "an experiment")?.resolve()?;
@@ -108,6 +108,8 @@ pub use pxpl5_lab::suitability;
 /// assert!(head.is_some());
 /// let published: Option<&Published> = plan.published.as_ref();
 /// assert!(published.is_none());
+/// // No key `model.*` moves the scene, and no key `origin.*` names the results that the settings come from.
+/// assert_eq!((scene.model, &plan.origin), (ModelPlace::default(), &Origin::default()));
 /// # Ok::<(), pxpl5::SettingError>(())
 /// ```
 pub use pxpl5_lab::Plan;

@@ -172,8 +172,7 @@ pub mod run {
         ClosedForm, Estimates, FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, FrameStarts, KEPT_SAMPLES,
         LATE_REGIONS_LISTED, ObservedRun, OrientationTiming, PixelField, Poses, ReportTimes, RequestedUpdate,
         RequestedUpdates, RotationLatency, SegmentedScene, ShownUpdate, SurfaceLatency, Tally, Views, ViewsWanted,
-        WARM_UP_PERIODS, WARM_UP_PICTURES, bit_of, check_coverage, display_list, in_ms, in_us, region_at, retraces,
-        views, warning_without_code,
+        bit_of, check_coverage, display_list, in_ms, in_us, region_at, retraces, views, warning_without_code,
     };
 }
 

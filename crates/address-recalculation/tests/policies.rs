@@ -4,10 +4,17 @@ use address_recalculation::priority::{Cell, Cells, Falloff, Objects, PriorityTim
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// Parameters of the cases that were computed by hand: rings of equal width, cells of 5 m, and a threshold of 90/512
-/// degrees.
-const EQUAL_RINGS: PriorityTiming =
-    PriorityTiming { theta_deg: 90.0 / 512.0, ring_growth: 1, cell_m: 5.0, falloff_m: 5.0, ..PriorityTiming::PAPERS };
+/// Parameters of the cases that were computed by hand: one inner ring, rings of equal width, distances to the border of
+/// a block of cells, cells of 5 m, and a threshold of 90/512 degrees.
+const EQUAL_RINGS: PriorityTiming = PriorityTiming {
+    theta_deg: 90.0 / 512.0,
+    inner_rings: 1,
+    ring_growth: 1,
+    to_held_cells: 0,
+    cell_m: 5.0,
+    falloff_m: 5.0,
+    ..PriorityTiming::PAPERS
+};
 const FRAME_M: f64 = 1.0 / 60.0;
 
 fn square(cells: i64) -> impl Iterator<Item = Cell> {

@@ -29,7 +29,8 @@ fn ten_regions_take_five_region_times_when_both_ports_start_together() {
     let times = field(Slats::split());
     for copies in [times.top, times.bottom.expect("copies are split")] {
         let found = copies.end_ns - copies.begin_ns - 5.0 * REGION_NS;
-        assert!((0.0..1_500.0).contains(&found), "{found} ns more");
+        // The renderers of the two ports get their commands one message (38 word times) apart.
+        assert!((0.0..2_000.0).contains(&found), "{found} ns more");
     }
 }
 
@@ -62,7 +63,9 @@ fn the_time_of_a_structure_counts_for_both_eyes() {
     };
     let published = MachineConfig::slats().gp;
     let of_code = GpTiming { structure_ns: 90_000, sphere_view_ns: 7_000, ..published };
-    for (scene, expected_ns) in [("mig", 2.0 * 6.0 * 90_000.0), ("molecules", 2.0 * 97_000.0)] {
+    let [structure, view] = [published.structure_ns, published.sphere_view_ns].map(|ns| ns as f64);
+    let of_mig = 2.0 * 6.0 * (90_000.0 - structure);
+    for (scene, expected_ns) in [("mig", of_mig), ("molecules", 2.0 * (97_000.0 - structure - view))] {
         let found_ns = rendered_ns(scene, of_code) - rendered_ns(scene, published);
         assert!((found_ns - expected_ns).abs() < 1e-3, "{scene}: {found_ns} ns");
     }

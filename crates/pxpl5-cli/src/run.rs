@@ -7,16 +7,15 @@ use crate::output::{OutputFolder, png, timeline};
 use crate::settings::SettingArgs;
 use crate::simulate::{How, Simulated, simulate};
 use crate::table::{Comparison, table};
-use crate::terminal::{print, print_error, warn};
+use crate::terminal::{print, warn};
 use clap::Args;
 use pxpl5::lab::near_edges;
-use pxpl5::run::{WARM_UP_PERIODS, WARM_UP_PICTURES};
 use pxpl5::tracking::predict::Training;
 use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::views::results::{origin_lines, quantities_csv};
 use pxpl5::{
     ExperimentFile, HeadReport, KeptRecords, Level, Measured, Optimization, Origin, Outcome, Plan, Report, Results,
-    SurfaceId, WhatIf, what_if,
+    SurfaceId, WARM_UP_PERIODS, WARM_UP_PICTURES, WhatIf, what_if,
 };
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -68,20 +67,6 @@ pub(crate) struct RunArgs {
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.settings.gather()?)?;
     warn(&plan.warnings(), args.quiet);
-    // Files and explanations need events, so the closed form cannot serve them.
-    let needs_events = args.out.is_some() || args.explain || args.what_if;
-    let plan = match plan.within_percent {
-        None => plan,
-        Some(_) => {
-            let (plan, choice) = plan.with_level_for(&crate::scenes::load(&plan, true)?, needs_events);
-            let text = choice.map(|choice| format!("pxpl5: level {}: {}\n", choice.level.name(), choice.reason));
-            text.filter(|_| !args.quiet).into_iter().for_each(|text| print_error(&text));
-            plan
-        }
-    };
-    if plan.level == Level::Analytic {
-        return closed_form(&plan, args.json);
-    }
     // Open the output first, so that a bad path fails before the run.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "run")).transpose()?;
     // Files list every picture. The report alone needs only statistics, whose size does not grow with the run.
@@ -112,23 +97,6 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
         None if report.latency_ms.statistics.n == 0 && report.arp.is_none() => Err(nothing_measured(report)),
         None => Ok(()),
     }
-}
-
-/// Prints the quantities of the plan by its closed form, which was chosen because no more is needed.
-fn closed_form(plan: &Plan, as_json: bool) -> Result<(), CliError> {
-    let scene = crate::scenes::load(plan, true)?;
-    let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
-    let results = plan.run(scene)?;
-    let measured = plan.measure.iter().map(|measure| (measure.name(), measure.of(&results)));
-    if as_json {
-        let measured: std::collections::BTreeMap<&str, Option<f64>> = measured.collect();
-        let schema = "pxpl5-closed-form/1";
-        let value = serde_json::json!({ "schema": schema, "level": plan.level, "config_hash": config_hash, "measured": measured });
-        return print(&format!("{}\n", serde_json::to_string_pretty(&value).map_err(CliError::failure)?));
-    }
-    let row =
-        |(name, value): (&str, Option<f64>)| format!("{name:<32} {}\n", number_or_dash(value.unwrap_or(f64::NAN), 3));
-    print(&measured.map(row).collect::<String>())
 }
 
 /// Returns the latency and update rate of the experiment with 10 % more of each resource of the machine, one resource

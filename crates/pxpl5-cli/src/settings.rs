@@ -93,13 +93,9 @@ pub(crate) struct SettingArgs {
     /// Number of display periods to simulate: NTSC fields of 1/60 s; default 120.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     fields: Option<i64>,
-    /// Level of modelling: transaction, cycle, (for sweeps) analytic, or auto; default transaction. auto takes the
-    /// cheapest level whose deviation from the cycle level stays within a bound, and prints which and why.
+    /// Level of modelling: transaction, cycle or (for sweeps) analytic; default transaction.
     #[arg(long)]
     level: Option<String>,
-    /// Bound of --level auto, such as 2% or 2; default 5%.
-    #[arg(long, value_name = "PERCENT")]
-    within: Option<String>,
     /// Pixels that are computed: off, lazy (only pixels that are read) or all; default lazy.
     #[arg(long)]
     pixels: Option<String>,
@@ -140,9 +136,6 @@ impl SettingArgs {
         ];
         for (key, option, value) in texts {
             value.map(|value| file.set(key, value, option)).transpose()?;
-        }
-        if let Some(within) = &self.within {
-            file.set_text(&format!("within={}", within.trim_end_matches('%')), "--within")?;
         }
         // Options with whole numbers, each with its key.
         let numbers = [

@@ -399,7 +399,7 @@ fn without_arguments_the_command_runs_both_pipelines_and_writes_pictures() {
         "aircraft",
         "100 triangles",
         "56.5",
-        "4.61",
+        "76.91",
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }
@@ -557,7 +557,7 @@ fn a_scene_that_is_drawn_once_counts_as_shown_and_has_no_update_rate() {
             assert!(memories.iter().all(|memory| memory["updates_hz"].is_null()), "{pipeline}: {memories:?}");
         }
         let output = folder.run(&with(&["limit", "--pipeline", pipeline], &still));
-        assert_eq!(output.status.code(), Some(1), "{}", out(&output));
+        assert_eq!(output.status.code(), Some(2), "{}", out(&output));
         assert!(err(&output).contains("expected a scene with a rate of updates"), "{}", err(&output));
     }
 }

@@ -40,7 +40,10 @@ fn times_of_the_timing_table_at_the_cycle_level_cause_a_warning() {
         let few = ["--scene", "full-screen:4", "--fields", fields, "--level", level];
         let output = folder.run(&[&["run", "--json", "--pipeline"], pipeline, &few].concat());
         let warnings = json(&output)["warnings"].as_array().cloned().unwrap_or_default();
-        assert_eq!(warnings.len(), err(&output).matches("warning").count(), "{pipeline:?}: {}", err(&output));
+        // Warnings about nearness to a retrace are not in the report, which has the latencies themselves.
+        let text = err(&output);
+        let printed = text.lines().filter(|line| line.contains("warning") && !line.contains(" field of ")).count();
+        assert_eq!(warnings.len(), printed, "{pipeline:?}: {text}");
         assert!(warnings.iter().all(|text| err(&output).contains(text.as_str().expect("text"))));
         warnings.iter().filter(|text| text.as_str().is_some_and(|text| text.contains("no i860 code"))).count()
     };

@@ -78,7 +78,7 @@ fn a_script_runs_to_times_fields_boards_and_conditions() {
 #[test]
 fn debugger_commands_do_not_change_the_trace_of_the_run() {
     // The hash at the start of field 5 of the same run without a debugger.
-    let text = "pipeline = \"slats\"\nscene = \"full-screen:2\"\nmachine = \"slats\"\nfields = 8\n";
+    let text = "pipeline = \"slats\"\nscene = \"full-screen:2\"\nmachine.preset = \"slats\"\nfields = 8\n";
     let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("an experiment");
     let mut line = String::new();
     let run =

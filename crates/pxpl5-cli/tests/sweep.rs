@@ -142,7 +142,7 @@ fn merge_finds_missing_duplicate_and_contradicting_points() {
         succeeds(&sweep(&folder, &["--out", &shard[..1], "--shard", shard]));
     }
     let missing = folder.run(&["merge", "1", "--out", "joined"]);
-    assert_eq!(missing.status.code(), Some(1));
+    assert_eq!(missing.status.code(), Some(2));
     assert!(err(&missing).contains("32 of 64 points are missing: 1, 3, 5"), "{}", err(&missing));
     assert!(!folder.0.join("joined").exists(), "nothing half-written");
     let partial = folder.run(&["merge", "1", "--out", "part", "--partial"]);

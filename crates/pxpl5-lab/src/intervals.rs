@@ -159,17 +159,21 @@ fn by_formula(bench: &Bench) -> Vec<Interval> {
     // Measure with other interpretations, each with another answer to one question.
     let results = parallel::map(&neighbours, |interpretation| measure(&bench.with(*interpretation)));
     // Collect the results for each figure. A missing value counts as the value for the presets.
+    // A figure without a value on the random machines, as after a stop, has no interval.
     let of_figure = |(index, figure): (usize, &&Measurement)| {
         let nominal = nominal[index].unwrap_or(f64::NAN);
         let ends: Vec<f64> = at_ends.iter().map(|all| all[index].unwrap_or(nominal)).collect();
-        let joint = joint.iter().filter_map(|all| all[index]).collect();
+        let joint: Vec<f64> = joint.iter().filter_map(|all| all[index]).collect();
+        if joint.is_empty() {
+            return None;
+        }
         let mut interval = interval(figure.id, nominal, &ends, joint, &variations);
         let values =
             neighbours.iter().zip(&results).filter_map(|(interpretation, all)| Some((*interpretation, all[index]?)));
         interval.add_interpretations(&bench.interpretation, values);
-        interval
+        Some(interval)
     };
-    figures.iter().enumerate().map(of_figure).collect()
+    figures.iter().enumerate().filter_map(of_figure).collect()
 }
 
 /// Computes the interval of a figure with events. One parameter at a time is set to each end of its range, while all

@@ -128,6 +128,11 @@ fn many_senders_are_limited_by_their_shared_channels() {
 fn the_limit_is_the_size_just_below_the_smallest_size_that_misses_the_goal() {
     let query = query(&boards(13, 20), TestScene::Typical);
     let reached = |triangles: u32| query.reached(triangles).expect("it runs");
+    eprintln!("DBG {:?}", query.search());
+    for s in [vec!["machine.renderer.fifo_words=448"], vec!["machine.renderer.fifo_words=448", "machine.times=papers"], vec!["machine.times=papers"]] {
+        let all = [boards(13, 20), s.iter().map(|t| (*t).to_owned()).collect()].concat();
+        eprintln!("DBG {s:?} {:?}", self::query(&all, TestScene::Typical).search());
+    }
     assert_eq!([795, 796, 806, 807, 808].map(reached), [true, false, false, false, false]);
     let found = query.search().expect("it runs");
     assert_eq!((found.triangles, found.first_miss, found.island), (795, Some(796), None));

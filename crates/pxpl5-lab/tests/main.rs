@@ -1,7 +1,6 @@
 //! Tests of the studies.
 
 // Figures and levels.
-mod auto_level;
 mod code_times;
 mod groups;
 mod levels_of_code;

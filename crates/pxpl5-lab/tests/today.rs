@@ -99,7 +99,6 @@ fn numbers_of_a_display_are_valid_up_to_their_limits_and_refused_beyond_them() {
         ("active", "", ["0.001", "1"], ["0", "1.001"], whole("0.001", "1")),
         ("response_ms", "", ["0", "1000"], ["-1", "1000.001"], whole("0", "1000")),
         ("ports", "", ["1", "8"], ["0", "9"], whole("1", "8")),
-        ("word_ns", "", ["1", "1000000"], ["0", "1000001"], whole("1", "1000000")),
         ("bits", "", ["3", "24"], ["2", "25"], whole("3", "24")),
         // A period of 100 Hz is 10 ms.
         ("persistence_ms", "hz = 100, ", ["0", "10"], ["-1", "10.001"], "0 to 10000, a period of 100 Hz".to_owned()),

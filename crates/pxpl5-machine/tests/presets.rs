@@ -57,7 +57,8 @@ fn the_times_of_i860_code_depend_on_the_chosen_version_of_the_code() {
     let slats = |preset: &str| MachineConfig::preset(preset).expect("it is listed").with_times_of_papers();
     assert_eq!(compiled.clone().with_times_of_code(CodeUse::Slats), compiled);
     assert_eq!(slats("slats").gp, GpTiming::SLATS_FITTED);
-    assert_eq!(slats("slats-optimised").gp.triangle_ns, 10_000);
+    // I3D95 expects a third of the time for code that fits in the instruction cache.
+    assert_eq!(slats("slats-optimised").gp.triangle_ns, GpTiming::SLATS_FITTED.triangle_ns / 3);
     assert_eq!(slats("slats-1995"), MachineConfig::preset("slats-1995").expect("it is listed"));
     let without = MachineConfig { code: None, ..compiled.clone() };
     assert_eq!(without.with_times_of_code(CodeUse::Slats).gp, compiled.with_times_of_code(CodeUse::Slats).gp);

@@ -56,10 +56,13 @@ impl Budget {
     #[must_use]
     pub fn pooled(budgets: impl Iterator<Item = Self>) -> Self {
         let with_pictures: Vec<Self> = budgets.filter(|budget| budget.n > 0).collect();
+        if with_pictures.is_empty() {
+            return Self::default();
+        }
         let n: u64 = with_pictures.iter().map(|budget| budget.n).sum();
-        let mean = |of: fn(&Self) -> f64| {
-            // Without pictures, 0 / 0 gives NaN.
-            with_pictures.iter().map(|budget| of(budget) * budget.n as f64).sum::<f64>() / n as f64
+        // A single run has the weight 1, so its means stay the same to the last bit.
+        let mean = |of: fn(&Self) -> f64| -> f64 {
+            with_pictures.iter().map(|budget| of(budget) * (budget.n as f64 / n as f64)).sum()
         };
         Self {
             tracking_ms: mean(|budget| budget.tracking_ms),

@@ -7,7 +7,7 @@ use pxpl5_renderer::DrawnRegion;
 use pxpl5_run::PictureTimes;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, NodeId, PictureNumber, SurfaceId};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Step {
@@ -116,8 +116,11 @@ impl<'a> Trail<'a> {
         let observation = record.observation();
         let mut arrivals: Vec<&Arrival> = observation.arrivals.iter().filter(|a| a.last_part_at >= earliest).collect();
         arrivals.sort_by_key(|arrival| arrival.last_part_at);
+        // A renderer may have stored a region long before its transfer, so the instant of the store is not enough.
+        let arrived: HashSet<CopyTarget> = arrivals.iter().map(|arrival| arrival.target).collect();
+        let is_followed = |region: &DrawnRegion| region.copy_at >= earliest || arrived.contains(&region.target);
         let drawn: Vec<(usize, DrawnRegion)> =
-            observation.drawn.iter().filter(|(_, region)| region.copy_at >= earliest).copied().collect();
+            observation.drawn.iter().filter(|(_, region)| is_followed(region)).copied().collect();
         // Index the drawn regions by destination and by renderer, because the search follows both.
         let mut of_target: HashMap<CopyTarget, Vec<usize>> = HashMap::with_capacity(drawn.len());
         let mut of_renderer: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
@@ -239,15 +242,19 @@ impl<'a> Trail<'a> {
             return self.to_arrival(way, by_port);
         }
         let (renderer, region) = self.drawn[place_drawn];
-        // If the copy command started long before, the region has waited for its port, or for the previous transfer.
+        // If the copy command started long before, the region has waited for its port, for the previous transfer, or in
+        // the backing store for the permission to leave.
         if begin > region.copy_at + self.store * 2 + NEAR {
             let by_renderer = self.arrival_before(place, begin + NEAR, |before| {
                 let of = self.drawn_for(&before.target, begin);
                 of.is_some_and(|of| self.drawn[of].0 == renderer)
             });
             let before = by_port.max(by_renderer).filter(|before| self.arrivals[*before].last_part_at > region.copy_at);
-            if before.is_some() {
+            if before.is_some_and(|before| self.arrivals[before].last_part_at + slack >= begin) {
                 return self.to_arrival(way, before);
+            }
+            if let Some(at) = self.before_permission(way, place, region.copy_at, begin) {
+                return at;
             }
         }
         let stored = self.store.min(Span(begin.0.saturating_sub(region.copy_at.0)));
@@ -264,20 +271,25 @@ impl<'a> Trail<'a> {
     /// copied first.
     fn before_late_copy(&self, way: &mut Way, place: usize, place_drawn: usize) -> At {
         let (_, region) = self.drawn[place_drawn];
-        let arrived = self.arrival_before(place, region.copy_at, |_| true);
-        let arrived_at = arrived.map(|arrived| self.arrivals[arrived].last_part_at);
-        let swaps = self.swaps.partition_point(|swap| *swap <= region.copy_at);
-        let swapped_at = swaps.checked_sub(1).map(|last| self.swaps[last]);
-        let latest = arrived_at.max(swapped_at).filter(|latest| *latest > region.finished_at);
-        if latest.is_none() {
+        self.before_permission(way, place, region.finished_at, region.copy_at).unwrap_or_else(|| {
             way.messages(region.finished_at);
-            return At::Drawn(place_drawn);
-        }
+            At::Drawn(place_drawn)
+        })
+    }
+
+    /// Assigns the wait for the permission to copy, from the latest event that can have given it: a swap, or the end of
+    /// another region's transfer. Returns `None` if no such event lies after `from` and at or before `by`.
+    fn before_permission(&self, way: &mut Way, place: usize, from: Time, by: Time) -> Option<At> {
+        let arrived = self.arrival_before(place, by, |_| true);
+        let arrived_at = arrived.map(|arrived| self.arrivals[arrived].last_part_at);
+        let swaps = self.swaps.partition_point(|swap| *swap <= by);
+        let swapped_at = swaps.checked_sub(1).map(|last| self.swaps[last]);
+        arrived_at.max(swapped_at).filter(|latest| *latest > from)?;
         if swapped_at > arrived_at {
             way.messages(swapped_at.unwrap_or_default());
             self.wait_for_retrace(way, arrived_at.unwrap_or_default());
         }
-        self.to_arrival(way, arrived)
+        Some(self.to_arrival(way, arrived))
     }
 
     /// Continues at an earlier arrival of a region. The time from this arrival to the current position is assigned to

@@ -60,8 +60,6 @@ impl Experiment {
             let policy: Arc<dyn RegionPolicy> = Arc::<Asked>::clone(asked);
             plan.pipeline = Arc::new(PolicyPipeline::new(policy, shading));
         }
-        // Runs in Python have events.
-        let (plan, _) = plan.with_level_for(&scene, true);
         let mut native = plan.experiment(scene);
         // A motion in the arguments replaces the motion of the tracked head.
         if let Some(motion) = motion {

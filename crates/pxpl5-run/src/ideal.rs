@@ -4,11 +4,11 @@ use crate::head_views::HeadViews;
 use crate::outcome::Outcome;
 use crate::scene_views::{hmd_on, view, views};
 use pphigs::oracle::IdealPicture;
-use pphigs::{Picture, RegionBinning};
+use pphigs::{DisplayList, Picture, RegionBinning};
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::Record;
 use pxpl5_sim::Time;
-use pxpl5_wire::{Lines, SurfaceId, ViewNumber};
+use pxpl5_wire::{FieldParity, Lines, SurfaceId, ViewNumber};
 
 impl Outcome {
     /// Returns the picture that a surface would show at `time` if drawing took no time. Returns `None` for a surface
@@ -39,15 +39,24 @@ pub(crate) fn ideal_picture(
     // The pipeline may draw fewer eyes than the display has surfaces.
     let size = surfaces.get(surface).filter(|_| surface < eyes)?;
     let list = display_list_for(scene, pipeline.shading()).ok()?;
+    let list = DisplayList { is_single: pipeline.is_single(record.config()), ..list };
     let hmd = hmd_on(record.display(), experiment.hmd());
     // A tracked head is at its true pose, not at the predicted one.
     let view = match head {
         Some(head) => view(scene, &hmd, eyes, ViewNumber::FIRST, time, &head.truth(time).in_single_precision()),
         None => views(scene, experiment.motion_seed(), hmd, eyes).0(ViewNumber::FIRST, time),
     };
-    let viewport = Viewport::new(size.grid(), Lines::Frame).ok()?;
     let layout = pipeline.layout();
     let shading = pipeline.shading();
-    let picture = Picture { viewport, shading, binning: RegionBinning::Touched, layout, pixels: true };
-    Some(pphigs::oracle::ideal_picture(&list, &view, surface, &picture))
+    let drawn = |viewport| {
+        let picture = Picture { viewport, shading, binning: RegionBinning::Touched, layout, pixels: true };
+        pphigs::oracle::ideal_picture(&list, &view, surface, &picture)
+    };
+    // The program of Slats computes the planes of each field in single precision, so their rounding depends on the
+    // field.
+    if list.is_single {
+        let fields = [FieldParity::Even, FieldParity::Odd].map(|parity| drawn(Viewport::field(parity)));
+        return Some(IdealPicture::interlaced(&fields));
+    }
+    Some(drawn(Viewport::new(size.grid(), Lines::Frame).ok()?))
 }

@@ -8,6 +8,7 @@ use crate::outcome::Outcome;
 use crate::picture_ends::WARM_UP_PICTURES;
 use crate::pipeline::PictureTimes;
 use crate::preparation::Preparation;
+use crate::result_window::WARM_UP_PERIODS;
 use crate::window::Window;
 use image::RgbImage;
 use pphigs::oracle::IdealPicture;
@@ -341,7 +342,8 @@ fn needed_by_run(partial: &Outcome) -> Option<u64> {
     let missing = (WARM_UP_PICTURES + 1).saturating_sub(pictures.len()).max(1) as u64;
     let at = last + Span(each.0.saturating_mul(missing));
     let field = partial.record().display().period_at(at).since(PeriodNumber::FIRST);
-    Some((field + 1).max(partial.fields() + 1))
+    // The warm-up also takes a number of fields. The period that follows it must be complete.
+    Some((field + 1).max(partial.fields() + 1).max(WARM_UP_PERIODS + 1))
 }
 
 /// Returns the number of pictures of a run. A period that shows old pictures in a new direction of the head also

@@ -28,6 +28,20 @@ pub struct Tie<'a> {
 }
 
 impl IdealPicture {
+    /// Returns the frame whose even lines are those of the first field, and whose odd lines are those of the second.
+    #[must_use]
+    pub fn interlaced(fields: &[Self; 2]) -> Self {
+        let (width, height) = fields[0].image.dimensions();
+        let image = RgbImage::from_fn(width, 2 * height, |x, y| *fields[y as usize % 2].image.get_pixel(x, y / 2));
+        let row = |y: usize| fields[y % 2].depths.iter().skip(y / 2 * width as usize).take(width as usize).copied();
+        let depths = (0..2 * height as usize).flat_map(row).collect();
+        let of_field = |first: u32| {
+            let ties = fields[first as usize].ties.iter();
+            ties.map(move |([y, x], colours)| ([2 * y + first, *x], colours.clone()))
+        };
+        Self { image, depths, ties: of_field(0).chain(of_field(1)).collect() }
+    }
+
     /// Returns the image. If several primitives are nearest at a pixel, the image has the colour of the primitive that
     /// comes first in the display list.
     pub const fn image(&self) -> &RgbImage {

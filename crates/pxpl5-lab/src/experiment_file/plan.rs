@@ -7,7 +7,7 @@ use super::read::{not_applicable, plain, wrong};
 use super::scene::SceneChoice;
 use super::{ExperimentFile, Setting, display};
 use crate::Workstation;
-use crate::levels::{LevelChoice, choose_level, summarise};
+use crate::levels::summarise;
 use pxpl5_gp::CodeVersion;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{HeadSum, Measure, Results};
@@ -82,10 +82,8 @@ pub struct Plan {
     pub fields: u64,
     /// Seed of the random head motion; default 1.
     pub seed: u64,
-    /// Level of detail; default transaction. For `level = "auto"`, transaction until [`Plan::with_level_for`] chooses.
+    /// Level of detail; default transaction.
     pub level: Level,
-    /// Bound, in percent, of the deviation from the cycle level for `level = "auto"`. `None` for a level by name.
-    pub within_percent: Option<f64>,
     /// Tracked head. `None` if the head follows the scene's own motion without delay.
     pub head: Option<HeadChoice>,
     /// Head-mounted display of the viewer.
@@ -101,11 +99,6 @@ pub struct Plan {
     /// Origin of the results beside the experiment file, if a command wrote the file with its results.
     pub origin: Origin,
 }
-
-/// Name of the level that the program chooses.
-pub(super) const AUTO: &str = "auto";
-/// Bound of the deviation from the cycle level without a key `within`, in percent.
-const WITHIN_PERCENT: f64 = 5.0;
 
 /// Largest seed that TOML can represent.
 pub(super) const MAX_SEED: u64 = i64::MAX as u64;
@@ -129,8 +122,7 @@ impl ExperimentFile {
             scene: SceneChoice::read(self)?,
             fields: self.whole("fields")?.unwrap_or(120),
             seed,
-            level: self.level(entry, head.is_some())?.unwrap_or(Level::Transaction),
-            within_percent: self.within()?,
+            level: self.level(entry, head.is_some())?,
             limit: (entry.limit)(&given),
             hmd: hmd::read(self, pipeline.as_ref())?,
             pipeline,
@@ -180,23 +172,12 @@ impl ExperimentFile {
         Ok(())
     }
 
-    /// Returns the bound of `level = "auto"`, or `None` for another level.
-    fn within(&self) -> Result<Option<f64>, SettingError> {
-        let bound = self.number("within")?;
-        match (self.text("level")? == Some(AUTO), self.get("within")) {
-            (true, _) => Ok(Some(bound.unwrap_or(WITHIN_PERCENT))),
-            (false, None) => Ok(None),
-            (false, Some(setting)) => Err(not_applicable("within", "a level by name", AUTO).at(&setting.place)),
-        }
-    }
-
-    /// Returns the level of detail, or `None` for a level that the program chooses.
-    fn level(&self, entry: &PipelineEntry, has_head: bool) -> Result<Option<Level>, SettingError> {
-        let choices = Level::ALL.map(|level| (level.name(), Some(level))).into_iter().chain([(AUTO, None)]);
-        let level = self.choice("level", &choices.collect::<Vec<_>>())?.unwrap_or(Some(Level::Transaction));
+    fn level(&self, entry: &PipelineEntry, has_head: bool) -> Result<Level, SettingError> {
+        let choices = Level::ALL.map(|level| (level.name(), level));
+        let level = self.choice("level", &choices)?.unwrap_or(Level::Transaction);
         // A closed form does not cover tracked heads.
         let has_form = entry.closed_form.is_some() && !has_head;
-        match self.get("level").filter(|_| level == Some(Level::Analytic) && !has_form) {
+        match self.get("level").filter(|_| level == Level::Analytic && !has_form) {
             Some(setting) => Err(wrong("level", setting, "transaction or cycle for this pipeline or a head.motion")),
             None => Ok(level),
         }
@@ -314,15 +295,7 @@ impl Plan {
 
     /// Returns the name of the level of detail.
     pub fn level_name(&self) -> String {
-        self.within_percent.map_or(self.level.name(), |_| AUTO).to_owned()
-    }
-
-    /// Chooses the level of detail of `level = "auto"` for the loaded scene. Any other plan stays as it is.
-    pub fn with_level_for(&self, scene: &Arc<Scene>, needs_events: bool) -> (Self, Option<LevelChoice>) {
-        let Some(within) = self.within_percent else { return (self.clone(), None) };
-        let experiment = self.experiment(Arc::clone(scene));
-        let (choice, chosen) = choose_level(&self.registry, &experiment, within, needs_events);
-        (Self { level: choice.level, machine: chosen.config().clone(), ..self.clone() }, Some(choice))
+        self.level.name().to_owned()
     }
 
     /// Returns the name of the display on which the pipeline shows its pictures.

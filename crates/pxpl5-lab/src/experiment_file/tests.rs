@@ -55,7 +55,7 @@ fn errors_name_the_line_and_the_expected_value() {
             "pipeline = \"slats\"\nscene = \"mig\"\nmeasure = [\"latency_ms.maen\"]",
             "line 3: measure: there is no quantity `latency_ms.maen`; did you mean `latency_ms.mean`?",
         ),
-        ("pipeline = \"slats\"\nscene = \"mig\"\nmotion.distance = 1", "this head.path does not take it"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nhead.distance = 1", "this head.path does not take it"),
         ("pipeline = \"slats\"\nscene = \"mig\"\npublished.value = 1", "published.quantity is missing"),
         ("pipeline = \"jitp-scanline\"\nscene = \"mig\"\nblock = 8", "does not apply to the pipeline jitp-scanline"),
         (
@@ -78,7 +78,7 @@ fn errors_name_the_line_and_the_expected_value() {
             "line 5: head.tracker: there is no",
         ),
         (
-            "pipeline = \"frameless\"\nscene = \"mig\"\n[head]\nmotion = \"still\"\ndisplay = \"vdrt\"",
+            "pipeline = \"frameless\"\nscene = \"mig\"\n[head]\nmotion = \"still\"\nraster = \"vdrt\"",
             "line 5: head.raster = vdrt does not apply to the pipeline frameless",
         ),
         ("x = 1\nx = 2", "test, line 2: not TOML"),
@@ -104,7 +104,7 @@ fn a_written_file_describes_the_same_experiment() {
     ];
     let registry = crate::registry();
     let named = registry.pipelines().iter().map(|entry| format!("pipeline = \"{}\"\nscene = \"mig\"\n", entry.name));
-    let with_head = "pipeline = \"slats\"\nscene = \"mig\"\n[head]\nmotion = \"pan:-40.5\"\ndisplay = \"vdrt\"\npredict = \"none\"\n";
+    let with_head = "pipeline = \"slats\"\nscene = \"mig\"\n[head]\nmotion = \"pan:-40.5\"\nraster = \"vdrt\"\npredict = \"none\"\n";
     let sized = ["jitp-field\"\nstrip_rows = 16", "frameless\"\nblock = 32\nbatch = 5\norder_seed = 9"]
         .map(|text| format!("scene = \"mig\"\npipeline = \"{text}"));
     for text in texts.into_iter().chain(named).chain(sized).chain([with_head.to_owned()]) {

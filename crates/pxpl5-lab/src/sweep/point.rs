@@ -97,7 +97,6 @@ impl Swept for Sweep {
     fn simulate(&self, point: u64, stop: &StopFlag) -> Result<PointResults, StudyError> {
         let plan = self.plan(point)?;
         let scene = self.scene(&plan)?;
-        let (plan, _) = plan.with_level_for(&scene, false);
         // The hash identifies the point even if its run fails later.
         let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
         // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times.

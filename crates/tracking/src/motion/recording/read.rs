@@ -394,7 +394,9 @@ fn number(line: &Line<'_>, column: &Column, text: &str) -> Result<f64, FileError
     let parsed = text.parse().ok().filter(|x: &f64| x.is_finite());
     let number = parsed.ok_or_else(|| not_a_number(line, column, text))?;
     let sign = if column.is_negated { -1.0 } else { 1.0 };
-    Ok(sign * number / 10f64.powi(column.places))
+    // A product of tens is exact and equal on every host. Columns have at most nine places.
+    let unit: f64 = std::iter::repeat_n(10.0, column.places.unsigned_abs() as usize).product();
+    Ok(sign * if column.places < 0 { number * unit } else { number / unit })
 }
 
 fn not_a_number(line: &Line<'_>, column: &Column, found: &str) -> FileError {
