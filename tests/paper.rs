@@ -6,8 +6,19 @@ use serde_json::Value;
 const MAX_WORDS: usize = 1_200;
 
 /// Phrases with digits that are names, or sizes that a paper prints. No command produces them.
-const NAMES: [&str; 9] =
-    ["Pixel-Planes 5", "i860", "`pxpl5", "128 x 128", "gem5", "208 bits", "Figure 1", "Figure 2", "Ramulator2"];
+const NAMES: [&str; 11] = [
+    "Pixel-Planes 5",
+    "i860",
+    "`pxpl5",
+    "128 x 128",
+    "gem5",
+    "208 bits",
+    "Figure 1",
+    "Figure 2",
+    "Ramulator2",
+    "Slats of 1994",
+    "its code of 1995",
+];
 
 fn read(name: &str) -> String {
     let path = format!("{}/{name}", env!("CARGO_MANIFEST_DIR"));

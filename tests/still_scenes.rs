@@ -35,8 +35,9 @@ const SIZES_OF_SLATS: [(usize, usize); 4] = [(1, 5), (7, 5), (13, 20), (50, 20)]
 /// strip (scanline, 21.7 us a primitive) or interpolates them (dual, 7 us). It has a field of 16.7 ms for the
 /// transforms. One renderer has 508 us to draw and copy five regions. This leaves 230 us for triangles of 6.45 us:
 /// seven for each column. An overloaded Slats that takes an even number of fields for each picture would always draw
-/// the same lines. A single processor of Slats takes 2 x 27.4 us for each triangle: 640 take 35 ms, which with the rest of a
-/// picture's work is more than two fields and less than three. Rendering Control with one slave has 8 MB for all commands.
+/// the same lines. A single processor of Slats draws two pictures of 250 triangles in three fields, so it draws the
+/// lines of both fields; from 300 triangles on, it begins every second field. Rendering Control with one slave has 8 MB
+/// for all commands.
 fn load(pipeline: &str, (gps, renderers): (usize, usize), covers_the_screen: bool) -> (usize, u64) {
     let slaves = gps.saturating_sub(1);
     let by_renderers = match renderers {
@@ -47,7 +48,7 @@ fn load(pipeline: &str, (gps, renderers): (usize, usize), covers_the_screen: boo
     match pipeline {
         "rendering-control" if slaves == 1 => (10_000, 150),
         "rendering-control" => (20_000, 60),
-        "slats" if gps == 1 => (640, 40),
+        "slats" if gps == 1 => (250, 40),
         "slats" => (417, 40),
         "frameless" => (450, if slaves == 1 { 90 } else { 30 }),
         "jitp-field" | "jitp-field-racing" => (450.min(by_renderers), 12),

@@ -88,9 +88,11 @@ impl SlatsModel {
     pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, SettingError> {
         // Each renderer holds as many regions as its memory layout permits.
         slats::Binding::new(config.n_renderers, program.layout().plan().contexts, program.copy)?;
-        if program.code.is_some() {
-            return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
-        }
+        // A variant of the program changes the machine, as in a run with events. The usual program changes nothing, and
+        // sweeps make many models of it.
+        let usual = Slats { copy: program.copy, ..Slats::whole() };
+        let adapted = (program != usual).then(|| program.adapt(config.clone()));
+        let config = adapted.as_ref().unwrap_or(config);
         // Split copies need channels that messages to renderers leave free.
         let ring = &config.ring;
         let to_renderers = ring.fifo_channels.min(ring.source_channels.saturating_mul(config.n_gps as u64));

@@ -76,7 +76,9 @@ fn a_tracker_parameter_outside_its_range_causes_a_warning() {
     );
     assert_eq!(json(&output)["warnings"].as_array().map(Vec::len), Some(1));
     let of_others = ["--head", "still", "--tracker", "fastrak"];
-    assert_eq!(err(&folder.run(&with(&RUN, &of_others))), "");
+    // A busy host may print progress.
+    let message = err(&folder.run(&with(&RUN, &of_others)));
+    assert!(!message.contains("warning"), "{message}");
 }
 
 #[cfg(unix)]

@@ -2,9 +2,9 @@
 
 #[allow(dead_code, unused_imports, reason = "the example gp_timing uses the rest")]
 #[path = "../../../examples/code_times/mod.rs"]
-mod code_times;
+mod measured;
 
-use code_times::{CodeTimes, code_times};
+use measured::{CodeTimes, code_times};
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming};
 use rayon::prelude::*;
 

@@ -121,21 +121,18 @@ fn many_senders_are_limited_by_their_shared_channels() {
     assert!((analytic / simulated - 1.0).abs() < BOUND_PERCENT / 100.0, "{analytic} for {simulated}");
 }
 
-/// Tests the limit of 13 GPs and 20 renderers: 795 triangles are in time and 796 are not. (Once 807 were in time too,
-/// until bottom regions waited for an acknowledgement of the top regions. src/limit/search.rs has the property tests of
-/// such islands.)
+/// Tests the limit of 13 GPs and 20 renderers. The search tries only some of the sizes. Here all sizes from three
+/// quarters of its result are simulated, and twelve sizes beyond it: an earlier version had an island of sizes eleven
+/// beyond the first miss that were in time again. (src/limit/search.rs has the property tests of such islands.)
 #[test]
 fn the_limit_is_the_size_just_below_the_smallest_size_that_misses_the_goal() {
     let query = query(&boards(13, 20), TestScene::Typical);
-    let reached = |triangles: u32| query.reached(triangles).expect("it runs");
-    eprintln!("DBG {:?}", query.search());
-    for s in [vec!["machine.renderer.fifo_words=448"], vec!["machine.renderer.fifo_words=448", "machine.times=papers"], vec!["machine.times=papers"]] {
-        let all = [boards(13, 20), s.iter().map(|t| (*t).to_owned()).collect()].concat();
-        eprintln!("DBG {s:?} {:?}", self::query(&all, TestScene::Typical).search());
-    }
-    assert_eq!([795, 796, 806, 807, 808].map(reached), [true, false, false, false, false]);
     let found = query.search().expect("it runs");
-    assert_eq!((found.triangles, found.first_miss, found.island), (795, Some(796), None));
+    let from = found.triangles * 3 / 4;
+    let sizes = from..=found.triangles + 13;
+    let reached: Vec<u32> = sizes.into_par_iter().filter(|size| query.reached(*size).expect("it runs")).collect();
+    assert_eq!(reached, (from..=found.triangles).collect::<Vec<_>>());
+    assert_eq!((found.first_miss, found.island), (Some(found.triangles + 1), None));
 }
 
 /// Tests every size up to the result. The search must have found the smallest size that misses the goal.

@@ -116,7 +116,7 @@ fn if_slats_is_always_late_no_picture_is_shown_and_the_report_names_a_size_that_
     // The closed form is within 5 % of the limit by simulation (docs, and `BOUND_PERCENT` of tests/limits.rs).
     let would_do = heavy.primitives_in_time.expect("Slats has a closed form");
     let missed = |percent: u64| {
-        let scene = format!("full-screen:{}", u64::from(would_do) * percent / 100);
+        let scene = format!("full-screen:{}", would_do * percent / 100);
         let text = format!("pipeline = \"slats\"\nscene = \"{scene}\"\nfields = 60\npixels = \"off\"");
         let plan = ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect("valid");
         plan.experiment(plan.load_scene().expect("built in")).run().expect("it runs").report().missed_retraces

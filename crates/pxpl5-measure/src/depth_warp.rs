@@ -490,7 +490,7 @@ mod tests {
     /// source lies beyond the edge of the picture, except some on a slanted edge. A column of the picture has 480 pixels.
     #[test]
     fn a_turn_leaves_the_same_pixels_empty_with_depth_as_with_rotation() {
-        let squares = |x: u32, y: u32| if (x / 50 + y / 60) % 2 == 0 { 1.0 } else { 3.0 };
+        let squares = |x: u32, y: u32| if (x / 50 + y / 60).is_multiple_of(2) { 1.0 } else { 3.0 };
         for (yaw, pitch) in [(0.02, 0.0), (-0.05, 0.0), (0.2, 0.0), (0.0, 0.1), (0.0, -0.03), (0.1, 0.05)] {
             let now = Pose::facing(rotation::from_yaw_pitch_roll(yaw, pitch, 0.0));
             let turned = reproject(&places(), &Hmd::unc(), Warp::Rotation, &Pose::IDENTITY, &now);
@@ -550,7 +550,8 @@ mod tests {
         let view = Hmd::unc();
         let picture = places();
         for rows in [Rows::ALL, Rows { first: 0, distance: 2 }, Rows { first: 1, distance: 2 }] {
-            let depths = DepthPicture::of_field(SIZE, rows, |x, y| if (x / 50 + y / 60) % 2 == 0 { 1.0 } else { 3.0 });
+            let depths =
+                DepthPicture::of_field(SIZE, rows, |x, y| if (x / 50 + y / 60).is_multiple_of(2) { 1.0 } else { 3.0 });
             let drawing = Drawing { picture: &picture, depths: &depths, view: &view, rows, drawn_for: &Pose::IDENTITY };
             let count = rows.count(SIZE[1]);
             let mut whole = RgbImage::new(SIZE[0], SIZE[1]);

@@ -486,9 +486,11 @@ mod tests {
     /// for the second time.
     #[test]
     fn the_memory_of_the_observer_does_not_grow_with_the_run() {
-        for (name, scene, fields) in
-            [("slats", "sphere:10", 500), ("rendering-control", "sphere:10", 1_000), ("arp-full-line", "gallery", 1_000)]
-        {
+        for (name, scene, fields) in [
+            ("slats", "sphere:10", 500),
+            ("rendering-control", "sphere:10", 1_000),
+            ("arp-full-line", "gallery", 1_000),
+        ] {
             let pipeline = (Registry::of_papers().pipeline(name).expect("listed").build)(&PipelineSettings::default());
             let config = pipeline.adapt(MachineConfig::small_hmd());
             let motion = Arc::new(Synthetic::recorded_use(3));

@@ -405,8 +405,10 @@ fn unused_parts_of_a_file_may_have_any_form() {
     let latin1: Vec<u8> = text.split('\u{fffd}').map(str::as_bytes).collect::<Vec<_>>().join(&0xfc);
     let mut file = binary_file("", &writer.binary);
     file.splice(20..20, [&latin1[..], &[0; 4][latin1.len() % 4..]].concat());
-    let length =
-        (file.len() as u32, latin1.len().next_multiple_of(4) as u32 + if latin1.len() % 4 == 0 { 4 } else { 0 });
+    let length = (
+        file.len() as u32,
+        latin1.len().next_multiple_of(4) as u32 + if latin1.len().is_multiple_of(4) { 4 } else { 0 },
+    );
     file[8..12].copy_from_slice(&length.0.to_le_bytes());
     file[12..16].copy_from_slice(&length.1.to_le_bytes());
     assert_eq!(scene(&file).triangles(), expected.triangles());

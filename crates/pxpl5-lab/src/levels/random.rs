@@ -105,9 +105,7 @@ mod tests {
                     Ok(summary) => compared_ms(&experiment, &summary),
                     Err(_) => f64::NAN,
                 };
-                let d = deviation_percent(of(Level::Analytic), of(Level::Transaction));
-                if number % 2 == 1 { eprintln!("DBG {number} {d:.2} {:?} tri {} gps {} {} {} {}", experiment.pipeline(), experiment.config().gp.triangle_ns, experiment.config().n_gps, experiment.config().n_renderers, experiment.config().ring.source_channels, experiment.config().ring.fifo_channels); }
-                d
+                deviation_percent(of(Level::Analytic), of(Level::Transaction))
             })
             .collect();
         deviations.sort_by(f64::total_cmp);

@@ -69,7 +69,8 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, FileError> {
 }
 
 fn check_extensions(source: &Source<'_>, root: &Root) -> Result<(), FileError> {
-    for (number, name) in root.names("extensionsRequired").enumerate().filter(|(_, name)| !is_harmless(name)) {
+    let mut required = root.names("extensionsRequired").enumerate();
+    if let Some((number, name)) = required.find(|(_, name)| !is_harmless(name)) {
         let expected = match COMPRESSION.contains(&name.as_str()) {
             true => "a mesh without compression (other programs can decompress the file)",
             false => "an extension of materials, textures or lights, or KHR_mesh_quantization",

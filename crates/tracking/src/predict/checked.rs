@@ -43,7 +43,8 @@ impl<T: VectorDifference> Check<T> {
     /// Compares past predictions with the pose between two successive reports.
     fn compare(&mut self, (before_ps, before): (u64, T), (t_ps, value): (u64, T)) {
         let way = value.since(before);
-        while let Some((at_ps, predicted)) = self.pending.pop_front_if(|(at_ps, _)| *at_ps <= t_ps) {
+        while let Some((at_ps, predicted)) = self.pending.front().copied().filter(|(at_ps, _)| *at_ps <= t_ps) {
+            self.pending.pop_front();
             let reported = before.moved(way * (span_s(before_ps, at_ps) / span_s(before_ps, t_ps)));
             let kept = libm::exp(-span_s(before_ps, t_ps) / CHECKED_S);
             for (square, predicted) in self.squares.iter_mut().zip(predicted) {

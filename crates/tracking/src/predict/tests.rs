@@ -32,7 +32,7 @@ pub(super) fn is_positive_definite<const N: usize>(m: &Dense<N>) -> bool {
     for i in 0..N {
         for j in 0..=i {
             let rest = m[i][j] - (0..j).map(|k| root[i][k] * root[j][k]).sum::<f64>();
-            if i == j && !(rest > 0.0) {
+            if i == j && (rest.is_nan() || rest <= 0.0) {
                 return false;
             }
             root[i][j] = if i == j { rest.sqrt() } else { rest / root[j][j] };

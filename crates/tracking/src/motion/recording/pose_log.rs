@@ -116,7 +116,7 @@ pub(super) fn named(line: u64, header: &[&str]) -> Result<Option<Named>, FileErr
         "predicted_display_time" => time.is_none(),
         name => column(name, 0).is_none(),
     };
-    let missing: Vec<&str> = NAMES.into_iter().filter(|name| is_missing(&name)).collect();
+    let missing: Vec<&str> = NAMES.into_iter().filter(|name| is_missing(name)).collect();
     let found = format!("{} without {}", header.join(", "), missing.join(", "));
     Err(of_line(line, "all columns of a pose log", found))
 }

@@ -299,9 +299,10 @@ fn samples_made_by_a_program_are_checked_like_samples_of_a_file() {
 
 #[test]
 fn named_columns_may_have_any_order_case_and_separator_beside_other_columns() {
+    // The number of eight digits in OWN.
+    let half: f64 = "0.70710678".parse().unwrap();
     let own = Recording::read(OWN.as_bytes()).unwrap();
-    let rows =
-        [(0.0, [0.0, 1.7, 0.0], [1.0, 0.0, 0.0, 0.0]), (0.5, [0.25, 1.7, -0.5], [0.70710678, 0.0, 0.70710678, 0.0])];
+    let rows = [(0.0, [0.0, 1.7, 0.0], [1.0, 0.0, 0.0, 0.0]), (0.5, [0.25, 1.7, -0.5], [half, 0.0, half, 0.0])];
     // Header, separator, and a line from time, position and quaternion (w, x, y, z).
     type Row = fn(f64, [f64; 3], [f64; 4]) -> Vec<String>;
     let cases: [(&str, &str, Row); 5] = [
