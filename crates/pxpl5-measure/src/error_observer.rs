@@ -482,14 +482,17 @@ mod tests {
 
     /// Tests that the number of views in memory does not grow during a run that discards records.
     ///
-    /// Rendering Control draws a picture in four fields, so it needs more fields than Slats until records are discarded
-    /// for the second time.
+    /// Records are discarded when there are enough of them, and again when their number has doubled. Each run is more
+    /// than twice as long as the time until this first happens, so it also happens a second time.
+    ///
+    /// On an address recalculation display, the number of updates in each field depends on the motion, so a later
+    /// number may be a tenth greater. Without discarding, the second number would be about twice the first.
     #[test]
     fn the_memory_of_the_observer_does_not_grow_with_the_run() {
-        for (name, scene, fields) in [
-            ("slats", "sphere:10", 500),
-            ("rendering-control", "sphere:10", 1_000),
-            ("arp-full-line", "gallery", 1_000),
+        for (name, scene, fields, percent) in [
+            ("slats", "sphere:10", 500, 100),
+            ("rendering-control", "sphere:10", 1_000, 100),
+            ("arp-full-line", "gallery", 2_500, 110),
         ] {
             let pipeline = (Registry::of_papers().pipeline(name).expect("listed").build)(&PipelineSettings::default());
             let config = pipeline.adapt(MachineConfig::small_hmd());
@@ -500,7 +503,7 @@ mod tests {
             let experiment = experiment.fields(fields).pixels(Pixels::Off).keep(KeptRecords::Statistics);
             let outcome = experiment.observed_by(Some(|| Box::<Watched>::default())).run().expect("it runs");
             let held: &Vec<usize> = outcome.observed().expect("watched");
-            assert!(held.len() > 1 && held.iter().all(|later| *later <= held[0]), "{name}: {held:?}");
+            assert!(held.len() > 1 && held.iter().all(|later| 100 * later <= percent * held[0]), "{name}: {held:?}");
         }
     }
 
