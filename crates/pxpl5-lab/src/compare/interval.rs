@@ -232,7 +232,6 @@ mod tests {
                 (interval.low..=interval.high).contains(&20.0)
             };
             let share = (0..ROWS).filter(|row| covers(*row)).count() as f64 / ROWS as f64;
-            println!("phi {phi}, {fields} fields: {share:.3} contain the mean");
             assert!(share >= 0.93, "phi {phi}, {fields} fields: {share}");
         }
     }
