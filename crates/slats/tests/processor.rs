@@ -20,6 +20,9 @@ const CYCLE: Span = Span(25_000);
 /// Duration of a field, in milliseconds.
 const FIELD_MS: u64 = 20;
 
+/// Times of the processor. A triangle takes 30 us for each eye, a time chosen for these tests.
+const TIMING: GpTiming = GpTiming { triangle_ns: 30_000, ..GpTiming::SLATS_FITTED };
+
 const fn us(us: u64) -> Time {
     Time(us * 1_000_000)
 }
@@ -58,7 +61,7 @@ impl Rig {
             structures: vec![structure],
             ..DisplayList::default()
         };
-        let mut board = GpBoard::new(BOARD, GpTiming::SLATS_FITTED, CYCLE);
+        let mut board = GpBoard::new(BOARD, TIMING, CYCLE);
         let gp = board.handle_for(Priority::Foreground);
         let binding = config.check().expect("a renderer for each region");
         for (priority, program) in processor(&gp, &config, &binding, Share::new(Arc::new(list), 0, 1), 0) {
@@ -167,8 +170,8 @@ fn the_next_clump_is_prepared_while_the_previous_one_is_drained() {
     assert_eq!(of_first as u64, REGIONS, "a message for each region");
     rig.run_to(accepting + 2_000, accepting);
     let time = rig.bench.sent().nth(of_first).map(|(time, _)| time);
-    let work = Span::from_ns(2 * SECOND as u64 * 30_000);
-    assert_eq!(time, Some(us(accepting) + work + Span::from_ns(GpTiming::SLATS_FITTED.message_ns) + CYCLE));
+    let work = Span::from_ns(2 * SECOND as u64 * TIMING.triangle_ns);
+    assert_eq!(time, Some(us(accepting) + work + Span::from_ns(TIMING.message_ns) + CYCLE));
 }
 
 /// Returns the times at which the processor ordered copies of bottom regions.
