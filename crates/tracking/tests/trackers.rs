@@ -168,7 +168,7 @@ fn polling_never_changes_the_order_of_reports() {
 fn noise_has_the_configured_deviation_on_each_axis() {
     // 20,000 reports: the standard error of a deviation is 0.5 %.
     let noise = TrackerConfig { position_noise_m: 0.8e-3, orientation_noise_deg: 0.15, ..TrackerConfig::fastrak() };
-    let all = reports(unbiased(noise), &HEAD, 3, 20_000);
+    let all = reports(noise.without_systematic_errors(), &HEAD, 3, 20_000);
     for axis in 0..3 {
         let place = mean(all.iter().map(|r| (r.pose.position - HEAD.0.position)[axis].powi(2))).sqrt();
         assert!((place / 0.8e-3 - 1.0).abs() < 0.025, "{place}");
@@ -179,7 +179,8 @@ fn noise_has_the_configured_deviation_on_each_axis() {
 
 #[test]
 fn static_accuracy_is_a_constant_bias_of_each_installation() {
-    let config = TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::fastrak() };
+    let noiseless = TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::fastrak() };
+    let config = TrackerConfig { distortion: None, ..noiseless };
     let of_seed = |seed| {
         let all = reports(config.clone(), &HEAD, seed, 50);
         assert!(all.iter().all(|r| r.pose == all[0].pose), "seed {seed}");
