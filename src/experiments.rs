@@ -206,7 +206,7 @@ pub use pxpl5_run::RenderingControl;
 /// assert_eq!("touched".parse(), Ok(slats.binning));
 /// assert_eq!("gp".parse(), Ok(SlatsLighting::OnGp));
 /// assert_eq!("1995".parse(), Ok(Code::Of1995));
-/// assert_eq!(FinishedRegions::default().name(), "wait");
+/// assert_eq!(FinishedRegions::default().name(), "store");
 /// # let _ = Interpolation::View;
 /// ```
 pub use pxpl5_run::Slats;
