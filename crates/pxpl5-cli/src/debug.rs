@@ -41,6 +41,9 @@ pub(crate) struct DebugArgs {
     /// Execute the debugger commands of a file, one command per line, print their output, and end.
     #[arg(long, value_name = "FILE", conflicts_with = "commands")]
     do_file: Option<PathBuf>,
+    /// Begin where a board first works on this picture.
+    #[arg(long, value_name = "N")]
+    picture: Option<u64>,
     #[command(flatten)]
     budget: BudgetArgs,
     /// Print no warnings.
@@ -56,7 +59,10 @@ pub(crate) fn run(args: DebugArgs) -> Result<(), CliError> {
     args.budget.admit(&RunWork::of(&plan, &scene, true))?;
     warn(too_heavy(&plan, &scene, plan.fields).as_slice(), args.quiet);
     let experiment = plan.experiment(scene).host(Workstation::new()).record_traffic(true);
-    let session = Session::new(experiment.stepper()?);
+    let mut session = Session::new(experiment.stepper()?);
+    if let Some(number) = args.picture {
+        print(&session.execute_line(&format!("run until picture {number}")).map_err(CliError::failure)?)?;
+    }
     match script {
         Some(commands) => scripted(session, &commands),
         None => on_screen(session),

@@ -134,7 +134,7 @@ fn write(mut folder: OutputFolder, runs: &[Run]) -> Result<(), CliError> {
     for run in runs {
         pictures(&mut folder, &format!("{}-", run.name), &run.outcome, &run.report)?;
         folder.put(&format!("{}-pictures.csv", run.name), pxpl5::views::results::csv(&run.outcome).as_bytes())?;
-        folder.put(&format!("{}-timeline.svg", run.name), timeline(&run.outcome, &run.report).as_bytes())?;
+        folder.put(&format!("{}-timeline.svg", run.name), timeline(&run.outcome, &run.report, None).as_bytes())?;
     }
     let runs: Vec<Value> = runs.iter().map(entry).collect();
     let all = json!({"schema": "pxpl5-demo/1", "version": VERSION, "commit": commit(), "runs": runs});

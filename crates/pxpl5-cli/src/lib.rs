@@ -33,6 +33,7 @@ mod limit;
 mod machines;
 mod merge;
 mod numbers;
+mod one_picture;
 mod options;
 mod output;
 mod plot;

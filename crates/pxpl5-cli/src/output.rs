@@ -9,7 +9,7 @@ use pxpl5::sweep::ROWS_FILE;
 use pxpl5::views::png_bytes;
 use pxpl5::views::results::{origin, origin_lines};
 use pxpl5::views::timeline::TimelineOptions;
-use pxpl5::{Outcome, Report};
+use pxpl5::{Outcome, PictureNumber, Report};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -233,8 +233,8 @@ fn folder_of(file: &Path) -> &Path {
 }
 
 /// Returns the timeline of a run as SVG. An XML comment states the settings that reproduce the run.
-pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
-    let svg = pxpl5::views::timeline::svg(outcome, &TimelineOptions::default());
+pub(crate) fn timeline(outcome: &Outcome, report: &Report, picture: Option<PictureNumber>) -> String {
+    let svg = pxpl5::views::timeline::svg(outcome, &TimelineOptions { picture, ..TimelineOptions::default() });
     let origin: String = origin_lines(report, "").chars().filter(|c| *c == '\n' || !is_forbidden(*c)).collect();
     // XML comments must not contain two hyphens in a row.
     let comment = format!("<!--\n{}-->\n", origin.replace("--", "- -"));

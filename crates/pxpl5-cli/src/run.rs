@@ -3,6 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::numbers::{count_of, whole};
+use crate::one_picture;
 use crate::output::{OutputFolder, png, timeline};
 use crate::settings::SettingArgs;
 use crate::simulate::{How, Simulated, simulate};
@@ -14,8 +15,8 @@ use pxpl5::tracking::predict::Training;
 use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::views::results::{origin_lines, quantities_csv};
 use pxpl5::{
-    ExperimentFile, HeadReport, KeptRecords, Level, Measured, Optimization, Origin, Outcome, Plan, Report, Results,
-    SurfaceId, WARM_UP_PERIODS, WARM_UP_PICTURES, WhatIf, what_if,
+    ExperimentFile, HeadReport, KeptRecords, Level, Measured, Optimization, Origin, Outcome, PictureTimes, Plan,
+    Report, Results, SurfaceId, WARM_UP_PERIODS, WARM_UP_PICTURES, WhatIf, what_if,
 };
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -29,6 +30,7 @@ use std::path::PathBuf;
   pxpl5 run --pipeline jitp-scanline-racing --scene full-screen:4 --head pan:200 --tracker fastrak
   pxpl5 run --pipeline slats --scene mig --triangles 100 --set gp.triangle_ns=30000
   pxpl5 run --pipeline slats --scene mig --triangles 50 --level cycle
+  pxpl5 run --pipeline rendering-control --scene head --fields 600 --picture 57 --out out/head
 
 Exit code 0: The run succeeded. Exit code 1: The run failed, or it showed no picture after the first four and so has no latency. The report
 and all files are written also without a latency, with null for missing results. Exit code 2: The command line or a file is wrong.")]
@@ -53,6 +55,9 @@ pub(crate) struct RunArgs {
     /// form applies, otherwise from six more runs.
     #[arg(long)]
     what_if: bool,
+    /// Also explain one picture: its times and waits, beside those of other pictures. The timeline shows it.
+    #[arg(long, value_name = "N")]
+    picture: Option<u64>,
     /// Also print the definitions of latency and of a picture that is due.
     #[arg(long)]
     explain: bool,
@@ -70,7 +75,8 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     // Open the output first, so that a bad path fails before the run.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "run")).transpose()?;
     // Files list every picture. The report alone needs only statistics, whose size does not grow with the run.
-    let keep = if folder.is_some() { KeptRecords::Everything } else { KeptRecords::Statistics };
+    let keep =
+        if folder.is_some() || args.picture.is_some() { KeptRecords::Everything } else { KeptRecords::Statistics };
     let (without, budget, quiet) = (&args.without[..], args.budget, args.quiet);
     let how = How { threads: args.threads, without, keep, budget, quiet, ..How::default() };
     let Simulated { outcome, too_short } = simulate(&plan, how)?;
@@ -81,12 +87,14 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     warn(out_of_view(report).as_slice(), args.quiet);
     warn(&near_edges(&outcome.summary()), args.quiet);
     // A run without a latency still writes its files and its report, and then ends with an error.
-    let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;
+    let picture = args.picture.map(|number| one_picture::find(outcome, number)).transpose()?;
+    let written = folder.map(|folder| write(folder, &plan, &results, picture)).transpose()?;
     let more = if args.what_if { Some(more(&plan)?) } else { None };
     if args.json {
         print(&format!("{}\n", with_more(report, more.as_deref())?))?;
     } else if !args.quiet {
         print(&text((&plan, &results, report), args.explain, written))?;
+        print(&picture.map(|times| one_picture::text(outcome, report, times)).unwrap_or_default())?;
         print(&more.map(|more| more_text(&more)).unwrap_or_default())?;
     }
     // The exit code shows scripts that the report lacks a latency.
@@ -271,7 +279,12 @@ pub(crate) fn comparison(plan: &Plan, results: &Results) -> Option<Comparison> {
     })
 }
 
-fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<PathBuf, CliError> {
+fn write(
+    mut folder: OutputFolder,
+    plan: &Plan,
+    results: &Results,
+    picture: Option<&PictureTimes>,
+) -> Result<PathBuf, CliError> {
     let Some((outcome, report)) = &results.run else { return Err(no_events()) };
     // The experiment file reproduces the run from any folder.
     folder.put("report.json", format!("{}\n", json(report)?).as_bytes())?;
@@ -290,7 +303,7 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
         pictures(&mut folder, "", outcome, report)?;
     }
     if plan.output.timeline {
-        folder.put("timeline.svg", timeline(outcome, report).as_bytes())?;
+        folder.put("timeline.svg", timeline(outcome, report, picture.map(|times| times.picture)).as_bytes())?;
     }
     let path = folder.path().to_path_buf();
     folder.commit()?;

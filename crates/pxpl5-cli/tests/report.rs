@@ -53,6 +53,26 @@ fn a_trace_is_written_as_json() {
 }
 
 #[test]
+fn the_waveform_and_the_explanation_of_one_picture_agree() {
+    let folder = Folder::new("picture");
+    let run = ["--pipeline", "rendering-control", "--scene", "mig", "--triangles", "30", "--fields", "40"];
+    let output = folder.run(&[&["trace"][..], &run, &["--picture", "5", "--out", "a.vcd"]].concat());
+    assert!(output.status.success(), "{}", err(&output));
+    let text = std::fs::read_to_string(folder.0.join("a.vcd")).expect("written");
+    let output = folder.run(&[&["run"][..], &run, &["--picture", "5"]].concat());
+    assert!(output.status.success(), "{}", err(&output));
+    // The waveform begins with the sampled pose.
+    let begin =
+        text.lines().find_map(|line| line.strip_prefix('#')).and_then(|ps| ps.parse::<u64>().ok()).expect("a time");
+    let said = out(&output);
+    let sampled = said.lines().find_map(|line| line.trim().strip_prefix("pose sampled")).expect("a line").trim();
+    let ms: f64 = sampled.trim_end_matches("ms").trim().parse().expect("a number");
+    assert!((ms - begin as f64 / 1e9).abs() < 1e-3, "{sampled} and {begin} ps");
+    let output = folder.run(&[&["run"][..], &run, &["--picture", "99"]].concat());
+    assert!(err(&output).contains("expected one of the pictures"), "{}", err(&output));
+}
+
+#[test]
 fn a_film_has_the_requested_fields() {
     let folder = Folder::new("film");
     let run = ["film", "--pipeline", "slats", "--scene", "mig", "--triangles", "30", "--length", "3", "--out", "f.png"];

@@ -59,6 +59,12 @@ impl CriticalPath {
         Self::of_last(outcome.record(), &all)
     }
 
+    /// Returns the chain of waits of one picture, back from the instant at which it is shown or was due. Returns `None`
+    /// if its latency is zero.
+    pub fn of_picture(outcome: &Outcome, times: &PictureTimes) -> Option<Self> {
+        Self::of_last(outcome.record(), &[times])
+    }
+
     /// Returns the chain of waits of the last complete pictures of a run so far. Returns `None` before the first
     /// complete picture.
     pub fn so_far(run: &ObservedRun<'_>) -> Option<Self> {

@@ -1,6 +1,7 @@
-//! A run as a trace for viewers such as ui.perfetto.dev, in Chrome's JSON format.
+//! A run as a trace for viewers: ui.perfetto.dev, or GTKWave and Surfer, which show waveforms.
 //!
-//! [`Trace::of`] collects tracks from the observations, and [`chrome`] writes them. Tracks of messages and counters of
+//! [`Trace::of`] collects tracks from the observations, and [`Trace::between`] keeps those of a time span. [`chrome`]
+//! writes them in Chrome's JSON format, and [`vcd`] as a waveform. Tracks of messages and counters of
 //! the ring and the FIFOs need [`Experiment::record_traffic`](pxpl5_run::Experiment::record_traffic).
 //!
 //! | group | tracks |
@@ -18,7 +19,7 @@
 //! duration) of one track never overlap. A message may reach a port shortly before the previous message has left it.
 //! The message is then drawn from the end of the previous message.
 //!
-//! Source: the description of Chrome's trace event format.
+//! Sources: the description of Chrome's trace event format, and IEEE 1364 for VCD.
 
 mod chrome;
 mod collect;
@@ -26,6 +27,8 @@ mod flows;
 mod groups;
 mod model;
 mod slices;
+mod vcd;
 
 pub use chrome::chrome;
 pub use model::{Events, Flow, Slice, Step, Trace, Track};
+pub use vcd::vcd;

@@ -69,7 +69,7 @@ pub(super) const HELP: [(&str, &str); 19] = [
     ("run to field N", "run to the retrace at which field N begins"),
     (
         "run until CONDITION",
-        "run until: swap; region; fifo R >= N; inbox GP >= N; channels >= N; waits BOARD for WORDS",
+        "run until: swap; region; picture N; fifo R >= N; inbox GP >= N; channels >= N; waits BOARD for WORDS",
     ),
     ("next BOARD", "run to the next event of host, gp N, renderer N, display N or ring"),
     ("step [N] [event|line|field]", "run one or N events; lines and fields are those of the first display"),

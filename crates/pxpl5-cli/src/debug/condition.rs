@@ -1,7 +1,10 @@
 //! Conditions for the command `run until` of the debugger.
 
 use super::words::{board, number};
-use pxpl5::{Board, Stepper};
+use pxpl5::{Board, PictureNumber, Stepper};
+
+/// Largest number of stages that begin or end in one event: a board begins or ends one stage for each of its surfaces.
+const MARKS: usize = 16;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Condition {
@@ -9,6 +12,8 @@ pub(super) enum Condition {
     Swap,
     /// A region has arrived at a display since the last stop of the run.
     Region,
+    /// A board has begun a stage of this picture.
+    Picture(PictureNumber),
     /// The number of words in a renderer's input FIFO satisfies a comparison. The first value is the index of the
     /// renderer.
     Fifo(usize, Comparison),
@@ -39,12 +44,14 @@ enum Relation {
 pub(super) struct Before {
     swaps: usize,
     arrivals: usize,
+    marks: usize,
 }
 
 impl Before {
     pub(super) fn of(stepper: &Stepper) -> Self {
         let observation = stepper.record().observation();
-        Self { swaps: observation.swaps.len(), arrivals: observation.arrivals.len() }
+        let [swaps, arrivals, marks] = [observation.swaps.len(), observation.arrivals.len(), observation.marks.len()];
+        Self { swaps, arrivals, marks }
     }
 }
 
@@ -55,6 +62,7 @@ impl Condition {
         match words {
             ["swap"] => Ok(Self::Swap),
             ["region"] => Ok(Self::Region),
+            ["picture", picture] => number("picture", picture).map(|picture| Self::Picture(PictureNumber(picture))),
             ["fifo", renderer, rest @ ..] => {
                 Ok(Self::Fifo(number("renderer", renderer)? as usize, Comparison::parse(rest)?))
             }
@@ -68,7 +76,7 @@ impl Condition {
                 (_, rest) => Err(format!("waits: expected BOARD for WORDS, found `{}`", rest.join(" "))),
             },
             words => Err(format!(
-                "expected swap, region, fifo R >= N, inbox BOARD >= N, channels >= N or waits BOARD for WORDS, found `{}`",
+                "expected swap, region, picture N, fifo R >= N, inbox BOARD >= N, channels >= N or waits BOARD for WORDS, found `{}`",
                 words.join(" ")
             )),
         }
@@ -95,6 +103,9 @@ impl Condition {
         match self {
             Self::Swap => observation.swaps.len() > before.swaps,
             Self::Region => observation.arrivals.len() > before.arrivals,
+            Self::Picture(picture) => {
+                observation.marks.iter().skip(before.marks).rev().take(MARKS).any(|mark| mark.picture == *picture)
+            }
             Self::Fifo(renderer, comparison) => {
                 let words = stepper.renderer(*renderer).and_then(|snapshot| snapshot.fifo_words);
                 words.is_some_and(|words| comparison.holds(u64::from(words)))

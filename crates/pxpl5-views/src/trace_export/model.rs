@@ -71,6 +71,28 @@ pub enum Step {
     Last,
 }
 
+impl Trace {
+    /// Returns the trace of the span from `begin` to `end`: slices that overlap it in full length, instants within it,
+    /// and counters from their value at `begin`.
+    pub fn between(mut self, [begin, end]: [Time; 2]) -> Self {
+        for track in &mut self.tracks {
+            match &mut track.events {
+                Events::Slices(slices) => slices.retain(|slice| slice.end > begin && slice.begin < end),
+                Events::Instants(instants) => instants.retain(|(time, _)| (begin..=end).contains(time)),
+                Events::Counter(values) => {
+                    values.retain(|(time, _)| *time <= end);
+                    // The last value before the span is valid at its beginning.
+                    let before = values.partition_point(|(time, _)| *time <= begin);
+                    values.drain(..before.saturating_sub(1));
+                    values.iter_mut().take(before.min(1)).for_each(|(time, _)| *time = begin);
+                }
+            }
+        }
+        self.tracks.retain(|track| !track.is_empty());
+        self
+    }
+}
+
 impl Track {
     pub(super) fn is_empty(&self) -> bool {
         match &self.events {
