@@ -22,8 +22,8 @@ pub use chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyl
 pub use histogram::histogram;
 pub(crate) use histogram::histogram_element;
 pub use levels::{SpeedAndError, level_chart};
+pub(crate) use parts::part_bar_element;
 pub use parts::{MeanPart, part_bar};
-pub(crate) use parts::{colour_of_part, part_bar_element};
 pub use plane::{Curve, MarkedPoint, curve_chart, decade_chart, point_chart};
 pub use scale::AxisScale;
 

@@ -35,6 +35,7 @@ mod film;
 mod frame_time;
 mod markup;
 pub mod page;
+pub mod palette;
 mod picture;
 mod ports;
 pub mod results;

@@ -45,6 +45,9 @@ impl Display for Tenths {
     }
 }
 
+/// Style of a drawing that is a document of its own: for a reader with dark pages, lightness is inverted, and hues stay.
+pub(crate) const DARK: &str = "@media (prefers-color-scheme:dark){svg:root{filter:invert(1) hue-rotate(180deg)}}";
+
 pub(crate) fn document() -> Element {
     Element::new("svg").with("xmlns", "http://www.w3.org/2000/svg")
 }

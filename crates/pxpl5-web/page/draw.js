@@ -72,8 +72,11 @@ export function layOutEyes(place, states, names, record) {
   return machines;
 }
 
-/** Colours of regions by stage, the same as in the block diagram. */
-const REGION_COLOURS = { render: "#7fd6a8", copy: "#ffd166" };
+/** Returns the colour of a region in a stage, the same as in the block diagram. */
+const regionColour = (stage) => getComputedStyle(document.documentElement).getPropertyValue(`--${stage}`).trim();
+
+/** Returns the classes of a part of the latency: its stage has a colour, and waiting is grey. */
+const partClass = (name) => `part ${name.replace(/^last_/, "")}`;
 
 /** Draws over a picture: the wire frame of the world, regions that are drawn or copied, and the line of the beam (null for none). */
 export function drawOver(over, { wire, regions, line }) {
@@ -90,9 +93,9 @@ export function drawOver(over, { wire, regions, line }) {
   for (const { stage, works, rectangle: [left, top, width, height], lines: [first, step] } of regions ?? []) {
     const box = [left, first + top * step, width, Math.max(2, height * step)];
     // If the renderer of a region waits, the region has only a frame.
-    context.fillStyle = `${REGION_COLOURS[stage]}${works ? "59" : "00"}`;
+    context.fillStyle = `${regionColour(stage)}${works ? "59" : "00"}`;
     context.fillRect(...box);
-    context.strokeStyle = REGION_COLOURS[stage];
+    context.strokeStyle = regionColour(stage);
     // Dashes distinguish the stages without colours.
     context.setLineDash(stage === "render" ? [over.width / 40, over.width / 80] : []);
     context.strokeRect(...box);
@@ -181,7 +184,7 @@ export function drawLatency(place, machines, names) {
     if (pictures.length === 0) return make("p", { textContent: `${name}no picture has been shown yet` });
     const bars = pictures.map(({ picture: number, ms, total_ms: total }) => {
       const pieces = ms.map((span, part) => {
-        const piece = make("i", { className: `part${part}`, title: `${parts[part].name.replaceAll("_", " ")}: ${inMs(span)}` });
+        const piece = make("i", { className: partClass(parts[part].name), title: `${parts[part].name.replaceAll("_", " ")}: ${inMs(span)}` });
         piece.style.width = `${(100 * span) / longest}%`;
         return piece;
       });
@@ -191,7 +194,7 @@ export function drawLatency(place, machines, names) {
     const rows = parts.map((part, k) => [part, last.ms[k], k]).filter(([, span]) => span > 0);
     const table = make("table", {}, make("caption", { textContent: `${name}picture ${last.picture}, part by part` }), make("tbody", {},
       ...rows.map(([part, span, k]) => make("tr", { title: part.definition },
-        make("th", { scope: "row" }, make("i", { className: `part${k}` }), part.name.replaceAll("_", " ")),
+        make("th", { scope: "row" }, make("i", { className: partClass(part.name) }), part.name.replaceAll("_", " ")),
         exact(make("td", { textContent: inMs(span) }), span)))));
     return make("div", { className: "latency" }, make("div", {}, ...(name ? [make("h3", { textContent: nameOf(names[n]) })] : []), ...bars), table);
   }));

@@ -29,12 +29,12 @@ function busyRows({ host, gps, renderers, ring, ports }) {
 function pathPart(path) {
   if (!path) return [make("p", { textContent: "No complete picture has been shown yet, so there are no waits to show." })];
   const bar = make("div", { className: "stack" }, ...path.parts.map(({ what, share }, n) => {
-    const piece = make("i", { className: `part${n}`, title: `${what}: ${percent(share)}` });
+    const piece = make("i", { className: `share${n}`, title: `${what}: ${percent(share)}` });
     piece.style.width = `${100 * share}%`;
     return piece;
   }));
   const rows = path.parts.map(({ what, share, ms, board }, n) => make("tr", {},
-    make("th", { scope: "row" }, make("i", { className: `part${n}` }), capital(what)),
+    make("th", { scope: "row" }, make("i", { className: `share${n}` }), capital(what)),
     make("td", { textContent: percent(share) }), make("td", { textContent: inMs(ms) }), make("td", { className: "text", textContent: board ? `mostly ${board}` : "" })));
   const head = make("thead", {}, make("tr", {}, ...["Wait", "Share", "Time", "Board"].map((textContent) => make("th", { scope: "col", textContent }))));
   return [

@@ -3,6 +3,7 @@
 use super::appearance::Appearance;
 use super::scale::{Axis, AxisScale};
 use crate::markup::is_allowed;
+use crate::svg::DARK;
 use plotters::backend::SVGBackend;
 use plotters::chart::{ChartBuilder, ChartContext};
 use plotters::coord::Shift;
@@ -148,7 +149,8 @@ impl Chart {
         let (width, height, unit) = measures.outer;
         // `plotters` copies all characters of a label, so characters that XML forbids are removed here.
         let text: String = text.chars().filter(|c| is_allowed(*c)).collect();
-        text.replacen(&inner, &format!("width=\"{width}{unit}\" height=\"{height}{unit}\""), 1)
+        let text = text.replacen(&inner, &format!("width=\"{width}{unit}\" height=\"{height}{unit}\""), 1);
+        text.replacen('>', &format!(">\n<style>{DARK}</style>"), 1)
     }
 
     fn draw<'a>(&self, root: &Area<'a>, measures: Measures) -> Result<(), Fault<'a>> {

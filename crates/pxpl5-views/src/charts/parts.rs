@@ -1,4 +1,5 @@
 use crate::markup::Element;
+use crate::palette::tints_of;
 use crate::svg::{Tenths, anchored, hint};
 
 const WIDTH: f64 = 640.0;
@@ -14,19 +15,6 @@ pub struct MeanPart {
     pub mean_ms: f64,
     /// True if the latency stated in the papers includes this part.
     pub published: bool,
-}
-
-/// Returns the colour of a part of the latency: grey for waiting times.
-pub(crate) fn colour_of_part(name: &str) -> &'static str {
-    match name {
-        "send" => "#7f7f7f",
-        "edit" => "#8e2a6b",
-        "transform" | "last_transform" => "#4a90d0",
-        "render" => "#e8973a",
-        "copy" => "#3d9a52",
-        "scan" => "#c9b400",
-        _ => "#d8d8d8",
-    }
 }
 
 /// Returns a single bar with the mean parts of the latency, as SVG for a page.
@@ -64,7 +52,7 @@ pub(crate) fn part_bar_element(parts: &[MeanPart]) -> Option<Element> {
 
 fn piece(part: &MeanPart, x: f64, width: f64) -> Element {
     let piece = Element::new("rect").with("x", Tenths(x)).with("y", 14).with("width", Tenths(width));
-    let piece = piece.with("height", 34).with("fill", colour_of_part(&part.name));
+    let piece = piece.with("height", 34).with("fill", tints_of(&part.name).fill);
     piece.child(&hint(format_args!("{}: {:.3} ms", part.name, part.mean_ms)))
 }
 

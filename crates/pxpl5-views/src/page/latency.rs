@@ -1,8 +1,9 @@
 //! Page section about latency: distribution, parts, and the time from the head's pose until the picture is lit.
 
 use super::values::{cell, decimal, heading, list, number, number_cell, paragraph, plain, row, table, text_or_dash};
-use crate::charts::{MeanPart, colour_of_part, histogram_element, part_bar_element};
+use crate::charts::{MeanPart, histogram_element, part_bar_element};
 use crate::markup::Element;
+use crate::palette::tints_of;
 use serde_json::Value;
 
 pub(super) fn latency(report: &Value, latencies_ms: &[f64]) -> Vec<Element> {
@@ -73,7 +74,7 @@ fn part_row(part: &Value) -> Element {
 }
 
 fn swatch(name: &str) -> Element {
-    let colour = format!("background:{}", colour_of_part(name));
+    let colour = format!("background:{}", tints_of(name).fill);
     Element::new("span").with("class", "swatch").with("style", colour).text("")
 }
 

@@ -2,16 +2,13 @@
 
 use super::model::Bar;
 use crate::markup::Element;
+pub(super) use crate::palette::class_of;
+use crate::palette::{Tints, WAITING, tints_of};
+use crate::svg::DARK;
 use pxpl5_gp::Stage;
 use pxpl5_wire::SurfaceId;
 use pxpl5_wire::display::Surface;
 use std::fmt::Write;
-
-/// Colours of a stage. The dark colour is legible as text and as hatching on white.
-struct Colours {
-    light: &'static str,
-    dark: &'static str,
-}
 
 pub(super) const STAGES: [(Stage, &str); 5] = [
     (Stage::Send, "SEND"),
@@ -20,30 +17,6 @@ pub(super) const STAGES: [(Stage, &str); 5] = [
     (Stage::Render, "RENDER"),
     (Stage::Copy, "COPY"),
 ];
-
-/// Returns the colours of a stage. The hues of two stages can be distinguished with common kinds of colour blindness.
-/// In grey, the lightness of two stages differs.
-const fn colours(stage: Stage) -> Colours {
-    match stage {
-        Stage::Send => Colours { light: "#d9d9d9", dark: "#4d4d4d" },
-        Stage::Edit => Colours { light: "#f2d0e4", dark: "#8e2a6b" },
-        Stage::Transform => Colours { light: "#bcdcf5", dark: "#0b5394" },
-        Stage::Render => Colours { light: "#fbd9a5", dark: "#a35200" },
-        Stage::Copy | Stage::Sample | Stage::Swap => Colours { light: "#c3e6c4", dark: "#1b6b2f" },
-    }
-}
-
-pub(super) const fn class_of(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Send => "send",
-        Stage::Edit => "edit",
-        Stage::Transform => "transform",
-        Stage::Render => "render",
-        Stage::Copy => "copy",
-        Stage::Sample => "sample",
-        Stage::Swap => "swap",
-    }
-}
 
 /// Suffix of the CSS class for work on the first surface or on all surfaces.
 const PLAIN: &str = "plain";
@@ -90,12 +63,13 @@ pub(super) fn style() -> Element {
     for (stage, _) in STAGES {
         // Each stage has a plain fill, a hatched fill and a text colour.
         let name = class_of(stage);
-        let Colours { light, dark } = colours(stage);
+        let Tints { ground, ink, .. } = tints_of(name);
         let _ = write!(
             text,
-            ".{name}-{PLAIN}{{fill:{light}}}.{name}-{HATCHED}{{fill:url(#{name}-hatch)}}.{name}-text{{fill:{dark}}}"
+            ".{name}-{PLAIN}{{fill:{ground}}}.{name}-{HATCHED}{{fill:url(#{name}-hatch)}}.{name}-text{{fill:{ink}}}"
         );
     }
+    text.push_str(DARK);
     Element::new("style").text(text)
 }
 
@@ -105,8 +79,8 @@ pub(super) const HATCHED_SURFACE: &str = "right-eye";
 
 /// Returns the definitions that the style sheet refers to: arrow heads and hatching patterns.
 pub(super) fn definitions() -> Element {
-    let hatches = STAGES.map(|(stage, _)| hatch(&format!("{}-hatch", class_of(stage)), &colours(stage)));
-    let grey = hatch("eye-right", &Colours { light: "#ddd", dark: "#777" });
+    let hatches = STAGES.map(|(stage, _)| hatch(&format!("{}-hatch", class_of(stage)), tints_of(class_of(stage))));
+    let grey = hatch("eye-right", Tints { ground: "#ddd", ..WAITING });
     Element::new("defs").child(&arrow_head()).child(&grey).children(hatches)
 }
 
@@ -117,10 +91,10 @@ fn arrow_head() -> Element {
     marker.child(&Element::new("path").with("d", "M0 0L10 5L0 10z").with("fill", "#c00000"))
 }
 
-fn hatch(id: &str, Colours { light, dark }: &Colours) -> Element {
-    let ground = Element::new("path").with("fill", light).with("d", "M0 0h7v7h-7z");
-    let stripe = Element::new("path").with("fill", dark).with("fill-opacity", ".55").with("d", "M0 0h1.6v7h-1.6z");
+fn hatch(id: &str, Tints { ground, ink, .. }: Tints) -> Element {
+    let area = Element::new("path").with("fill", ground).with("d", "M0 0h7v7h-7z");
+    let stripe = Element::new("path").with("fill", ink).with("fill-opacity", ".55").with("d", "M0 0h1.6v7h-1.6z");
     let pattern = Element::new("pattern").with("id", id).with("width", 7).with("height", 7);
     let pattern = pattern.with("patternUnits", "userSpaceOnUse").with("patternTransform", "rotate(45)");
-    pattern.child(&ground).child(&stripe)
+    pattern.child(&area).child(&stripe)
 }
