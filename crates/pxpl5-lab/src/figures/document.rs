@@ -10,8 +10,8 @@ use crate::edges::NEAR_FIELDS;
 use crate::interpretations::{ALIKE, FigureFit, Fit, Interpretations, figures as ranked_figures};
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
-use pxpl5_sim::figures::column::{DETAILS, EXPERIMENT, NUMBER, PROVENANCE, PUBLISHED, SIMULATED, error, four, range};
-use pxpl5_sim::figures::{filled, lines, table};
+use pxpl5_sim::figures::column::{PROVENANCE, PUBLISHED, SIMULATED, error, four, range};
+use pxpl5_sim::figures::{filled, lines};
 
 /// The texts of both documents.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,7 +41,7 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
     let of_code: Vec<&FigureRow> = alternatives.of_code.iter().collect();
     let of_table = Headline::of(rows.iter().copied().filter(|row| of_code.iter().any(|other| other.id == row.id)));
     let code_headline = format!(
-        "Over the rows of the first three tables, the mean error is {:.1} % with the timing table ({} rows) and {:.1} % with the times of the code ({} rows).",
+        "Over the first three tables, the mean error is {:.1} % with the timing table ({} rows) and {:.1} % with the code ({} rows).",
         of_table.mean_error_percent(),
         of_table.free.rows + of_table.interpretation.rows,
         Headline::of(of_code.iter().copied()).mean_error_percent(),
@@ -74,9 +74,10 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
             ("fifo", fifo(&alternatives.fifo)),
             ("samples", SAMPLES.to_string()),
             ("sensitivity", sensitivity(&figures.intervals)),
-            ("provenance", reasons()),
+            ("unmoved", unmoved(&figures.intervals)),
+            ("provenance", by_text("reason", all().map(|figure| (figure.id, format!("{}.", figure.reason))))),
             ("about", about()),
-            ("experiments", table(&[NUMBER, EXPERIMENT, DETAILS], rows.iter().copied())),
+            ("experiments", by_text("experiment", rows.iter().map(|row| (row.id, row.experiment.to_owned())))),
         ],
     );
     let time = filled(include_str!("time.md"), &[("edges", edges(&rows))]);
@@ -229,10 +230,10 @@ fn definitions() -> String {
         }
     }
     let cells = rows.into_iter().map(|(ids, latency)| {
-        [&ids.join(", "), latency.from, latency.to, latency.eyes, latency.statistic, latency.sentence]
-            .map(str::to_owned)
+        let statistic = format!("{}: {}", latency.eyes, latency.statistic);
+        [&ids.join(", "), latency.from, latency.to, &statistic, latency.sentence].map(str::to_owned)
     });
-    rows_of(["rows", "from", "to", "eyes", "statistic", "what the paper says"], cells)
+    rows_of(["rows", "from", "to", "eyes, statistic", "what the paper says"], cells)
 }
 
 /// Minimum change of a figure, in percent, for which the document lists the figure. The change results if the times of
@@ -253,54 +254,44 @@ fn other(group: &FigureGroup) -> String {
     let document = group.document.unwrap_or_default();
     let printed = group.rows.iter().filter(|row| row.basis != Basis::Shape);
     let missed: Vec<&FigureRow> = printed.clone().filter(|row| !row.is_met).collect();
-    let on_machine = group.rows.iter().filter(|row| row.experiment == "E1");
-    let list = |rows: &[&FigureRow]| {
-        rows.iter()
-            .map(|row| {
-                format!(
-                    "- {} {}: {}, ours {} {}\n",
-                    row.id,
-                    row.statement,
-                    four(row.published),
-                    four(row.simulated),
-                    row.unit
-                )
-            })
-            .collect::<String>()
-    };
+    let list = missed.iter().map(|row| {
+        let [published, simulated] = [row.published, row.simulated].map(four);
+        format!("- {} {}: {published}, ours {simulated} {}\n", row.id, row.statement, row.unit)
+    });
     format!(
-        "**{}** ([{document}]({document})). {} {} of {} rows with printed conditions are missed. These\n\
-         rows are measured on Pixel-Planes 5:\n\n{}\nThese are missed:\n\n{}\n\
-         **Volumetric slices** ([docs/volumetric.md](docs/volumetric.md)) have a page of their own, too.\n",
+        "**{}** ([{document}]({document})). {} {} of {} rows with printed conditions are missed:\n\n{}\n\
+         **Volumetric slices** have [a page of their own](docs/volumetric.md).\n",
         group.title,
         group.about,
         missed.len(),
         printed.count(),
-        list(&on_machine.collect::<Vec<_>>()),
-        list(&missed),
+        list.collect::<String>(),
     )
 }
 
-/// Number of interpretations in the document.
-const BEST: usize = 12;
+/// Number of interpretations in the document, those with equal figures counted once.
+const BEST: usize = 6;
 
+/// Returns the likeliest interpretations and the project's, without the figures that are equal in all of them.
 fn ranked(ranking: &Interpretations) -> String {
-    let fits = ranking.ranked();
-    let usual = fits.iter().enumerate().skip(BEST).find(|(_, fit)| fit.interpretation == Interpretation::USUAL);
-    let shown = fits.iter().enumerate().take(BEST).chain(usual);
+    let cells = |fit: &Fit| fit.figures.iter().map(|figure| cell(fit, figure)).collect::<Vec<_>>();
+    let mut shown: Vec<(String, &Fit, Vec<String>)> = Vec::new();
+    for (place, fit) in ranking.ranked().into_iter().enumerate() {
+        let values = cells(fit);
+        let is_usual = fit.interpretation == Interpretation::USUAL;
+        if is_usual || shown.len() < BEST && shown.iter().all(|(_, _, other)| *other != values) {
+            let rank = (place + 1).to_string();
+            shown.push((if is_usual { format!("**{rank}**") } else { rank }, fit, values));
+        }
+    }
+    let differs = |column: &usize| shown.iter().any(|(_, _, values)| values[*column] != shown[0].2[*column]);
+    let columns: Vec<usize> = (0..ranked_figures().count()).filter(differs).collect();
     let ids: Vec<&str> = ranked_figures().map(|figure| figure.id).collect();
-    let mut text =
-        format!("| rank | log L | {} | interpretation |\n|---|---|{}---|\n", ids.join(" | "), "---|".repeat(ids.len()));
-    for (place, fit) in shown {
-        let mark = if fit.interpretation == Interpretation::USUAL { "**" } else { "" };
-        let values: Vec<String> = fit.figures.iter().map(|figure| cell(fit, figure)).collect();
-        text += &format!(
-            "| {} | {:.1} | {} | {mark}{}{mark} |\n",
-            place + 1,
-            fit.log_likelihood,
-            values.join(" | "),
-            fit.words
-        );
+    let headings: Vec<&str> = columns.iter().map(|column| ids[*column]).collect();
+    let mut text = format!("| rank | log L | {} | interpretation |\n|---|---|{}---|\n", headings.join(" | "), "---|".repeat(columns.len()));
+    for (rank, fit, values) in &shown {
+        let values: Vec<&str> = columns.iter().map(|column| values[*column].as_str()).collect();
+        text += &format!("| {rank} | {:.1} | {} | {} |\n", fit.log_likelihood, values.join(" | "), fit.words);
     }
     text
 }
@@ -316,22 +307,36 @@ fn confidence(ranking: &Interpretations) -> String {
     let alike = ranking.alike();
     let place = fits.iter().position(|fit| fit.interpretation == Interpretation::USUAL);
     let behind = place.map_or(f64::NAN, |place| fits[0].log_likelihood - fits[place].log_likelihood);
-    let list: String = alike.iter().map(|fit| format!("- {}\n", fit.words)).collect();
+    let list = alike.iter().map(|fit| format!("*{}*", fit.words)).collect::<Vec<_>>().join("; ");
     format!(
-        "The figures do not tell these interpretations apart, since their likelihoods lie within a factor of {ALIKE:.1} of the\n\
-         greatest:\n\n{list}\n\
-         The project's interpretation, **{}**, is simulated besides the {} that the\n\
-         formulas find likeliest. Its log L is {behind:.1} lower than the greatest. It follows the text where text and figures\n\
-         disagree: the likeliest interpretations count whole fields, which contradicts TR94's own conversions.",
-        Interpretation::USUAL,
+        "Within a factor of {ALIKE:.1} of the greatest likelihood lie: {list}. The project's (in bold, simulated besides the\n\
+         {} likeliest by the formulas) has a log L {behind:.1} lower. It follows the text where text and figures disagree: the\n\
+         likeliest ones count whole fields, which contradicts TR94's own conversions.",
         fits.len() - 1,
     )
 }
 
 fn left_out(ranking: &Interpretations) -> String {
     let rows = ranking.left_out.iter();
-    let cells = rows.map(|one| [one.id.to_owned(), format!("{:+.1} %", one.error_percent), one.words.clone()]);
-    rows_of(["#", "error", "chosen by the others"], cells)
+    let cells = grouped(rows.map(|one| (format!("{} ({:+.1} %)", one.id, one.error_percent), one.words.clone())));
+    rows_of(["figures and their errors", "chosen by the others"], cells)
+}
+
+/// Joins the names that have the same text.
+fn grouped(rows: impl IntoIterator<Item = (String, String)>) -> Vec<[String; 2]> {
+    let mut joined: Vec<[String; 2]> = Vec::new();
+    for (name, text) in rows {
+        match joined.iter_mut().find(|[_, other]| *other == text) {
+            Some([names, _]) => *names += &format!(", {name}"),
+            None => joined.push([name, text]),
+        }
+    }
+    joined
+}
+
+/// Returns a table with one line for each different text.
+fn by_text(heading: &str, rows: impl IntoIterator<Item = (&'static str, String)>) -> String {
+    rows_of(["#", heading], grouped(rows.into_iter().map(|(id, text)| (id.to_owned(), text))))
 }
 
 fn of_application(effects: &[Effect]) -> String {
@@ -340,7 +345,9 @@ fn of_application(effects: &[Effect]) -> String {
     let printed =
         fly_throughs.iter().map(|figure| cell((figure.id, figure.value, figure.deviation.unwrap_or(f64::NAN))));
     let first = [vec!["printed".to_owned(), String::new()], printed.collect()].concat();
-    let rows = effects.iter().map(|effect| {
+    // The table leaves out the spreads between none and the mean.
+    let is_end = |effect: &&Effect| matches!(effect.changes[..], [(_, mean), (_, spread)] if spread == 0 || spread == mean);
+    let rows = effects.iter().filter(is_end).map(|effect| {
         let times = effect.changes.iter().map(|(_, ns)| format!("{} ms", ns / 1_000_000));
         times.chain(effect.figures.iter().copied().map(cell)).collect::<Vec<_>>()
     });
@@ -356,9 +363,16 @@ fn of_application(effects: &[Effect]) -> String {
 fn host(effects: &[Effect]) -> String {
     let cells = effects.iter().filter_map(|effect| {
         let ((path, value), (_, latency, _)) = (effect.changes.first()?, effect.figures.first()?);
-        Some([format!("`{path}`"), format!("{} ms", four(*value as f64 / 1e6)), format!("{} ms", four(*latency))])
+        Some((format!("`{path}`"), format!("{} ms: {} ms", four(*value as f64 / 1e6), four(*latency))))
     });
-    rows_of(["parameter", "value", "row 17"], cells)
+    let mut rows: Vec<(String, Vec<String>)> = Vec::new();
+    for (path, cell) in cells {
+        match rows.last_mut().filter(|(last, _)| *last == path) {
+            Some((_, cells)) => cells.push(cell),
+            None => rows.push((path, vec![cell])),
+        }
+    }
+    rows_of(["parameter", "its value, and row 17 with it"], rows.into_iter().map(|(path, cells)| [path, cells.join(", ")]))
 }
 
 fn fifo(effects: &[Effect]) -> String {
@@ -375,39 +389,33 @@ fn fifo(effects: &[Effect]) -> String {
 }
 
 /// Maximum number of parameters that the document lists for each figure.
-const STRONGEST: usize = 4;
+const STRONGEST: usize = 3;
 
 fn sensitivity(intervals: &[Interval]) -> String {
     // Intervals are listed in the order of the figures.
     let ordered = all().filter_map(|figure| intervals.iter().find(|interval| interval.id == figure.id));
-    let joined = |list: Vec<String>| if list.is_empty() { "nothing".to_owned() } else { list.join(", ") };
-    let cells = ordered.map(|i| {
+    let joined = |list: Vec<String>| if list.is_empty() { "-".to_owned() } else { list.join(", ") };
+    let cells = ordered.filter(|interval| is_moved(interval)).map(|i| {
         let effects = i.effects.iter().take(STRONGEST);
         let effects =
             effects.map(|e| format!("`{}` ({}, {}; {:+.2})", e.path, four(e.ends[0]), four(e.ends[1]), e.elasticity));
         let rules = i.rules.iter().map(|(rule, value)| format!("{rule}: {}", four(*value)));
-        [
-            i.id.to_owned(),
-            range(i.one_at_a_time),
-            range(i.joint),
-            range(i.likely),
-            joined(effects.collect()),
-            joined(rules.collect()),
-        ]
+        [i.id.to_owned(), range(i.likely), joined(effects.collect()), joined(rules.collect())]
     });
-    rows_of(["#", "one at a time", "joint", "5 % to 95 %", "moved by", "rules"], cells)
+    rows_of(["#", "5 % to 95 %", "moved by", "rules"], cells)
+}
+
+fn is_moved(interval: &Interval) -> bool {
+    !interval.effects.is_empty() || !interval.rules.is_empty()
+}
+
+fn unmoved(intervals: &[Interval]) -> String {
+    let still = intervals.iter().filter(|interval| !is_moved(interval));
+    still.map(|interval| interval.id).collect::<Vec<_>>().join(", ")
 }
 
 /// Returns what the experiments of a topic have in common.
 fn about() -> String {
     let topics = TOPICS.iter().filter(|topic| !topic.about.is_empty());
     topics.map(|topic| format!("**{}.** {}\n\n", topic.title, topic.about)).collect()
-}
-
-fn reasons() -> String {
-    let cells = TOPICS.iter().flat_map(|topic| topic.figures).map(|figure| {
-        let row = figure.row(f64::NAN.into());
-        [figure.id.to_owned(), row.source.to_string(), PROVENANCE.1(&row), format!("{}.", figure.reason)]
-    });
-    rows_of(["#", "source", "provenance", "reason"], cells)
 }
