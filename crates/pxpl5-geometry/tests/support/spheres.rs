@@ -23,7 +23,6 @@ pub struct SphereCase {
 
 #[derive(Clone, Debug, Default)]
 pub struct SphereRow {
-    pub spheres: usize,
     pub exact: u64,
     pub wrong: u64,
     /// Largest depth error in units of pixel depth.
@@ -187,7 +186,7 @@ pub fn all() -> Vec<SphereCase> {
 /// Compares each sphere of a family with exact integers, pixel by pixel.
 pub fn measure(case: &SphereCase) -> SphereRow {
     let transform = transform();
-    let mut row = SphereRow { spheres: case.spheres.len(), ..SphereRow::default() };
+    let mut row = SphereRow::default();
     for sphere in &case.spheres {
         if let Some(screen) = transform.sphere(sphere, &mut row.stats) {
             row.compare(sphere, &screen);

@@ -48,7 +48,7 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
         Headline::of(of_code.iter().copied()).free.rows + Headline::of(of_code.iter().copied()).interpretation.rows,
     );
     let accuracy = filled(
-        include_str!("accuracy.md"),
+        include_str!("accuracy.md.in"),
         &[
             ("headline", headline(figures)),
             ("miss", MISS_PERCENT.to_string()),
@@ -63,7 +63,7 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
     );
     let ranking = &alternatives.interpretations;
     let interpretations = filled(
-        include_str!("interpretations.md"),
+        include_str!("interpretations.md.in"),
         &[
             ("count", ranking.analytic.len().to_string()),
             ("ranking", ranked(ranking)),
@@ -80,7 +80,7 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
             ("experiments", by_text("experiment", rows.iter().map(|row| (row.id, row.experiment.to_owned())))),
         ],
     );
-    let time = filled(include_str!("time.md"), &[("edges", edges(&rows))]);
+    let time = filled(include_str!("time.md.in"), &[("edges", edges(&rows))]);
     Documents { accuracy, interpretations, time }
 }
 
@@ -104,7 +104,6 @@ fn edges(rows: &[&FigureRow]) -> String {
         Some([
             row.id.to_owned(),
             SIMULATED.1(row),
-            if fields.is_finite() { four(fields) } else { "-".to_owned() },
             format!("{}{mark}", four(later)),
             effect(later, 1.0),
             if earlier.is_finite() { four(earlier) } else { "-".to_owned() },
@@ -112,7 +111,7 @@ fn edges(rows: &[&FigureRow]) -> String {
         ])
     };
     let headings =
-        ["#", "simulated", "fields", "a retrace later after", "effect", "a retrace earlier before", "effect"];
+        ["#", "simulated", "a retrace later after", "effect", "a retrace earlier before", "effect"];
     rows_of(headings, rows.iter().filter_map(near))
 }
 

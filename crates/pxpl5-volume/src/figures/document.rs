@@ -89,13 +89,14 @@ fn shown(shown: &ShownStatement) -> [String; 2] {
     [shown.statement.to_string(), format!("{holds}{}", shown.evidence)]
 }
 
-fn scene(scene: &MeasuredScene) -> [String; 10] {
+fn scene(scene: &MeasuredScene) -> [String; 11] {
     let [_, _, sent] = scene.bytes.map(|bytes| format!("{:.1}", bytes as f64 / 1e6));
     let [cpu, gpu, bus] = scene.model_ms.map(|ms| format!("{ms:.0}"));
     let [serial, overlapped] = scene.volumes_hz.map(|hz| format!("{hz:.2}"));
     let [draws, tiles] = [scene.draws_percent, scene.tile_occupancy_percent].map(|percent| format!("{percent:.1} %"));
+    let hash = format!("`{}`", scene.volume_hash);
     let (name, triangles) = (scene.scene.clone(), scene.triangles.to_string());
-    [name, triangles, draws, tiles, sent, cpu, gpu, bus, serial, overlapped]
+    [name, triangles, draws, tiles, sent, cpu, gpu, bus, serial, overlapped, hash]
 }
 
 fn setting(setting: Parameter) -> [String; 3] {
