@@ -143,7 +143,6 @@ impl Transform {
         sink(ScreenTriangle { outline, surface: VertexColours(colours) }, expressions);
     }
 
-    /// Returns the expressions of a triangle whose corners run clockwise.
     fn expressions(&self, corners: &[Corner; 3], colours: &[[u16; 3]; 3]) -> GouraudTriangle {
         let [p, q, r] = corners;
         let step = self.viewport.line_step();

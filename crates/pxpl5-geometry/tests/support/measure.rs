@@ -69,7 +69,6 @@ impl Counts {
     }
 }
 
-/// Returns the pixel and its neighbours along one axis.
 fn neighbours(pixel: i32, size: i32) -> RangeInclusive<i32> {
     (pixel - 1).max(0)..=(pixel + 1).min(size - 1)
 }

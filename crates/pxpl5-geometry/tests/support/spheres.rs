@@ -102,7 +102,6 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Returns the pixel depth at inverse distance `u`.
 fn pixel_depth(u: f64) -> f64 {
     let projection = pixel_view(NEAR, FAR).projection.to_cols_array_2d();
     let depth = -f64::from(projection[2][2]) + f64::from(projection[3][2]) * u;

@@ -143,7 +143,6 @@ fn headline(figures: &Figures) -> String {
     )
 }
 
-/// Returns all rows, those of the fly-throughs in whole fields.
 fn in_whole_fields(figures: &Figures) -> Vec<FigureRow> {
     let counted = |row: &FigureRow| {
         let whole = row.details.iter().find(|detail| detail.name == WHOLE)?;
