@@ -114,8 +114,8 @@ pub(crate) fn listed(processor: &Processor, count: u32) -> Result<Vec<MessagePie
 
 /// Returns the source of the code that divides a bin into messages.
 ///
-/// `whole` is the largest number of words of a message. `most` is the largest number without the commands that end a
-/// region.
+/// A message has at most `whole` words. `most` words of them are for the bin, so that the commands that end a region fit
+/// into the last message.
 pub(crate) fn token_source([most, whole]: [Word; 2]) -> String {
     format!("MOST = {most}\nWHOLE = {whole}\n{}", include_str!("../kernels/token.s"))
 }
