@@ -9,7 +9,7 @@ use super::row::verdict;
 use super::rules::Rules;
 use crate::pictures::OF_FIGURES;
 use address_recalculation::priority::PriorityTiming;
-use pxpl5_sim::figures::column::{ERROR, NUMBER, four};
+use pxpl5_sim::figures::column::{NUMBER, error, four};
 use pxpl5_sim::figures::{self, Basis, Definition, FigureRow, TableColumn, filled, lines};
 use std::fmt::Write as _;
 
@@ -81,28 +81,33 @@ fn sum(numbers: &[f64]) -> f64 {
     numbers.iter().sum()
 }
 
-const COLUMNS: [TableColumn<FigureRow>; 9] = [
+const COLUMNS: [TableColumn<FigureRow>; 7] = [
     ("", |row| row.experiment.to_owned()),
     NUMBER,
     ("statement", |row| row.statement.to_string()),
-    ("published", |row| four(row.published)),
+    ("published", |row| with_unit(row.published, row.unit)),
     ("ours", |row| four(row.simulated)),
-    ("unit", |row| row.unit.to_owned()),
-    ERROR,
+    ("error", |row| match verdict(row) {
+        "met" | "shape" => error(row),
+        verdict => format!("{} {verdict}", error(row)),
+    }),
     ("provenance", |row| match row.basis {
         Basis::Free => "checked".to_owned(),
         Basis::Shape => "shape".to_owned(),
         basis => basis.name().to_owned(),
     }),
-    ("", |row| if row.is_met && row.basis != Basis::Unprinted { String::new() } else { verdict(row).to_owned() }),
 ];
 
-const DEFINITIONS: [TableColumn<Definition>; 4] = [
+const DEFINITIONS: [TableColumn<Definition>; 3] = [
     ("#", |one| one.id.to_owned()),
     ("what", |one| one.statement.to_string()),
-    ("value", |one| four(one.value)),
-    ("unit", |one| one.unit.to_owned()),
+    ("value", |one| with_unit(one.value, one.unit)),
 ];
+
+/// Formats a number with its unit. A pure number has the unit 1, and a missing one none.
+fn with_unit(value: f64, unit: &str) -> String {
+    if unit == "1" || value.is_nan() { four(value) } else { format!("{} {unit}", four(value)) }
+}
 
 /// Returns the figures as a Markdown table.
 pub fn table(rows: &[FigureRow]) -> String {

@@ -75,7 +75,13 @@ fn table_1(all: &Experiments) -> Vec<FigureRow> {
 
 fn rate(all: &Experiments, memory: usize) -> FigureRow {
     let basis = if memory == RATE_FITTED { Basis::Fitted("priority.cell_m") } else { Basis::Free };
-    row("A12", &format!("update rate of memory {memory}"), "Hz", [RATES_HZ[memory], all.fits[0].rates_hz[memory]], basis)
+    row(
+        "A12",
+        &format!("update rate of memory {memory}"),
+        "Hz",
+        [RATES_HZ[memory], all.fits[0].rates_hz[memory]],
+        basis,
+    )
 }
 
 fn table_2(all: &Experiments) -> Vec<FigureRow> {

@@ -52,7 +52,8 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
         &[
             ("headline", headline(figures)),
             ("miss", MISS_PERCENT.to_string()),
-            ("tables", tables(figures, alternatives)),
+            ("tables", tables(figures)),
+            ("wait", under_wait(&rows, &alternatives.other_rule)),
             ("fields", fields(&rows)),
             ("misses", misses(&rows)),
             ("definitions", definitions()),
@@ -110,8 +111,7 @@ fn edges(rows: &[&FigureRow]) -> String {
             effect(earlier, -1.0),
         ])
     };
-    let headings =
-        ["#", "simulated", "a retrace later after", "effect", "a retrace earlier before", "effect"];
+    let headings = ["#", "simulated", "a retrace later after", "effect", "a retrace earlier before", "effect"];
     rows_of(headings, rows.iter().filter_map(near))
 }
 
@@ -152,25 +152,35 @@ fn in_whole_fields(figures: &Figures) -> Vec<FigureRow> {
     figures.rows().map(|row| counted(row).unwrap_or_else(|| row.clone())).collect()
 }
 
-fn tables(figures: &Figures, alternatives: &Alternatives) -> String {
+/// Returns the rows that the other rule for finished regions changes, with their results under it.
+fn under_wait(rows: &[&FigureRow], other_rule: &[FigureRow]) -> String {
+    let changed = other_rule.iter().filter(|other| {
+        let row = rows.iter().find(|row| row.id == other.id);
+        row.is_some_and(|row| four(row.simulated) != four(other.simulated))
+    });
+    changed.map(|other| format!("{} ({})", other.id, four(other.simulated))).collect::<Vec<_>>().join(", ")
+}
+
+fn tables(figures: &Figures) -> String {
     let mut text = String::new();
     for group in figures.groups.iter().filter(|group| group.document.is_none()) {
+        let mut above = String::new();
         let rows = group.rows.iter().map(|row| {
-            let wait = alternatives.other_rule.iter().find(|other| other.id == row.id);
-            let wait = wait.filter(|other| four(other.simulated) != four(row.simulated));
+            let provenance = PROVENANCE.1(row);
+            let is_repeated = provenance == above && provenance.contains(' ');
+            above = provenance.clone();
             [
                 row.id.to_owned(),
                 format!("{} ({})", row.statement, row.source.rsplit_once(", ").map_or("", |(paper, _)| paper)),
                 PUBLISHED.1(row),
                 SIMULATED.1(row),
                 format!("{}{}", error(row), if row.is_met { "" } else { " **miss**" }),
-                wait.map_or_else(String::new, |other| four(other.simulated)),
                 row.interval.map_or_else(|| "-".to_owned(), range)
                     + if row.is_out_of_reach() { ", **out of reach**" } else { "" },
-                PROVENANCE.1(row),
+                if is_repeated { "the same".to_owned() } else { provenance },
             ]
         });
-        let headings = ["#", "figure", "published", "simulated", "error", "`wait`", "interval", "provenance"];
+        let headings = ["#", "figure", "published", "simulated", "error", "interval", "provenance"];
         text += &format!("## {}\n\n{}\n", group.title, rows_of(headings, rows));
     }
     text
@@ -219,23 +229,25 @@ fn misses(rows: &[&FigureRow]) -> String {
 
 fn definitions() -> String {
     let defined = all().filter_map(|figure| Some((figure.id, figure.latency?)));
-    let mut rows: Vec<(Vec<&str>, super::LatencyDefinition)> = Vec::new();
-    for (id, latency) in defined {
-        // Neighbours with the same definition share a line.
-        match rows.last_mut().filter(|(_, last)| *last == latency) {
-            Some((ids, _)) => ids.push(id),
-            None => rows.push((vec![id], latency)),
+    // Rows with the same definition share a line, with the sentences of their papers.
+    let mut rows: Vec<[String; 5]> = Vec::new();
+    for (id, super::LatencyDefinition { from, to, eyes, statistic, sentence }) in defined {
+        let new = [id, from, to, &format!("{eyes}: {statistic}"), sentence].map(str::to_owned);
+        match rows.iter_mut().find(|row| row[1..4] == new[1..4]) {
+            Some([ids, .., sentences]) => {
+                *ids += &format!(", {id}");
+                if !sentences.contains(sentence) {
+                    *sentences += &format!("; {id}: {sentence}");
+                }
+            }
+            None => rows.push(new),
         }
     }
-    let cells = rows.into_iter().map(|(ids, latency)| {
-        let statistic = format!("{}: {}", latency.eyes, latency.statistic);
-        [&ids.join(", "), latency.from, latency.to, &statistic, latency.sentence].map(str::to_owned)
-    });
-    rows_of(["rows", "from", "to", "eyes, statistic", "what the paper says"], cells)
+    rows_of(["rows", "from", "to", "eyes, statistic", "what the paper says"], rows)
 }
 
-/// Minimum change of a figure, in percent, for which the document lists the figure. The change results if the times of
-/// primitives are measured by executing i860 code instead of taken from the timing table.
+/// Least change of a figure, in percent, for which a document lists what changes it: the times of i860 code instead of
+/// the timing table, or a parameter.
 const MOVED_PERCENT: f64 = 0.5;
 
 fn moved_by_code(rows: &[&FigureRow], of_code: &[&FigureRow]) -> String {
@@ -286,7 +298,11 @@ fn ranked(ranking: &Interpretations) -> String {
     let columns: Vec<usize> = (0..ranked_figures().count()).filter(differs).collect();
     let ids: Vec<&str> = ranked_figures().map(|figure| figure.id).collect();
     let headings: Vec<&str> = columns.iter().map(|column| ids[*column]).collect();
-    let mut text = format!("| rank | log L | {} | interpretation |\n|---|---|{}---|\n", headings.join(" | "), "---|".repeat(columns.len()));
+    let mut text = format!(
+        "| rank | log L | {} | interpretation |\n|---|---|{}---|\n",
+        headings.join(" | "),
+        "---|".repeat(columns.len())
+    );
     for (rank, fit, values) in &shown {
         let values: Vec<&str> = columns.iter().map(|column| values[*column].as_str()).collect();
         text += &format!("| {rank} | {:.1} | {} | {} |\n", fit.log_likelihood, values.join(" | "), fit.words);
@@ -305,12 +321,11 @@ fn confidence(ranking: &Interpretations) -> String {
     let alike = ranking.alike();
     let place = fits.iter().position(|fit| fit.interpretation == Interpretation::USUAL);
     let behind = place.map_or(f64::NAN, |place| fits[0].log_likelihood - fits[place].log_likelihood);
-    let list = alike.iter().map(|fit| format!("*{}*", fit.words)).collect::<Vec<_>>().join("; ");
     format!(
-        "Within a factor of {ALIKE:.1} of the greatest likelihood lie: {list}. The project's (in bold, simulated besides the\n\
-         {} likeliest by the formulas) has a log L {behind:.1} lower. It follows the text where text and figures disagree: the\n\
-         likeliest ones count whole fields, which contradicts TR94's own conversions.",
-        fits.len() - 1,
+        "The first {} lie within a factor of {ALIKE:.1} of the greatest likelihood. The project's, in bold, has a log L\n\
+         {behind:.1} lower, because it follows the text where text and figures disagree: the likeliest ones count whole\n\
+         fields, which contradicts TR94's own conversions.",
+        alike.len(),
     )
 }
 
@@ -344,7 +359,8 @@ fn of_application(effects: &[Effect]) -> String {
         fly_throughs.iter().map(|figure| cell((figure.id, figure.value, figure.deviation.unwrap_or(f64::NAN))));
     let first = [vec!["printed".to_owned(), String::new()], printed.collect()].concat();
     // The table leaves out the spreads between none and the mean.
-    let is_end = |effect: &&Effect| matches!(effect.changes[..], [(_, mean), (_, spread)] if spread == 0 || spread == mean);
+    let is_end =
+        |effect: &&Effect| matches!(effect.changes[..], [(_, mean), (_, spread)] if spread == 0 || spread == mean);
     let rows = effects.iter().filter(is_end).map(|effect| {
         let times = effect.changes.iter().map(|(_, ns)| format!("{} ms", ns / 1_000_000));
         times.chain(effect.figures.iter().copied().map(cell)).collect::<Vec<_>>()
@@ -370,7 +386,10 @@ fn host(effects: &[Effect]) -> String {
             None => rows.push((path, vec![cell])),
         }
     }
-    rows_of(["parameter", "its value, and row 17 with it"], rows.into_iter().map(|(path, cells)| [path, cells.join(", ")]))
+    rows_of(
+        ["parameter", "its value, and row 17 with it"],
+        rows.into_iter().map(|(path, cells)| [path, cells.join(", ")]),
+    )
 }
 
 fn fifo(effects: &[Effect]) -> String {
@@ -394,17 +413,23 @@ fn sensitivity(intervals: &[Interval]) -> String {
     let ordered = all().filter_map(|figure| intervals.iter().find(|interval| interval.id == figure.id));
     let joined = |list: Vec<String>| if list.is_empty() { "-".to_owned() } else { list.join(", ") };
     let cells = ordered.filter(|interval| is_moved(interval)).map(|i| {
-        let effects = i.effects.iter().take(STRONGEST);
+        let effects = moving(i).take(STRONGEST);
         let effects =
             effects.map(|e| format!("`{}` ({}, {}; {:+.2})", e.path, four(e.ends[0]), four(e.ends[1]), e.elasticity));
         let rules = i.rules.iter().map(|(rule, value)| format!("{rule}: {}", four(*value)));
-        [i.id.to_owned(), range(i.likely), joined(effects.collect()), joined(rules.collect())]
+        let band = if i.likely[0] < i.likely[1] { range(i.likely) } else { "-".to_owned() };
+        [i.id.to_owned(), band, joined(effects.collect()), joined(rules.collect())]
     });
     rows_of(["#", "5 % to 95 %", "moved by", "rules"], cells)
 }
 
+/// Returns the effects of parameters that move a figure by at least half a percent.
+fn moving(interval: &Interval) -> impl Iterator<Item = &crate::intervals::Effect> {
+    interval.effects.iter().filter(|effect| deviation_percent(effect.ends[0], effect.ends[1]) >= MOVED_PERCENT)
+}
+
 fn is_moved(interval: &Interval) -> bool {
-    !interval.effects.is_empty() || !interval.rules.is_empty()
+    moving(interval).next().is_some() || !interval.rules.is_empty()
 }
 
 fn unmoved(intervals: &[Interval]) -> String {

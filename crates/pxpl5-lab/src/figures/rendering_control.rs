@@ -96,7 +96,7 @@ const OF_FRAMES: &[&str] = &[
 const APPLICATION: Basis = Basis::Interpretation("each eye, the large machine, culling");
 const OF_APPLICATION: &str = "TR94 names neither the machine nor culling. The project chose the large machine and culled scenes, because the scene `head` takes \
      twice the printed time otherwise. Samples of each eye were chosen because of the printed deviations";
-const GAP: &str = "If TR94's fields are exact, about one field (one COPY) is missing in the model. See the section on exact and whole fields";
+const GAP: &str = "If TR94's fields are exact, about one field (one COPY) is missing (see the section above)";
 const BIN_RULE: Basis = Basis::Rule("TRANSFORM waits until the bins have room for it");
 const OF_BINS: &str = "No paper states the rule. It was chosen because both figures follow from it";
 
@@ -144,7 +144,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Interpretation("each eye"),
-        reason: "The text allows samples of the first eye, too (see the page of interpretations)",
+        reason: "The text allows samples of the first eye, too",
         latency: Some(TO_THE_SWAP),
         is_interpreted: true,
         varied: Varied::ByFormula,

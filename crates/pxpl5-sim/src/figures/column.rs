@@ -18,9 +18,6 @@ pub const SIMULATED: TableColumn<FigureRow> = ("simulated", |row| {
     format!("{} {}{unprinted}", four(row.simulated), row.unit)
 });
 
-/// Relative error in percent, or "-" if the published number is 0 or missing.
-pub const ERROR: TableColumn<FigureRow> = ("error", error);
-
 /// Provenance of the row, with the parameter or rule that was chosen.
 pub const PROVENANCE: TableColumn<FigureRow> = ("provenance", |row| match row.basis {
     Basis::Fitted(chosen) | Basis::Rule(chosen) | Basis::Interpretation(chosen) | Basis::Derived(chosen) => {

@@ -28,7 +28,7 @@ pub fn markdown(figures: &VolumeFigures) -> String {
     )
 }
 
-const COLUMNS: [TableColumn<FigureRow>; 6] = [
+const COLUMNS: [TableColumn<FigureRow>; 5] = [
     NUMBER,
     ("statement", |row| match &row.scene {
         Some(scene) => format!("{} ({scene})", row.statement),
@@ -39,8 +39,7 @@ const COLUMNS: [TableColumn<FigureRow>; 6] = [
         format!("{}{measured}", source(&row.source, row.origin))
     }),
     ("expected", |row| format!("{} {}", expected(row), row.unit)),
-    ("model", |row| number(row.simulated)),
-    ("", |row| if row.is_met { "" } else { "**missed**" }.to_owned()),
+    ("model", |row| number(row.simulated) + if row.is_met { "" } else { " **missed**" }),
 ];
 
 /// Returns the section of the paper, and states if the number was derived from printed numbers.
