@@ -443,11 +443,10 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
 fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## The timing table from the code\n");
     println!(
-        "These are mean times of the code over the three application scenes. *Scenes* is the range from the smallest to\n\
-         the largest mean of a scene (examples/code_times). A test of pxpl5-lab measures the times again. The preset\n\
-         `slats` has the times of *single* by default, and `slats-optimised` a third of them for triangles and spheres;\n\
-         the others have published or fitted times. `machine.times = \"code\"` selects the times of\n\
-         the code for every preset, and `machine.times = \"papers\"` selects 30.0 us, fitted to figure 12, for `slats`.\n"
+        "These are mean times over the three application scenes; *scenes* is the range of their means\n\
+         (examples/code_times). The preset `slats` has the times of *single* by default, and `slats-optimised` a third of\n\
+         them for triangles and spheres; the others have published or fitted times. `machine.times = \"code\"` selects the\n\
+         times of the code for every preset, and `\"papers\"` the time fitted to figure 12 for `slats`.\n"
     );
     head(&[
         "code",
@@ -566,7 +565,7 @@ fn sizes() {
     row(&["dual, out of the loops".into(), (end - at("finished")).to_string()]);
 }
 
-const INTRODUCTION: &str = "# Time per triangle on a graphics processor
+const INTRODUCTION: &str = "# How long does a graphics processor take for a triangle?
 
 For one triangle and eye, code like that of a good compiler of about 1990 takes some 2,200 clocks (55 us). Scheduled
 code takes some 840 (21 us), where optimised PPHIGS needed 21.7 us. The program of Slats, compiled code in single
@@ -574,77 +573,45 @@ precision, takes 27 us, and its papers have 34 us for 1994 and 58 us for 1995. N
 the model, although its rules for waits and its memory times are assumed. Most depends on the instruction cache, because
 the scheduled loops fit into its 4 KB and unoptimised code does not.
 
-`cargo run --profile test --example gp_timing > docs/gp-timing.md` makes this page. Do not edit it.
+`cargo run --profile test --example gp_timing > docs/gp-timing.md` (some minutes) makes this page. Do not edit it.
 
 ## The kernels
 
-Three i860 programs (*kernels*, in crates/pxpl5-geometry/kernels), and a fourth for Slats, read a triangle of the
-display list. They write the words of a renderer command, and an entry into the bin of each region that the triangle
-touches. Each of them
+Three i860 programs (*kernels*, in crates/pxpl5-geometry/kernels), and a fourth for Slats, read a triangle of the display
+list, and write the words of a renderer command and an entry into the bin of each region that it touches. They transform
+three corners and test whether these are inside the guard band, compute 1 / w with Newton steps, and round to 1/16 pixel.
+Then come the light at the corners (or their normals for Phong shading), three edge expressions, the planes of depth and
+of three components, the lines of a field, and the bins. They differ in their code:
 
-- transforms three corners and tests whether they are inside the guard band,
+- *straight* is not optimised. Each statement reads and writes its variables in memory, and all functions are inlined.
 
-- computes 1 / w from a first estimate with Newton steps, rounds the corners to 1/16 pixel, and computes their
-  depth,
+- *compiled* has functions, loops, local variables in registers, and scalar floating-point operations, like the output of
+  a good compiler for a plain C program. Its rules were written before the first measurement (compiled_rules.md).
 
-- computes the light at the corners, or keeps their normals for Phong shading,
+- *dual* consists of pairs of instructions, which `i860::linear` arranged. It processes a batch of 26 triangles in two
+  loops, each of which fits the instruction cache of 4 KB.
 
-- tests the orientation and computes three edge expressions, the plane of depth, and the planes of three
-  components of colour or normal,
+- *single* is the compiled program of Slats: precomputed colours, both eyes in one pass, one bin for all regions, and
+  planes in single precision. Its rules were written before the first measurement, too (slats_rules.md).
 
-- converts the expressions to the lines of a field and sorts the triangle into bins.
-
-They differ in their code:
-
-- *straight* is not optimised. Each statement reads and writes its variables in memory (stack frame), and all
-  functions are inlined.
-
-- *compiled* has functions, loops, local variables in registers, and scalar floating-point operations, like
-  the output of a good compiler for a plain C program. Its rules were written before the first measurement
-  (compiled_rules.md).
-
-- *dual* consists of pairs of instructions for dual-instruction mode, which the module `i860::linear`
-  arranged. It processes a batch of 26 triangles in two loops, each of which fits the instruction cache of 4
-  KB.
-
-- *single* is the compiled program of Slats: precomputed colours, both eyes in one pass, one bin for all
-  regions, and planes in single precision. Its rules were written before the first measurement, too
-  (slats_rules.md).
-
-All give exactly the same words as the native code in Rust (crates/pphigs/tests/kernels.rs and code.rs). They
-share one clipper for triangles that are not completely inside the guard band, which is written like the
-compiled kernel. So is other i860 code:
-
-| work | code |
-| --- | --- |
-| spheres: centre and radius to the eye, near and far plane, conic, bounding box, regions, fixed point, planes | kernels/sphere.s |
-| edits | i860 code in the same manner |
-| beginning of a pass: reset of the bins, matrices of each structure multiplied and transposed, light | i860 code in the same manner |
-| receiving and sending of messages and chains | crates/pxpl5-gp/kernels/ring.s, ring_rules.md |
-| bin handoff for tokens | crates/pphigs/kernels/token.s |
-| frames in regions of 128 x 128 for faces of a cube and other displays | kernels/picture.s and bins.s |
-| selection of the faces that a primitive may touch | crates/pphigs/kernels/sort.s, sort_rules.md |
-| window search for a strip of lines or a block | windows.s, windows_rules.md |
-| triangles between the views of a field's begin and end | compiled.s, between_rules.md |
-
-The operating software of the original machine is not published; ring_rules.md says which parts of it ring.s
-replaces. Two kinds of work have no i860 code: the decisions of a master, and the warping of vertices at the
-borders of cells. Hardware of the ring interface (DMA and FIFOs) is simulated word by word and needs none. A
+All give exactly the same words as the native code in Rust (crates/pphigs/tests/kernels.rs and code.rs). The clipper, for
+triangles that are not completely inside the guard band, is written like the compiled kernel. So is the code for spheres,
+edits, the beginning of a pass, messages, tokens, windows and views, in the same folder, in crates/pphigs/kernels and in
+crates/pxpl5-gp/kernels, whose ring_rules.md says which parts of the unpublished operating software it replaces. The
+decisions of a master and the warping of vertices have no i860 code, and the hardware of the ring interface needs none. A
 whole program therefore takes longer than the times below.
 
-Triangles have about 30 pixels (1,000 of them). Each corner has its own position, normal and colour, which the
-kernel reads from memory. The size of an NTSC frame or field is a constant in the code; kernels for other
-frames read it from their parameter block. The processor runs at 40 MHz with the freeze rules and the memory
-of crates/i860/src/timing.rs. Both are assumed, so the [last section](#what-the-times-depend-on) says how much
-they matter.
+The 1,000 triangles have about 30 pixels each. The kernel reads position, normal and colour of each corner from memory.
+The size of an NTSC frame or field is a constant in the code; kernels for other frames read it from their parameter
+block. The processor runs at 40 MHz with the freeze rules and the memory of crates/i860/src/timing.rs. Both are assumed,
+so the [last section](#what-the-times-depend-on) says how much they matter.
 ";
 
 const DEPENDENCE: &str = "\
 ## What the times depend on
 
-`cargo run --profile test --example gp_timing -- --details` also prints how much each cause of a wait and each
-number of the memory matters. It adds the clocks of Phong triangles, of strips, and of the work of
-just-in-time pixels. In short:
+With `-- --details`, the same command also prints how much each cause of a wait and each number of the memory matters, and
+the clocks of Phong triangles, of strips, and of just-in-time pixels. In short:
 
 - **Waits.** The compiled kernel loses most to floating-point operations that wait for a scalar one in flight:
   560 clocks, and 120 more behind products of doubles. In the straight kernel, instruction misses

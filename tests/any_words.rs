@@ -71,7 +71,6 @@ fn message() -> impl Strategy<Value = (Body, usize, u64)> {
     (prop_oneof![words(), pixels()], 0usize..12, 0u64..1_000)
 }
 
-/// Reads everything that a display shows.
 fn read_display(display: &dyn Display, now: Time) {
     for surface in 0..display.surfaces().len() {
         let of_surface = &display.surfaces()[surface];

@@ -42,7 +42,6 @@ fn pictures(machine: &Machine, fields: u64) -> Vec<image::RgbImage> {
     seen(machine, fields).iter().map(ScannedField::picture).collect()
 }
 
-/// Returns the number of different colours in a picture.
 fn colours(picture: &image::RgbImage) -> usize {
     picture.pixels().map(|pixel| pixel.0).collect::<BTreeSet<_>>().len()
 }

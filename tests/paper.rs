@@ -72,7 +72,6 @@ fn with_thousands(digits: &str) -> String {
     format!("{thousands},{rest}")
 }
 
-/// Returns a value of the committed comparison, by pipeline and column.
 fn compared(pipeline: &str, column: &str) -> f64 {
     let table = read("paper/comparison.csv");
     let mut lines = table.lines();

@@ -56,7 +56,6 @@ fn detail(id: &str, name: &str) -> f64 {
     row(id).details.iter().find(|detail| detail.name == name).expect("listed").value
 }
 
-/// Returns the rows that have a closed form.
 fn by_formula() -> impl Iterator<Item = &'static FigureRow> {
     all().filter(|figure| figure.varied == Varied::ByFormula).map(|figure| row(figure.id))
 }

@@ -78,7 +78,6 @@ fn read_snapshots(stepper: &Stepper, dice: &mut Dice) {
     }
 }
 
-/// Runs an experiment in random pieces.
 fn in_pieces(experiment: &Experiment, seed: u64) -> Outcome {
     let mut dice = Dice(seed);
     let mut stepper = experiment.stepper().expect("it can be built");

@@ -96,7 +96,6 @@ fn has_word(list: &str, word: &str) -> bool {
     list.split(' ').any(|other| other == word)
 }
 
-/// Returns the doc comments of a source, each as one text.
 fn comments(source: &str) -> Vec<String> {
     let mut all = vec![String::new()];
     for line in source.lines().map(str::trim_start) {

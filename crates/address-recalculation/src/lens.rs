@@ -118,6 +118,7 @@ impl Lens {
     /// x points right and y up. The head looks along -z.
     pub fn view(&self, picture: &LensPicture, x: u32, y: u32) -> Vector {
         let [right, down] = picture.offset(x, y);
+        // At this distance in pixels, the picture's width covers its angle of view.
         let focal = f64::from(picture.width) / 2.0 / picture.tangent();
         match self {
             Self::Flat => [right / focal, -down / focal, -1.0],

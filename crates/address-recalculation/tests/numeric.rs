@@ -188,7 +188,6 @@ fn case_14_the_solid_angles_of_all_texels_add_up_to_a_sphere() {
     }
 }
 
-/// Returns a uniformly distributed random rotation.
 fn any_rotation(random: &mut SplitMix64) -> DQuat {
     let mut uniform = || (random.bits() >> 11) as f64 / (1_u64 << 53) as f64;
     let [u, v, w] = [uniform(), uniform() * std::f64::consts::TAU, uniform() * std::f64::consts::TAU];

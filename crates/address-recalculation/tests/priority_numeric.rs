@@ -240,7 +240,6 @@ fn case_29_an_object_touches_the_computed_mean_number_of_faces() {
     near(mean_faces_touched(0.0), 1.0, 0.0);
 }
 
-/// The chord exceeds the sine by a relative 1.2e-6.
 #[test]
 fn the_chord_rule_exceeds_the_sine_rule_by_1_2_millionths() {
     let sine = Threshold { translation: Translation::Sine, ..threshold() };

@@ -90,6 +90,7 @@ impl Cpu {
                 let pair = self.read(bus, address, 8)?;
                 self.state.set_f64(a.dest, pair);
             }
+            // The four registers of a quad begin at a multiple of four.
             _ => self.load_quad(a.dest & 28, address, bus)?,
         }
         self.accessed(a, address, false);

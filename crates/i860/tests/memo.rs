@@ -81,7 +81,6 @@ fn rules() -> impl Strategy<Value = FreezeRules> {
         .prop_map(rules_of)
 }
 
-/// Returns the freeze rules with the rows whose bits are set.
 fn rules_of(bits: u32) -> FreezeRules {
     let on = FREEZES.iter().enumerate().filter(|(n, _)| bits >> n & 1 != 0);
     on.fold(FreezeRules::none(), |rules, (_, row)| rules.with(row.id))

@@ -148,6 +148,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     /// Sends the next blocks and the newest view to each slave that has finished its earlier blocks.
     async fn roam(&mut self, batch: u64) -> Result<(), Fault> {
         let slaves = self.config.slaves.len();
+        // At the start no slave has work, so all count as finished.
         self.state.done.borrow_mut().extend(0..slaves as u32);
         let mut flight = OrderTimes::new(slaves, u64::from(self.config.grid().regions()).div_ceil(batch));
         for update in PictureNumber::FIRST.onwards() {

@@ -114,8 +114,7 @@ pub(crate) fn listed(processor: &Processor, count: u32) -> Result<Vec<MessagePie
 
 /// Returns the source of the code that divides a bin into messages.
 ///
-/// `whole` is the largest number of words of a message. `most` is the largest number without the commands that end a
-/// region.
+/// A message has at most `most` words without the commands that end a region, and at most `whole` with them.
 pub(crate) fn token_source([most, whole]: [Word; 2]) -> String {
     format!("MOST = {most}\nWHOLE = {whole}\n{}", include_str!("../kernels/token.s"))
 }

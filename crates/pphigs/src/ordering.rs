@@ -51,7 +51,6 @@ mod tests {
     use pxpl5_gp::CodeVersion;
     use pxpl5_wire::NodeId;
 
-    /// Tests that the code writes exactly the words of an order into the message buffer, for orders of any length.
     #[test]
     fn the_code_of_an_order_writes_exactly_the_words_of_the_order() {
         let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Compiled, i860::Config::cycle());

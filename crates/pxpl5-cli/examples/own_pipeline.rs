@@ -4,7 +4,6 @@
 //! `docs/guide/own-pipeline.md` explains the example. To run it:
 //! `cargo run --release -p pxpl5-cli --example own_pipeline -- run --pipeline one-at-a-time --scene mig`.
 
-// ANCHOR: imports
 use pxpl5_cli::pxpl5::device::Display;
 use pxpl5_cli::pxpl5::firmware::{
     Body, CopyContent, CopyOrder, CopyPath, CopyTarget, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture,
@@ -17,9 +16,7 @@ use pxpl5_cli::pxpl5::{
 };
 use std::process::ExitCode;
 use std::sync::Arc;
-// ANCHOR_END: imports
 
-// ANCHOR: pipeline
 /// A simple pipeline: one processor draws one frame at a time.
 #[derive(Debug)]
 struct OneAtATime {
@@ -39,7 +36,6 @@ impl OneAtATime {
         })
     }
 }
-// ANCHOR_END: pipeline
 
 // ANCHOR: firmware
 /// The firmware. Every `.await` takes simulated time or waits.
@@ -95,7 +91,6 @@ async fn firmware(
 }
 // ANCHOR_END: firmware
 
-// ANCHOR: implementation
 impl Pipeline for OneAtATime {
     fn name(&self) -> &'static str {
         ONE_AT_A_TIME.name
@@ -152,7 +147,6 @@ impl PictureRules for OneAtATime {
         "no frame is ever due: each is shown when it is finished"
     }
 }
-// ANCHOR_END: implementation
 
 // ANCHOR: entry
 const ONE_AT_A_TIME: PipelineEntry = PipelineEntry {

@@ -55,14 +55,14 @@ fn text() -> String {
 mod tests {
     use super::*;
 
-    /// Tests that docs/sources.md contains the title of each paper that `pxpl5 cite` lists.
+    /// Tests that docs/guide/figures.md contains the title of each paper that `pxpl5 cite` lists.
     #[test]
     fn the_list_of_sources_has_each_cited_paper() {
-        let sources = include_str!("../../../docs/sources.md").to_lowercase();
+        let sources = include_str!("../../../docs/guide/figures.md").to_lowercase();
         let titles = BIBTEX.lines().filter_map(|line| line.strip_prefix("  title = {{")).skip(1);
         for title in titles {
             let title = title.split([':', '}']).next().unwrap_or_default().to_lowercase();
-            assert!(sources.contains(&title), "docs/sources.md lacks {title}");
+            assert!(sources.contains(&title), "docs/guide/figures.md lacks {title}");
         }
     }
 

@@ -154,7 +154,6 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
 const WITHOUT_INTERVALS: &str =
     "\nThe intervals of the figures are in ACCURACY.md. Option --intervals computes them.\n";
 
-/// Writes or checks the pages of a folder of documents.
 fn pages(folder: &Path, texts: &Documents, is_check: bool) -> Result<(), CliError> {
     let numerics = folder.join("numerics.md");
     let page = fs::read_to_string(&numerics).map_err(|e| CliError::failure(format!("{}: {e}", numerics.display())))?;

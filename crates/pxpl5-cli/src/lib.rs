@@ -252,7 +252,8 @@ mod tests {
     }
 
     /// Documents whose commands are checked, each with at least one.
-    const DOCUMENTS: &str = "README.md docs/results.md docs/sweeps.md docs/guide/address-recalculation.md \
+    const DOCUMENTS: &str = "README.md docs/decisions.md docs/faces.md docs/reprojection.md docs/results.md \
+        docs/sweeps.md docs/volumetric-variants.md docs/guide/address-recalculation.md \
         docs/guide/assembler.md docs/guide/clusters.md docs/guide/compare.md docs/guide/counted-pictures.md \
         docs/guide/experiment-files.md docs/guide/figures.md docs/guide/first-run.md docs/guide/head-to-light.md \
         docs/guide/latency.md docs/guide/machine.md docs/guide/motion.md docs/guide/own-display.md \

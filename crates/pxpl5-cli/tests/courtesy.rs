@@ -332,7 +332,6 @@ fn labels_with_control_characters_give_valid_drawings() {
     }
 }
 
-/// Tests that settings of an impossible screen are refused, and that unusual but possible settings run.
 #[test]
 fn settings_of_impossible_screens_are_refused_and_unusual_settings_run_without_a_panic() {
     let folder = Folder::new("odd");

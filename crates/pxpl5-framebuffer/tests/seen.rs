@@ -46,7 +46,6 @@ impl Copied {
         message_at - 50_000 * self.slowness * u64::from(message_end - 1 - i)
     }
 
-    /// Calls `call` with column, frame line and number of each pixel.
     fn each_pixel(&self, mut call: impl FnMut(u32, u32, u32)) {
         let [left, top, width, height] = self.target.grid.rectangle(self.target.region);
         for i in 0..width * height {
@@ -302,7 +301,6 @@ fn a_message_that_arrives_at_the_end_of_a_field_is_not_in_that_field() {
     }
 }
 
-/// A region that begins at the end of a field is not late in that field, in either order of events.
 #[test]
 fn a_region_that_begins_at_the_end_of_a_field_is_not_late_for_that_field() {
     let grid = RegionGrid { region_height: 16, ..RegionGrid::FIELD };

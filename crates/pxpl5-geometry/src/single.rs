@@ -125,6 +125,7 @@ impl Transform {
         stats: &mut SetupStats,
         mut sink: impl FnMut(ScreenTriangle<VertexColours>, GouraudTriangle),
     ) {
+        // Single precision cannot clip, so such a triangle goes the exact way, and its flattened planes are counted.
         let Some(corners) = self.single_corners(&triangle.positions) else {
             let mut of_planes = SetupStats::default();
             self.gouraud(triangle, &Light::NONE, stats, |piece| {
@@ -135,6 +136,7 @@ impl Transform {
         };
         stats.triangles += 1;
         let Some(regions) = self.touch_of(&corners).count(stats) else { return };
+        // Exchange two corners of a triangle with a negative area, so that its edge expressions are positive inside.
         let order = if Sides::between(&corners).twice_area() < 0.0 { [0, 2, 1] } else { [0, 1, 2] };
         let [p, q, r] = order.map(|i| self.snapped(corners[i]));
         let outline = Outline { x: [p.x, q.x, r.x], y: [p.y, q.y, r.y], z: [p.z, q.z, r.z], regions };
@@ -143,7 +145,6 @@ impl Transform {
         sink(ScreenTriangle { outline, surface: VertexColours(colours) }, expressions);
     }
 
-    /// Returns the expressions of a triangle whose corners run clockwise.
     fn expressions(&self, corners: &[Corner; 3], colours: &[[u16; 3]; 3]) -> GouraudTriangle {
         let [p, q, r] = corners;
         let step = self.viewport.line_step();

@@ -33,7 +33,6 @@ fn screen(viewport: Viewport, points: [[i32; 2]; 3]) -> (Option<Outline>, SetupS
     (found.first().copied(), stats)
 }
 
-/// Returns the frame line of a row of the picture.
 fn line(viewport: &Viewport, row: u32) -> i32 {
     (row * viewport.line_step() + viewport.first_line()) as i32
 }

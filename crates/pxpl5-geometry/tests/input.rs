@@ -194,7 +194,6 @@ fn agrees_with_its_shared_vertices(transform: &Transform, t: &Triangle, lane: us
     true
 }
 
-/// Returns lanes with a triangle in one lane, after invisible triangles.
 fn in_lane(lane: usize, corners: &[SurfaceVertex]) -> TriangleLanes<'_> {
     let mut lanes = TriangleLanes::default();
     (0..lane).for_each(|_| lanes.push_nothing());

@@ -223,7 +223,6 @@ impl Photodiode {
         SettingError::require(self.line < lines, "line of the photodiode", expected, self.line)
     }
 
-    /// Samples the photodiode in a period that has ended.
     fn sample(&mut self, period: PeriodNumber, record: &Record) {
         let display = record.display();
         let Some(surface) = display.surfaces().first() else { return };
@@ -316,7 +315,6 @@ mod tests {
     use super::*;
     use pxpl5_run::RenderingControl;
 
-    /// Tests that one run with three photodiodes gives the same results as three runs with one photodiode each.
     #[test]
     fn one_run_with_three_photodiodes_measures_the_same_as_three_runs_with_one_photodiode() {
         let rig = Rig { passes: 4, ..Rig::assumed(TrackerConfig::optical_ceiling()) };

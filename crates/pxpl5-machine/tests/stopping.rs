@@ -11,7 +11,6 @@ use pxpl5_wire::{CopyPath, NodeId};
 
 const LONG: Time = Time(100_000 * 1_000_000);
 
-/// Loads a program that waits forever.
 fn load_waiting(machine: &mut Machine, node: NodeId) {
     load(machine, node, |gp| async move { gp.until("Godot", || None).await });
 }

@@ -332,8 +332,7 @@ impl<'a> Trail<'a> {
         self.of_target.get(target)?.iter().copied().rfind(|place| self.drawn[*place].1.copy_at <= by)
     }
 
-    /// Returns the index of the last arrival for which `is_wanted` returns true, before the arrival `place`. The
-    /// arrival must have ended by the instant `by`.
+    /// Returns the index of the last wanted arrival before the arrival `place` that had ended by the instant `by`.
     fn arrival_before(&self, place: usize, by: Time, is_wanted: impl Fn(&Arrival) -> bool) -> Option<usize> {
         let end = self.arrivals_by(by).min(place);
         let first = end.saturating_sub(ARRIVALS_SEARCHED);

@@ -64,7 +64,6 @@ fn experiments() -> Vec<Experiment> {
     short_experiments().into_iter().map(run).collect()
 }
 
-/// Returns experiments with their numbers of fields.
 fn short_experiments() -> Vec<(u64, Experiment)> {
     let small = MachineConfig::small_hmd;
     let fastrak = TrackerConfig::fastrak;

@@ -48,7 +48,6 @@ struct Pixel {
     backing: HashMap<u8, i128>,
 }
 
-/// Returns the low bits of a number.
 fn low(value: i128, bits: u32) -> i128 {
     value & ((1 << bits) - 1)
 }
@@ -282,7 +281,6 @@ fn opcodes() -> impl Iterator<Item = Word> {
     groups.into_iter().flatten()
 }
 
-/// Returns a valid random instruction of this opcode.
 fn any_of(opcode: Word, random: &mut Random) -> ArrayInstruction {
     loop {
         // Half of the fields have at most eight bits, so that numbers are sometimes equal. For the same reason, only

@@ -58,7 +58,6 @@ impl Machine {
         state.to_fifos.len() + usize::from(state.to_frame_buffer.is_some()) < self.channels
     }
 
-    /// Returns every possible next state.
     fn next(&self, state: &State) -> Vec<State> {
         let mut all = self.grants(state);
         // A message ends if its receiver has room.

@@ -33,7 +33,6 @@ fn experiment(machine: MachineConfig, pipeline: impl Pipeline, scene: Scene, fie
         .least_records(MIN_RECORDS)
 }
 
-/// Returns a moving head with a tracker and a predictor.
 fn tracked() -> Head {
     let motion = Arc::new(Synthetic::recorded_use(2));
     Head::new(motion, TrackerConfig::fastrak(), PredictorKind::Kalman, 1).expect("in range")

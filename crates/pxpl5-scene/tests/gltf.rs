@@ -52,7 +52,6 @@ impl Writer {
         })
     }
 
-    /// Returns a binary file with a document and the binary chunk.
     fn binary(&self, document: &Value) -> Vec<u8> {
         binary_file(&document.to_string(), &self.binary)
     }

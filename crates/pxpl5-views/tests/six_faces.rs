@@ -176,7 +176,6 @@ fn a_trace_has_groups_for_the_port_and_for_each_face() {
     assert_eq!(tracks(&trace, "video"), ["retraces", "displayed"]);
 }
 
-/// Returns the names of a group's tracks.
 fn tracks<'a>(trace: &'a Trace, group: &str) -> Vec<&'a str> {
     let tracks = trace.tracks.iter().filter(|track| trace.groups[track.group] == group);
     tracks.map(|track| track.name.as_str()).collect()

@@ -61,7 +61,7 @@ fn statements_of_the_paper_without_numbers_are_listed() {
 fn missed_rows_are_called_missed() {
     let text = markdown(&FIGURES);
     let missed = FIGURES.figures.iter().filter(|row| !row.is_met).count();
-    assert_eq!(text.matches("| **missed** |").count(), missed);
+    assert_eq!(text.matches(" **missed** |").count(), missed);
     assert_eq!(text.contains("## Missed"), missed > 0);
 }
 

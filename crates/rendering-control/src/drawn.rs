@@ -88,7 +88,6 @@ pub trait Drawn: Clone + 'static {
     /// Returns the CPU work of TRANSFORM. `context` is the index of the set of bins, 0 or 1.
     fn work(&self, share: &Share, sent: &Self::Sent, passes: &[Arc<Pass>], context: u8) -> impl Work;
 
-    /// Returns the number of regions of a view.
     fn view_regions(&self) -> u16 {
         self.picture().viewport.grid().regions() as u16
     }

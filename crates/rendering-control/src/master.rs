@@ -359,6 +359,7 @@ impl<D: Drawn> RegionMaster<D> {
                 announced: false,
                 missing: None,
             };
+            // A frame buffer takes its pictures in this order, so each drawing counts those before it.
             let of_buffer = self.of_buffers.entry(self.target(&one, RegionId(0)).frame_buffer).or_default();
             one.before = *of_buffer;
             *of_buffer += 1;

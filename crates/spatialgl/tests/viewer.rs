@@ -24,7 +24,6 @@ fn one_pixel(slice: u32, x: u32, y: u32) -> BitPlanes {
     planes
 }
 
-/// Returns the centre of all light in a picture, in pixels.
 fn centre(picture: &RgbImage) -> [f64; 2] {
     let mut sums = [0.0; 3];
     for (x, y, pixel) in picture.enumerate_pixels() {

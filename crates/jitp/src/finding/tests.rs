@@ -361,7 +361,6 @@ fn the_counts_of_a_strip_between_two_views_equal_the_drawn_primitives() {
     }
 }
 
-/// Tests that the time of a strip between two views is the time of the interpolation plus the time of the search.
 #[test]
 fn a_strip_between_two_views_takes_the_time_of_interpolation_plus_the_time_of_the_search() {
     let spans = [false, true].map(|is_one_work| {

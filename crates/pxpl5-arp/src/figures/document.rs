@@ -9,7 +9,7 @@ use super::row::verdict;
 use super::rules::Rules;
 use crate::pictures::OF_FIGURES;
 use address_recalculation::priority::PriorityTiming;
-use pxpl5_sim::figures::column::{ERROR, NUMBER, four};
+use pxpl5_sim::figures::column::{NUMBER, error, four};
 use pxpl5_sim::figures::{self, Basis, Definition, FigureRow, TableColumn, filled, lines};
 use std::fmt::Write as _;
 
@@ -40,7 +40,10 @@ pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
             ("shown", met(true)),
             ("rows", table(rows)),
             ("missed", missed(rows)),
-            ("definitions", figures::table(&DEFINITIONS, &definitions())),
+            (
+                "definitions",
+                figures::table(&DEFINITIONS, definitions().iter().filter(|one| !["D1", "D2"].contains(&one.id))),
+            ),
             ("published_rates", rates(&RATES_HZ)),
             ("fits", fits(all)),
             ("best", best(&all.interpretations)),
@@ -51,6 +54,7 @@ pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
                 usual.map_or_else(String::new, |(_, rules)| format!("{:.1}", rules.mean_left_out_percent)),
             ),
             ("usual_error", usual.map_or_else(String::new, |(_, rules)| format!("{:.1}", rules.mean_error_percent))),
+            ("cell", format!("{:.1}", all.fits[0].cell_m)),
             ("product", format!("{:.2}", all.fits[0].cell_m * PriorityTiming::PAPERS.theta_deg)),
             ("thresholds", thresholds(all)),
             ("segments", all.segments.to_string()),
@@ -77,24 +81,33 @@ fn sum(numbers: &[f64]) -> f64 {
     numbers.iter().sum()
 }
 
-const COLUMNS: [TableColumn<FigureRow>; 9] = [
+const COLUMNS: [TableColumn<FigureRow>; 7] = [
     ("", |row| row.experiment.to_owned()),
     NUMBER,
     ("statement", |row| row.statement.to_string()),
-    ("published", |row| four(row.published)),
+    ("published", |row| with_unit(row.published, row.unit)),
     ("ours", |row| four(row.simulated)),
-    ("unit", |row| row.unit.to_owned()),
-    ERROR,
-    ("provenance", |row| if row.basis == Basis::Free { "checked" } else { row.basis.name() }.to_owned()),
-    ("", |row| verdict(row).to_owned()),
+    ("error", |row| match verdict(row) {
+        "met" | "shape" => error(row),
+        verdict => format!("{} {verdict}", error(row)),
+    }),
+    ("provenance", |row| match row.basis {
+        Basis::Free => "checked".to_owned(),
+        Basis::Shape => "shape".to_owned(),
+        basis => basis.name().to_owned(),
+    }),
 ];
 
-const DEFINITIONS: [TableColumn<Definition>; 4] = [
+const DEFINITIONS: [TableColumn<Definition>; 3] = [
     ("#", |one| one.id.to_owned()),
     ("what", |one| one.statement.to_string()),
-    ("value", |one| four(one.value)),
-    ("unit", |one| one.unit.to_owned()),
+    ("value", |one| with_unit(one.value, one.unit)),
 ];
+
+/// Formats a number with its unit. A pure number has the unit 1, and a missing one none.
+fn with_unit(value: f64, unit: &str) -> String {
+    if unit == "1" || value.is_nan() { four(value) } else { format!("{} {unit}", four(value)) }
+}
 
 /// Returns the figures as a Markdown table.
 pub fn table(rows: &[FigureRow]) -> String {
@@ -104,20 +117,17 @@ pub fn table(rows: &[FigureRow]) -> String {
 /// Returns as a Markdown list the rows whose simulated numbers miss the published numbers, with their known causes.
 pub fn missed(rows: &[FigureRow]) -> String {
     let mut text = String::new();
+    let mut causes: Vec<&str> = Vec::new();
     for row in rows.iter().filter(|row| !row.is_met) {
-        let both = [row.published, row.simulated].map(four);
-        let _ = writeln!(
-            text,
-            "- Row **{}** (\"{}\") is missed: the papers print {} {}, and the model gives {}. {}\n",
-            row.id,
-            row.statement,
-            both[0],
-            row.unit,
-            both[1],
-            row.cause_or_unknown()
-        );
+        let [published, simulated] = [row.published, row.simulated].map(four);
+        let _ = writeln!(text, "- **{}** {}: {published} {}, ours {simulated}.\n", row.id, row.statement, row.unit);
+        // Rows with the same cause share its sentences.
+        let cause = row.cause_or_unknown();
+        if !causes.contains(&cause) {
+            causes.push(cause);
+        }
     }
-    text
+    text + &causes.join(" ")
 }
 
 fn joined(numbers: impl IntoIterator<Item = f64>, decimals: usize) -> String {

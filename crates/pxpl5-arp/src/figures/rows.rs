@@ -1,7 +1,7 @@
 //! All rows that compare published numbers with simulated numbers, by experiment.
 
 use super::definitions::SEGMENTS;
-use super::experiments::{CellFit, Experiments};
+use super::experiments::Experiments;
 use super::fit::{RATE_FITTED, RATES_HZ};
 use super::interpretations::PIXEL_DEG;
 use super::row::{limit, row, shape};
@@ -75,9 +75,13 @@ fn table_1(all: &Experiments) -> Vec<FigureRow> {
 
 fn rate(all: &Experiments, memory: usize) -> FigureRow {
     let basis = if memory == RATE_FITTED { Basis::Fitted("priority.cell_m") } else { Basis::Free };
-    let CellFit { rules, cell_m, rates_hz } = &all.fits[0];
-    let statement = format!("update rate of memory {memory} ({}; cells of {cell_m:.1} m)", rules.text());
-    row("A12", &statement, "Hz", [RATES_HZ[memory], rates_hz[memory]], basis)
+    row(
+        "A12",
+        &format!("update rate of memory {memory}"),
+        "Hz",
+        [RATES_HZ[memory], all.fits[0].rates_hz[memory]],
+        basis,
+    )
 }
 
 fn table_2(all: &Experiments) -> Vec<FigureRow> {
@@ -90,7 +94,7 @@ fn table_2(all: &Experiments) -> Vec<FigureRow> {
     let moves_outwards = ours[0][0] < ours[1][0];
     for (i, (id, kind)) in [("A13", "cut"), ("A14", "uncut")].into_iter().enumerate() {
         for memory in 0..4 {
-            let statement = format!("segments in memory {memory}, {kind} (ours: mean of all frames)");
+            let statement = format!("segments in memory {memory}, {kind}");
             let both = [SEGMENTS[i][memory] as f64, ours[i][memory]];
             rows.push(shape(id, &statement, "1", both, moves_outwards));
         }

@@ -19,7 +19,6 @@ pub struct Case {
 const NEAR: f32 = 1.0;
 const FAR: f32 = 16_384.0;
 
-/// Returns a triangle with random colours.
 fn coloured(random: &mut Random, positions: [Vec3; 3]) -> Triangle {
     Triangle { positions, normals: [Vec3::Z; 3], colours: [random.colour(), random.colour(), random.colour()] }
 }

@@ -13,7 +13,6 @@ pub const SUBPIXEL_BITS: [u32; 6] = [0, 2, 4, 6, 8, 12];
 
 #[derive(Clone, Debug, Default)]
 pub struct Row {
-    pub triangles: usize,
     /// Number of pixels that the exact geometry covers, summed over all triangles.
     pub exact: u64,
     /// Number of pixels that only the pipeline or only the exact geometry covers.
@@ -70,7 +69,6 @@ impl Counts {
     }
 }
 
-/// Returns the pixel and its neighbours along one axis.
 fn neighbours(pixel: i32, size: i32) -> RangeInclusive<i32> {
     (pixel - 1).max(0)..=(pixel + 1).min(size - 1)
 }
@@ -84,7 +82,7 @@ fn pixels() -> impl Iterator<Item = (i32, i32)> {
 pub fn measure(case: &Case, single: bool) -> Row {
     let new = if single { Transform::in_single_precision } else { Transform::new };
     let transform = new(&case.view, Viewport::FRAME, Culling::None).expect("finite views");
-    let mut row = Row { triangles: case.triangles.len(), ..Row::default() };
+    let mut row = Row::default();
     let [mut drawn, mut wanted, mut own] = [Counts::new(), Counts::new(), Counts::new()];
     for triangle in &case.triangles {
         let pieces = Piece::of(&transform, triangle, &mut row.stats);

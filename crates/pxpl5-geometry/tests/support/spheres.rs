@@ -23,7 +23,6 @@ pub struct SphereCase {
 
 #[derive(Clone, Debug, Default)]
 pub struct SphereRow {
-    pub spheres: usize,
     pub exact: u64,
     pub wrong: u64,
     /// Largest depth error in units of pixel depth.
@@ -103,7 +102,6 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Returns the pixel depth at inverse distance `u`.
 fn pixel_depth(u: f64) -> f64 {
     let projection = pixel_view(NEAR, FAR).projection.to_cols_array_2d();
     let depth = -f64::from(projection[2][2]) + f64::from(projection[3][2]) * u;
@@ -187,7 +185,7 @@ pub fn all() -> Vec<SphereCase> {
 /// Compares each sphere of a family with exact integers, pixel by pixel.
 pub fn measure(case: &SphereCase) -> SphereRow {
     let transform = transform();
-    let mut row = SphereRow { spheres: case.spheres.len(), ..SphereRow::default() };
+    let mut row = SphereRow::default();
     for sphere in &case.spheres {
         if let Some(screen) = transform.sphere(sphere, &mut row.stats) {
             row.compare(sphere, &screen);

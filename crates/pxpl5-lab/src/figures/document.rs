@@ -10,8 +10,8 @@ use crate::edges::NEAR_FIELDS;
 use crate::interpretations::{ALIKE, FigureFit, Fit, Interpretations, figures as ranked_figures};
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
-use pxpl5_sim::figures::column::{DETAILS, EXPERIMENT, NUMBER, PROVENANCE, PUBLISHED, SIMULATED, error, four, range};
-use pxpl5_sim::figures::{filled, lines, table};
+use pxpl5_sim::figures::column::{PROVENANCE, PUBLISHED, SIMULATED, error, four, range};
+use pxpl5_sim::figures::{filled, lines};
 
 /// The texts of both documents.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,18 +41,19 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
     let of_code: Vec<&FigureRow> = alternatives.of_code.iter().collect();
     let of_table = Headline::of(rows.iter().copied().filter(|row| of_code.iter().any(|other| other.id == row.id)));
     let code_headline = format!(
-        "Over the rows of the first three tables, the mean error is {:.1} % with the timing table ({} rows) and {:.1} % with the times of the code ({} rows).",
+        "Over the first three tables, the mean error is {:.1} % with the timing table ({} rows) and {:.1} % with the code ({} rows).",
         of_table.mean_error_percent(),
         of_table.free.rows + of_table.interpretation.rows,
         Headline::of(of_code.iter().copied()).mean_error_percent(),
         Headline::of(of_code.iter().copied()).free.rows + Headline::of(of_code.iter().copied()).interpretation.rows,
     );
     let accuracy = filled(
-        include_str!("accuracy.md"),
+        include_str!("accuracy.md.in"),
         &[
             ("headline", headline(figures)),
             ("miss", MISS_PERCENT.to_string()),
-            ("tables", tables(figures, alternatives)),
+            ("tables", tables(figures)),
+            ("wait", under_wait(&rows, &alternatives.other_rule)),
             ("fields", fields(&rows)),
             ("misses", misses(&rows)),
             ("definitions", definitions()),
@@ -63,7 +64,7 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
     );
     let ranking = &alternatives.interpretations;
     let interpretations = filled(
-        include_str!("interpretations.md"),
+        include_str!("interpretations.md.in"),
         &[
             ("count", ranking.analytic.len().to_string()),
             ("ranking", ranked(ranking)),
@@ -74,12 +75,13 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
             ("fifo", fifo(&alternatives.fifo)),
             ("samples", SAMPLES.to_string()),
             ("sensitivity", sensitivity(&figures.intervals)),
-            ("provenance", reasons()),
+            ("unmoved", unmoved(&figures.intervals)),
+            ("provenance", by_text("reason", all().map(|figure| (figure.id, format!("{}.", figure.reason))))),
             ("about", about()),
-            ("experiments", table(&[NUMBER, EXPERIMENT, DETAILS], rows.iter().copied())),
+            ("experiments", by_text("experiment", rows.iter().map(|row| (row.id, row.experiment.to_owned())))),
         ],
     );
-    let time = filled(include_str!("time.md"), &[("edges", edges(&rows))]);
+    let time = filled(include_str!("time.md.in"), &[("edges", edges(&rows))]);
     Documents { accuracy, interpretations, time }
 }
 
@@ -103,15 +105,13 @@ fn edges(rows: &[&FigureRow]) -> String {
         Some([
             row.id.to_owned(),
             SIMULATED.1(row),
-            if fields.is_finite() { four(fields) } else { "-".to_owned() },
             format!("{}{mark}", four(later)),
             effect(later, 1.0),
             if earlier.is_finite() { four(earlier) } else { "-".to_owned() },
             effect(earlier, -1.0),
         ])
     };
-    let headings =
-        ["#", "simulated", "fields", "a retrace later after", "effect", "a retrace earlier before", "effect"];
+    let headings = ["#", "simulated", "a retrace later after", "effect", "a retrace earlier before", "effect"];
     rows_of(headings, rows.iter().filter_map(near))
 }
 
@@ -143,7 +143,6 @@ fn headline(figures: &Figures) -> String {
     )
 }
 
-/// Returns all rows, those of the fly-throughs in whole fields.
 fn in_whole_fields(figures: &Figures) -> Vec<FigureRow> {
     let counted = |row: &FigureRow| {
         let whole = row.details.iter().find(|detail| detail.name == WHOLE)?;
@@ -153,25 +152,35 @@ fn in_whole_fields(figures: &Figures) -> Vec<FigureRow> {
     figures.rows().map(|row| counted(row).unwrap_or_else(|| row.clone())).collect()
 }
 
-fn tables(figures: &Figures, alternatives: &Alternatives) -> String {
+/// Returns the rows that the other rule for finished regions changes, with their results under it.
+fn under_wait(rows: &[&FigureRow], other_rule: &[FigureRow]) -> String {
+    let changed = other_rule.iter().filter(|other| {
+        let row = rows.iter().find(|row| row.id == other.id);
+        row.is_some_and(|row| four(row.simulated) != four(other.simulated))
+    });
+    changed.map(|other| format!("{} ({})", other.id, four(other.simulated))).collect::<Vec<_>>().join(", ")
+}
+
+fn tables(figures: &Figures) -> String {
     let mut text = String::new();
     for group in figures.groups.iter().filter(|group| group.document.is_none()) {
+        let mut above = String::new();
         let rows = group.rows.iter().map(|row| {
-            let wait = alternatives.other_rule.iter().find(|other| other.id == row.id);
-            let wait = wait.filter(|other| four(other.simulated) != four(row.simulated));
+            let provenance = PROVENANCE.1(row);
+            let is_repeated = provenance == above && provenance.contains(' ');
+            above = provenance.clone();
             [
                 row.id.to_owned(),
                 format!("{} ({})", row.statement, row.source.rsplit_once(", ").map_or("", |(paper, _)| paper)),
                 PUBLISHED.1(row),
                 SIMULATED.1(row),
                 format!("{}{}", error(row), if row.is_met { "" } else { " **miss**" }),
-                wait.map_or_else(String::new, |other| four(other.simulated)),
                 row.interval.map_or_else(|| "-".to_owned(), range)
                     + if row.is_out_of_reach() { ", **out of reach**" } else { "" },
-                PROVENANCE.1(row),
+                if is_repeated { "the same".to_owned() } else { provenance },
             ]
         });
-        let headings = ["#", "figure", "published", "simulated", "error", "`wait`", "interval", "provenance"];
+        let headings = ["#", "figure", "published", "simulated", "error", "interval", "provenance"];
         text += &format!("## {}\n\n{}\n", group.title, rows_of(headings, rows));
     }
     text
@@ -220,23 +229,25 @@ fn misses(rows: &[&FigureRow]) -> String {
 
 fn definitions() -> String {
     let defined = all().filter_map(|figure| Some((figure.id, figure.latency?)));
-    let mut rows: Vec<(Vec<&str>, super::LatencyDefinition)> = Vec::new();
-    for (id, latency) in defined {
-        // Neighbours with the same definition share a line.
-        match rows.last_mut().filter(|(_, last)| *last == latency) {
-            Some((ids, _)) => ids.push(id),
-            None => rows.push((vec![id], latency)),
+    // Rows with the same definition share a line, with the sentences of their papers.
+    let mut rows: Vec<[String; 5]> = Vec::new();
+    for (id, super::LatencyDefinition { from, to, eyes, statistic, sentence }) in defined {
+        let new = [id, from, to, &format!("{eyes}: {statistic}"), sentence].map(str::to_owned);
+        match rows.iter_mut().find(|row| row[1..4] == new[1..4]) {
+            Some([ids, .., sentences]) => {
+                *ids += &format!(", {id}");
+                if !sentences.contains(sentence) {
+                    *sentences += &format!("; {id}: {sentence}");
+                }
+            }
+            None => rows.push(new),
         }
     }
-    let cells = rows.into_iter().map(|(ids, latency)| {
-        [&ids.join(", "), latency.from, latency.to, latency.eyes, latency.statistic, latency.sentence]
-            .map(str::to_owned)
-    });
-    rows_of(["rows", "from", "to", "eyes", "statistic", "what the paper says"], cells)
+    rows_of(["rows", "from", "to", "eyes, statistic", "what the paper says"], rows)
 }
 
-/// Minimum change of a figure, in percent, for which the document lists the figure. The change results if the times of
-/// primitives are measured by executing i860 code instead of taken from the timing table.
+/// Least change of a figure, in percent, for which a document lists what changes it: the times of i860 code instead of
+/// the timing table, or a parameter.
 const MOVED_PERCENT: f64 = 0.5;
 
 fn moved_by_code(rows: &[&FigureRow], of_code: &[&FigureRow]) -> String {
@@ -253,54 +264,48 @@ fn other(group: &FigureGroup) -> String {
     let document = group.document.unwrap_or_default();
     let printed = group.rows.iter().filter(|row| row.basis != Basis::Shape);
     let missed: Vec<&FigureRow> = printed.clone().filter(|row| !row.is_met).collect();
-    let on_machine = group.rows.iter().filter(|row| row.experiment == "E1");
-    let list = |rows: &[&FigureRow]| {
-        rows.iter()
-            .map(|row| {
-                format!(
-                    "- {} {}: {}, ours {} {}\n",
-                    row.id,
-                    row.statement,
-                    four(row.published),
-                    four(row.simulated),
-                    row.unit
-                )
-            })
-            .collect::<String>()
-    };
+    let list = missed.iter().map(|row| {
+        let [published, simulated] = [row.published, row.simulated].map(four);
+        format!("- {} {}: {published}, ours {simulated} {}\n", row.id, row.statement, row.unit)
+    });
     format!(
-        "**{}** ([{document}]({document})). {} {} of {} rows with printed conditions are missed. These\n\
-         rows are measured on Pixel-Planes 5:\n\n{}\nThese are missed:\n\n{}\n\
-         **Volumetric slices** ([docs/volumetric.md](docs/volumetric.md)) have a page of their own, too.\n",
+        "**{}** ([{document}]({document})). {} {} of {} rows with printed conditions are missed:\n\n{}\n\
+         **Volumetric slices** have [a page of their own](docs/volumetric.md).\n",
         group.title,
         group.about,
         missed.len(),
         printed.count(),
-        list(&on_machine.collect::<Vec<_>>()),
-        list(&missed),
+        list.collect::<String>(),
     )
 }
 
-/// Number of interpretations in the document.
-const BEST: usize = 12;
+/// Number of interpretations in the document, those with equal figures counted once.
+const BEST: usize = 6;
 
+/// Returns the likeliest interpretations and the project's, without the figures that are equal in all of them.
 fn ranked(ranking: &Interpretations) -> String {
-    let fits = ranking.ranked();
-    let usual = fits.iter().enumerate().skip(BEST).find(|(_, fit)| fit.interpretation == Interpretation::USUAL);
-    let shown = fits.iter().enumerate().take(BEST).chain(usual);
+    let cells = |fit: &Fit| fit.figures.iter().map(|figure| cell(fit, figure)).collect::<Vec<_>>();
+    let mut shown: Vec<(String, &Fit, Vec<String>)> = Vec::new();
+    for (place, fit) in ranking.ranked().into_iter().enumerate() {
+        let values = cells(fit);
+        let is_usual = fit.interpretation == Interpretation::USUAL;
+        if is_usual || shown.len() < BEST && shown.iter().all(|(_, _, other)| *other != values) {
+            let rank = (place + 1).to_string();
+            shown.push((if is_usual { format!("**{rank}**") } else { rank }, fit, values));
+        }
+    }
+    let differs = |column: &usize| shown.iter().any(|(_, _, values)| values[*column] != shown[0].2[*column]);
+    let columns: Vec<usize> = (0..ranked_figures().count()).filter(differs).collect();
     let ids: Vec<&str> = ranked_figures().map(|figure| figure.id).collect();
-    let mut text =
-        format!("| rank | log L | {} | interpretation |\n|---|---|{}---|\n", ids.join(" | "), "---|".repeat(ids.len()));
-    for (place, fit) in shown {
-        let mark = if fit.interpretation == Interpretation::USUAL { "**" } else { "" };
-        let values: Vec<String> = fit.figures.iter().map(|figure| cell(fit, figure)).collect();
-        text += &format!(
-            "| {} | {:.1} | {} | {mark}{}{mark} |\n",
-            place + 1,
-            fit.log_likelihood,
-            values.join(" | "),
-            fit.words
-        );
+    let headings: Vec<&str> = columns.iter().map(|column| ids[*column]).collect();
+    let mut text = format!(
+        "| rank | log L | {} | interpretation |\n|---|---|{}---|\n",
+        headings.join(" | "),
+        "---|".repeat(columns.len())
+    );
+    for (rank, fit, values) in &shown {
+        let values: Vec<&str> = columns.iter().map(|column| values[*column].as_str()).collect();
+        text += &format!("| {rank} | {:.1} | {} | {} |\n", fit.log_likelihood, values.join(" | "), fit.words);
     }
     text
 }
@@ -316,22 +321,35 @@ fn confidence(ranking: &Interpretations) -> String {
     let alike = ranking.alike();
     let place = fits.iter().position(|fit| fit.interpretation == Interpretation::USUAL);
     let behind = place.map_or(f64::NAN, |place| fits[0].log_likelihood - fits[place].log_likelihood);
-    let list: String = alike.iter().map(|fit| format!("- {}\n", fit.words)).collect();
     format!(
-        "The figures do not tell these interpretations apart, since their likelihoods lie within a factor of {ALIKE:.1} of the\n\
-         greatest:\n\n{list}\n\
-         The project's interpretation, **{}**, is simulated besides the {} that the\n\
-         formulas find likeliest. Its log L is {behind:.1} lower than the greatest. It follows the text where text and figures\n\
-         disagree: the likeliest interpretations count whole fields, which contradicts TR94's own conversions.",
-        Interpretation::USUAL,
-        fits.len() - 1,
+        "The first {} lie within a factor of {ALIKE:.1} of the greatest likelihood. The project's, in bold, has a log L\n\
+         {behind:.1} lower, because it follows the text where text and figures disagree: the likeliest ones count whole\n\
+         fields, which contradicts TR94's own conversions.",
+        alike.len(),
     )
 }
 
 fn left_out(ranking: &Interpretations) -> String {
     let rows = ranking.left_out.iter();
-    let cells = rows.map(|one| [one.id.to_owned(), format!("{:+.1} %", one.error_percent), one.words.clone()]);
-    rows_of(["#", "error", "chosen by the others"], cells)
+    let cells = grouped(rows.map(|one| (format!("{} ({:+.1} %)", one.id, one.error_percent), one.words.clone())));
+    rows_of(["figures and their errors", "chosen by the others"], cells)
+}
+
+/// Joins the names that have the same text.
+fn grouped(rows: impl IntoIterator<Item = (String, String)>) -> Vec<[String; 2]> {
+    let mut joined: Vec<[String; 2]> = Vec::new();
+    for (name, text) in rows {
+        match joined.iter_mut().find(|[_, other]| *other == text) {
+            Some([names, _]) => *names += &format!(", {name}"),
+            None => joined.push([name, text]),
+        }
+    }
+    joined
+}
+
+/// Returns a table with one line for each different text.
+fn by_text(heading: &str, rows: impl IntoIterator<Item = (&'static str, String)>) -> String {
+    rows_of(["#", heading], grouped(rows.into_iter().map(|(id, text)| (id.to_owned(), text))))
 }
 
 fn of_application(effects: &[Effect]) -> String {
@@ -340,7 +358,10 @@ fn of_application(effects: &[Effect]) -> String {
     let printed =
         fly_throughs.iter().map(|figure| cell((figure.id, figure.value, figure.deviation.unwrap_or(f64::NAN))));
     let first = [vec!["printed".to_owned(), String::new()], printed.collect()].concat();
-    let rows = effects.iter().map(|effect| {
+    // The table leaves out the spreads between none and the mean.
+    let is_end =
+        |effect: &&Effect| matches!(effect.changes[..], [(_, mean), (_, spread)] if spread == 0 || spread == mean);
+    let rows = effects.iter().filter(is_end).map(|effect| {
         let times = effect.changes.iter().map(|(_, ns)| format!("{} ms", ns / 1_000_000));
         times.chain(effect.figures.iter().copied().map(cell)).collect::<Vec<_>>()
     });
@@ -356,9 +377,19 @@ fn of_application(effects: &[Effect]) -> String {
 fn host(effects: &[Effect]) -> String {
     let cells = effects.iter().filter_map(|effect| {
         let ((path, value), (_, latency, _)) = (effect.changes.first()?, effect.figures.first()?);
-        Some([format!("`{path}`"), format!("{} ms", four(*value as f64 / 1e6)), format!("{} ms", four(*latency))])
+        Some((format!("`{path}`"), format!("{} ms: {} ms", four(*value as f64 / 1e6), four(*latency))))
     });
-    rows_of(["parameter", "value", "row 17"], cells)
+    let mut rows: Vec<(String, Vec<String>)> = Vec::new();
+    for (path, cell) in cells {
+        match rows.last_mut().filter(|(last, _)| *last == path) {
+            Some((_, cells)) => cells.push(cell),
+            None => rows.push((path, vec![cell])),
+        }
+    }
+    rows_of(
+        ["parameter", "its value, and row 17 with it"],
+        rows.into_iter().map(|(path, cells)| [path, cells.join(", ")]),
+    )
 }
 
 fn fifo(effects: &[Effect]) -> String {
@@ -375,39 +406,39 @@ fn fifo(effects: &[Effect]) -> String {
 }
 
 /// Maximum number of parameters that the document lists for each figure.
-const STRONGEST: usize = 4;
+const STRONGEST: usize = 3;
 
 fn sensitivity(intervals: &[Interval]) -> String {
     // Intervals are listed in the order of the figures.
     let ordered = all().filter_map(|figure| intervals.iter().find(|interval| interval.id == figure.id));
-    let joined = |list: Vec<String>| if list.is_empty() { "nothing".to_owned() } else { list.join(", ") };
-    let cells = ordered.map(|i| {
-        let effects = i.effects.iter().take(STRONGEST);
+    let joined = |list: Vec<String>| if list.is_empty() { "-".to_owned() } else { list.join(", ") };
+    let cells = ordered.filter(|interval| is_moved(interval)).map(|i| {
+        let effects = moving(i).take(STRONGEST);
         let effects =
             effects.map(|e| format!("`{}` ({}, {}; {:+.2})", e.path, four(e.ends[0]), four(e.ends[1]), e.elasticity));
         let rules = i.rules.iter().map(|(rule, value)| format!("{rule}: {}", four(*value)));
-        [
-            i.id.to_owned(),
-            range(i.one_at_a_time),
-            range(i.joint),
-            range(i.likely),
-            joined(effects.collect()),
-            joined(rules.collect()),
-        ]
+        let band = if i.likely[0] < i.likely[1] { range(i.likely) } else { "-".to_owned() };
+        [i.id.to_owned(), band, joined(effects.collect()), joined(rules.collect())]
     });
-    rows_of(["#", "one at a time", "joint", "5 % to 95 %", "moved by", "rules"], cells)
+    rows_of(["#", "5 % to 95 %", "moved by", "rules"], cells)
+}
+
+/// Returns the effects of parameters that move a figure by at least half a percent.
+fn moving(interval: &Interval) -> impl Iterator<Item = &crate::intervals::Effect> {
+    interval.effects.iter().filter(|effect| deviation_percent(effect.ends[0], effect.ends[1]) >= MOVED_PERCENT)
+}
+
+fn is_moved(interval: &Interval) -> bool {
+    moving(interval).next().is_some() || !interval.rules.is_empty()
+}
+
+fn unmoved(intervals: &[Interval]) -> String {
+    let still = intervals.iter().filter(|interval| !is_moved(interval));
+    still.map(|interval| interval.id).collect::<Vec<_>>().join(", ")
 }
 
 /// Returns what the experiments of a topic have in common.
 fn about() -> String {
     let topics = TOPICS.iter().filter(|topic| !topic.about.is_empty());
     topics.map(|topic| format!("**{}.** {}\n\n", topic.title, topic.about)).collect()
-}
-
-fn reasons() -> String {
-    let cells = TOPICS.iter().flat_map(|topic| topic.figures).map(|figure| {
-        let row = figure.row(f64::NAN.into());
-        [figure.id.to_owned(), row.source.to_string(), PROVENANCE.1(&row), format!("{}.", figure.reason)]
-    });
-    rows_of(["#", "source", "provenance", "reason"], cells)
 }

@@ -19,12 +19,10 @@ use tracking::tracker::TrackerConfig;
 
 pub(super) const TITLE: &str = "Just-in-time pixels";
 
-pub(super) const ABOUT: &str = "The head turns by 200 degrees a second, and the view is 60 degrees wide (JITP). The tracker has \
-no error and no delay. So the only cause of errors is the time between the instant for which a pixel is drawn and the instant at \
-which it lights. The error of a pixel is the angle between two directions: the direction that the pixel shows, and the direction \
-that it should show when it lights. Errors in pixels use the pixel size of the paper JITP: 600 pixels cover 60 degrees, so a \
-pixel is 0.1 degrees. A field or line lasts longer than its lit pixels, because a field and a line also include a retrace. \
-Like the paper, the model scales each angle to the whole time of the field or line.";
+pub(super) const ABOUT: &str = "The head turns by 200 degrees a second in front of a tracker without error or delay, and the view is 60 degrees wide \
+(JITP). So the error of a pixel, the angle between the direction that it shows and the one that it should show when it lights, comes \
+only from the time between the two. As in JITP, a pixel is 0.1 degrees, and each angle is scaled to the whole time of a field or line, \
+retrace included.";
 
 /// Degrees per second of a fast turn of the head, published in the paper on just-in-time pixels.
 const PAN: f64 = 200.0;

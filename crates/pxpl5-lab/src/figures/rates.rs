@@ -14,9 +14,9 @@ use std::sync::Arc;
 
 pub(super) const TITLE: &str = "Peak rates";
 
-pub(super) const ABOUT: &str = "The scene `typical:N` is drawn for one eye: right-angled triangles of 18 pixels that touch about 1.3 regions each and \
-are spread evenly. J. Leech of the Pixel-Planes 5 team stated the rates on 3 April 1991 in the newsgroup sci.virtual-worlds, and expected more from \
-optimized code. He stated neither the size of the machine nor that of the triangles.";
+pub(super) const ABOUT: &str = "The scene `typical:N` is drawn for one eye: right-angled triangles of 18 pixels, spread evenly, that touch about \
+1.3 regions each. J. Leech of the Pixel-Planes 5 team stated the rates on 3 April 1991 in the newsgroup sci.virtual-worlds and \
+expected more from optimized code, but named neither the size of the machine nor that of the triangles.";
 
 /// Parameters that limit the machine's triangle rate with Gouraud shading.
 const OF_GOURAUD: Varied = Varied::ByEvents(&[
@@ -49,8 +49,8 @@ const LEECH: (&str, &str) = ("Leech 1991", "whole machine");
 
 const OF_RATES: &str = "Neither the machine nor the scene was chosen by it";
 
-const CAUSE: &str = "Each of the 20 renderers has one region, so the region with the most work decides the rate. A full FIFO also blocks a channel of \
-                     the ring. The source states neither the size of the machine nor the size of the triangles";
+const CAUSE: &str = "Each of the 20 renderers has one region, so the region with the most work decides, and a full FIFO blocks a channel. The \
+                     source states neither the size of the machine nor that of the triangles";
 
 /// The rates, in the order of their numbers. There is no row R5: a goal of 1989 for the processors would be compared with
 /// code of 1991 whose rate is an input. There is no row for Gouraud triangles of a renderer and none for a sum of tracker
@@ -124,8 +124,8 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         reason: OF_RATES,
         varied: OF_SPHERES,
-        cause: "The program of the real spheres is unknown. The row has an exact root, the slowest program of the project, and a paraboloid instead gives the \
-                upper end of the interval. Both are faster than the recollected rate, whose machine and spheres are not known",
+        cause: "The program of the real spheres is unknown. Ours has an exact root; a paraboloid gives the upper end of the interval. Both are faster \
+                than the recollected rate, whose machine and spheres are not known",
         ..figure(
             "R8",
             ("UNC, recollected", "whole machine"),

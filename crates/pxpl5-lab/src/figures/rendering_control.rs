@@ -96,7 +96,7 @@ const OF_FRAMES: &[&str] = &[
 const APPLICATION: Basis = Basis::Interpretation("each eye, the large machine, culling");
 const OF_APPLICATION: &str = "TR94 names neither the machine nor culling. The project chose the large machine and culled scenes, because the scene `head` takes \
      twice the printed time otherwise. Samples of each eye were chosen because of the printed deviations";
-const GAP: &str = "If TR94's fields are exact, about one field (one COPY) is missing in the model. See the section on exact and whole fields";
+const GAP: &str = "If TR94's fields are exact, about one field (one COPY) is missing (see the section above)";
 const BIN_RULE: Basis = Basis::Rule("TRANSFORM waits until the bins have room for it");
 const OF_BINS: &str = "No paper states the rule. It was chosen because both figures follow from it";
 
@@ -144,12 +144,11 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Interpretation("each eye"),
-        reason: "The text allows samples of the first eye, too (see the page of interpretations)",
+        reason: "The text allows samples of the first eye, too",
         latency: Some(TO_THE_SWAP),
         is_interpreted: true,
         varied: Varied::ByFormula,
-        cause: "By TR94's rules, TRANSFORM may begin while two eyes wait for their copies, so a faster TRANSFORM or RENDER only waits longer. The column \
-                `wait` has the result of the rule that the text does not support",
+        cause: "By TR94's rules, TRANSFORM may begin while two eyes wait for their copies, so a faster TRANSFORM or RENDER only waits longer",
         ..figure(
             "4",
             TR94,
@@ -259,9 +258,8 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         reason: "No scene and no rule of binning was chosen by it",
-        cause: "The figure depends on the scenes alone, and the project's scenes only resemble the original ones: the 59,592 triangles of \
-                `head` are tiny, those of `mig` are larger. Binning by bounding boxes gives hardly more regions. A test compares the count with the \
-                number of regions that a triangle of a given size touches on average",
+        cause: "Only the scenes matter, and ours only resemble the original ones: the 59,592 triangles of `head` are tiny, those of \
+                `mig` are larger. Binning by bounding boxes gives hardly more regions",
         ..figure(
             "8",
             TR94,
@@ -322,9 +320,9 @@ pub(super) const FIGURES: &[Measurement] = &[
             "host.message_ns",
             "host.application_ns",
         ]),
-        cause: "A frame on demand finds every stage idle. SEND, EDIT, TRANSFORM and RENDER of two triangles are short. COPY of both eyes takes \
-                two fields less 2 ms, and the wait for the retrace takes half a field on average. The beam then reaches the middle of the screen after half a field. \
-                A slower host would explain what is missing (docs/interpretations.md, Findings)",
+        cause: "A frame on demand finds every stage idle, and two triangles are drawn quickly. COPY of both eyes takes two fields less 2 ms, \
+                the wait for the retrace half a field on average, and the beam another half to the middle of the screen. \
+                A slower host would explain the rest (docs/interpretations.md, Findings)",
         ..figure(
             "17",
             I3D95,
@@ -341,7 +339,7 @@ pub(super) const FIGURES: &[Measurement] = &[
         latency: Some(LatencyDefinition { sentence: "I3D95: time stamps, without the first frames", ..TO_THE_SWAP }),
         is_interpreted: true,
         varied: Varied::ByFormula,
-        cause: "As row 4. I3D95 found the same range inside and outside. Ours differ, because the measurement from outside has an idle pipeline",
+        cause: "As row 4. I3D95 found the same range outside, where our pipeline is idle",
         ..figure(
             "17b",
             I3D95,

@@ -14,10 +14,9 @@ use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 
 pub(super) const TITLE: &str = "Trackers";
 
-pub(super) const ABOUT: &str = "The unpatched operating system of the host polls the serial line every 30 ms (TR94). A report \
-waits for the next poll, and until then the host uses the pose of the last poll. The filter of the Fastrak computes its new \
-output a x + (1 - a) x' from the report x and the previous output x'. The constant a is the gain of the filter. For a gain a, \
-the filter delays a steady turn by dt (1 - a) / a. Here dt is the interval of 1/120 s between two reports.";
+pub(super) const ABOUT: &str = "The host's unpatched operating system polls the serial line every 30 ms (TR94), and a report waits for the next poll. \
+From a report x and its last output x', the filter of the Fastrak makes a x + (1 - a) x', which delays a steady turn by dt (1 - a) / a. \
+Here dt is the 1/120 s between two reports.";
 
 const PF: (&str, &str) = ("PF", "filter");
 

@@ -306,7 +306,6 @@ mod tests {
             prop_assert_eq!(most_triangles(ceiling, &hints, reached), Ok(whole.triangles));
         }
 
-        /// Tests that every size from `unbroken_from` to the result reaches the goal.
         #[test]
         fn all_sizes_of_the_unbroken_row_reach_the_goal(misses in proptest::collection::btree_set(1u32..400, 1..20)) {
             let found = of(400, |size| !misses.contains(&size));

@@ -98,6 +98,7 @@ impl Lanes {
                 enable: &mut self.enable,
             },
         });
+        // The evaluator keeps the last expression, which a later command may use again.
         self.controller.hold(linear(words, last(drawn, TRIANGLE_WORDS)?));
         Some((template.cost, drawn))
     }

@@ -211,7 +211,6 @@ fn a_flat_wall_has_one_colour_on_all_faces() {
     }
 }
 
-/// The default length of the falloff is the side of a cell, so the side can be changed alone.
 #[test]
 fn the_default_length_of_the_falloff_is_the_side_of_a_cell() {
     for cell_m in [1.0, 2.0, 9.0] {

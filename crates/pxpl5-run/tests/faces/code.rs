@@ -8,7 +8,6 @@ use pxpl5_scene::{HeadMotion, Scene, builtin};
 /// Number of fields after which every memory has been drawn at both levels.
 const FIELDS: u64 = 40;
 
-/// Returns a still scene with a still head.
 fn still(name: &str) -> Scene {
     let scene = builtin(name).expect("built in");
     let mut parts = scene.posed(&scene.edits_at(0)).into_parts();

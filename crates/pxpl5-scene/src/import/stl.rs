@@ -62,7 +62,6 @@ fn push_flat(model: &mut Model, corners: [[f64; 3]; 3]) {
     push_with_slow_growth(&mut model.triangles, [first, first + 1, first + 2]);
 }
 
-/// Reads a binary file whose triangles end at byte `end`.
 fn read_binary(source: &Source<'_>, end: u64) -> Result<Model, FileError> {
     let triangles = source.bytes[HEADER..end as usize].chunks_exact(TRIANGLE);
     let mut model = Model::new(Places::Single(Vec::new()));

@@ -5,9 +5,6 @@ use super::{Basis, FigureRow, TableColumn, significant};
 /// Number under which the documents of the project list the figure.
 pub const NUMBER: TableColumn<FigureRow> = ("#", |row| row.id.to_owned());
 
-/// Statement of the paper about the figure, with the section or page that prints the statement.
-pub const STATEMENT: TableColumn<FigureRow> = ("figure", |row| format!("{} ({})", row.statement, row.source));
-
 /// Published number with its unit, and with the printed range if the paper prints a range.
 pub const PUBLISHED: TableColumn<FigureRow> = ("published", |row| {
     let spread = row.spread.map_or_else(String::new, |spread| format!(" +- {}", four(spread)));
@@ -21,26 +18,12 @@ pub const SIMULATED: TableColumn<FigureRow> = ("simulated", |row| {
     format!("{} {}{unprinted}", four(row.simulated), row.unit)
 });
 
-/// Relative error in percent, or "-" if the published number is 0 or missing.
-pub const ERROR: TableColumn<FigureRow> = ("error", error);
-
-/// Smallest and largest value of the figure in the model while unpublished parameters vary within their ranges.
-pub const INTERVAL: TableColumn<FigureRow> =
-    ("interval", |row| row.interval.map_or_else(|| "not varied".to_owned(), range));
-
 /// Provenance of the row, with the parameter or rule that was chosen.
 pub const PROVENANCE: TableColumn<FigureRow> = ("provenance", |row| match row.basis {
     Basis::Fitted(chosen) | Basis::Rule(chosen) | Basis::Interpretation(chosen) | Basis::Derived(chosen) => {
         format!("{}: {chosen}", row.basis.name())
     }
     _ => row.basis.name().to_owned(),
-});
-
-pub const EXPERIMENT: TableColumn<FigureRow> = ("experiment", |row| row.experiment.to_owned());
-
-pub const DETAILS: TableColumn<FigureRow> = ("other results", |row| {
-    let details = row.details.iter().map(|detail| format!("{} {} {}", detail.name, four(detail.value), detail.unit));
-    details.collect::<Vec<_>>().join(", ")
 });
 
 /// Formats the relative error in percent, or "-" if the published number is 0 or missing.

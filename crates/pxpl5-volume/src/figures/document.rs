@@ -28,7 +28,7 @@ pub fn markdown(figures: &VolumeFigures) -> String {
     )
 }
 
-const COLUMNS: [TableColumn<FigureRow>; 6] = [
+const COLUMNS: [TableColumn<FigureRow>; 5] = [
     NUMBER,
     ("statement", |row| match &row.scene {
         Some(scene) => format!("{} ({scene})", row.statement),
@@ -39,8 +39,7 @@ const COLUMNS: [TableColumn<FigureRow>; 6] = [
         format!("{}{measured}", source(&row.source, row.origin))
     }),
     ("expected", |row| format!("{} {}", expected(row), row.unit)),
-    ("model", |row| number(row.simulated)),
-    ("", |row| if row.is_met { "met" } else { "**missed**" }.to_owned()),
+    ("model", |row| number(row.simulated) + if row.is_met { "" } else { " **missed**" }),
 ];
 
 /// Returns the section of the paper, and states if the number was derived from printed numbers.
@@ -65,7 +64,7 @@ fn missed(rows: &[FigureRow]) -> String {
         let scene = row.scene.as_deref().unwrap_or("the model");
         let _ = writeln!(
             text,
-            "\n- Row **{}** (\"{}\") is missed: the expected value is {} {}, and the value of {scene} is {}. {}",
+            "\n- **{}** {}: {} {}, {scene} has {}. {}",
             row.id,
             row.statement,
             expected(row),
@@ -84,32 +83,28 @@ const DEFINITIONS: [TableColumn<Definition>; 4] = [
     ("value", |one| format!("{} {}", number(one.value), one.unit)),
 ];
 
-fn shown(shown: &ShownStatement) -> [String; 3] {
-    let holds = if shown.holds { "shown" } else { "**not shown**" };
-    [shown.statement.to_string(), shown.evidence.to_string(), holds.to_owned()]
+fn shown(shown: &ShownStatement) -> [String; 2] {
+    let holds = if shown.holds { "" } else { "**not shown**: " };
+    [shown.statement.to_string(), format!("{holds}{}", shown.evidence)]
 }
 
-fn scene(scene: &MeasuredScene) -> [String; 13] {
-    let [unpacked, packed, sent] = scene.bytes.map(|bytes| format!("{:.1}", bytes as f64 / 1e6));
+fn scene(scene: &MeasuredScene) -> [String; 11] {
+    let [_, _, sent] = scene.bytes.map(|bytes| format!("{:.1}", bytes as f64 / 1e6));
     let [cpu, gpu, bus] = scene.model_ms.map(|ms| format!("{ms:.0}"));
     let [serial, overlapped] = scene.volumes_hz.map(|hz| format!("{hz:.2}"));
     let [draws, tiles] = [scene.draws_percent, scene.tile_occupancy_percent].map(|percent| format!("{percent:.1} %"));
     let hash = format!("`{}`", scene.volume_hash);
     let (name, triangles) = (scene.scene.clone(), scene.triangles.to_string());
-    [name, triangles, draws, tiles, unpacked, packed, sent, cpu, gpu, bus, serial, overlapped, hash]
+    [name, triangles, draws, tiles, sent, cpu, gpu, bus, serial, overlapped, hash]
 }
 
-fn setting(setting: Parameter) -> [String; 6] {
+fn setting(setting: Parameter) -> [String; 3] {
     let Parameter { path, info, value, .. } = setting;
-    let range = format!("{} to {}", info.range.0, info.range.1);
-    [
-        format!("`{path}`"),
-        value.to_string(),
-        info.unit.to_string(),
-        info.provenance.to_string(),
-        range,
-        info.source.to_string(),
-    ]
+    let range = match info.provenance {
+        Provenance::Published => String::new(),
+        _ => format!(", {} to {}", info.range.0, info.range.1),
+    };
+    [format!("`{path}`"), format!("{value} {}", info.unit), format!("{}{range}: {}", info.provenance, info.source)]
 }
 
 /// Formats a number with nine significant digits.

@@ -95,7 +95,6 @@ impl Rig {
         self.deliver(&StageOrder::Edit(PictureNumber(number)));
     }
 
-    /// Delivers the token of update `number`, which is its only token.
     fn send_token(&mut self, number: u64) {
         let token = Token { drawing: Drawing(number), ..TOKEN };
         self.deliver(&StageOrder::Token(token));

@@ -28,6 +28,7 @@ impl SliceRenderer for ReferenceRenderer {
                 });
             }
         }
+        // The connecting lines come last, because they fill only pixels on which no fragment was drawn.
         if work.coverage == Coverage::Connected {
             stats.added = connected::draw(work, &transform, image);
         }

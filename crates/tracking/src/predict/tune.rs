@@ -64,9 +64,9 @@ pub struct Training {
     pub mean_m: f64,
     /// Mean angle between predicted and true orientation after the tuning, degrees.
     pub mean_deg: f64,
-    /// Mean angle, degrees, with the last report's pose instead of a prediction, on the same motion.
+    /// The same mean angle if the pose of the last report stands for the prediction, degrees.
     pub none_deg: f64,
-    /// Mean angle, degrees, with a constant velocity from the best baseline, on the same motion.
+    /// The same mean angle if a constant velocity is extrapolated, measured over the best number of reports, degrees.
     pub velocity_deg: f64,
 }
 

@@ -116,6 +116,7 @@ impl Placer<'_> {
             "pfmul.dd" => "mm12mpm.dd",
             _ => return mnemonic,
         };
+        // The multiplier's pipe still holds values that a reciprocal approximation has destroyed.
         if self.after_seed > 0 {
             self.after_seed -= 1;
             return mnemonic;
