@@ -45,11 +45,11 @@ pub(crate) fn text(outcome: &Outcome, report: &Report, times: &PictureTimes) -> 
     let Some(path) = CriticalPath::of_picture(outcome, times) else { return text };
     let usual = report.critical_path.as_ref();
     let heads = ["waits, from TRANSFORM on", "this picture", "last pictures"];
-    let _ = writeln!(text, "  {:<44} {:>14} {:>14}", heads[0], heads[1], heads[2]);
+    let _ = writeln!(text, "  {:<50} {:>14} {:>14}", heads[0], heads[1], heads[2]);
     for part in &path.parts {
         let of_usual = usual.and_then(|usual| usual.parts.iter().find(|other| other.resource == part.resource));
         let of_usual = of_usual.map_or_else(|| "-".to_owned(), |other| format!("{:.3} ms", other.ms));
-        let _ = writeln!(text, "  {:<44} {:>11.3} ms {of_usual:>14}", part.resource.about(), part.ms);
+        let _ = writeln!(text, "  {:<50} {:>11.3} ms {of_usual:>14}", part.resource.about(), part.ms);
     }
     let _ = writeln!(text, "  back from the screen: {}", path.chain.join("; "));
     text
