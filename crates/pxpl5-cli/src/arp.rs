@@ -1,14 +1,13 @@
 //! The command `pxpl5 arp`, with experiments on address recalculation in which a viewer walks through a scene.
 
 mod compare;
-mod figures;
 mod interpretations;
 mod run;
-mod settings;
+pub(crate) mod settings;
 mod texel;
 
 use crate::error::CliError;
-use crate::figures::{ADDRESS_RECALCULATION, FiguresArgs};
+use crate::figures::{self, ADDRESS_RECALCULATION, FiguresArgs};
 use clap::{Args, Subcommand};
 
 /// Walk through a scene with a display that follows the head's rotation (address recalculation, priority rendering,
@@ -45,15 +44,11 @@ enum ArpCommand {
     Texel(texel::TexelArgs),
 }
 
-pub(crate) fn figures(args: &FiguresArgs) -> Result<(), CliError> {
-    figures::run(args)
-}
-
 pub(crate) fn run(args: ArpArgs) -> Result<(), CliError> {
     match args.command {
         ArpCommand::Run(args) => run::run(args),
         ArpCommand::Compare(args) => compare::run(args),
-        ArpCommand::Figures(args) => figures::run(&args.of_former("arp", ADDRESS_RECALCULATION)),
+        ArpCommand::Figures(args) => figures::run(args.of_former("arp", ADDRESS_RECALCULATION)),
         ArpCommand::Interpretations(args) => interpretations::run(args),
         ArpCommand::Texel(args) => texel::run(args),
     }

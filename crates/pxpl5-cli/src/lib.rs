@@ -37,6 +37,7 @@ mod one_picture;
 mod options;
 mod output;
 mod plot;
+mod progress;
 mod report;
 mod rig;
 mod rows;

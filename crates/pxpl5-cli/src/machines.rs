@@ -3,7 +3,8 @@
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::options::registry;
-use crate::terminal::{print, progress};
+use crate::progress::progress;
+use crate::terminal::print;
 use clap::Args;
 use pxpl5::{MachineConfig, PRESETS, Parameter, Preset, SettingError, Suitability, suitability, tracking_parameters};
 use serde_json::{Map, Value, json};

@@ -3,8 +3,9 @@
 use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
 use crate::estimate::RunWork;
+use crate::progress::progress;
 use crate::scenes;
-use crate::terminal::{progress, warn};
+use crate::terminal::warn;
 use crate::too_heavy::too_heavy;
 use pxpl5::{
     ExperimentError, KeptRecords, Observation, Optimization, Outcome, PeriodNumber, Plan, Traffic, Workstation,

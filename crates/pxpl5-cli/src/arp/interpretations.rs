@@ -2,7 +2,8 @@
 //! ways. The command ranks these interpretations.
 
 use crate::error::CliError;
-use crate::terminal::{answer, json_text, progress};
+use crate::progress::progress;
+use crate::terminal::{answer, json_text};
 use clap::Args;
 use pxpl5::arp::figures::{Interpretations, interpretations_text};
 

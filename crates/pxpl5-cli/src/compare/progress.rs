@@ -1,6 +1,6 @@
 //! Progress of a comparison on standard error: a bar on a terminal, plain lines elsewhere.
 
-use crate::terminal::{Progress, progress};
+use crate::progress::{Progress, progress};
 use pxpl5::compare::ComparisonRow;
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -7,7 +7,7 @@ use super::slices::{say, write};
 use crate::error::CliError;
 use crate::numbers::{count_of, whole};
 use crate::output::OutputFile;
-use crate::terminal::progress;
+use crate::progress::progress;
 use clap::Args;
 use pxpl5::views::Animation;
 use pxpl5::volume::VolumeSettings;

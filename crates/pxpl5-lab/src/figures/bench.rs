@@ -1,16 +1,14 @@
 //! Settings of all measurements of figures, and the cached runs that several figures share.
 
 use super::applications::{Applications, key_of};
-use super::heads::{self, PHOTODIODE_LINE, RigLines};
 use super::interpretation::Interpretation;
-use super::measurement::{FigureValue, Measurement, Result, scene_named};
-use super::{all, slats};
+use super::rig_lines::{self, PHOTODIODE_LINE, RigLines};
+use super::value::{Result, scene_named};
 use crate::StopFlag;
 use crate::levels::summarise;
 use pxpl5_gp::CodeUse;
 use pxpl5_machine::{MachineConfig, PRESETS, Preset};
-use pxpl5_run::{Experiment, ExperimentError, Level, Pipeline, Pixels, Summary};
-use pxpl5_sim::figures::Basis;
+use pxpl5_run::{Experiment, Level, Pipeline, Pixels, Summary};
 use pxpl5_sim::parameters::{ParameterTable, SettingError, Value};
 use std::sync::Arc;
 use tracking::rig::Measurement as RigMeasurement;
@@ -103,28 +101,6 @@ impl Bench {
         self
     }
 
-    /// Measures the figure with the number `id`.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`ExperimentError`] if the experiment fails, [`ExperimentError::Scene`] for an unknown figure, and
-    /// [`ExperimentError::Stopped`] if another thread sets the flag.
-    pub fn measure(&self, id: &str) -> Result<FigureValue> {
-        let figure = all().find(|figure| figure.id == id);
-        figure.ok_or_else(|| ExperimentError::Scene(format!("there is no figure {id}")))?.value(self)
-    }
-
-    /// Returns the provenance of a figure under these settings. With times of executed code, no time of a triangle is
-    /// fitted, so the limits of Slats become checks.
-    pub(super) fn basis_of(&self, figure: &Measurement) -> Basis {
-        match figure.basis {
-            Basis::Fitted(chosen) if self.has_times_of_code && chosen.starts_with("gp.triangle_ns") => {
-                Basis::Interpretation(slats::CLUMP_RULE)
-            }
-            basis => basis,
-        }
-    }
-
     /// Returns the machine of a preset with the changed parameters.
     ///
     /// # Errors
@@ -205,7 +181,7 @@ impl Bench {
             return Ok(measured);
         }
         let machine = self.interpreted("small-hmd")?;
-        heads::under_line(&machine, (&self.interpretation, &self.stop), line).map(Arc::new)
+        rig_lines::under_line(&machine, (&self.interpretation, &self.stop), line).map(Arc::new)
     }
 
     pub(super) fn photodiode_line(&self) -> Option<u64> {

@@ -1,11 +1,11 @@
 //! Writer of ACCURACY.md and docs/interpretations.md: the texts are Markdown files with marks, which the writer replaces
 //! by tables and numbers.
 
-use super::measurement::{EARLIER, LATER};
+use super::Interpretation;
+use super::value::{EARLIER, LATER, WHOLE};
 use super::{
     Alternatives, Basis, Effect, FigureGroup, FigureRow, Figures, Headline, MISS_PERCENT, Measurement, TOPICS, all,
 };
-use super::{Interpretation, rendering_control::WHOLE};
 use crate::edges::NEAR_FIELDS;
 use crate::interpretations::{ALIKE, FigureFit, Fit, Interpretations, figures as ranked_figures};
 use crate::intervals::{Interval, SAMPLES};

@@ -1,7 +1,7 @@
 //! Figures of the papers on address recalculation, a system other than Pixel-Planes 5.
 
-use super::measurement::{Result, scene_named};
-use super::{Bench, FigureGroup};
+use super::bench::Bench;
+use super::value::{Result, scene_named};
 use crate::error::StudyError;
 use crate::parallel;
 use pxpl5_arp::figures::{Experiments, row, rows, shape};
@@ -33,18 +33,12 @@ const COMPARED: usize = 55;
 /// # Errors
 ///
 /// Returns a [`StudyError`] that names the experiment.
-pub(super) fn address_recalculation(bench: &Bench) -> std::result::Result<FigureGroup, StudyError> {
+pub(super) fn address_recalculation(bench: &Bench) -> std::result::Result<Vec<FigureRow>, StudyError> {
     let (turning, experiments) = parallel::both(|| turning(bench), Experiments::run);
     let mut all = turning.map_err(StudyError::of_figure("E1"))?;
     let experiments = experiments.map_err(StudyError::of_figure("E1"))?;
     all.extend(rows(&experiments));
-    Ok(FigureGroup {
-        name: "address-recalculation",
-        title: "Address recalculation and priority rendering",
-        about: "Experiment E1 runs on Pixel-Planes 5, experiments E2 to E9 run with an ideal renderer.",
-        document: Some("docs/address-recalculation.md"),
-        rows: all,
-    })
+    Ok(all)
 }
 
 /// Runs experiment E1, which measures two latencies for growing numbers of triangles. One is the latency of the head's

@@ -1,52 +1,16 @@
-//! The published figures by topic, and the measurement of all of them.
+//! The measurement of all published figures.
 
+use super::bench::Bench;
+use super::family;
+use super::headline::Headline;
 use super::measurement::Measurement;
-use super::{Bench, FigureRow, Headline, family, heads, jitp, rates, rendering_control, slats, trackers};
+use super::topics::{TOPICS, Topic};
 use crate::error::StudyError;
 use crate::intervals::{Interval, fill, intervals};
 use crate::parallel;
+use pxpl5_sim::figures::FigureRow;
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Figures of one topic, as entries. A new figure is one entry in a list of a topic.
-#[derive(Clone, Copy, Debug)]
-pub struct Topic {
-    /// Name of the topic in commands.
-    pub name: &'static str,
-    /// Title of the topic's section in ACCURACY.md.
-    pub title: &'static str,
-    /// Conditions that all experiments of the topic share, including conditions that the papers do not state.
-    pub about: &'static str,
-    /// The figures in the order of their numbers.
-    pub figures: &'static [Measurement],
-}
-
-/// Name of the topic "Rendering Control".
-pub(super) const RC: &str = "Rendering Control";
-/// Name of the topic "Slats".
-pub(super) const SLATS: &str = "Slats";
-/// Name of the topic "From head to light".
-pub(super) const HEAD: &str = "from head to light";
-
-/// All topics with experiments on Pixel-Planes 5, in the order of their tables.
-pub static TOPICS: [Topic; 6] = [
-    Topic { name: "rendering-control", title: RC, about: "", figures: rendering_control::FIGURES },
-    Topic { name: "slats", title: SLATS, about: "", figures: slats::FIGURES },
-    Topic { name: "head-to-light", title: "From head to light", about: "", figures: heads::FIGURES },
-    Topic { name: "rates", title: rates::TITLE, about: rates::ABOUT, figures: rates::FIGURES },
-    Topic { name: "jitp", title: jitp::TITLE, about: jitp::ABOUT, figures: jitp::FIGURES },
-    Topic { name: "trackers", title: trackers::TITLE, about: trackers::ABOUT, figures: trackers::FIGURES },
-];
-
-/// Returns the figures of all topics.
-pub fn all() -> impl Iterator<Item = &'static Measurement> {
-    TOPICS.iter().flat_map(|topic| topic.figures)
-}
-
-/// Returns the figures that are measured at every level of detail. The other topics always simulate events.
-pub fn at_all_levels() -> impl Iterator<Item = &'static Measurement> {
-    TOPICS.iter().take(3).flat_map(|topic| topic.figures)
-}
 
 /// Published figures of one topic, with the model's values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -111,7 +75,13 @@ impl Figures {
             let rows = rows.by_ref().take(figures.len()).collect::<Result<_, _>>()?;
             groups.push(FigureGroup { name, title, about, document: None, rows });
         }
-        groups.extend(other);
+        groups.push(FigureGroup {
+            name: "address-recalculation",
+            title: "Address recalculation and priority rendering",
+            about: "Experiment E1 runs on Pixel-Planes 5, experiments E2 to E9 run with an ideal renderer.",
+            document: Some("docs/address-recalculation.md"),
+            rows: other?,
+        });
         // After a stop, intervals are missing or too narrow.
         bench.stop.check().map_err(StudyError::of_figure("intervals"))?;
         groups.iter_mut().for_each(|group| fill(&mut group.rows, &intervals));

@@ -1,8 +1,9 @@
 //! Figures of the paper on just-in-time pixels (JITP, by Mine and Bishop). The figures are errors while the head turns,
 //! the duration of a line, the number of transforms, and the pictures of an edge.
 
-use super::Bench;
-use super::measurement::{FigureValue, Measurement, Result, detail, figure};
+use super::bench::Bench;
+use super::measurement::{Measurement, figure};
+use super::value::{FigureValue, Result, detail};
 use crate::compare::{edge_pictures, edge_scene};
 use crate::parallel;
 use image::RgbImage;

@@ -1,8 +1,9 @@
 //! Published peak rates: triangles and spheres per second of the machine, triangles of a renderer, and operations of the
 //! i860.
 
-use super::Bench;
-use super::measurement::{FigureValue, Measurement, Result, Varied, detail, figure, scene_named};
+use super::bench::Bench;
+use super::measurement::{Measurement, Varied, figure};
+use super::value::{FigureValue, Result, detail, scene_named};
 use glam::Vec3;
 use i860::{Cpu, Ram, RunEnd, assemble};
 use pphigs::Shading;

@@ -1,8 +1,8 @@
 //! Figures of Slats: latency, copies, and the largest numbers of triangles.
 
-use super::measurement::{FigureValue, LatencyDefinition, Measurement, Result, Varied, detail, figure};
-use super::rendering_control::rate_hz;
-use super::{Bench, SLATS};
+use super::bench::Bench;
+use super::measurement::{CLUMP_RULE, LatencyDefinition, Measurement, SLATS, Varied, figure};
+use super::value::{FigureValue, Result, detail, rate_hz};
 use crate::edges::to_other_retraces;
 use crate::limit::LimitQuery;
 use pxpl5_run::{Slats, Summary};
@@ -12,9 +12,6 @@ use std::sync::Arc;
 const TR94: (&str, &str) = ("TR94", SLATS);
 const I3D95: (&str, &str) = ("I3D95", SLATS);
 const BOTH: (&str, &str) = ("TR94, I3D95", SLATS);
-
-/// The rule that decides the limits of Slats, and that was chosen by comparison with figures 12 and 13.
-pub(super) const CLUMP_RULE: &str = "when a clump's buffer is free";
 
 const OF_CLUMP: &str = "The time of a triangle is that of the project's code, without a fit. The rule for the buffer was chosen among three by comparison \
                         with rows 12 and 13, because the paper is silent about it";

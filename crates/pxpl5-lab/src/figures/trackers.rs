@@ -1,7 +1,8 @@
 //! Figures of trackers and of the host's serial line.
 
-use super::Bench;
-use super::measurement::{FigureValue, Measurement, Result, detail, figure, scene_named};
+use super::bench::Bench;
+use super::measurement::{Measurement, figure};
+use super::value::{FigureValue, Result, detail, scene_named};
 use pxpl5_measure::Budget;
 use pxpl5_run::{Experiment, ExperimentError, Head, Pixels};
 use pxpl5_sim::figures::Basis;

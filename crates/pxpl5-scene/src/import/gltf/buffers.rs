@@ -8,7 +8,7 @@ use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use serde_json::value::RawValue;
 
-use super::document::{Buffer, parsed};
+use super::json::{Buffer, parsed};
 #[cfg(feature = "files")]
 use super::host::read_file;
 use crate::config::MAX_FILE_BYTES;

@@ -1,10 +1,12 @@
 //! The figures of the papers on address recalculation with an ideal renderer, as a table, a document and pictures.
 
-use super::settings::put;
+use super::args::FiguresArgs;
+use super::table::{fresh, rows_text};
+use crate::arp::settings::put;
 use crate::error::CliError;
-use crate::figures::{FiguresArgs, fresh, rows_text};
 use crate::output::{OutputFile, OutputFolder};
-use crate::terminal::{answer, progress};
+use crate::progress::progress;
+use crate::terminal::answer;
 use pxpl5::arp::{figures, pictures};
 use serde_json::json;
 

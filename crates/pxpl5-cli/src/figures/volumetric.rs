@@ -1,10 +1,12 @@
 //! The figures of the SpatialGL paper, as a table, a document and drawings.
 
-use super::settings::load;
+use super::args::FiguresArgs;
+use super::table::{fresh, rows_text};
 use crate::error::CliError;
-use crate::figures::{FiguresArgs, fresh, rows_text};
 use crate::output::{OutputFile, OutputFolder};
-use crate::terminal::{answer, json_text, progress};
+use crate::progress::progress;
+use crate::terminal::{answer, json_text};
+use crate::volume::settings::load;
 use pxpl5::scene::Scene;
 use pxpl5::views::png_bytes;
 use pxpl5::volume::figures::{FigureDrawing, VolumeFigures, all, drawings, markdown};
