@@ -27,12 +27,12 @@ pub use pxpl5_lab::ExperimentFile;
 ///
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
-/// for WhatIf { resource, latency_ms: [before, after], .. } in what_if(&registry(), &experiment)? {
+/// for WhatIf { resource, latency_ms: [before, after], .. } in WhatIfQuery { registry: registry(), experiment }.run(&mut ())? {
 ///     println!("10 % more {resource}: {before:?} ms, then {after:?} ms");
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_lab::what_if;
+pub use pxpl5_lab::WhatIfQuery;
 
 /// The error type of all studies, for invalid settings and failed runs.
 ///
@@ -69,15 +69,36 @@ pub use pxpl5_lab::Workstation;
 ///
 /// ```
 /// use pxpl5::limit::LimitQuery;
-/// use pxpl5::{ExperimentError, MachineConfig, Slats, StopFlag};
+/// use pxpl5::{MachineConfig, Slats, StopFlag, Study};
 ///
-/// let stop = StopFlag::default();
-/// let query = LimitQuery { stop: stop.clone(), ..LimitQuery::of_papers(MachineConfig::slats(), Slats::split())? };
+/// let mut stop = StopFlag::default();
+/// let query = LimitQuery::of_papers(MachineConfig::slats(), Slats::split())?;
 /// stop.stop();
-/// assert!(matches!(query.search(), Err(ExperimentError::Stopped(_))));
-/// # Ok::<(), ExperimentError>(())
+/// assert!(query.run(&mut stop).is_err_and(|error| error.to_string().contains("stopped")));
+/// # Ok::<(), pxpl5::ExperimentError>(())
 /// ```
 pub use pxpl5_lab::StopFlag;
+
+/// The shape of all questions over many experiments, and the follower of their progress.
+///
+/// The example counts the scenes that a search simulates.
+///
+/// ```
+/// use pxpl5::limit::LimitQuery;
+/// use pxpl5::{MachineConfig, Slats, Study, StudyError, Watcher};
+///
+/// struct Counter(u64);
+/// impl Watcher for Counter {
+///     fn progress(&mut self, done: u64, _of: u64) {
+///         self.0 = done;
+///     }
+/// }
+/// let mut scenes = Counter(0);
+/// let limit = LimitQuery::of_papers(MachineConfig::slats(), Slats::split())?.run(&mut scenes)?;
+/// assert_eq!(scenes.0, limit.tried as u64);
+/// # Ok::<(), StudyError>(())
+/// ```
+pub use pxpl5_lab::{Study, Watcher};
 
 /// Returns the reason why a machine cannot run a pipeline, for each pipeline.
 ///
@@ -140,6 +161,7 @@ pub mod lab {
     pub use pxpl5_lab::FileKey;
 
     pub use pxpl5_lab::{
-        NEAR_FIELDS, PREDICTORS, PathChoice, TRACKERS, diff, estimate, manifest, motion, near_edges, predictor, tracker,
+        NEAR_FIELDS, PREDICTORS, PathChoice, TRACKERS, diff, estimate, manifest, motion, near_edges, predictor,
+        tracker, volumes, walks,
     };
 }

@@ -32,12 +32,12 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ("run", &["pxpl5-run"], &["ground", "boards", "geometry", "firmware", "world", "machine"]),
     (
         "measure",
-        &["pxpl5-measure", "pxpl5-analytic", "pxpl5-arp"],
-        &["ground", "boards", "geometry", "firmware", "world", "machine", "run"],
+        &["pxpl5-measure", "pxpl5-analytic", "pxpl5-arp", "pxpl5-volume"],
+        &["ground", "boards", "geometry", "firmware", "world", "volume", "machine", "run"],
     ),
     (
         "lab",
-        &["pxpl5-lab", "pxpl5-volume"],
+        &["pxpl5-lab"],
         &["ground", "boards", "geometry", "firmware", "world", "volume", "machine", "run", "measure"],
     ),
     ("views", &["pxpl5-views"], &["ground", "boards", "world", "machine", "run", "measure"]),

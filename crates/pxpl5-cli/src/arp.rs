@@ -7,7 +7,6 @@ pub(crate) mod settings;
 mod texel;
 
 use crate::error::CliError;
-use crate::figures::{self, ADDRESS_RECALCULATION, FiguresArgs};
 use clap::{Args, Subcommand};
 
 /// Walk through a scene with a display that follows the head's rotation (address recalculation, priority rendering,
@@ -34,9 +33,6 @@ enum ArpCommand {
     Run(run::RunArgs),
     /// Compare all policies and warps on one walk through a scene.
     Compare(compare::CompareArgs),
-    /// Former spelling of `pxpl5 figures --group address-recalculation`.
-    #[command(hide = true)]
-    Figures(FiguresArgs),
     /// Rank the possible answers to the questions that the paper on priority rendering leaves open about its table 1.
     /// As a check, each update rate of the table is left out in turn.
     Interpretations(interpretations::InterpretationsArgs),
@@ -48,7 +44,6 @@ pub(crate) fn run(args: ArpArgs) -> Result<(), CliError> {
     match args.command {
         ArpCommand::Run(args) => run::run(args),
         ArpCommand::Compare(args) => compare::run(args),
-        ArpCommand::Figures(args) => figures::run(args.of_former("arp", ADDRESS_RECALCULATION)),
         ArpCommand::Interpretations(args) => interpretations::run(args),
         ArpCommand::Texel(args) => texel::run(args),
     }

@@ -2,9 +2,10 @@
 //! is stopped early if its first fields show that the whole run would exceed a limit.
 
 use crate::error::CliError;
-use crate::estimate::{Estimate, RunWork, Study};
 use crate::numbers::{count_of, whole};
 use clap::Args;
+use pxpl5::Study;
+use pxpl5::lab::estimate::{Estimate, RunWork};
 use std::cell::OnceCell;
 use std::time::Instant;
 
@@ -65,17 +66,8 @@ impl BudgetArgs {
         self.admit_estimate(work.estimate(), "simulate fewer fields")
     }
 
-    /// Returns an error if the estimate of a set of runs exceeds the budget, before the first run starts. The estimated
-    /// time is the sum of the times of all runs divided by `threads`. The estimated memory is the memory of the largest
-    /// run times `threads`.
-    pub(crate) fn admit_all(&self, runs: impl IntoIterator<Item = RunWork>, threads: usize) -> Result<(), CliError> {
-        let whole = Estimate::of_all(runs.into_iter().map(|work| work.estimate()), threads);
-        self.admit_estimate(whole, "simulate fewer fields")
-    }
-
-    /// Returns an error if a fixed set of experiments would exceed the budget. `advice` is a text about ways to reduce
-    /// the work.
-    pub(crate) fn admit_study(&self, study: Study, advice: &str) -> Result<(), CliError> {
+    /// Returns an error if a study would exceed the budget. `advice` is a text about ways to reduce the work.
+    pub(crate) fn admit_study(&self, study: &impl Study, advice: &str) -> Result<(), CliError> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         self.admit_estimate(study.estimate(threads), advice)
     }

@@ -1,5 +1,6 @@
 //! Errors that end a command, with their exit codes.
 
+use crate::interrupt::INTERRUPTED;
 use pxpl5::{ExperimentError, FileError, FileErrorKind, SettingError, SettingErrorKind, StudyError};
 use std::fmt::{self, Display};
 
@@ -21,6 +22,10 @@ pub(crate) struct CliError {
 impl CliError {
     pub(crate) fn failure(message: impl Display) -> Self {
         Self { code: FAILURE, message: message.to_string() }
+    }
+
+    pub(crate) fn interrupted(message: impl Display) -> Self {
+        Self { code: INTERRUPTED, message: message.to_string() }
     }
 
     pub(crate) fn usage(message: impl Display) -> Self {
@@ -94,7 +99,8 @@ impl From<StudyError> for CliError {
         match error {
             StudyError::Setting(error) => error.into(),
             StudyError::File(error) => error.into(),
-            _ => Self::usage(error),
+            StudyError::Experiment(error) => error.into(),
+            _ => Self::failure(error),
         }
     }
 }

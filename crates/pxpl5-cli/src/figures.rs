@@ -5,23 +5,23 @@ mod args;
 mod table;
 mod volumetric;
 
-pub(crate) use args::{ADDRESS_RECALCULATION, FiguresArgs, VOLUMETRIC};
+pub(crate) use args::FiguresArgs;
 
 use crate::error::CliError;
-use crate::estimate::Study;
-use crate::interrupt;
 use crate::output::OutputFile;
-use crate::progress::progress;
+use crate::progress::Progress;
 use crate::terminal::print;
+use args::{ADDRESS_RECALCULATION, VOLUMETRIC};
 use pxpl5::Level;
 use pxpl5::figures::{
-    Alternatives, Basis, Bench, Documents, FigureRow, Figures, Headline, Measurement, TOPICS, all, documents,
+    AlternativeQuery, Alternatives, Basis, Documents, FigureQuery, FigureRow, FigureSettings, Figures, Headline,
+    TOPICS, all, documents,
 };
 use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 use serde_json::json;
 use std::fs;
 use std::path::Path;
-use table::{HEADER, RowPrinter, fresh, row_text};
+use table::{fresh, titled};
 
 pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     match args.group.as_deref() {
@@ -36,37 +36,23 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     if !args.only.is_empty() {
         return chosen(&args.only);
     }
+    let is_document = args.json || args.write.is_some() || args.check.is_some();
+    // The plain table leaves out the intervals, because a reader waits for it.
+    let intervals = is_document || args.chart.is_some() || args.intervals;
+    let settings = FigureSettings::new(Level::Transaction);
+    let query = FigureQuery { settings: settings.clone(), intervals, only: Vec::new() };
     // Open the output first, so that a bad path fails before the simulations.
-    args.budget.admit_study(Study::Figures, "measure some of them with --only")?;
+    args.budget.admit_study(&query, "measure some of them with --only")?;
     let file = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let chart_file = args.chart.as_deref().map(|path| OutputFile::open(path, "--chart")).transpose()?;
-    let is_document = args.json || args.write.is_some() || args.check.is_some();
-    let bench = Bench::new(Level::Transaction);
-    // The plain table leaves out the intervals, because a reader waits for it.
-    let has_intervals = is_document || args.chart.is_some() || args.intervals;
-    let bench = if has_intervals { bench } else { bench.without_intervals() };
     // Rows are printed as they come, unless the output needs their intervals or is JSON.
-    let mut printer = RowPrinter::default();
-    let mut printed = Ok(());
-    interrupt::keeps("nothing was written, and the rows that were printed are complete".to_owned());
-    let bar = progress(0, "figures", args.quiet);
-    let print_row = |title, row: &FigureRow| {
-        if !has_intervals && !args.quiet && printed.is_ok() {
-            printed = bar.above(|| printer.row(title, row));
-        }
-    };
-    let figures = Figures::run(&bench, |done, of| bar.advance(done, of), print_row).map_err(CliError::failure);
-    bar.clear();
-    let figures = figures?;
-    printed?;
+    let figures = measured(&query, args.quiet || intervals, args.quiet)?;
     let rows: Vec<FigureRow> = figures.rows().cloned().collect();
     chart_file.map(|file| file.write(chart(&rows).svg().as_bytes())).transpose()?;
     // Only the documents and the JSON output have the figures under other assumptions.
     if is_document {
-        let bar = progress(0, "figures under other assumptions", args.quiet);
-        let alternatives = Alternatives::run(&bench, |done, of| bar.advance(done, of)).map_err(CliError::failure);
-        bar.clear();
-        let alternatives = alternatives?;
+        let progress = Progress::new("figures under other assumptions", args.quiet);
+        let alternatives = progress.run(&AlternativeQuery { settings })?;
         let texts = documents(&figures, &alternatives);
         file.map(|file| file.write(texts.accuracy.as_bytes())).transpose()?;
         if let Some(folder) = &args.pages {
@@ -81,15 +67,28 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     if args.quiet {
         return Ok(());
     }
-    if has_intervals {
-        for group in &figures.groups {
-            group.rows.iter().try_for_each(|row| printer.row(group.title, row))?;
-        }
+    if intervals {
+        figures.groups.iter().try_for_each(|group| print(&titled(group.title, &group.rows)))?;
     }
-    printer.end_table()?;
-    print(&volumetric::table()?)?;
+    volumetric::print_table()?;
     print(&format!("\n{}\n", figures.headline()))?;
-    if has_intervals { Ok(()) } else { print(WITHOUT_INTERVALS) }
+    if intervals { Ok(()) } else { print(WITHOUT_INTERVALS) }
+}
+
+/// Measures figures. Prints each row as soon as it is measured, unless `is_silent`.
+fn measured(query: &FigureQuery, is_silent: bool, is_quiet: bool) -> Result<Figures, CliError> {
+    let mut table = "";
+    let progress = Progress::new("figures", is_quiet);
+    if is_silent {
+        return progress.run(query);
+    }
+    let progress = progress.keeping("the rows that were printed are complete").on_row(|bar, title, row| {
+        let before = std::mem::replace(&mut table, title);
+        let gap = if before.is_empty() { "" } else { "\n" };
+        let head = if before == title { String::new() } else { format!("{gap}{title}\n{}\n", FigureRow::HEADER) };
+        let _ = bar.above(|| print(&format!("{head}{row}\n")));
+    });
+    progress.run(query)
 }
 
 const WITHOUT_INTERVALS: &str =
@@ -119,13 +118,14 @@ fn of_group(name: &str, args: &FiguresArgs) -> Result<(), CliError> {
     if args.write.is_some() || args.check.is_some() || args.out.is_some() {
         return Err(CliError::usage(format!("--group {name} has no document and no pictures of its own")));
     }
+    let only = topic.figures.iter().collect();
+    let query = FigureQuery { settings: FigureSettings::new(Level::Transaction), intervals: false, only };
+    let figures = measured(&query, args.json, args.json || args.quiet)?;
     if args.json {
-        let bench = Bench::new(Level::Transaction);
-        let rows = topic.figures.iter().map(|figure| figure.measured_row(&bench));
-        let rows = rows.collect::<Result<Vec<_>, _>>().map_err(CliError::failure)?;
+        let rows: Vec<&FigureRow> = figures.rows().collect();
         return print(&format!("{:#}\n", json!({ "schema": SCHEMA, "figures": rows })));
     }
-    measure(topic.figures)
+    Ok(())
 }
 
 /// Measures and prints the figures with these numbers.
@@ -133,21 +133,12 @@ fn chosen(numbers: &[String]) -> Result<(), CliError> {
     let find = |number: &String| {
         let known = || all().map(|figure| figure.id).collect::<Vec<_>>().join(", ");
         let figure = all().find(|figure| figure.id == number.as_str());
-        figure
-            .copied()
-            .ok_or_else(|| CliError::usage(format!("--only: expected numbers among {}, found {number}", known())))
+        figure.ok_or_else(|| CliError::usage(format!("--only: expected numbers among {}, found {number}", known())))
     };
     // All numbers are checked before the first experiment runs.
-    measure(&numbers.iter().map(find).collect::<Result<Vec<_>, _>>()?)
-}
-
-fn measure(figures: &[Measurement]) -> Result<(), CliError> {
-    let bench = Bench::new(Level::Transaction);
-    print(HEADER)?;
-    for figure in figures {
-        print(&row_text(&figure.measured_row(&bench).map_err(CliError::failure)?))?;
-    }
-    Ok(())
+    let only = numbers.iter().map(find).collect::<Result<_, _>>()?;
+    let query = FigureQuery { settings: FigureSettings::new(Level::Transaction), intervals: false, only };
+    measured(&query, false, false).map(drop)
 }
 
 const SCHEMA: &str = "pxpl5-figures/3";

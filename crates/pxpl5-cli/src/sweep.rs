@@ -2,16 +2,14 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Estimate;
-use crate::interrupt;
 use crate::numbers::{are, count_of, whole};
 use crate::options::registry;
-use crate::progress::progress;
+use crate::progress::Progress;
 use crate::slurm::{self, Jobs, quoted};
 use crate::terminal::{print, print_error, warn};
 use clap::Args;
 use pxpl5::ExperimentFile;
-use pxpl5::sweep::{Header, ROWS_FILE, RunOptions, Shard, Store, Sweep, Swept};
+use pxpl5::sweep::{Header, ROWS_FILE, RunOptions, Shard, Store, Sweep, SweepQuery, Swept};
 use std::path::{Path, PathBuf};
 
 /// Run an experiment at every point of a parameter space.
@@ -115,13 +113,13 @@ impl SweepFolderArgs {
     pub(crate) fn run(&self, sweep: &impl Swept, header: Header, command: &SweepCommand) -> Result<(), CliError> {
         // The store keeps finished rows, so that Ctrl-C loses only the points in progress.
         let mut store = Store::open(&self.out, header, self.resume)?;
-        interrupt::keeps(format!("the finished points are kept. To continue:\n  {}", self.again(command)));
         let total = self.shard.share_of(sweep.space().points());
-        let bar = progress(total, "points", self.quiet);
-        bar.begin_at(store.finished(self.shard));
+        let kept = format!("the finished points are kept. To continue:\n  {}", self.again(command));
         let options = RunOptions { shard: self.shard, threads: command.parallel };
-        pxpl5::sweep::run(sweep, &mut store, options, |_| bar.add_one())?;
-        bar.clear();
+        let progress = Progress::new("points", self.quiet).keeping(&kept).on_row(|_, _, _| ());
+        if progress.run(&SweepQuery::new(sweep, &mut store, options))? < total {
+            return Ok(());
+        }
         // A sweep succeeds if at least one point could be simulated.
         let failed = report_failures(&store, self.shard, total, command.verb)?;
         if !self.quiet {
@@ -151,10 +149,8 @@ impl SweepArgs {
         if self.max_memory.is_none() && self.max_seconds.is_none() {
             return Ok(());
         }
-        let all = slurm::estimate(sweep, threads);
-        let share = self.folder.shard.share_of(sweep.space().points()) as f64 / sweep.space().points().max(1) as f64;
-        let ours = Estimate { seconds: all.seconds * share, ..all };
-        BudgetArgs::of(self.max_memory, self.max_seconds).admit_estimate(ours, "sweep fewer points")
+        let estimate = sweep.estimate(self.folder.shard, threads);
+        BudgetArgs::of(self.max_memory, self.max_seconds).admit_estimate(estimate, "sweep fewer points")
     }
 }
 

@@ -53,3 +53,22 @@ pub(crate) fn warn(warnings: &[String], quiet: bool) {
         warnings.iter().for_each(|warning| print_error(&format!("pxpl5: warning: {warning}\n")));
     }
 }
+
+/// Lays out lines of cells in columns that are as wide as their widest cell. The first `left` columns are aligned to the
+/// left, and all others to the right.
+pub(crate) fn laid_out(lines: &[Vec<String>], left: usize) -> String {
+    let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
+    let width =
+        |column: usize| lines.iter().filter_map(|line| Some(line.get(column)?.chars().count())).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for line in lines {
+        let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, width))| match column < left {
+            true => format!("{cell:<width$}  "),
+            false => format!("{cell:>width$}  "),
+        });
+        text.push_str(cells.collect::<String>().trim_end());
+        text.push('\n');
+    }
+    text
+}

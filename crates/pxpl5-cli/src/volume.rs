@@ -9,7 +9,6 @@ mod sweep;
 mod view;
 
 use crate::error::CliError;
-use crate::figures::{self, FiguresArgs, VOLUMETRIC};
 use clap::{Args, Subcommand};
 
 /// Draw a scene as the 396 slices of a spinning volumetric display (SpatialGL on Perspecta, 2005).
@@ -43,9 +42,6 @@ enum VolumeCommand {
     Compare(compare::CompareArgs),
     /// Draw a volume at every point of a parameter space.
     Sweep(sweep::SweepArgs),
-    /// Former spelling of `pxpl5 figures --group volumetric`.
-    #[command(hide = true)]
-    Figures(FiguresArgs),
 }
 
 pub(crate) fn run(args: VolumeArgs) -> Result<(), CliError> {
@@ -57,6 +53,5 @@ pub(crate) fn run(args: VolumeArgs) -> Result<(), CliError> {
         VolumeCommand::Film(args) => view::film(args),
         VolumeCommand::Compare(args) => compare::run(args),
         VolumeCommand::Sweep(args) => sweep::run(args),
-        VolumeCommand::Figures(args) => figures::run(args.of_former("volume", VOLUMETRIC)),
     }
 }

@@ -11,7 +11,6 @@ mod length;
 mod pictures;
 mod precision;
 mod predictors;
-mod progress;
 mod query;
 mod resume;
 mod row;

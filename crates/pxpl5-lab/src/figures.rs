@@ -1,7 +1,7 @@
 //! Published figures compared with the model: the printed value, the simulated value and their difference.
 //!
 //! ```text
-//!   TOPICS: lists of Measurement (data and one experiment each) --Bench--> FigureRow: published, simulated, error,
+//!   TOPICS: lists of Measurement (data and one experiment each) --FigureSettings--> FigureRow: published, simulated, error,
 //!                                                                          interval, provenance
 //! ```
 //!
@@ -16,7 +16,6 @@
 
 mod alternatives;
 mod applications;
-mod bench;
 mod document;
 mod family;
 mod groups;
@@ -28,20 +27,21 @@ mod measurement;
 mod rates;
 mod rendering_control;
 mod rig_lines;
+mod settings;
 mod slats;
 mod topics;
 mod trackers;
 mod value;
 
-pub use alternatives::{Alternatives, Effect};
-pub use bench::Bench;
+pub use alternatives::{AlternativeQuery, Alternatives, Effect};
 pub use document::{Documents, TIME_MARK, documents};
-pub use groups::{FigureGroup, Figures};
+pub use groups::{FigureGroup, FigureQuery, Figures};
 pub use headline::{Counted, Headline};
 pub use interpretation::{FieldCount, Interpretation, LatencySamples, ROOM};
 pub use measurement::{LatencyDefinition, MISS_PERCENT, Measurement, Varied};
 pub use pxpl5_sim::figures::{Basis, Detail, FigureRow};
 pub use rig_lines::PHOTODIODE_LINE;
+pub use settings::FigureSettings;
 pub use topics::{TOPICS, Topic, all, at_all_levels};
 pub(crate) use value::DEVIATION;
 pub use value::FigureValue;

@@ -4,7 +4,7 @@ mod compare;
 mod random;
 mod record;
 
-pub use compare::{LevelQuery, compare_with};
+pub use compare::LevelQuery;
 pub use random::{compared_ms, experiment as random_experiment};
 pub use record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
 

@@ -10,14 +10,17 @@
 //! | largest number of triangles drawn in time | [`limit`] |
 //! | range of any setting in which an experiment reaches a goal | [`limit::OverQuery`] |
 //! | differences between two results | [`diff`] |
-//! | effect of 10 % more of each resource | [`what_if`] |
+//! | effect of 10 % more of each resource | [`WhatIfQuery`] |
 //! | results that a small change moves by a whole field | [`near_edges`] |
 //! | comparison of all low-latency methods | [`compare`] |
 //! | latency measured from outside | [`rig`] |
 //! | memory and time of an experiment on this computer | [`estimate`] |
 //! | experiments at many points of a parameter space | [`sweep`] |
+//! | walks and volumes | [`walks`], [`volumes`] |
 //! | the files of a folder that belong to one run | [`manifest`] |
 //! | experiments in text files | [`ExperimentFile`], [`Plan`] |
+//!
+//! Each question is a [`Study`]: it estimates its cost, tells a [`Watcher`] its progress, and returns its report.
 //!
 //! [`registry`] lists the built-in pipelines and displays. A pipeline's entry contains its closed form, if there is
 //! one. An experiment file may also use a registry with pipelines and displays of the caller.
@@ -41,9 +44,11 @@ pub mod manifest;
 mod parallel;
 pub mod pipeline_figures;
 pub mod rig;
-mod stop;
+mod study;
 mod suitability;
 pub mod sweep;
+pub mod volumes;
+pub mod walks;
 mod what_if;
 
 pub use edges::{NEAR_FIELDS, near_edges};
@@ -55,9 +60,10 @@ pub use experiment_file::{
 pub use head_names::{PREDICTORS, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;
 pub use parallel::map as in_parallel;
-pub use stop::StopFlag;
+pub use pxpl5_sim::{StopFlag, Watcher};
+pub use study::Study;
 pub use suitability::{Suitability, suitability};
-pub use what_if::{WhatIf, what_if};
+pub use what_if::{WhatIf, WhatIfQuery};
 
 use pxpl5_run::Registry;
 use std::sync::{Arc, LazyLock};

@@ -2,7 +2,7 @@
 
 use crate::background::{Progress, in_background};
 use crate::catalogue::python;
-use crate::errors::wrong_setting;
+use crate::errors::{failed_run, wrong_setting};
 use crate::frames::{Frames, film_bytes};
 use crate::motion::Motion;
 use crate::outcome::{Outcome, exception, outcome_of_run};
@@ -15,7 +15,7 @@ use pxpl5::firmware::Shading;
 use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
     Experiment as Native, ExperimentError, Host, KeptRecords, Level, PeriodNumber, Pixels, Plan, PolicyPipeline,
-    RegionPolicy, Results, SurfaceId, Workstation, levels, registry, what_if,
+    RegionPolicy, Results, Study, StudyError, SurfaceId, WhatIfQuery, Workstation, levels, registry,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -172,10 +172,17 @@ impl Experiment {
         let (native, functions) = (self.native.clone(), self.functions.clone());
         let result = in_background(py, None, true, move |watch| {
             let host = StoppableHost { workstation: Workstation::with_threads(1), watch, functions };
-            what_if(&registry(), &native.host(host)).map_err(Box::new)
+            let stop = host.watch.stop_flag();
+            WhatIfQuery { registry: registry(), experiment: native.host(host) }.run(&mut stop.clone())
         });
         self.functions.check()?;
-        python(py, &result?.map_err(|error| exception(py, *error, &self.plan.measure))?)
+        python(
+            py,
+            &result?.map_err(|error| match error {
+                StudyError::Experiment(error) => exception(py, error, &self.plan.measure),
+                error => failed_run(error),
+            })?,
+        )
     }
 
     /// Returns the measured quantities by name, at the experiment's own level of modelling, which may be the analytic

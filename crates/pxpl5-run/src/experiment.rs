@@ -10,6 +10,7 @@ use crate::pipeline::Pipeline;
 use crate::raster::Raster;
 use pxpl5_machine::{MachineConfig, Optimization, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
+use pxpl5_sim::StopFlag;
 use pxpl5_sim::parameters::Parameter;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Aim;
@@ -69,6 +70,7 @@ pub struct Experiment {
     pub(crate) pixels: Pixels,
     pub(crate) seed: u64,
     pub(crate) host: Arc<dyn Host>,
+    pub(crate) stop: StopFlag,
     pub(crate) shuffle: Option<u64>,
     pub(crate) traffic: bool,
     pub(crate) keep: KeptRecords,
@@ -115,6 +117,7 @@ impl Experiment {
             pixels: Pixels::Lazy,
             seed: 1,
             host: Arc::new(BareHost),
+            stop: StopFlag::default(),
             shuffle: None,
             traffic: false,
             keep: KeptRecords::Everything,
@@ -150,6 +153,12 @@ impl Experiment {
     pub const fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
+    }
+
+    /// Sets the flag that ends runs with [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
+    #[must_use]
+    pub fn stopped_by(self, stop: StopFlag) -> Self {
+        Self { stop, ..self }
     }
 
     /// Sets the host computer, which supplies a clock and the threads for [`Pixels::All`]. The host changes no result.

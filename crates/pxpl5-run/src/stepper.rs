@@ -4,6 +4,7 @@ use crate::assembled::Assembled;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
 use crate::ideal::ideal_picture;
+use crate::level::Level;
 use crate::outcome::Outcome;
 use crate::picture_ends::WARM_UP_PICTURES;
 use crate::pipeline::PictureTimes;
@@ -363,8 +364,9 @@ impl Experiment {
     pub(crate) fn stops(&self, asked: &[PeriodNumber]) -> impl Iterator<Item = PeriodNumber> {
         let end = self.end();
         let mut asked: BTreeSet<PeriodNumber> = asked.iter().copied().filter(|field| *field < end).collect();
-        let mut regular =
-            PeriodNumber(PROGRESS_FIELDS).until(end).step_by(PROGRESS_FIELDS as usize).chain([end]).peekable();
+        // A field of the cycle level takes as long as dozens of other levels.
+        let step = if self.level == Level::Cycle { 1 } else { PROGRESS_FIELDS };
+        let mut regular = PeriodNumber(step).until(end).step_by(step as usize).chain([end]).peekable();
         std::iter::from_fn(move || {
             let next = regular.peek().into_iter().chain(asked.first()).copied().min()?;
             regular.next_if_eq(&next);

@@ -5,7 +5,7 @@ use super::table::{fresh, rows_text};
 use crate::arp::settings::put;
 use crate::error::CliError;
 use crate::output::{OutputFile, OutputFolder};
-use crate::progress::progress;
+use crate::progress::Bar;
 use crate::terminal::answer;
 use pxpl5::arp::{figures, pictures};
 use serde_json::json;
@@ -15,9 +15,10 @@ pub(super) fn run(args: &FiguresArgs) -> Result<(), CliError> {
     // Open all outputs before the walks, so that a bad path fails at once.
     let document = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "figures")).transpose()?;
-    let bar = progress(2, "walks and pictures", args.quiet);
+    let mut bar = Bar::new("walks and pictures", args.quiet);
     let (experiments, rows) = figures::all()?;
-    bar.add_one();
+    bar.advance(1, 2);
+    bar.check("nothing was written")?;
     let markdown = figures::markdown(&experiments, &rows);
     document.map(|document| document.write(markdown.as_bytes())).transpose()?;
     if let Some(mut folder) = folder {

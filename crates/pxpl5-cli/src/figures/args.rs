@@ -1,7 +1,6 @@
 //! Arguments of `pxpl5 figures`.
 
 use crate::budget::BudgetArgs;
-use crate::terminal::print_error;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -55,15 +54,7 @@ pub(crate) struct FiguresArgs {
     pub(crate) budget: BudgetArgs,
 }
 
-impl FiguresArgs {
-    /// Returns the arguments of a former command, which measured one group. Prints a note with the new spelling.
-    pub(crate) fn of_former(self, former: &str, group: &str) -> Self {
-        print_error(&format!("pxpl5: note: `pxpl5 {former} figures` is now `pxpl5 figures --group {group}`\n"));
-        Self { group: Some(group.to_owned()), ..self }
-    }
-}
-
 /// Group of the papers on address recalculation.
-pub(crate) const ADDRESS_RECALCULATION: &str = "address-recalculation";
+pub(super) const ADDRESS_RECALCULATION: &str = "address-recalculation";
 /// Group of the paper on the volumetric display.
-pub(crate) const VOLUMETRIC: &str = "volumetric";
+pub(super) const VOLUMETRIC: &str = "volumetric";

@@ -9,6 +9,7 @@ use pxpl5_run::{Cause, Pipeline, ResultWindow, Statistics, number_or_nan};
 use pxpl5_wire::PeriodNumber;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt;
 use tracking::predict::PredictorKind;
 
 /// Pixel errors of a comparison row, over the runs of all seeds.
@@ -224,6 +225,18 @@ impl ComparisonRow {
     /// Returns true if the error of at least one pixel was evaluated.
     pub const fn was_evaluated(&self) -> bool {
         self.error.n > 0
+    }
+}
+
+impl fmt::Display for ComparisonRow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let px = self.error.mean_px.mean;
+        let error = if px.is_finite() { format!("error {px:.2} px") } else { "no error".to_owned() };
+        write!(f, "{}: {error}", self.pipeline)?;
+        match self.not_shown.filter(|missed| *missed > 0) {
+            Some(missed) => write!(f, ", {missed} of {} pictures not shown", self.due.unwrap_or_default()),
+            None => Ok(()),
+        }
     }
 }
 

@@ -1,19 +1,21 @@
 //! Published figures under other assumptions: times of executed code, other rules, sizes of chips, and times of the host.
 
-use super::bench::Bench;
-use super::groups::{row_of, stepped};
+use super::groups::row_of;
 use super::interpretation::Interpretation;
 use super::measurement::Measurement;
 use super::rates;
+use super::settings::FigureSettings;
 use super::topics::{all, at_all_levels};
 use super::value::DEVIATION;
 use crate::error::StudyError;
-use crate::interpretations::{self, Interpretations};
+use crate::estimate::Estimate;
+use crate::interpretations::{InterpretationQuery, Interpretations};
 use crate::parallel;
+use crate::study::Study;
 use pxpl5_run::{FinishedRegions, Level};
 use pxpl5_sim::figures::FigureRow;
+use pxpl5_sim::{SharedWatcher, Watcher};
 use serde::Serialize;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Published figures under other assumptions than in [`Figures`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -62,51 +64,60 @@ const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
 /// host polled its serial ports (TR94).
 const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
 
-impl Alternatives {
-    /// Measures all members in parallel. Calls `finished` with the number of finished members and the number of all
-    /// members.
-    ///
-    /// # Errors
-    ///
-    /// Returns the first [`StudyError`].
-    pub fn run(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Self, StudyError> {
-        let done = AtomicU64::new(0);
-        let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, 6);
-        let rows = |bench: &Bench, figures: Vec<&Measurement>| {
-            let rows = parallel::map(&figures, |figure| row_of(figure, bench));
+/// The measurement of the published figures under other assumptions.
+#[derive(Clone, Debug)]
+pub struct AlternativeQuery {
+    /// Settings of all measurements.
+    pub settings: FigureSettings,
+}
+
+impl Study for AlternativeQuery {
+    type Report = Alternatives;
+
+    fn estimate(&self, threads: usize) -> Estimate {
+        let settings = self.settings.clone().with_mig(SEEDS, FRAMES);
+        InterpretationQuery { settings, best: SIMULATED }.estimate(threads)
+    }
+
+    /// Measures all members in parallel.
+    fn run(&self, watcher: &mut dyn Watcher) -> Result<Alternatives, StudyError> {
+        let watcher = SharedWatcher::new(watcher, 6);
+        let settings = &FigureSettings { stop: watcher.stop(), ..self.settings.clone() };
+        let rows = |settings: &FigureSettings, figures: Vec<&Measurement>| {
+            let rows = parallel::map(&figures, |figure| row_of(figure, settings));
             rows.into_iter().collect::<Result<Vec<_>, _>>()
         };
-        let of_code = || stepped(&step, || rows(&bench.clone().with_times_of_code(), at_all_levels().collect()));
+        let of_code = || watcher.part(|| rows(&settings.clone().with_times_of_code(), at_all_levels().collect()));
         let other_rule = || {
-            let other = Interpretation { finished: FinishedRegions::Wait, ..bench.interpretation };
-            stepped(&step, || rows(&bench.with(other), all().filter(|figure| figure.is_interpreted).collect()))
+            let other = Interpretation { finished: FinishedRegions::Wait, ..settings.interpretation };
+            watcher.part(|| rows(&settings.with(other), all().filter(|figure| figure.is_interpreted).collect()))
         };
-        let effects = |bench: &Bench, ends: &[Vec<(&'static str, u64)>], ids: &[&'static str]| {
-            stepped(&step, || effects(bench, ends, ids))
+        let effects = |settings: &FigureSettings, ends: &[Vec<(&'static str, u64)>], ids: &[&'static str]| {
+            watcher.part(|| effects(settings, ends, ids))
         };
-        let fifo = || effects(bench, &CHIPS.map(|words| vec![(rates::FIFO_WORDS, words)]), &OF_FIFO);
+        let fifo = || effects(settings, &CHIPS.map(|words| vec![(rates::FIFO_WORDS, words)]), &OF_FIFO);
         let ms = |path| HOST_MS.map(|ms| vec![(path, ms * MS)]);
-        let host = || effects(bench, &[ms("host.message_ns"), ms(APPLICATION)].concat(), &["17"]);
-        let ranked = bench.clone().with_mig(SEEDS, FRAMES);
-        let interpretations = || stepped(&step, || interpretations::run(&ranked, SIMULATED, |_, _| {}));
+        let host = || effects(settings, &[ms("host.message_ns"), ms(APPLICATION)].concat(), &["17"]);
+        let ranking = InterpretationQuery { settings: settings.clone().with_mig(SEEDS, FRAMES), best: SIMULATED };
+        let interpretations = || watcher.part(|| ranking.run(&mut watcher.stop()));
         let of_application = || {
             let times = MEANS_MS.iter().flat_map(|mean| JITTERS_MS.iter().map(move |jitter| (*mean, *jitter)));
             // A jitter greater than the mean would need negative times.
             let times = times.filter(|(mean, jitter)| jitter <= mean);
             let ends = times.map(|(mean, jitter)| vec![(APPLICATION, mean * MS), (JITTER, jitter * MS)]);
-            let bench = Bench { level: Level::Analytic, ..ranked.clone() };
-            effects(&bench, &ends.collect::<Vec<_>>(), &["7", "7b", "7c"])
+            let settings = FigureSettings { level: Level::Analytic, ..ranking.settings.clone() };
+            effects(&settings, &ends.collect::<Vec<_>>(), &["7", "7b", "7c"])
         };
         let both = || parallel::both(other_rule, of_code);
         let ((other_rule, of_code), ((fifo, host), (interpretations, times))) = parallel::both(both, || {
             parallel::both(|| parallel::both(fifo, host), || parallel::both(interpretations, of_application))
         });
-        Ok(Self {
+        Ok(Alternatives {
             of_code: of_code?,
             other_rule: other_rule?,
             fifo: fifo?,
             host: host?,
-            interpretations: interpretations.map_err(StudyError::of_figure("7"))?,
+            interpretations: interpretations?,
             application: times?,
         })
     }
@@ -117,9 +128,13 @@ const JITTER: &str = "host.application_jitter_ns";
 const MS: u64 = 1_000_000;
 
 /// Measures the figures `ids` with the changes of each element of `ends`.
-fn effects(bench: &Bench, ends: &[Vec<(&'static str, u64)>], ids: &[&'static str]) -> Result<Vec<Effect>, StudyError> {
+fn effects(
+    settings: &FigureSettings,
+    ends: &[Vec<(&'static str, u64)>],
+    ids: &[&'static str],
+) -> Result<Vec<Effect>, StudyError> {
     let effect = |changes: &Vec<(&'static str, u64)>| {
-        let moved = bench.with_changes(changes.iter().map(|(path, value)| ((*path).to_owned(), *value)));
+        let moved = settings.with_changes(changes.iter().map(|(path, value)| ((*path).to_owned(), *value)));
         let figure = |id: &&'static str| {
             let measured = moved.measure(id).map_err(StudyError::of_figure(id))?;
             Ok::<_, StudyError>((*id, measured.value, measured.detail(DEVIATION).unwrap_or(f64::NAN)))

@@ -1,13 +1,13 @@
 //! Figures that need a tracked head: the pendulum rig, and the latency from head to display.
 
-use super::bench::Bench;
 use super::interpretation::Interpretation;
 use super::measurement::{HEAD, LatencyDefinition, Measurement, Varied, figure};
+use super::settings::FigureSettings;
 use super::value::{FigureValue, Result, detail, scene_named};
-use crate::StopFlag;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Budget, LatencyCurve};
 use pxpl5_run::{Experiment, Head, Pipeline, Pixels, Slats, Statistics};
+use pxpl5_sim::StopFlag;
 use pxpl5_sim::figures::Basis;
 use std::sync::Arc;
 use tracking::motion::Synthetic;
@@ -54,7 +54,9 @@ pub(super) const FIGURES: &[Measurement] = &[
             (90.0, "ms"),
             "full-screen:12 on small-hmd, with a synthetic motion and without prediction: the time from the pose to the arrival of its report, plus \
              the time from the start of TRANSFORM to the swap, as in figure 4",
-            |bench| tracker_and_rendering(bench, bench.interpreted("small-hmd")?, bench.interpretation.pipeline()),
+            |settings| {
+                tracker_and_rendering(settings, settings.interpreted("small-hmd")?, settings.interpretation.pipeline())
+            },
         )
     },
     Measurement {
@@ -68,7 +70,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "optical tracker and Slats together",
             (50.0, "ms"),
             "the same with Slats on slats",
-            |bench| tracker_and_rendering(bench, bench.machine("slats")?, Slats::split()),
+            |settings| tracker_and_rendering(settings, settings.machine("slats")?, Slats::split()),
         )
     },
 ];
@@ -94,10 +96,14 @@ fn ratio_of_errors() -> FigureValue {
 const FIELDS: u64 = 600;
 
 /// Measures rows 19 and 19b of ACCURACY.md. Rendering is always simulated with events, even at the analytic level.
-fn tracker_and_rendering(bench: &Bench, machine: MachineConfig, pipeline: impl Pipeline) -> Result<FigureValue> {
-    let key = format!("{pipeline:?} {machine:?} {:?}", bench.interpretation);
-    let make = || sum_of_stages(machine, pipeline, (&bench.interpretation, &bench.stop));
-    bench.applications.value(key, make)
+fn tracker_and_rendering(
+    settings: &FigureSettings,
+    machine: MachineConfig,
+    pipeline: impl Pipeline,
+) -> Result<FigureValue> {
+    let key = format!("{pipeline:?} {machine:?} {:?}", settings.interpretation);
+    let make = || sum_of_stages(machine, pipeline, (&settings.interpretation, &settings.stop));
+    settings.applications.value(key, make)
 }
 
 /// Measures the latency of the optical tracker and of rendering. The value is the sum of the stages of the latency that
@@ -111,7 +117,7 @@ fn sum_of_stages(
     let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::None, 1)?;
     let experiment = Experiment::new(machine, pipeline, scene_named("full-screen:12")?);
     // One run gives all stages from head to light.
-    let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).host(stop.clone()).run()?;
+    let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).stopped_by(stop.clone()).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, .. } =
         Budget::of(&outcome);
     // The paper's sum contains its own mean latency of rendering, so rendering is measured as for figure 4. Eyes of

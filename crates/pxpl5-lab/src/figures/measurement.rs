@@ -1,7 +1,8 @@
 //! A published figure as one entry: what the paper prints, how the model measures it, and what moves it.
 
-use super::bench::Bench;
+use super::settings::FigureSettings;
 use super::value::{FigureValue, Result};
+use crate::study::check;
 use pxpl5_sim::figures::{Basis, FigureRow, around};
 use serde::Serialize;
 
@@ -54,7 +55,7 @@ pub struct Measurement {
     /// Known cause of a difference between model and paper. Empty if no cause is known, or the model meets the figure.
     pub cause: &'static str,
     /// Simulates the figure.
-    pub measure: fn(&Bench) -> Result<FigureValue>,
+    pub measure: fn(&FigureSettings) -> Result<FigureValue>,
 }
 
 /// Definition of a published latency: its beginning, its end, its eyes, and its statistic.
@@ -91,7 +92,7 @@ pub(super) const fn figure(
     statement: &'static str,
     (value, unit): (f64, &'static str),
     experiment: &'static str,
-    measure: fn(&Bench) -> Result<FigureValue>,
+    measure: fn(&FigureSettings) -> Result<FigureValue>,
 ) -> Measurement {
     Measurement {
         id,
@@ -114,15 +115,15 @@ pub(super) const fn figure(
 }
 
 impl Measurement {
-    /// Simulates the figure with the settings of `bench`.
+    /// Simulates the figure with the settings of `settings`.
     ///
     /// # Errors
     ///
     /// Returns [`ExperimentError`] if the experiment fails, and [`ExperimentError::Stopped`] if another thread sets the
-    /// flag of `bench`.
-    pub fn value(&self, bench: &Bench) -> Result<FigureValue> {
-        bench.stop.check()?;
-        (self.measure)(bench)
+    /// flag of `settings`.
+    pub fn value(&self, settings: &FigureSettings) -> Result<FigureValue> {
+        check(&settings.stop)?;
+        (self.measure)(settings)
     }
 
     /// Returns the table row of the figure, with the printed value and the simulated value `measured`.
@@ -151,15 +152,15 @@ impl Measurement {
     /// # Errors
     ///
     /// Fails in the same cases as [`Self::value`].
-    pub fn measured_row(&self, bench: &Bench) -> Result<FigureRow> {
+    pub fn measured_row(&self, settings: &FigureSettings) -> Result<FigureRow> {
         // With times of executed code no time of a triangle is fitted, so the limits of Slats become checks.
         let basis = match self.basis {
-            Basis::Fitted(chosen) if bench.has_times_of_code && chosen.starts_with("gp.triangle_ns") => {
+            Basis::Fitted(chosen) if settings.has_times_of_code && chosen.starts_with("gp.triangle_ns") => {
                 Basis::Interpretation(CLUMP_RULE)
             }
             basis => basis,
         };
-        Ok(FigureRow { basis, ..self.row(self.value(bench)?) })
+        Ok(FigureRow { basis, ..self.row(self.value(settings)?) })
     }
 }
 
@@ -167,7 +168,7 @@ impl Measurement {
 mod tests {
     use super::*;
 
-    fn of_nothing(_: &Bench) -> Result<FigureValue> {
+    fn of_nothing(_: &FigureSettings) -> Result<FigureValue> {
         Ok(0.0.into())
     }
 

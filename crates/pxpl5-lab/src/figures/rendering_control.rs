@@ -107,7 +107,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "copy of one region",
             (780.0, "us"),
             "mean over all regions of a stereo frame, per 15,360 pixels of port time",
-            |bench| Ok(trivial(bench)?.region_copy_us.into()),
+            |settings| Ok(trivial(settings)?.region_copy_us.into()),
         )
     },
     Measurement {
@@ -120,7 +120,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "copy of both eyes in stereo",
             (31.2, "ms"),
             "full-screen:12 on small-hmd: the time of COPY left plus COPY right of a frame, each from its first word to its last word",
-            |bench| trivial(bench).map(|summary| (summary.first_copy_ms + summary.last_copy_ms).into()),
+            |settings| trivial(settings).map(|summary| (summary.first_copy_ms + summary.last_copy_ms).into()),
         )
     },
     Measurement {
@@ -150,9 +150,9 @@ pub(super) const FIGURES: &[Measurement] = &[
             "small HMD machine, 12 triangles that cover the screen: from the start of TRANSFORM to the swap",
             (56.5, "ms"),
             "full-screen:12 on small-hmd",
-            |bench| {
-                let summary = trivial(bench)?;
-                let latencies = bench.interpretation.latencies_ms(&summary).iter().copied();
+            |settings| {
+                let summary = trivial(settings)?;
+                let latencies = settings.interpretation.latencies_ms(&summary).iter().copied();
                 Ok(spread_ms(Statistics::of(latencies)).beside(to_other_retraces(&summary)))
             },
         )
@@ -162,8 +162,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         reason: "Copies of 31.2 ms fit into two fields and not into one",
         is_interpreted: true,
         varied: Varied::ByFormula,
-        ..figure("4b", TR94, "the same: frames per second", (30.0, "Hz"), "full-screen:12 on small-hmd", |bench| {
-            trivial(bench).map(|summary| rate_hz(&summary).into())
+        ..figure("4b", TR94, "the same: frames per second", (30.0, "Hz"), "full-screen:12 on small-hmd", |settings| {
+            trivial(settings).map(|summary| rate_hz(&summary).into())
         })
     },
     Measurement {
@@ -214,7 +214,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "Mig, 417 triangles, fly-through in an HMD (sd 0.589)",
             (4.61, "fields"),
             "mig on large without back faces, 10 seeds of head motion with 150 frames each",
-            |bench| application(bench, "mig", 1),
+            |settings| application(settings, "mig", 1),
         )
     },
     Measurement {
@@ -231,7 +231,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "molecules, 2,620 triangles and 1,219 spheres, fly-through (sd 0.502)",
             (4.47, "fields"),
             "molecules as in figure 7: 4 seeds of head motion, 150 frames each",
-            |bench| application(bench, "molecules", 3),
+            |settings| application(settings, "molecules", 3),
         )
     },
     Measurement {
@@ -248,7 +248,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "head, 59,592 triangles, fly-through (sd 2.48)",
             (8.13, "fields"),
             "head as in figure 7: 2 seeds of head motion, 150 frames each",
-            |bench| application(bench, "head", 5),
+            |settings| application(settings, "head", 5),
         )
     },
     Measurement {
@@ -261,7 +261,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "regions that a typical triangle touches, an eye",
             (1.3, "regions"),
             "mig, molecules and head during 20 s of their head motions: the result is the number of entries of all bins per triangle on the screen",
-            |bench| bench.applications.value("8".to_owned(), || regions_touched(bench)),
+            |settings| settings.applications.value("8".to_owned(), || regions_touched(settings)),
         )
     },
     Measurement {
@@ -284,9 +284,14 @@ pub(super) const FIGURES: &[Measurement] = &[
         reason: OF_BINS,
         is_interpreted: true,
         varied: Varied::ByFormula,
-        ..figure("16b", TR94, "7,700 of them: frames a second", (2.0, "Hz"), "full-screen:7700 on small-hmd", |bench| {
-            full_bins(bench).map(|summary| rate_hz(&summary).into())
-        })
+        ..figure(
+            "16b",
+            TR94,
+            "7,700 of them: frames a second",
+            (2.0, "Hz"),
+            "full-screen:7700 on small-hmd",
+            |settings| full_bins(settings).map(|summary| rate_hz(&summary).into()),
+        )
     },
     Measurement {
         basis: BIN_RULE,
@@ -300,7 +305,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "the same: mean frame time, about 17.5 fields",
             (293.0, "ms"),
             "full-screen:7700 on small-hmd: the time of an eye from the start of its TRANSFORM to the end of its COPY",
-            |bench| Ok(spread_ms(Statistics::of(full_bins(bench)?.eye_latencies_ms.iter().copied()))),
+            |settings| Ok(spread_ms(Statistics::of(full_bins(settings)?.eye_latencies_ms.iter().copied()))),
         )
     },
     Measurement {

@@ -2,17 +2,16 @@
 
 use super::interpretation::Interpretation;
 use super::value::{FigureValue, Result, detail};
-use crate::StopFlag;
-use crate::error::StudyError;
 use crate::rig::Rig;
 use pxpl5_machine::MachineConfig;
-use pxpl5_run::{ExperimentError, Statistics};
+use pxpl5_run::Statistics;
+use pxpl5_sim::StopFlag;
 use std::sync::Arc;
 use tracking::rig::{Measurement as RigMeasurement, PendulumRig};
 use tracking::tracker::TrackerConfig;
 
 /// Path of the parameter for the line of the screen under the photodiode of the pendulum rig (row 17 of ACCURACY.md).
-/// [`Bench::changes`](super::Bench) may change this parameter.
+/// [`FigureSettings::changes`](super::FigureSettings) may change this parameter.
 pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
 /// The measurements of the pendulum rig in one run, with the photodiode under the first, the assumed and the last line
@@ -82,12 +81,8 @@ fn under_lines<const N: usize>(
     (interpretation, stop): (&Interpretation, &StopFlag),
     lines: [u32; N],
 ) -> Result<([RigMeasurement; N], bool)> {
-    let rig = Rig { stop: stop.clone(), ..Rig::assumed(TrackerConfig::optical_ceiling()) };
-    let measured = rig.measure_lines(machine, Arc::new(interpretation.pipeline()), lines);
-    let (measured, outcome) = measured.map_err(|error| match error {
-        StudyError::Experiment(error) => error,
-        error => ExperimentError::Scene(error.to_string()),
-    })?;
+    let rig = Rig::assumed(TrackerConfig::optical_ceiling());
+    let (measured, outcome) = rig.measure_lines(machine, Arc::new(interpretation.pipeline()), lines, stop)?;
     Ok((measured, outcome.record().met_full_store()))
 }
 

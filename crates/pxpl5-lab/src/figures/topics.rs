@@ -1,7 +1,7 @@
 //! The published figures by topic.
 
-use super::bench::Bench;
 use super::measurement::{Measurement, RC, SLATS};
+use super::settings::FigureSettings;
 use super::value::{FigureValue, Result};
 use super::{heads, jitp, rates, rendering_control, slats, trackers};
 use pxpl5_run::ExperimentError;
@@ -39,7 +39,7 @@ pub fn at_all_levels() -> impl Iterator<Item = &'static Measurement> {
     TOPICS.iter().take(3).flat_map(|topic| topic.figures)
 }
 
-impl Bench {
+impl FigureSettings {
     /// Measures the figure with the number `id`.
     ///
     /// # Errors

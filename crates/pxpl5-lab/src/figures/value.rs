@@ -1,11 +1,12 @@
 //! The value of a figure in the model, with further numbers of the same experiment.
 
-use pxpl5_run::{ExperimentError, Summary};
+use crate::error::StudyError;
+use pxpl5_run::Summary;
 use pxpl5_scene::{Scene, builtin};
 use pxpl5_sim::figures::Detail;
 use std::sync::Arc;
 
-pub(super) type Result<T> = std::result::Result<T, ExperimentError>;
+pub(super) type Result<T> = std::result::Result<T, StudyError>;
 
 /// Result of the experiment that simulates a published figure.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 use super::*;
-use crate::StopFlag;
 use crate::experiment_file::ExperimentFile;
+use crate::study::Study;
+use crate::study::tests::StopsAfter;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -27,7 +28,8 @@ fn rows(store: &Store, points: u64) -> Vec<SweepRow> {
 }
 
 fn all(sweep: &Sweep, store: &mut Store) {
-    run(sweep, store, RunOptions { shard: Shard::ALL, threads: 2 }, |_| {}).expect("it runs");
+    let options = RunOptions { shard: Shard::ALL, threads: 2 };
+    SweepQuery::new(sweep, store, options).run(&mut ()).expect("it runs");
 }
 
 #[test]
@@ -340,23 +342,13 @@ fn a_stopped_sweep_keeps_its_finished_rows_and_continues_to_the_same_rows() {
     all(&sweep, &mut whole);
     // A sweep that was stopped before it began has no row.
     let mut store = open("stopped");
-    let stop = StopFlag::default();
-    stop.stop();
+    let mut watcher = StopsAfter::default();
     let options = RunOptions { shard: Shard::ALL, threads: 1 };
-    run_stoppable(&sweep, &mut store, options, &stop, |_| {}).expect("it stops");
-    assert_eq!(store.finished(Shard::ALL), 0);
+    assert_eq!(SweepQuery::new(&sweep, &mut store, options).run(&mut watcher).expect("it stops"), 0);
     // A stop after the second row leaves rows without a result. No row says that its run was stopped.
-    let stop = StopFlag::default();
-    let mut rows_before = 0;
-    run_stoppable(&sweep, &mut store, options, &stop, |row| {
-        assert!(row.is_done(), "{:?}", row.error);
-        rows_before += 1;
-        if rows_before >= 2 {
-            stop.stop();
-        }
-    })
-    .expect("it stops");
-    assert!(rows_before >= 2 && store.finished(Shard::ALL) == rows_before);
+    let mut watcher = StopsAfter { parts: 2, ..StopsAfter::default() };
+    let found = SweepQuery::new(&sweep, &mut store, options).run(&mut watcher).expect("it stops");
+    assert!((2..8).contains(&found) && found == watcher.rows && store.failed(Shard::ALL).count() == 0);
     all(&sweep, &mut store);
     assert_eq!(rows(&store, 8), rows(&whole, 8));
 }

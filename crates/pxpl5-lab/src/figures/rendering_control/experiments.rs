@@ -2,9 +2,9 @@
 
 use crate::edges::to_other_retraces;
 use crate::figures::applications::key_of;
-use crate::figures::bench::Bench;
 use crate::figures::interpretation::{FieldCount, Interpretation, LatencySamples};
 use crate::figures::rig_lines;
+use crate::figures::settings::FigureSettings;
 use crate::figures::value::{DEVIATION, EXACT, FigureValue, Result, WHOLE, detail, rate_hz};
 use crate::parallel;
 use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformCost};
@@ -30,24 +30,24 @@ const VIEWS: u64 = 40;
 /// Picoseconds between two head poses for row 8 of ACCURACY.md.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
-fn stereo(bench: &Bench, machine: MachineConfig) -> Result<Arc<Summary>> {
-    bench.controlled(machine, "full-screen:12", 80)
+fn stereo(settings: &FigureSettings, machine: MachineConfig) -> Result<Arc<Summary>> {
+    settings.controlled(machine, "full-screen:12", 80)
 }
 
 /// Runs the experiment of rows 1, 2 and 4 of ACCURACY.md: twelve triangles that cover the screen.
-pub(super) fn trivial(bench: &Bench) -> Result<Arc<Summary>> {
-    stereo(bench, bench.machine("small-hmd")?)
+pub(super) fn trivial(settings: &FigureSettings) -> Result<Arc<Summary>> {
+    stereo(settings, settings.machine("small-hmd")?)
 }
 
 /// Runs the experiment of rows 16b and 16c of ACCURACY.md. The scene has as many screen-filling triangles as fit into
 /// the bins according to the papers.
-pub(super) fn full_bins(bench: &Bench) -> Result<Arc<Summary>> {
-    bench.controlled(bench.machine("small-hmd")?, "full-screen:7700", FIELDS_OF_FULL_BINS)
+pub(super) fn full_bins(settings: &FigureSettings) -> Result<Arc<Summary>> {
+    settings.controlled(settings.machine("small-hmd")?, "full-screen:7700", FIELDS_OF_FULL_BINS)
 }
 
 /// Measures row 3 of ACCURACY.md: the latency if all work except COPY takes no time.
-pub(super) fn copy_alone(bench: &Bench) -> Result<FigureValue> {
-    let mut machine = bench.machine("small-hmd")?;
+pub(super) fn copy_alone(settings: &FigureSettings) -> Result<FigureValue> {
+    let mut machine = settings.machine("small-hmd")?;
     let gp = ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"];
     let gp = gp.map(|name| format!("gp.{name}_ns"));
     machine.code = None;
@@ -56,36 +56,36 @@ pub(super) fn copy_alone(bench: &Bench) -> Result<FigureValue> {
     for path in gp.iter().chain(&array) {
         machine.set(path, 0)?;
     }
-    Ok(spread_ms(Statistics::of(stereo(bench, machine)?.eye_latencies_ms.iter().copied())))
+    Ok(spread_ms(Statistics::of(stereo(settings, machine)?.eye_latencies_ms.iter().copied())))
 }
 
 /// Computes row 16 of ACCURACY.md: the number of screen-filling triangles whose entries fit into the slaves' bins, for
 /// one eye or for both eyes.
-pub(super) fn most_in_bins(bench: &Bench) -> Result<FigureValue> {
-    let machine = bench.interpreted("small-hmd")?;
+pub(super) fn most_in_bins(settings: &FigureSettings) -> Result<FigureValue> {
+    let machine = settings.interpreted("small-hmd")?;
     let slaves = machine.n_gps as u64 - 1;
     let regions = u64::from(Viewport::FRAME.grid().regions());
-    let of_slave = machine.gp.bin_bytes / (regions * BIN_ENTRY_BYTES) / bench.interpretation.bins;
+    let of_slave = machine.gp.bin_bytes / (regions * BIN_ENTRY_BYTES) / settings.interpretation.bins;
     Ok(((of_slave * slaves) as f64).into())
 }
 
 /// Measures the latency with the pendulum rig (row 17 of ACCURACY.md) for three lines of the photodiode, unless the
 /// settings choose one line.
-pub(super) fn rig(bench: &Bench) -> Result<FigureValue> {
-    match bench.photodiode_line() {
-        Some(_) => bench.rig_measurement().map(|measured| rig_lines::rendering(&measured)),
-        None => Ok(bench.rig_lines()?.figure()),
+pub(super) fn rig(settings: &FigureSettings) -> Result<FigureValue> {
+    match settings.photodiode_line() {
+        Some(_) => settings.rig_measurement().map(|measured| rig_lines::rendering(&measured)),
+        None => Ok(settings.rig_lines()?.figure()),
     }
 }
 
 /// Measures row 17b of ACCURACY.md. The details compare it with the measurement from outside, if events are simulated.
-pub(super) fn inside_and_outside(bench: &Bench) -> Result<FigureValue> {
-    let summary = trivial(bench)?;
-    let value = Statistics::of(bench.interpretation.latencies_ms(&summary).iter().copied()).mean;
-    if bench.level == Level::Analytic {
+pub(super) fn inside_and_outside(settings: &FigureSettings) -> Result<FigureValue> {
+    let summary = trivial(settings)?;
+    let value = Statistics::of(settings.interpretation.latencies_ms(&summary).iter().copied()).mean;
+    if settings.level == Level::Analytic {
         return Ok(value.into());
     }
-    let measured = bench.rig_measurement()?;
+    let measured = settings.rig_measurement()?;
     let [inside, outside] = [measured.inside.rendering, measured.outside.rendering].map(|side| side.mean * 1e3);
     let details = vec![
         detail("inside, on demand", inside, "ms"),
@@ -100,8 +100,8 @@ pub(super) fn inside_and_outside(bench: &Bench) -> Result<FigureValue> {
 /// RENDER takes this time because enough triangles cover the screen. Slower renderers would distort the result. Commands
 /// behind a full input FIFO, such as a copy command, would then wait longer by the same factor. TRANSFORM takes this
 /// time because its code is slow. Slow code of TRANSFORM delays no other stage.
-fn stages_of(bench: &Bench, ms: f64) -> Result<(MachineConfig, String)> {
-    let mut machine = bench.machine("small-hmd")?;
+fn stages_of(settings: &FigureSettings, ms: f64) -> Result<(MachineConfig, String)> {
+    let mut machine = settings.machine("small-hmd")?;
     let slaves = machine.n_gps as u64 - 1;
     let regions = u64::from(Viewport::FRAME.grid().regions());
     let of_renderer = regions.div_ceil(machine.n_renderers as u64) as f64;
@@ -119,9 +119,9 @@ fn stages_of(bench: &Bench, ms: f64) -> Result<(MachineConfig, String)> {
 
 /// Runs equal stages of `ms` milliseconds. Returns the times from TRANSFORM of each frame's first eye to the end of
 /// COPY of its second eye, and the summary.
-fn frames_to_copy(bench: &Bench, ms: f64) -> Result<(Statistics, Arc<Summary>)> {
-    let (machine, scene) = stages_of(bench, ms)?;
-    let summary = bench.controlled(machine, &scene, 160)?;
+fn frames_to_copy(settings: &FigureSettings, ms: f64) -> Result<(Statistics, Arc<Summary>)> {
+    let (machine, scene) = stages_of(settings, ms)?;
+    let summary = settings.controlled(machine, &scene, 160)?;
     let second = |samples: &[f64]| samples.iter().skip(1).step_by(2).copied().collect::<Vec<_>>();
     let [to_swap, to_copy] = [&summary.eye_swap_latencies_ms, &summary.eye_latencies_ms].map(|all| second(all));
     // The second eye waits for the retrace after its COPY. The frame's latency to the swap contains this wait, too.
@@ -129,8 +129,8 @@ fn frames_to_copy(bench: &Bench, ms: f64) -> Result<(Statistics, Arc<Summary>)> 
     Ok((Statistics::of(summary.latencies_ms.iter().zip(waits).map(|(frame, wait)| frame - wait)), summary))
 }
 
-pub(super) fn equal_stages(bench: &Bench) -> Result<FigureValue> {
-    let (latency, summary) = frames_to_copy(bench, 15.6)?;
+pub(super) fn equal_stages(settings: &FigureSettings) -> Result<FigureValue> {
+    let (latency, summary) = frames_to_copy(settings, 15.6)?;
     let to_swap = Statistics::of(summary.latencies_ms.iter().copied()).max;
     let details = vec![
         detail("mean", latency.mean, "ms"),
@@ -140,32 +140,33 @@ pub(super) fn equal_stages(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(latency.max, details))
 }
 
-pub(super) fn long_stages(bench: &Bench) -> Result<FigureValue> {
-    let means = LONG_STAGES_MS.map(|ms| frames_to_copy(bench, ms as f64).map(|(latency, _)| latency.mean));
+pub(super) fn long_stages(settings: &FigureSettings) -> Result<FigureValue> {
+    let means = LONG_STAGES_MS.map(|ms| frames_to_copy(settings, ms as f64).map(|(latency, _)| latency.mean));
     let means = means.into_iter().collect::<Result<Vec<_>>>()?;
     Ok(spread_ms(Statistics::of(means.into_iter())))
 }
 
 /// Measures rows 7, 7b and 7c of ACCURACY.md: a fly-through of an application scene. The number of seeds is divided by
 /// `seeds_of_one`, because larger scenes get fewer fly-throughs.
-pub(super) fn application(bench: &Bench, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
-    let samples_a_frame = if bench.interpretation.samples == LatencySamples::EachEye { 2 } else { 1 };
-    let seeds: Vec<u64> = (1..=bench.seeds.div_ceil(seeds_of_one)).collect();
+pub(super) fn application(settings: &FigureSettings, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
+    let samples_a_frame = if settings.interpretation.samples == LatencySamples::EachEye { 2 } else { 1 };
+    let seeds: Vec<u64> = (1..=settings.seeds.div_ceil(seeds_of_one)).collect();
     // One seed gives one fly-through.
-    let summaries = parallel::map(&seeds, |seed| fly_through(bench, scene, *seed, seeds.len() as u64));
+    let summaries = parallel::map(&seeds, |seed| fly_through(settings, scene, *seed, seeds.len() as u64));
     let summaries = summaries.into_iter().collect::<Result<Vec<Arc<Summary>>>>()?;
     let of_seed = |summary: &Arc<Summary>| -> Vec<(f64, f64)> {
-        let samples = bench.interpretation.latencies_ms(summary).iter().take(samples_a_frame * bench.frames as usize);
+        let samples =
+            settings.interpretation.latencies_ms(summary).iter().take(samples_a_frame * settings.frames as usize);
         samples.map(|ms| (*ms, summary.field_ms)).collect()
     };
     let latencies: Vec<(f64, f64)> = summaries.iter().flat_map(of_seed).collect();
     // Both definitions of the unit "field" are stated, whatever the interpretation counts.
     let in_fields = |fields| {
-        let counted = Interpretation { fields, ..bench.interpretation };
+        let counted = Interpretation { fields, ..settings.interpretation };
         Statistics::of(latencies.iter().map(|(ms, field_ms)| counted.fields_of(*ms, *field_ms)))
     };
-    let all = in_fields(bench.interpretation.fields);
-    let (name, other) = match bench.interpretation.fields {
+    let all = in_fields(settings.interpretation.fields);
+    let (name, other) = match settings.interpretation.fields {
         FieldCount::Exact => (WHOLE, in_fields(FieldCount::Whole)),
         FieldCount::Whole => (EXACT, in_fields(FieldCount::Exact)),
     };
@@ -183,45 +184,47 @@ pub(super) fn application(bench: &Bench, scene: &'static str, seeds_of_one: u64)
     Ok(FigureValue::with(all.mean, details).beside(nearest))
 }
 
-fn fly_through(bench: &Bench, scene: &'static str, seed: u64, seeds: u64) -> Result<Arc<Summary>> {
-    let experiment = application_experiment(bench, scene, seed)?;
-    let drawn = format!("{scene} {} {seeds}", bench.interpretation.culled);
-    let key = key_of(&experiment.clone().level(bench.level), &drawn);
-    bench.applications.summary(key, || fly_through_once(bench, &experiment, (scene, seed, seeds)))
+fn fly_through(settings: &FigureSettings, scene: &'static str, seed: u64, seeds: u64) -> Result<Arc<Summary>> {
+    let experiment = application_experiment(settings, scene, seed)?;
+    let drawn = format!("{scene} {} {seeds}", settings.interpretation.culled);
+    let key = key_of(&experiment.clone().level(settings.level), &drawn);
+    settings.applications.summary(key, || fly_through_once(settings, &experiment, (scene, seed, seeds)))
 }
 
 fn fly_through_once(
-    bench: &Bench,
+    settings: &FigureSettings,
     experiment: &Experiment,
     (scene, seed, seeds): (&'static str, u64, u64),
 ) -> Result<(Summary, bool)> {
     // At the analytic level the loads of all views are computed once for all seeds.
-    if bench.level != Level::Analytic {
-        return bench.summarise(experiment);
+    if settings.level != Level::Analytic {
+        return settings.summarise(experiment);
     }
-    let of_seeds = || (1..=seeds).map(|seed| stereo_loads(&application_experiment(bench, scene, seed)?)).collect();
-    let loads = bench.applications.loads((scene, bench.interpretation.culled, seeds, bench.frames), of_seeds)?;
-    let model = StereoModel::new(experiment.config(), bench.interpretation.pipeline())?;
+    let of_seed = |seed| Ok(stereo_loads(&application_experiment(settings, scene, seed)?)?);
+    let of_seeds = || (1..=seeds).map(of_seed).collect();
+    let loads =
+        settings.applications.loads((scene, settings.interpretation.culled, seeds, settings.frames), of_seeds)?;
+    let model = StereoModel::new(experiment.config(), settings.interpretation.pipeline())?;
     Ok((model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()), true))
 }
 
 /// Returns the experiment of a fly-through, with two display fields for each frame (30 Hz). If frames take longer, the
 /// run has fewer frames.
-fn application_experiment(bench: &Bench, scene: &'static str, seed: u64) -> Result<Experiment> {
-    let fields = 2 * (bench.frames + WARM_UP_PICTURES as u64) + 8;
-    let machine = bench.interpreted(bench.interpretation.machine)?;
-    let drawn = bench.applications.scene(scene, bench.interpretation.culled)?;
-    Ok(Experiment::with(machine, Arc::new(bench.interpretation.pipeline()), drawn).fields(fields).seed(seed))
+fn application_experiment(settings: &FigureSettings, scene: &'static str, seed: u64) -> Result<Experiment> {
+    let fields = 2 * (settings.frames + WARM_UP_PICTURES as u64) + 8;
+    let machine = settings.interpreted(settings.interpretation.machine)?;
+    let drawn = settings.applications.scene(scene, settings.interpretation.culled)?;
+    Ok(Experiment::with(machine, Arc::new(settings.interpretation.pipeline()), drawn).fields(fields).seed(seed))
 }
 
 /// Measures row 8 of ACCURACY.md: the number of regions under a triangle, which is the number of bin entries per visible
 /// triangle. Each scene is seen from poses along its own head motion. The figure is the mean over three scenes.
-pub(super) fn regions_touched(bench: &Bench) -> Result<FigureValue> {
+pub(super) fn regions_touched(settings: &FigureSettings) -> Result<FigureValue> {
     const SCENES: [&str; 3] = ["mig", "molecules", "head"];
     let of = |binning| {
         SCENES
             .iter()
-            .map(|name| touched(&bench.applications.scene(name, false)?, binning, VIEWS))
+            .map(|name| touched(&settings.applications.scene(name, false)?, binning, VIEWS))
             .collect::<Result<Vec<_>>>()
     };
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
