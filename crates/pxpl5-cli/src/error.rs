@@ -1,6 +1,5 @@
 //! Errors that end a command, with their exit codes.
 
-use crate::interrupt::INTERRUPTED;
 use pxpl5::{ExperimentError, FileError, FileErrorKind, SettingError, SettingErrorKind, StudyError};
 use std::fmt::{self, Display};
 
@@ -8,6 +7,9 @@ use std::fmt::{self, Display};
 const USAGE: u8 = 2;
 /// Exit code of a valid command that could not finish its work.
 const FAILURE: u8 = 1;
+
+/// Exit code of a command that was ended by Ctrl-C: 128 plus the number of the signal, as in shells.
+pub(crate) const INTERRUPTED: u8 = 130;
 
 /// Exit code if another process is writing into the folder (`EX_TEMPFAIL` of sysexits.h). The same command may succeed
 /// later.

@@ -1,13 +1,11 @@
 //! Handler of Ctrl-C. The first one stops the study that runs, so that its finished part is kept. Without a study, and
 //! the second time, the command ends at once.
 
+use crate::error::INTERRUPTED;
 use crate::terminal::print_error;
 use pxpl5::StopFlag;
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Exit code of a command that was ended by Ctrl-C: 128 plus the number of the signal, as in shells.
-pub(crate) const INTERRUPTED: u8 = 130;
 
 static STOP: LazyLock<StopFlag> = LazyLock::new(StopFlag::default);
 /// True while work runs that looks at the flag.

@@ -154,7 +154,7 @@ pub fn run_arguments(registry: Arc<Registry>, arguments: impl IntoIterator<Item 
     interrupt::listen();
     match run(cli.command) {
         // A study that was interrupted printed the finished part of its result.
-        Ok(()) if interrupt::flag().is_stopped() => interrupt::INTERRUPTED,
+        Ok(()) if interrupt::flag().is_stopped() => error::INTERRUPTED,
         Ok(()) => 0,
         Err(error) => {
             terminal::print_error(&format!("pxpl5: {}\n", error.message()));

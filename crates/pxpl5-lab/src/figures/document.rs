@@ -10,8 +10,8 @@ use crate::edges::NEAR_FIELDS;
 use crate::interpretations::{ALIKE, FigureFit, Fit, Interpretations, figures as ranked_figures};
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
-use pxpl5_sim::figures::column::{PROVENANCE, PUBLISHED, SIMULATED, error, four, range};
-use pxpl5_sim::figures::{filled, lines};
+use pxpl5_sim::figures::column::{PROVENANCE, PUBLISHED, SIMULATED, error};
+use pxpl5_sim::figures::{filled, four, lines, range};
 
 /// The texts of both documents.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,8 +1,7 @@
 //! Two types of rows. A [`FigureRow`] compares a published figure with a model. A [`Definition`] is an input of the
 //! model, so it has no comparison.
 
-use super::column::range;
-use super::table::significant;
+use super::table::{range, significant};
 use crate::parameters::Provenance;
 use serde::Serialize;
 use std::borrow::Cow;
