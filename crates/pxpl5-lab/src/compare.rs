@@ -17,7 +17,7 @@ mod row;
 mod store;
 mod trial;
 
-pub use crate::head_names::{
+pub use crate::head_parts::{
     MOTIONS, Replay, TRACKERS, is_recording, is_walk, motion, predictor, replayed, tracker, tracker_by, walk,
 };
 pub use contender::RowChoice;

@@ -159,7 +159,7 @@ impl RunWork {
             _ => 0,
         };
         let mut work = Self {
-            fields: experiment.length(),
+            fields: experiment.fields,
             gps: experiment.config().n_gps as u64,
             primitives: experiment.scene().primitives() as u64,
             eyes: pipeline.eyes() as u64,
@@ -167,10 +167,10 @@ impl RunWork {
             uses_closed_form: false,
             batch: whole("batch"),
             block: whole("block"),
-            is_cycle_level: experiment.modelling_level() == Level::Cycle,
+            is_cycle_level: experiment.level == Level::Cycle,
             keeps_everything: keeps_everything || !pipeline.can_discard_records(),
-            is_tracked: experiment.tracked_head().is_some(),
-            computes_all_pixels: experiment.pixels_wanted() == Pixels::All,
+            is_tracked: experiment.head.is_some(),
+            computes_all_pixels: experiment.pixels == Pixels::All,
         };
         // A pipeline shows at most one picture in a field, and fewer if TRANSFORM takes longer.
         work.pictures_a_field = (1.0 / work.fields_of_transform()).min(1.0);

@@ -34,7 +34,7 @@ mod error;
 pub mod estimate;
 mod experiment_file;
 pub mod figures;
-mod head_names;
+mod head_parts;
 mod host;
 pub mod interpretations;
 pub mod intervals;
@@ -57,7 +57,7 @@ pub use experiment_file::{
     ExperimentFile, FileKey, HeadChoice, ModelPlace, MotionChoice, Origin, Outputs, PathChoice, Plan, Published,
     SceneChoice, Settings, tracking_parameters,
 };
-pub use head_names::{PREDICTORS, TRACKERS, motion, predictor, tracker};
+pub use head_parts::{PREDICTORS, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;
 pub use parallel::map as in_parallel;
 pub use pxpl5_sim::{StopFlag, Watcher};

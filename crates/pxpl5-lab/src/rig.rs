@@ -331,7 +331,7 @@ fn brightness(colour: [u8; 3]) -> u32 {
 fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outcome, StudyError> {
     let machine = experiment.build()?;
     photodiodes.iter().try_for_each(|photodiode| photodiode.check(machine.record().display()))?;
-    let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.length())).collect();
+    let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.fields)).collect();
     let result = experiment.run_stopping(&every, |period, machine| {
         // The stop comes before the retrace that ends the previous period.
         if let Some(over) = period.before(2) {

@@ -93,7 +93,7 @@ impl Study for WhatIfQuery {
         let (registry, experiment) = (&self.registry, self.experiment.clone().stopped_by(watcher.stop()));
         // Try the analytic level first, because it takes almost no time.
         let by_form = experiment.clone().level(Level::Analytic).pixels(Pixels::Off);
-        let is_analytic = experiment.tracked_head().is_none();
+        let is_analytic = experiment.head.is_none();
         let form = is_analytic.then(|| summarise(registry, &by_form).ok()).flatten();
         let (base, tried) = match form {
             Some(summary) => (summary, by_form),
@@ -102,7 +102,7 @@ impl Study for WhatIfQuery {
                 (summarise(registry, &run)?, run)
             }
         };
-        let level = tried.modelling_level().name();
+        let level = tried.level.name();
         let of = |summary: Option<&Summary>| {
             let latency = summary.map(|summary| summary.latency_ms().mean).filter(|mean| mean.is_finite());
             (latency, summary.and_then(|summary| summary.updates_hz))

@@ -63,7 +63,7 @@ impl Experiment {
         let mut native = plan.experiment(scene);
         // A motion in the arguments replaces the motion of the tracked head.
         if let Some(motion) = motion {
-            let Some(head) = native.tracked_head().cloned() else {
+            let Some(head) = native.head.as_ref().cloned() else {
                 return Err(wrong_setting("a motion: expected a head with a tracker, found none"));
             };
             native = native.head(pxpl5::Head::clone(&head).with_motion(Arc::clone(&motion.moving)));
@@ -161,7 +161,7 @@ impl Experiment {
     /// Returns the number of display periods that the experiment simulates.
     #[getter]
     fn fields(&self) -> u64 {
-        self.native.length()
+        self.native.fields
     }
 
     /// Returns the effect of 10 % more of each resource of the machine, as dictionaries. The experiment runs again for
@@ -224,7 +224,7 @@ impl Experiment {
     fn film_of(&self, surface: Option<u16>, first: u64, fields: u64) -> (Film, Arc<Progress>) {
         let (native, watch) = self.on_host(Workstation::with_threads(0));
         // The last picture is final only one field later.
-        let length = self.native.length().max(first.saturating_add(fields).saturating_add(1));
+        let length = self.native.fields.max(first.saturating_add(fields).saturating_add(1));
         let surfaces = surface.map_or(FilmSurfaces::All, |surface| FilmSurfaces::One(SurfaceId(surface)));
         let native = native.pixels(Pixels::Lazy).fields(length);
         (Film::new(native, PeriodNumber(first), fields, surfaces), watch)
@@ -241,7 +241,7 @@ fn run(
     functions: PythonFunctions,
     watch: Arc<Progress>,
 ) -> Result<pxpl5::Outcome, Box<ExperimentError>> {
-    let fields = native.length();
+    let fields = native.fields;
     // A short run stops in every field so that Ctrl-C takes effect soon. A long run stops only to report progress.
     let each = if fields <= LOOKED_AT { fields } else { 0 };
     let stops: Vec<PeriodNumber> = PeriodNumber::FIRST.until(PeriodNumber::FIRST.after(each)).collect();

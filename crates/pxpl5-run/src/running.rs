@@ -1,8 +1,8 @@
+use crate::build::preparation::Preparation;
 use crate::error::ExperimentError;
 use crate::experiment::Experiment;
 use crate::level::Level;
-use crate::outcome::Outcome;
-use crate::preparation::Preparation;
+use crate::result::outcome::Outcome;
 use crate::stepper::Stepper;
 use pxpl5_machine::Machine;
 use pxpl5_wire::PeriodNumber;

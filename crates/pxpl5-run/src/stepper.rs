@@ -1,16 +1,16 @@
 //! Runs an experiment in steps. Between two steps, the state of the machine can be read.
 
-use crate::assembled::Assembled;
+use crate::build::assembled::Assembled;
+use crate::build::preparation::Preparation;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
 use crate::ideal::ideal_picture;
 use crate::level::Level;
-use crate::outcome::Outcome;
-use crate::picture_ends::WARM_UP_PICTURES;
+use crate::observe::window::Window;
 use crate::pipeline::PictureTimes;
-use crate::preparation::Preparation;
-use crate::result_window::WARM_UP_PERIODS;
-use crate::window::Window;
+use crate::result::outcome::Outcome;
+use crate::result::picture_ends::WARM_UP_PICTURES;
+use crate::result::result_window::WARM_UP_PERIODS;
 use image::RgbImage;
 use pphigs::oracle::IdealPicture;
 use pxpl5_gp::{BreakpointHit, GpSnapshot};

@@ -123,7 +123,7 @@ impl Common<'_> {
     fn experiment(&self, plan: &Plan) -> Experiment {
         let experiment =
             plan.experiment(Arc::clone(&self.scene)).host(Workstation::new()).stopped_by(self.watcher.stop());
-        let head = experiment.tracked_head().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
+        let head = experiment.head.as_ref().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
         match head {
             Some(head) => experiment.head(head),
             None => experiment,

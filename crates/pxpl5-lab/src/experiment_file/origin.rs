@@ -24,7 +24,7 @@ impl Origin {
     /// Returns the origin of the results of an experiment.
     #[must_use]
     pub fn of(experiment: &Experiment) -> Self {
-        let motion = experiment.tracked_head().map(|head| {
+        let motion = experiment.head.as_ref().map(|head| {
             let mut hash = Fingerprint::default();
             head.motion().identify(&mut |key, value| hash.setting(key, value));
             hash.to_string()

@@ -4,7 +4,7 @@ use super::origin::Origin;
 use super::plan::Plan;
 use super::scene::is_file;
 use super::{ExperimentFile, hmd};
-use crate::head_names::is_recorded_file;
+use crate::head_parts::is_recorded_file;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, Fingerprint, KeyValue};
 use pxpl5_scene::Placement;

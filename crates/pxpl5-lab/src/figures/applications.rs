@@ -87,9 +87,9 @@ pub(super) fn key_of(experiment: &Experiment, scene: &str) -> (String, u64) {
     machine.renderer.kept_bits = 0;
     let key = format!(
         "{scene} {} {} {:?} {:?} {:?}",
-        experiment.length(),
-        experiment.motion_seed(),
-        experiment.modelling_level(),
+        experiment.fields,
+        experiment.seed,
+        experiment.level,
         experiment.pipeline(),
         machine,
     );

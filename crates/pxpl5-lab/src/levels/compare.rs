@@ -138,7 +138,7 @@ fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Expe
     }
     let machine = experiment.config().clone().with_times_of_code(experiment.pipeline().code_use());
     let other = Experiment::with(machine, Arc::clone(experiment.pipeline()), Arc::clone(experiment.scene()));
-    Ok(other.fields(experiment.length()).seed(experiment.motion_seed()).pixels(Pixels::Off).level(level))
+    Ok(other.fields(experiment.fields).seed(experiment.seed).pixels(Pixels::Off).level(level))
 }
 
 /// Runs the random experiment `number`, and returns the time that is compared between levels, in milliseconds. The
@@ -187,7 +187,7 @@ fn speed(variant: (Level, bool), pixels: Pixels, stop: &StopFlag) -> Result<(f64
     let (mut simulated, mut taken, mut values) = (0.0, 0.0, Vec::new());
     for number in 0..TIMED {
         let experiment = of_variant(variant, number)?.pixels(pixels).stopped_by(stop.clone());
-        simulated += experiment.length() as f64 * experiment.config().period()?.as_ms() * 1e-3;
+        simulated += experiment.fields as f64 * experiment.config().period()?.as_ms() * 1e-3;
         // The construction of the scene is not timed.
         let begin = Instant::now();
         let summary = summarise(&registry, &experiment);

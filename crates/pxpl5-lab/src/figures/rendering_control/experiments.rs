@@ -205,7 +205,7 @@ fn fly_through_once(
     let loads =
         settings.applications.loads((scene, settings.interpretation.culled, seeds, settings.frames), of_seeds)?;
     let model = StereoModel::new(experiment.config(), settings.interpretation.pipeline())?;
-    Ok((model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()), true))
+    Ok((model.summary(&model.frames(&loads[seed as usize - 1]), experiment.fields), true))
 }
 
 /// Returns the experiment of a fly-through, with two display fields for each frame (30 Hz). If frames take longer, the
