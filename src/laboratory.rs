@@ -36,14 +36,13 @@ pub use pxpl5_lab::WhatIfQuery;
 
 /// The error type of all studies, for invalid settings and failed runs.
 ///
-/// The example repeats a paper's drawing of a pipeline as a run.
+/// The example asks for more than a display can show.
 ///
 /// ```
-/// use pxpl5::StudyError;
-/// use pxpl5::pipeline_figures::PIPELINE_FIGURES;
+/// use pxpl5::{ExperimentFile, StudyError};
 ///
-/// let run = || -> Result<_, StudyError> { PIPELINE_FIGURES[0].run() };
-/// assert!(run().is_ok());
+/// let read = || -> Result<_, StudyError> { Ok(ExperimentFile::parse("fields = 0", "an experiment")?.resolve()?) };
+/// assert!(matches!(read(), Err(StudyError::Setting(_))));
 /// ```
 pub use pxpl5_lab::StudyError;
 
@@ -137,7 +136,7 @@ pub use pxpl5_lab::Plan;
 
 pub use pxpl5_lab::{
     HeadChoice, ModelPlace, MotionChoice, Origin, Outputs, Published, SceneChoice, Settings, Suitability, WhatIf,
-    compare, figures, in_parallel, interpretations, intervals, levels, limit, pipeline_figures, registry, rig, sweep,
+    compare, figures, in_parallel, interpretations, intervals, levels, limit, registry, rig, sweep,
     tracking_parameters,
 };
 

@@ -121,7 +121,7 @@ impl SweepFolderArgs {
             return Ok(());
         }
         // A sweep succeeds if at least one point could be simulated.
-        let failed = report_failures(&store, self.shard, total, command.verb)?;
+        let failed = report_failures(&mut store, self.shard, total, command.verb)?;
         if !self.quiet {
             print(&format!("{} in {}.\n", are(total, "point"), self.out.join(ROWS_FILE).display()))?;
         }
@@ -173,9 +173,10 @@ fn supposed(sweep: &Sweep) -> Vec<String> {
 
 /// Prints the number of failed points of a shard (part of a sweep), and the error of the first failed point. Returns
 /// the number of failed points.
-fn report_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
+fn report_failures(store: &mut Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
     let failed = store.failed(shard).count() as u64;
-    if let Some(point) = store.failed(shard).next() {
+    let first = store.failed(shard).next();
+    if let Some(point) = first {
         let error = store.row(point)?.and_then(|row| row.error).unwrap_or_default();
         let all = count_of(total, "point");
         print_error(&format!("pxpl5: {failed} of {all} could not be {done}; point {point}: {error}\n"));

@@ -4,7 +4,7 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | values of the published figures in the model, with intervals | [`figures`], [`intervals`], [`pipeline_figures`] |
+//! | values of the published figures in the model, with intervals | [`figures`], [`intervals`] |
 //! | the interpretation of the papers that explains the figures best | [`interpretations`] |
 //! | differences between the levels of detail | [`levels`] |
 //! | largest number of triangles drawn in time | [`limit`] |
@@ -42,7 +42,6 @@ pub mod levels;
 pub mod limit;
 pub mod manifest;
 mod parallel;
-pub mod pipeline_figures;
 pub mod rig;
 mod study;
 mod suitability;

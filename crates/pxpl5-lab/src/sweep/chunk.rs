@@ -2,7 +2,7 @@
 
 use super::point::row;
 use super::{Status, Sweep, SweepRow};
-use std::sync::Arc;
+use pxpl5_sim::StopFlag;
 use std::time::{Duration, Instant};
 
 impl Sweep {
@@ -17,7 +17,7 @@ impl Sweep {
         let mut rows = Vec::new();
         for point in points {
             let start = Instant::now();
-            let row = row(self, *point, &Arc::default());
+            let row = row(self, *point, &StopFlag::default());
             rows.push((row, start.elapsed().as_secs_f64()));
             if begin.elapsed() >= at_most {
                 break;

@@ -2,6 +2,7 @@
 
 use crate::build::assembled::Assembled;
 use crate::build::preparation::Preparation;
+use crate::built_in::displays;
 use crate::display_list::display_list_for;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
@@ -9,7 +10,6 @@ use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::keys::PipelineSettings;
 use crate::level::{Level, with_clocks_of_instructions};
-use crate::built_in::displays;
 use crate::pipeline::{Pipeline, Setup};
 use crate::pipelines;
 use crate::registry::{DisplayEntry, PipelineEntry};
