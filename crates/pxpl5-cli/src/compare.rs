@@ -6,6 +6,7 @@ mod table;
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::interrupt;
 use crate::numbers::{confidence, count_of, whole};
 use crate::output::OutputFolder;
 use crate::progress::Progress;
@@ -150,6 +151,9 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     terminal::warn(&near.collect::<Vec<_>>(), args.quiet);
     // Write all files, then publish the folder in one step.
     let json = json_text(&comparison)?;
+    if interrupt::flag().is_stopped() {
+        return answer(args.json, args.quiet, &json, || table::text(&comparison));
+    }
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;
         folder.put("experiment.toml", query.file_in(folder.path())?.as_bytes())?;

@@ -20,7 +20,7 @@ pub(crate) struct Progress<'a> {
     /// Finished rows, for an interruption.
     rows: Vec<String>,
     /// What an interruption keeps, and how to continue.
-    kept: String,
+    kept: Option<String>,
 }
 
 /// A progress bar.
@@ -106,12 +106,12 @@ impl Bar {
 impl<'a> Progress<'a> {
     /// Watches a study whose parts are named `what`.
     pub(crate) fn new(what: &'static str, is_quiet: bool) -> Self {
-        Self { bar: Bar::new(what, is_quiet), on_row: None, rows: Vec::new(), kept: "nothing was written".to_owned() }
+        Self { bar: Bar::new(what, is_quiet), on_row: None, rows: Vec::new(), kept: None }
     }
 
     /// Sets what an interruption keeps.
     pub(crate) fn keeping(self, kept: impl Into<String>) -> Self {
-        Self { kept: kept.into(), ..self }
+        Self { kept: Some(kept.into()), ..self }
     }
 
     /// Prints a line to standard error.
@@ -129,18 +129,19 @@ impl<'a> Progress<'a> {
     pub(crate) fn run<S: Study>(mut self, study: &S) -> Result<S::Report, CliError> {
         let report = study.run(&mut self);
         self.bar.clear();
-        let ended = self.bar.check(&self.kept);
-        match (report, ended) {
-            (Ok(report), Ok(())) => Ok(report),
-            (Ok(report), Err(ended)) => {
-                print_error(&format!("\npxpl5: {}. The result is that of the finished part\n", ended.message()));
-                Ok(report)
+        let ended = |otherwise: &str| self.bar.check(self.kept.as_deref().unwrap_or(otherwise));
+        match report {
+            Err(StudyError::Experiment(ExperimentError::Stopped(_))) => {
+                let rows = self.rows.iter().rev().take(ROWS).rev().map(|row| format!("\n  {row}")).collect::<String>();
+                let stopped = ended("nothing was written").err().unwrap_or_else(|| CliError::failure("stopped"));
+                Err(CliError::interrupted(format!("{}{rows}", stopped.message())))
             }
-            (Err(StudyError::Experiment(ExperimentError::Stopped(_))), Err(ended)) => {
-                let rows = self.rows.iter().rev().take(ROWS).rev().map(|row| format!("\n  {row}"));
-                Err(CliError::interrupted(format!("{}{}", ended.message(), rows.collect::<String>())))
+            report => {
+                if let Err(stopped) = ended("the result is that of the finished part") {
+                    print_error(&format!("\npxpl5: {}\n", stopped.message()));
+                }
+                Ok(report?)
             }
-            (Err(error), _) => Err(error.into()),
         }
     }
 

@@ -73,12 +73,12 @@ pub(crate) fn simulate(plan: &Plan, how: How<'_>) -> Result<Simulated, CliError>
     // The run stops at these fields to extrapolate its cost early.
     let stops = EARLY_CHECK_FIELDS.map(|field| PeriodNumber::FIRST.after(field));
     let mut bar = Bar::new("fields", how.quiet);
-    let watch = how.budget.watch(plan.fields);
+    let monitor = how.budget.monitor(plan.fields);
     let outcome = experiment.run_stopping(&stops, |field, machine| {
         let done = field.since(PeriodNumber::FIRST);
         bar.advance(done, plan.fields);
         bar.check("nothing was written").map_err(|error| ExperimentError::Stopped(error.message().to_owned()))?;
-        watch.check(done, trace_bytes(machine.record().observation())).map_err(ExperimentError::Stopped)
+        monitor.check(done, trace_bytes(machine.record().observation())).map_err(ExperimentError::Stopped)
     });
     bar.clear();
     bar.check("nothing was written")?;

@@ -117,12 +117,13 @@ impl Study for LimitQuery {
 
     fn estimate(&self, _: usize) -> Estimate {
         // Closed forms cost almost nothing.
-        match self.experiment(1) {
-            Ok(experiment) if self.level != Level::Analytic => {
-                Estimate::of_all([RunWork::of(&experiment, false).estimate(); USUAL_SIZES as usize], 1)
-            }
-            _ => Estimate::NOTHING,
+        if self.level == Level::Analytic {
+            return Estimate::NOTHING;
         }
+        let scene = || Arc::new(test_scene(self.criterion.scene, 1));
+        let scene = self.model.as_ref().map_or_else(scene, |model| Arc::clone(&model.whole));
+        let one = RunWork::of(&self.experiment_of(scene), false).estimate();
+        Estimate::of_all([one; USUAL_SIZES as usize], 1)
     }
 
     /// Searches for the limit. A scene that does not fit into a board's memory, or is never shown, misses the goal.
@@ -249,12 +250,15 @@ impl LimitQuery {
 
     fn experiment(&self, triangles: u32) -> Result<Experiment, ExperimentError> {
         check(&self.stop)?;
-        let scene = self.scene(triangles)?;
-        Ok(Experiment::with(self.config.clone(), Arc::clone(&self.pipeline), scene)
+        Ok(self.experiment_of(self.scene(triangles)?))
+    }
+
+    fn experiment_of(&self, scene: Arc<Scene>) -> Experiment {
+        Experiment::with(self.config.clone(), Arc::clone(&self.pipeline), scene)
             .fields(self.criterion.fields)
             .pixels(Pixels::Off)
             .level(self.level)
-            .stopped_by(self.stop.clone()))
+            .stopped_by(self.stop.clone())
     }
 
     fn summary(&self, triangles: u32) -> Result<Summary, ExperimentError> {

@@ -162,9 +162,9 @@ impl Rig {
         // The pendulum determines when frames start.
         let sightings = self.rig.sightings(&tracker, self.seed, self.passes.max(2))?;
         let experiment = self.experiment(machine, pipeline, &sightings)?.stopped_by(stop.clone());
-        // Watch the screen during the run, then read the pipeline's records for the inside measurement.
+        // Observe the screen during the run, then read the pipeline's records for the inside measurement.
         let mut photodiodes = lines.map(Photodiode::new);
-        let outcome = watch(&mut photodiodes, &experiment)?;
+        let outcome = observe(&mut photodiodes, &experiment)?;
         let measured = photodiodes.map(|photodiode| self.compared(&tracker, &outcome, &sightings, photodiode));
         // Report the error of the first line that has one.
         let mut errors = Vec::new();
@@ -328,7 +328,7 @@ fn brightness(colour: [u8; 3]) -> u32 {
 }
 
 /// Runs an experiment and samples the photodiodes. A run that is too short to fill the pipeline is not an error.
-fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outcome, StudyError> {
+fn observe(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outcome, StudyError> {
     let machine = experiment.build()?;
     photodiodes.iter().try_for_each(|photodiode| photodiode.check(machine.record().display()))?;
     let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.fields)).collect();

@@ -1,6 +1,6 @@
 //! Definition and execution of a comparison of pipelines.
 
-use super::contender::{ComparedPipeline, RowChoice};
+use super::compared::{ComparedPipeline, RowChoice};
 use super::interval::CONFIDENCE;
 use super::precision::UntilPrecise;
 use super::predictors::predictor_means;
@@ -154,8 +154,8 @@ impl Study for CompareQuery {
         let any = self.any_plan(&compared_pipelines)?;
         let scene = any.load_scene()?;
         let held =
-            |contender: &ComparedPipeline| self.store.as_deref().and_then(|store| store.row(&contender.name)).cloned();
-        let missing = compared_pipelines.iter().filter(|contender| held(contender).is_none()).count();
+            |compared: &ComparedPipeline| self.store.as_deref().and_then(|store| store.row(&compared.name)).cloned();
+        let missing = compared_pipelines.iter().filter(|compared| held(compared).is_none()).count();
         let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
         let watcher = SharedWatcher::new(watcher, (missing * runs_of_a_row) as u64);
         // After a row could not be stored, no further row starts.
@@ -163,8 +163,8 @@ impl Study for CompareQuery {
         // Rows with the same head and prediction interval share the tuning of the predictor.
         let common = Common { scene, tunings: Arc::default(), watcher };
         // Rows and the seeds of each row execute in parallel. So each row is known as soon as its own runs have ended.
-        let pipelines = parallel::map(&compared_pipelines, |contender| {
-            if let Some(row) = held(contender) {
+        let pipelines = parallel::map(&compared_pipelines, |compared| {
+            if let Some(row) = held(compared) {
                 return Ok(Some(row));
             }
             if is_failed.load(Ordering::Relaxed) {
@@ -174,7 +174,7 @@ impl Study for CompareQuery {
             if stop.is_stopped() {
                 return Ok(None);
             }
-            let row = self.row(contender, &common);
+            let row = self.row(compared, &common);
             // A row whose runs were stopped is not a result.
             if stop.is_stopped() {
                 return Ok(None);
@@ -263,7 +263,7 @@ impl CompareQuery {
     pub fn plans(&self) -> Result<Vec<Plan>, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         let seed = self.any_plan(&compared_pipelines)?.seed;
-        Ok(compared_pipelines.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
+        Ok(compared_pipelines.iter().filter_map(|compared| compared.plan(&self.shared, seed).ok()).collect())
     }
 
     /// Returns a warning if the shared settings come from the folder of another comparison, and its results will differ.
@@ -371,20 +371,20 @@ impl CompareQuery {
         (1..=more as u64).map(|n| greatest.saturating_add(added + n)).collect()
     }
 
-    fn trials(&self, contender: &ComparedPipeline, seeds: &[u64], common: &Common<'_>) -> Vec<Result<Trial, String>> {
+    fn trials(&self, compared: &ComparedPipeline, seeds: &[u64], common: &Common<'_>) -> Vec<Result<Trial, String>> {
         parallel::map(seeds, |seed| {
-            let trial = self.trial(contender, *seed, common);
+            let trial = self.trial(compared, *seed, common);
             common.watcher.step();
             trial
         })
     }
 
-    fn trial(&self, contender: &ComparedPipeline, seed: u64, common: &Common<'_>) -> Result<Trial, String> {
+    fn trial(&self, compared: &ComparedPipeline, seed: u64, common: &Common<'_>) -> Result<Trial, String> {
         // Pixels are needed only for the picture of the first seed.
-        let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !contender.is_reference();
+        let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !compared.is_reference();
         let pixels = if is_seen { Pixels::Lazy } else { Pixels::Off };
-        let plan = contender.plan(&self.shared, seed).map_err(|error| error.to_string())?;
-        contender.trial(common.experiment(&plan).pixels(pixels), self.causes)
+        let plan = compared.plan(&self.shared, seed).map_err(|error| error.to_string())?;
+        compared.trial(common.experiment(&plan).pixels(pixels), self.causes)
     }
 
     fn sampling(&self, plan: &Plan) -> Result<Sampling, StudyError> {
@@ -394,14 +394,14 @@ impl CompareQuery {
     }
 
     /// Runs a row with all seeds. Then adds seeds while the confidence interval of the mean error is too wide.
-    fn row(&self, contender: &ComparedPipeline, common: &Common<'_>) -> Result<ComparisonRow, StudyError> {
-        let plan = contender.plan(&self.shared, self.seeds[0])?;
-        let mut trials = self.trials(contender, &self.seeds, common);
+    fn row(&self, compared: &ComparedPipeline, common: &Common<'_>) -> Result<ComparisonRow, StudyError> {
+        let plan = compared.plan(&self.shared, self.seeds[0])?;
+        let mut trials = self.trials(compared, &self.seeds, common);
         let (mut row, shown) = loop {
             // Failed runs are left out, and their first error is reported below.
             let ran: Vec<&Trial> = trials.iter().flatten().collect();
             let sampling = Sampling { seeds: trials.len(), ..self.sampling(&plan)? };
-            let mut row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &ran, sampling);
+            let mut row = ComparisonRow::of(compared, plan.pipeline.as_ref(), &ran, sampling);
             row.is_precise = self.until.map(|until| until.is_reached(&row.error.mean_px));
             // More seeds do not help a row with failed runs or without an evaluation.
             let helps = ran.len() == trials.len() && row.was_evaluated();
@@ -414,19 +414,19 @@ impl CompareQuery {
             }
             common.watcher.add(more as u64);
             let seeds = self.seeds_after(trials.len(), more);
-            trials.extend(self.trials(contender, &seeds, common));
+            trials.extend(self.trials(compared, &seeds, common));
         };
         if let Some(Ok(first)) = trials.first()
             && self.predictors
-            && !contender.is_reference()
+            && !compared.is_reference()
         {
             let experiment = common.experiment(&plan).with_dry_run(first.dry_run.clone());
             // All predictors are evaluated over the periods of the row.
             let experiment = experiment.results_from(common_window_from(plan.fields));
             // The dry run of the first trial is reused for every predictor.
-            row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
+            row.predictors = predictor_means(&experiment, compared.showing, first.errors.pixels.mean);
         }
-        if self.limits && !contender.is_reference() {
+        if self.limits && !compared.is_reference() {
             row.triangles_definition = definition(&plan);
             let query = LimitQuery { looks_above: false, ..LimitQuery::of_plan(&plan) };
             let triangles = query.run(&mut common.watcher.stop()).ok().map(|limit| limit.triangles);

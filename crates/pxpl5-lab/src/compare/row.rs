@@ -1,6 +1,6 @@
 //! A row of a comparison: the results of one method, combined from the runs of all seeds.
 
-use super::contender::{ComparedPipeline, DELAYED_VIDEO, IDEAL};
+use super::compared::{ComparedPipeline, DELAYED_VIDEO, IDEAL};
 use super::gallery::LastPicture;
 use super::interval::MeanInterval;
 use super::trial::Trial;
@@ -145,13 +145,13 @@ pub struct ComparisonRow {
 impl ComparisonRow {
     /// Combines the runs of all seeds into a row. Without runs, the row has no numbers.
     pub(super) fn of(
-        contender: &ComparedPipeline,
+        compared: &ComparedPipeline,
         pipeline: &dyn Pipeline,
         trials: &[&Trial],
         sampling: Sampling,
     ) -> Self {
         let confidence = sampling.confidence;
-        let is_reference = contender.showing == Showing::Ideal;
+        let is_reference = compared.showing == Showing::Ideal;
         // The reference is computed for each pixel's own instant and has no latency.
         let definition = if is_reference {
             "none: computed for the instant of each pixel, without a machine"
@@ -166,8 +166,8 @@ impl ComparisonRow {
         let sums_ms: Vec<f64> = trials.iter().filter_map(|trial| trial.tracking_and_rendering_ms).collect();
         let hz: Vec<f64> = trials.iter().filter_map(|trial| trial.updates_hz).collect();
         Self {
-            pipeline: contender.name.clone(),
-            settings: settings_text(contender),
+            pipeline: compared.name.clone(),
+            settings: settings_text(compared),
             eyes: pipeline.eyes(),
             seeds: sampling.seeds,
             is_precise: None,
@@ -256,8 +256,8 @@ fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> 
     present.peek().is_some().then(|| present.sum())
 }
 
-fn settings_text(contender: &ComparedPipeline) -> String {
-    let settings = contender.settings.iter().map(|(key, value)| format!("{key}={value}"));
+fn settings_text(compared: &ComparedPipeline) -> String {
+    let settings = compared.settings.iter().map(|(key, value)| format!("{key}={value}"));
     settings.collect::<Vec<_>>().join(" ")
 }
 

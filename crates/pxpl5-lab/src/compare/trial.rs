@@ -1,6 +1,6 @@
 //! One run of a compared pipeline with one seed.
 
-use super::contender::ComparedPipeline;
+use super::compared::ComparedPipeline;
 use super::gallery::LastPicture;
 use crate::edges::near_edges;
 use crate::experiment_file::{ExperimentFile, Plan};
