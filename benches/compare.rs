@@ -8,7 +8,7 @@ use pxpl5::scene::builtin;
 use pxpl5::tracking::motion::Synthetic;
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
-use pxpl5::{Experiment, ExperimentFile, Head, Jitp, MachineConfig, Pixels, Viewpoint};
+use pxpl5::{Experiment, ExperimentFile, Head, Jitp, MachineConfig, Pixels, Study, Viewpoint};
 use std::sync::Arc;
 
 fn head() -> Arc<Head> {
@@ -34,7 +34,7 @@ fn all_pipelines(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("compare");
     group.sample_size(10);
     group.bench_function("mig, 600 fields", |bencher| {
-        bencher.iter(|| query.run(|_, _| ()).expect("it runs"));
+        bencher.iter(|| query.run(&mut ()).expect("it runs"));
     });
     group.finish();
 }

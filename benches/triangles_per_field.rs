@@ -5,7 +5,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use pxpl5::limit::LimitQuery;
-use pxpl5::{Level, MachineConfig, RegionBinning, Slats, TestScene};
+use pxpl5::{Level, MachineConfig, RegionBinning, Slats, Study, TestScene};
 use std::time::Duration;
 
 fn machine(preset: &str, n_gps: usize, n_renderers: usize) -> MachineConfig {
@@ -46,10 +46,10 @@ fn limits(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("triangles-per-field");
     group.sample_size(10).warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_secs(1));
     for (name, query) in queries() {
-        let limit = query.search().expect("it runs");
+        let limit = query.run(&mut ()).expect("it runs");
         println!("{name}: {} triangles", limit.triangles);
         let analytic = LimitQuery { level: Level::Analytic, ..query };
-        group.bench_function(name, |bench| bench.iter(|| analytic.search().expect("it runs")));
+        group.bench_function(name, |bench| bench.iter(|| analytic.run(&mut ()).expect("it runs")));
     }
     group.finish();
 }

@@ -1,7 +1,10 @@
 //! Draws the pipeline figures of the papers from simulated runs: `cargo run --release --example figures [FOLDER]`, by
 //! default into `docs/figures/`. The test `tests/timeline.rs` compares the files with its own drawings.
 
-use pxpl5::pipeline_figures::PIPELINE_FIGURES;
+#[path = "figures/list.rs"]
+mod list;
+
+use list::PIPELINE_FIGURES;
 use pxpl5::views::timeline::{TimelineOptions, svg};
 use std::path::PathBuf;
 

@@ -16,7 +16,7 @@ use i860::timing::{DramTiming, FREEZES, Freeze};
 use i860::{AddressProfile, Config, Profile, linear};
 use kernel::{Bench, Strip, frame, strips, triangles};
 use pxpl5::limit::{LimitQuery, test_scene};
-use pxpl5::{CodeVersion, Experiment, Level, MachineConfig, PictureNumber, Pixels, Slats, TestScene};
+use pxpl5::{CodeVersion, Experiment, Level, MachineConfig, PictureNumber, Pixels, Slats, Study, TestScene};
 use pxpl5_geometry::kernel::{Kernel, KernelList, KernelPicture, KernelSurface, Schedule};
 use pxpl5_geometry::sphere_kernel::SphereKernel;
 use pxpl5_geometry::{Triangle, Viewport};
@@ -422,7 +422,7 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
         let limit = |level, scene| {
             let mut query = LimitQuery { level, ..LimitQuery::of_papers(machine.clone(), slats)? };
             query.criterion.scene = scene;
-            query.search().map(|limit| limit.triangles.to_string())
+            query.run(&mut ()).map(|limit| limit.triangles.to_string())
         };
         let table = limit(Level::Transaction, TestScene::FullScreen)?;
         let cycle = [TestScene::Typical, TestScene::FullScreen].map(|scene| limit(Level::Cycle, scene));

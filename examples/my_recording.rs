@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let plan = ExperimentFile::parse(&settings, "settings")?.resolve()?;
             let experiment = plan.experiment(plan.load_scene()?);
             // Tracker and predictor stay the same, and the recording replaces the motion.
-            let head = experiment.tracked_head().ok_or("the settings have a head")?;
+            let head = experiment.head.as_ref().ok_or("the settings have a head")?;
             let head = Head::clone(head).with_motion(recording.clone());
             let report = experiment.head(head).run()?.report();
             let head = report.head.ok_or("a report without a head")?;

@@ -4,7 +4,8 @@
 //! `cargo run --release --example my_sweep [FOLDER]`
 
 use pxpl5::ExperimentFile;
-use pxpl5::sweep::{RunOptions, Shard, Store, Sweep, run};
+use pxpl5::Study;
+use pxpl5::sweep::{RunOptions, Shard, Store, Sweep, SweepQuery};
 use std::error::Error;
 use std::path::PathBuf;
 use std::thread::available_parallelism;
@@ -33,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Finished points are kept. After an interruption, the same call continues the sweep.
     let mut store = Store::open(&folder, header, true)?;
     let threads = available_parallelism().map_or(1, usize::from);
-    run(&sweep, &mut store, RunOptions { shard: Shard::ALL, threads }, |_| {})?;
+    SweepQuery::new(&sweep, &mut store, RunOptions { shard: Shard::ALL, threads }).run(&mut ())?;
     for point in 0..sweep.space().points() {
         let row = store.row(point)?.ok_or("a point without a row")?;
         let setting = |key: &str| row.parameters[key].to_string();

@@ -27,23 +27,22 @@ pub use pxpl5_lab::ExperimentFile;
 ///
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
-/// for WhatIf { resource, latency_ms: [before, after], .. } in what_if(&registry(), &experiment)? {
+/// for WhatIf { resource, latency_ms: [before, after], .. } in WhatIfQuery { registry: registry(), experiment }.run(&mut ())? {
 ///     println!("10 % more {resource}: {before:?} ms, then {after:?} ms");
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_lab::what_if;
+pub use pxpl5_lab::WhatIfQuery;
 
 /// The error type of all studies, for invalid settings and failed runs.
 ///
-/// The example repeats a paper's drawing of a pipeline as a run.
+/// The example asks for more than a display can show.
 ///
 /// ```
-/// use pxpl5::StudyError;
-/// use pxpl5::pipeline_figures::PIPELINE_FIGURES;
+/// use pxpl5::{ExperimentFile, StudyError};
 ///
-/// let run = || -> Result<_, StudyError> { PIPELINE_FIGURES[0].run() };
-/// assert!(run().is_ok());
+/// let read = || -> Result<_, StudyError> { Ok(ExperimentFile::parse("fields = 0", "an experiment")?.resolve()?) };
+/// assert!(matches!(read(), Err(StudyError::Setting(_))));
 /// ```
 pub use pxpl5_lab::StudyError;
 
@@ -69,15 +68,36 @@ pub use pxpl5_lab::Workstation;
 ///
 /// ```
 /// use pxpl5::limit::LimitQuery;
-/// use pxpl5::{ExperimentError, MachineConfig, Slats, StopFlag};
+/// use pxpl5::{MachineConfig, Slats, StopFlag, Study};
 ///
-/// let stop = StopFlag::default();
-/// let query = LimitQuery { stop: stop.clone(), ..LimitQuery::of_papers(MachineConfig::slats(), Slats::split())? };
+/// let mut stop = StopFlag::default();
+/// let query = LimitQuery::of_papers(MachineConfig::slats(), Slats::split())?;
 /// stop.stop();
-/// assert!(matches!(query.search(), Err(ExperimentError::Stopped(_))));
-/// # Ok::<(), ExperimentError>(())
+/// assert!(query.run(&mut stop).is_err_and(|error| error.to_string().contains("stopped")));
+/// # Ok::<(), pxpl5::ExperimentError>(())
 /// ```
 pub use pxpl5_lab::StopFlag;
+
+/// The shape of all questions over many experiments, and the follower of their progress.
+///
+/// The example counts the scenes that a search simulates.
+///
+/// ```
+/// use pxpl5::limit::LimitQuery;
+/// use pxpl5::{MachineConfig, Slats, Study, StudyError, Watcher};
+///
+/// struct Counter(u64);
+/// impl Watcher for Counter {
+///     fn progress(&mut self, done: u64, _of: u64) {
+///         self.0 = done;
+///     }
+/// }
+/// let mut scenes = Counter(0);
+/// let limit = LimitQuery::of_papers(MachineConfig::slats(), Slats::split())?.run(&mut scenes)?;
+/// assert_eq!(scenes.0, limit.tried as u64);
+/// # Ok::<(), StudyError>(())
+/// ```
+pub use pxpl5_lab::{Study, Watcher};
 
 /// Returns the reason why a machine cannot run a pipeline, for each pipeline.
 ///
@@ -116,7 +136,7 @@ pub use pxpl5_lab::Plan;
 
 pub use pxpl5_lab::{
     HeadChoice, ModelPlace, MotionChoice, Origin, Outputs, Published, SceneChoice, Settings, Suitability, WhatIf,
-    compare, figures, in_parallel, interpretations, intervals, levels, limit, pipeline_figures, registry, rig, sweep,
+    compare, figures, in_parallel, interpretations, intervals, levels, limit, registry, rig, sweep,
     tracking_parameters,
 };
 
@@ -140,6 +160,7 @@ pub mod lab {
     pub use pxpl5_lab::FileKey;
 
     pub use pxpl5_lab::{
-        NEAR_FIELDS, PREDICTORS, PathChoice, TRACKERS, diff, estimate, manifest, motion, near_edges, predictor, tracker,
+        NEAR_FIELDS, PREDICTORS, PathChoice, TRACKERS, diff, estimate, manifest, motion, near_edges, predictor,
+        tracker, volumes, walks,
     };
 }

@@ -223,7 +223,7 @@ pub mod device {
 /// Names that most programs with this crate need: `use pxpl5::prelude::*`.
 pub mod prelude {
     #[cfg(feature = "lab")]
-    pub use crate::laboratory::{ExperimentFile, Plan, WhatIf, in_parallel, registry, what_if};
+    pub use crate::laboratory::{ExperimentFile, Plan, Study, WhatIf, WhatIfQuery, in_parallel, registry};
     pub use crate::scene::{self, Scene};
     pub use crate::tracking::Pose;
     pub use crate::tracking::motion::{Motion, Recording, from_fn};

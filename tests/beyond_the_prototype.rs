@@ -5,7 +5,7 @@ use pxpl5::limit::LimitQuery;
 use pxpl5::scene::builtin;
 use pxpl5::{
     Experiment, ExperimentFile, MachineConfig, Measured, Outcome, Pixels, RegionBinning, RenderingControl, Slats,
-    TestScene,
+    Study, TestScene,
 };
 
 fn run(slats: Slats, scene: &str) -> Outcome {
@@ -18,7 +18,7 @@ fn limit(gps: usize, renderers: usize, slats: Slats, scene: TestScene) -> u32 {
     let config = MachineConfig { n_gps: gps, n_renderers: renderers, ..MachineConfig::slats() };
     let mut query = LimitQuery::of_papers(config, slats).expect("Slats is known");
     query.criterion.scene = scene;
-    query.search().expect("it runs").triangles
+    query.run(&mut ()).expect("it runs").triangles
 }
 
 #[test]

@@ -12,7 +12,7 @@ use pxpl5::tracking::view::Hmd;
 use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
     Aim, Experiment, ExperimentFile, Eye, Head, HeadPlace, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan,
-    Raster, Viewpoint,
+    Raster, Study, Viewpoint,
 };
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ fn an_experiment_file_gives_the_same_numbers_as_the_comparison() {
     ];
     let names = rows.iter().map(|(name, ..)| (*name).to_owned()).collect();
     let query = CompareQuery { only: RowChoice::Named(names), seeds: vec![1], ..CompareQuery::new(file(&shared)) };
-    let comparison = query.run(|_, _| ()).expect("in range");
+    let comparison = query.run(&mut ()).expect("in range");
     for (name, pipeline, raster) in rows {
         let mut own = vec![("pipeline", pipeline), ("head.raster", raster)];
         own.extend((name == "vdrt").then_some(("binning", "touched")));

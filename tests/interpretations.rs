@@ -2,7 +2,7 @@
 //! pictures and agree with the closed form.
 
 use crate::support;
-use pxpl5::figures::{Bench, Interpretation, ROOM};
+use pxpl5::figures::{FigureSettings, Interpretation, ROOM};
 use pxpl5::scene::{HeadMotion, HeadPath, Scene, Sway, builtin};
 use pxpl5::{
     Experiment, ExperimentError, Eye, FinishedRegions, Level, MachineConfig, Measured, Outcome, Pixels,
@@ -22,7 +22,7 @@ fn rules() -> Vec<(u64, FinishedRegions)> {
 fn with_stored_regions_and_a_master_that_does_not_wait_the_latency_is_three_fields() {
     // TR94 derives the value: TRANSFORM begins when COPY of the third previous eye has ended, and COPY never pauses.
     // This gives three times 15.6 ms of COPY, or 16.68 ms each at 30 Hz.
-    let theory = Bench::new(Level::Transaction).measure("3").expect("it runs").value;
+    let theory = FigureSettings::new(Level::Transaction).measure("3").expect("it runs").value;
     assert!((theory - 3.0 * FIELD_MS).abs() < 0.3, "{theory}");
 }
 
@@ -30,7 +30,7 @@ fn with_stored_regions_and_a_master_that_does_not_wait_the_latency_is_three_fiel
 #[test]
 fn the_closed_form_agrees_with_the_simulation_under_every_rule_of_the_master() {
     // All rules share a cache of runs. A rule reuses a run of another rule only if no store was full in this run.
-    let benches = [Level::Analytic, Level::Transaction].map(|level| Bench::new(level).with_mig(2, 60));
+    let benches = [Level::Analytic, Level::Transaction].map(|level| FigureSettings::new(level).with_mig(2, 60));
     let step = support::sample_or_all(3, 1);
     rules().into_par_iter().step_by(step).for_each(|(kept, finished)| {
         let of_rule = Interpretation { kept, finished, ..Interpretation::USUAL };

@@ -14,7 +14,7 @@ use pxpl5::tracking::tracker::{TrackerConfig, TrackerFault};
 use pxpl5::{
     Aim, Budget, Experiment, ExperimentFile, Frameless, Head, Interpolation, Jitp, LatencyCurve, MachineConfig,
     Measured, Outcome, Percentiles, PeriodNumber, Pipeline, PipelineSettings, PixelErrors, Pixels, Registration,
-    RenderingControl, Showing, Slats, Viewpoint,
+    RenderingControl, Showing, Slats, Study, Viewpoint,
 };
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -232,7 +232,7 @@ fn fields_with_late_lines_are_counted_as_missed() {
 fn possible_in_a_line(preset: &str) -> u32 {
     let config = MachineConfig::preset(preset).expect("listed");
     let query = LimitQuery::of_papers(config, Jitp::new(Viewpoint::Strip, true)).expect("a pipeline of the papers");
-    query.search_triangles().expect("it runs on that machine")
+    LimitQuery { looks_above: false, ..query }.run(&mut ()).expect("it runs on that machine").triangles
 }
 
 #[test]
@@ -370,7 +370,7 @@ fn every_pipeline_continues_when_the_tracker_fails() {
 
 #[test]
 fn a_comparison_has_all_pipelines_and_just_in_time_pixels_have_the_smallest_error() {
-    let all = comparison(support::sample_or_all(48, 90)).run(|_, _| ()).expect("enough fields");
+    let all = comparison(support::sample_or_all(48, 90)).run(&mut ()).expect("enough fields");
     let names: Vec<_> = all.pipelines.iter().map(|row| row.pipeline.as_str()).collect();
     println!("{names:?}");
     assert_eq!(names.len(), 30);
@@ -415,6 +415,6 @@ fn incomparable_settings_are_refused_with_the_expected_values() {
         let error = motion(text).err().map(|error| error.to_string()).unwrap_or_default();
         assert!(error.contains(says), "{text}: {error}");
     }
-    let error = comparison(3).run(|_, _| ()).expect_err("too few");
+    let error = comparison(3).run(&mut ()).expect_err("too few");
     assert!(error.to_string().contains("found 3"), "{error}");
 }

@@ -5,46 +5,54 @@
 //! new measurements; by night (PXPL5_ALL_CASES) the tests measure them.
 
 use crate::support::runs_all_cases;
-use pxpl5::Level;
 use pxpl5::figures::{
-    Alternatives, Basis, Bench, Documents, FigureRow, Figures, Varied, all, at_all_levels, documents,
+    AlternativeQuery, Basis, Documents, FigureQuery, FigureRow, FigureSettings, Figures, Varied, all, at_all_levels,
+    documents,
 };
 use pxpl5_sim::figures::column::{PUBLISHED, SIMULATED, error};
+use pxpl5::{Level, Study, Watcher};
 use std::collections::BTreeSet;
+use std::fmt::Display;
 use std::ops::Deref;
 use std::sync::LazyLock;
-use std::sync::atomic::{AtomicU64, Ordering};
 
-static BENCH: LazyLock<Bench> = LazyLock::new(|| {
-    let bench = Bench::new(Level::Transaction);
-    if runs_all_cases() { bench } else { bench.without_intervals() }
-});
 static FIGURES: LazyLock<Measured> = LazyLock::new(Measured::all);
 static DOCUMENTS: LazyLock<Documents> = LazyLock::new(|| {
-    let alternatives = Alternatives::run(&BENCH, |_, _| {}).expect("every experiment runs on its preset");
-    documents(&FIGURES, &alternatives)
+    let query = AlternativeQuery { settings: FigureSettings::new(Level::Transaction) };
+    documents(&FIGURES, &query.run(&mut ()).expect("every experiment runs on its preset"))
 });
 
 /// All figures, and what was reported while they were measured.
 struct Measured {
     figures: Figures,
+    reports: Reports,
+}
+
+#[derive(Default)]
+struct Reports {
     /// Reported rows with the titles of their groups, in the order of the reports.
-    reported: Vec<(&'static str, FigureRow)>,
-    /// Number of reports of progress, and the number of all steps in the last report.
-    steps: [u64; 2],
+    rows: Vec<(&'static str, String)>,
+    /// Numbers of finished steps and of all steps, in the order of the reports.
+    steps: Vec<[u64; 2]>,
+}
+
+impl Watcher for Reports {
+    fn progress(&mut self, done: u64, of: u64) {
+        self.steps.push([done, of]);
+    }
+
+    fn row(&mut self, table: &'static str, row: &dyn Display) {
+        self.rows.push((table, row.to_string()));
+    }
 }
 
 impl Measured {
     fn all() -> Self {
-        let (reports, of) = (AtomicU64::new(0), AtomicU64::new(0));
-        let finished = |_, all| {
-            reports.fetch_add(1, Ordering::Relaxed);
-            of.store(all, Ordering::Relaxed);
-        };
-        let mut reported = Vec::new();
-        let figures = Figures::run(&BENCH, finished, |title, row| reported.push((title, row.clone())));
-        let figures = figures.expect("every experiment runs on its preset");
-        Self { figures, reported, steps: [reports, of].map(AtomicU64::into_inner) }
+        let query =
+            FigureQuery { settings: FigureSettings::new(Level::Transaction), intervals: runs_all_cases(), only: Vec::new() };
+        let mut reports = Reports::default();
+        let figures = query.run(&mut reports).expect("every experiment runs on its preset");
+        Self { figures, reports }
     }
 }
 
@@ -84,12 +92,17 @@ fn within(id: &str, low: f64, high: f64) {
 #[test]
 fn rows_are_reported_once_in_the_order_of_the_tables() {
     let rows = FIGURES.groups.iter().flat_map(|group| group.rows.iter().map(|row| (group.title, row)));
-    // Rows are reported before the intervals are computed.
-    let bare = |row: &FigureRow| format!("{:?}", FigureRow { interval: None, analytic: None, ..row.clone() });
+    // Rows of Pixel-Planes 5 are reported before their intervals are computed.
+    let bare = |row: &FigureRow| FigureRow { interval: None, analytic: None, ..row.clone() }.to_string();
     let expected: Vec<_> = rows.map(|(title, row)| (title, bare(row))).collect();
-    let reported: Vec<_> = FIGURES.reported.iter().map(|(title, row)| (*title, bare(row))).collect();
-    assert_eq!(reported, expected);
-    assert_eq!(FIGURES.steps[0], FIGURES.steps[1], "each step is reported once");
+    assert_eq!(FIGURES.reports.rows, expected);
+}
+
+#[test]
+fn every_step_is_reported_once() {
+    let steps = &FIGURES.reports.steps;
+    let all = steps.len() as u64 - 1;
+    assert_eq!(*steps, (0..=all).map(|done| [done, all]).collect::<Vec<_>>());
 }
 
 #[test]
@@ -292,9 +305,9 @@ fn all_figures_of_rendering_control_and_slats_but_two_are_within_reach_of_some_p
 
 #[test]
 fn the_analytic_level_agrees_with_the_transaction_level() {
-    let bench = Bench::new(Level::Analytic).with_mig(6, 150);
+    let settings = FigureSettings::new(Level::Analytic).with_mig(6, 150);
     for row in by_formula() {
-        let value = bench.measure(row.id).expect("it runs").value;
+        let value = settings.measure(row.id).expect("it runs").value;
         assert!((value / row.simulated - 1.0).abs() < 0.04, "figure {}: {value} and {}", row.id, row.simulated);
     }
 }

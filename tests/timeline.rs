@@ -1,8 +1,11 @@
 //! Tests that timelines agree with the simulated run.
 
+#[path = "../examples/figures/list.rs"]
+mod list;
+
 use crate::support::video;
+use list::PIPELINE_FIGURES;
 use proptest::prelude::*;
-use pxpl5::pipeline_figures::PIPELINE_FIGURES;
 use pxpl5::views::timeline::{Bar, MAX_FIELDS, Timeline, TimelineOptions, svg};
 use pxpl5::{
     Experiment, MachineConfig, Measured, Outcome, PeriodNumber, PictureNumber, Pixels, RenderingControl, Slats, scene,

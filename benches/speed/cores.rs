@@ -1,8 +1,9 @@
 //! Measures the gain from more cores: independent work on one thread and on all threads, in turns, in wall-clock time.
 
 use crate::timing::Fallible;
-use pxpl5::figures::{Bench, Figures};
-use pxpl5::sweep::{RunOptions, Shard, Store, Sweep, run};
+use pxpl5::Study;
+use pxpl5::figures::{FigureQuery, FigureSettings};
+use pxpl5::sweep::{RunOptions, Shard, Store, Sweep, SweepQuery};
 use pxpl5::{ExperimentFile, Level};
 use std::fmt::Write;
 use std::hint::black_box;
@@ -71,7 +72,7 @@ fn arithmetic(threads: usize) -> Fallible<()> {
 fn sweep(folder: &Path, threads: usize) -> Fallible<()> {
     let sweep = Sweep::new(ExperimentFile::parse(SPACE, "space")?)?;
     let mut store = Store::open(folder, sweep.header()?, false)?;
-    run(&sweep, &mut store, RunOptions { shard: Shard::ALL, threads }, |_| {})?;
+    SweepQuery::new(&sweep, &mut store, RunOptions { shard: Shard::ALL, threads }).run(&mut ())?;
     let failed = store.failed(Shard::ALL).count();
     drop(store);
     std::fs::remove_dir_all(folder)?;
@@ -80,6 +81,7 @@ fn sweep(folder: &Path, threads: usize) -> Fallible<()> {
 
 fn figures(threads: usize) -> Fallible<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    black_box(pool.install(|| Figures::run(&Bench::new(Level::Transaction), |_, _| {}, |_, _| {}))?);
+    let query = FigureQuery { settings: FigureSettings::new(Level::Transaction), intervals: true, only: Vec::new() };
+    black_box(pool.install(|| query.run(&mut ()))?);
     Ok(())
 }

@@ -200,10 +200,10 @@ class RigLatencyData(TypedDict):
     """A latency over the passes of the pendulum, milliseconds."""
 
     n: int
-    mean_ms: float
-    sd_ms: float | None
-    min_ms: float
-    max_ms: float
+    mean: float
+    sd: float | None
+    min: float
+    max: float
 
 
 class RigSideData(TypedDict):
@@ -215,12 +215,20 @@ class RigSideData(TypedDict):
 
 
 class RigData(TypedDict):
-    """A measurement with the pendulum rig."""
+    """A measurement with the pendulum rig, as ``pxpl5 rig --json`` prints it."""
 
-    outside: RigSideData
-    inside: RigSideData
+    schema: str
+    pipeline: str
+    machine: str
+    overrides: dict[str, object]
+    tracker: str
+    seed: int
+    photodiode_line: int
+    n: int
+    outside_ms: RigSideData
+    inside_ms: RigSideData
     outside_less_inside_ms: float
     tracking_bound_ms: float
+    rendering_early_bound_ms: float
     rendering_bound_ms: float
-    rendering_early_ms: float
     agrees: bool

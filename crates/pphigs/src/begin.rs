@@ -5,13 +5,13 @@
 //! that a kernel needs for each structure. The kernels nevertheless read parameters that the simulator computes. The
 //! parameters of the code and of the simulator are equal in every word (tests/begin.rs).
 
-use crate::code::{Programs, kept};
 use crate::cost::TransformCost;
 use crate::layout::{BEGIN_CODE, BIN_TABLE, MESSAGE, MODELS, MODELS_END, PARAMETERS, SPHERE_PARAMETERS, STACK};
 use crate::list::{DisplayList, Share};
 use crate::picture::{Picture, RegionBinning};
 use crate::placed::PlacedStructure;
 use crate::placing::place_cached;
+use crate::programs::{Programs, kept};
 use crate::view::{FrameView, MAX_EDITS};
 use glam::Mat4;
 use i860::Program;

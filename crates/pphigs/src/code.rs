@@ -13,6 +13,7 @@ use crate::list::{PrimitiveCounts, Share};
 use crate::pass::Pass;
 use crate::picture::{RegionBinning, Shading};
 use crate::placed::PlacedStructure;
+use crate::programs::{Programs, kept};
 use crate::view::DisplayStructure;
 use i860::Program;
 use pxpl5_geometry::kernel::{
@@ -24,10 +25,8 @@ use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::{Command, PhongSphereCommand, PhongTriangleCommand, SphereCommand, TriangleCommand};
 use pxpl5_sim::Span;
 use pxpl5_wire::{RegionId, Word};
-use std::collections::HashMap;
-use std::hash::Hash;
 use std::ops::Range;
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex};
 
 pub(crate) const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
 pub(crate) const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
@@ -531,17 +530,6 @@ impl Call {
 
 pub(crate) const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
     SphereKernel { surface: kernel.surface, picture: kernel.picture, keeps_boxes: kernel.keeps_boxes }
-}
-
-pub(crate) type Programs<K> = LazyLock<Mutex<HashMap<K, Arc<Program>>>>;
-
-pub(crate) fn kept<K: Copy + Eq + Hash>(
-    programs: &Programs<K>,
-    kernel: K,
-    assembled: impl FnOnce(K) -> Program,
-) -> Arc<Program> {
-    let mut programs = programs.lock().unwrap_or_else(PoisonError::into_inner);
-    Arc::clone(programs.entry(kernel).or_insert_with(|| Arc::new(assembled(kernel))))
 }
 
 /// Name and source of the code that calls a kernel for each group of successive marked primitives.

@@ -4,11 +4,12 @@
 //! lines, the i860 code then makes commands for a view between these views. The sources are `ends.s` and `compiled.s`
 //! of `pxpl5-geometry`. No paper describes the code; kernels/between_rules.md states its rules.
 
-use crate::code::{BUDGET, Next, Programs, TRIANGLE_BYTES, budget, kept};
+use crate::code::{BUDGET, Next, TRIANGLE_BYTES, budget};
 use crate::layout::{BLENDED, BLENDED_ELEMENTS, CODE, DISPLAY_LIST, PARAMETERS, STACK};
 use crate::list::Share;
 use crate::pass::Pass;
 use crate::picture::Picture;
+use crate::programs::{Programs, kept};
 use crate::view::FrameView;
 use crate::windows::MemoryPart;
 use i860::Program;

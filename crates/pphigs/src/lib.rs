@@ -43,6 +43,7 @@ mod pass;
 mod picture;
 mod placed;
 mod placing;
+mod programs;
 mod sending;
 mod view;
 mod windows;

@@ -62,7 +62,7 @@ pub fn add_closed_forms(registry: &mut Registry) {
 /// reports the head's pose.
 fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, ExperimentError> {
     experiment.config().check()?;
-    if experiment.tracked_head().is_some() {
+    if experiment.head.is_some() {
         return Err(no_form("a head with a tracker").into());
     }
     let pipeline: &dyn Any = experiment.pipeline().as_ref();
@@ -85,7 +85,7 @@ fn primitives_in_time(
     summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
 ) -> Option<u64> {
     let (least, most) = ESTIMATED_FIELDS;
-    let plain = experiment.clone().without_head().fields(experiment.length().clamp(least, most));
+    let plain = experiment.clone().without_head().fields(experiment.fields.clamp(least, most));
     let is_in_time = |scene: &Arc<Scene>| is_in_time(&summary(&plain.clone().with_scene(Arc::clone(scene))).ok()?);
     let whole = Arc::clone(plain.scene());
     let mut denser = Arc::clone(&whole);

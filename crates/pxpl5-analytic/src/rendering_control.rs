@@ -388,7 +388,7 @@ fn earliest(times: &[f64]) -> usize {
 /// Returns [`ExperimentError::Scene`] if the scene has no primitives.
 pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentError> {
     let still = experiment.scene().structures().iter().all(|s| s.frame == pxpl5_scene::Frame::Head);
-    let frames = (experiment.length() / 2).max(1);
+    let frames = (experiment.fields / 2).max(1);
     let video = video_of(experiment.config())?;
     let times: Vec<u64> =
         if still { vec![0] } else { (0..frames).map(|frame| video.retrace(PeriodNumber(2 * frame)).0).collect() };
@@ -408,7 +408,7 @@ fn primitives_in_time(experiment: &Experiment) -> Option<u64> {
 
 fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     let (model, frames) = frames_of(experiment)?;
-    Ok(model.summary(&frames, experiment.length()))
+    Ok(model.summary(&frames, experiment.fields))
 }
 
 fn fields_needed(experiment: &Experiment) -> Option<u64> {

@@ -139,7 +139,7 @@ fn primitives_in_time(experiment: &Experiment) -> Option<u64> {
 
 fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     let (model, times) = steady_field(experiment)?;
-    Ok(summary(experiment.length(), &model, times))
+    Ok(summary(experiment.fields, &model, times))
 }
 
 /// Number of fields before the first evaluated picture. In two of these fields, the host's first view is sent and

@@ -5,6 +5,7 @@ use crate::plan::WalkPlan;
 use crate::report::ArpReport;
 use crate::tears::TearWidths;
 use pxpl5_scene::Scene;
+use pxpl5_sim::Watcher;
 use pxpl5_sim::parameters::PathSettings;
 use serde::Serialize;
 
@@ -65,9 +66,9 @@ pub struct ArpComparison {
     pub failed: Vec<(&'static str, String)>,
 }
 
-/// Simulates the walk with every variant. Calls `finished` with the number of finished variants and the number of all
-/// variants.
-pub fn compare(scene: &Scene, plan: &WalkPlan, finished: impl Fn(u64, u64)) -> ArpComparison {
+/// Simulates the walk with every variant. After a stop, the result has the variants that were finished.
+pub fn compare(scene: &Scene, plan: &WalkPlan, watcher: &mut dyn Watcher) -> ArpComparison {
+    let mut stop = watcher.stop();
     let mut comparison = ArpComparison {
         schema: "pxpl5-arp-comparison/1",
         scene: scene.name().to_owned(),
@@ -80,11 +81,15 @@ pub fn compare(scene: &Scene, plan: &WalkPlan, finished: impl Fn(u64, u64)) -> A
         // Failed variants are reported, and the comparison continues.
         let mut plan = plan.clone();
         let chosen = choices.iter().try_for_each(|(path, value)| plan.set(path, value, variant));
-        match chosen.and_then(|()| WalkOutcome::of(scene, &plan, |_, _| {})) {
+        let outcome = chosen.and_then(|()| WalkOutcome::of(scene, &plan, &mut stop));
+        if stop.is_stopped() {
+            break;
+        }
+        match outcome {
             Ok(outcome) => comparison.rows.push(ComparedRow::of(variant, &outcome)),
             Err(error) => comparison.failed.push((variant, error.to_string())),
         }
-        finished(done, variant_count());
+        watcher.progress(done, variant_count());
     }
     comparison
 }

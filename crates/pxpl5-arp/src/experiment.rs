@@ -9,6 +9,7 @@ use crate::walk::{WalkTally, at_frames, walked};
 use crate::walk_faces::WalkFaces;
 use crate::world::World;
 use pxpl5_scene::Scene;
+use pxpl5_sim::Watcher;
 use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -32,38 +33,40 @@ pub struct WalkReport {
     pub settings: BTreeMap<String, String>,
 }
 
-/// Inputs and results of a completed walk of the viewer.
-#[derive(Clone, Debug)]
+/// Inputs and results of a completed walk of the viewer. As JSON, it is its report.
+#[derive(Clone, Debug, Serialize)]
 pub struct WalkOutcome {
     /// The scene after it was cut at the borders of cells.
+    #[serde(skip)]
     pub world: World,
+    #[serde(skip)]
     pub path: Walk,
+    #[serde(skip)]
     pub settings: WalkSettings,
+    #[serde(skip)]
     pub tally: WalkTally,
     /// Report of the viewer's walk. The report includes a view along the path at the end of the walk.
+    #[serde(flatten)]
     pub report: WalkReport,
 }
 
 impl WalkOutcome {
-    /// Simulates a walk. Calls `finished` with the number of finished frames and the number of all frames.
+    /// Simulates a walk. A stopped walk ends at its current frame.
     ///
     /// # Errors
     ///
     /// Returns a [`SettingError`] if a setting is invalid or the scene is not supported.
-    pub fn of(scene: &Scene, plan: &WalkPlan, finished: impl Fn(u64, u64)) -> Result<Self, SettingError> {
+    pub fn of(scene: &Scene, plan: &WalkPlan, watcher: &mut dyn Watcher) -> Result<Self, SettingError> {
         // Prepare the scene, the path and the segments.
         let settings = plan.settings()?;
         let scaled = (plan.walk.hall_scale != 1.0).then(|| scaled(scene, plan.walk.hall_scale)).transpose()?;
         let scene = scaled.as_ref().unwrap_or(scene);
         let path = path_of(scene, plan.route())?;
         let world = World::new(scene, settings.numbers.cell_m)?;
-        let frames = plan.walk.frames;
         let eye = at_frames(&path, plan.walk.m_per_s, settings.numbers.frame_hz);
         // Walk, and draw the view at the end.
-        let (simulation, tally) = walked(&world, &settings, frames, |frame| {
-            finished(frame + 1, frames);
-            eye(frame)
-        })?;
+        let (simulation, tally) = walked(&world, &settings, plan.walk.frames, &eye, watcher)?;
+        let frames = tally.frames;
         let faces = WalkFaces::of(&simulation)?;
         let (_, stats) =
             faces.seen(ahead(&path, plan.walk.m_per_s * (frames - 1) as f64 / settings.numbers.frame_hz))?;

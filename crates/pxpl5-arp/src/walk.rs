@@ -5,6 +5,7 @@ use crate::simulation::{FrameOutcome, Simulation};
 use crate::tears::Tears;
 use crate::world::World;
 use glam::DVec3;
+use pxpl5_sim::Watcher;
 use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
@@ -106,7 +107,7 @@ pub fn walk(
     frames: u64,
     eye: impl Fn(u64) -> DVec3,
 ) -> Result<WalkTally, SettingError> {
-    Ok(walked(world, settings, frames, eye)?.1)
+    Ok(walked(world, settings, frames, eye, &mut ())?.1)
 }
 
 pub(crate) fn walked<'a>(
@@ -114,6 +115,7 @@ pub(crate) fn walked<'a>(
     settings: &WalkSettings,
     frames: u64,
     eye: impl Fn(u64) -> DVec3,
+    watcher: &mut dyn Watcher,
 ) -> Result<(Simulation<'a>, WalkTally), SettingError> {
     let mut simulation = Simulation::new(world, settings)?;
     let mut tally = WalkTally {
@@ -125,9 +127,14 @@ pub(crate) fn walked<'a>(
         widest: Vec::new(),
         outcomes: Vec::new(),
     };
+    let stop = watcher.stop();
     for frame in 0..frames {
         let outcome = simulation.frame(eye(frame))?;
         tally.count(&simulation, outcome);
+        watcher.progress(frame + 1, frames);
+        if stop.is_stopped() {
+            break;
+        }
     }
     tally.moved_objects = simulation.moved_objects();
     Ok((simulation, tally))

@@ -1,14 +1,12 @@
 //! The command `pxpl5 arp`, with experiments on address recalculation in which a viewer walks through a scene.
 
 mod compare;
-mod figures;
 mod interpretations;
 mod run;
-mod settings;
+pub(crate) mod settings;
 mod texel;
 
 use crate::error::CliError;
-use crate::figures::{ADDRESS_RECALCULATION, FiguresArgs};
 use clap::{Args, Subcommand};
 
 /// Walk through a scene with a display that follows the head's rotation (address recalculation, priority rendering,
@@ -35,9 +33,6 @@ enum ArpCommand {
     Run(run::RunArgs),
     /// Compare all policies and warps on one walk through a scene.
     Compare(compare::CompareArgs),
-    /// Former spelling of `pxpl5 figures --group address-recalculation`.
-    #[command(hide = true)]
-    Figures(FiguresArgs),
     /// Rank the possible answers to the questions that the paper on priority rendering leaves open about its table 1.
     /// As a check, each update rate of the table is left out in turn.
     Interpretations(interpretations::InterpretationsArgs),
@@ -45,15 +40,10 @@ enum ArpCommand {
     Texel(texel::TexelArgs),
 }
 
-pub(crate) fn figures(args: &FiguresArgs) -> Result<(), CliError> {
-    figures::run(args)
-}
-
 pub(crate) fn run(args: ArpArgs) -> Result<(), CliError> {
     match args.command {
         ArpCommand::Run(args) => run::run(args),
         ArpCommand::Compare(args) => compare::run(args),
-        ArpCommand::Figures(args) => figures::run(&args.of_former("arp", ADDRESS_RECALCULATION)),
         ArpCommand::Interpretations(args) => interpretations::run(args),
         ArpCommand::Texel(args) => texel::run(args),
     }

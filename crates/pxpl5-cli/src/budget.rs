@@ -2,9 +2,10 @@
 //! is stopped early if its first fields show that the whole run would exceed a limit.
 
 use crate::error::CliError;
-use crate::estimate::{Estimate, RunWork, Study};
 use crate::numbers::{count_of, whole};
 use clap::Args;
+use pxpl5::Study;
+use pxpl5::lab::estimate::{Estimate, RunWork};
 use std::cell::OnceCell;
 use std::time::Instant;
 
@@ -42,7 +43,7 @@ const MIN_EXTRAPOLATED_SECONDS: f64 = 0.5;
 const MIN_EXTRAPOLATED_BYTES: f64 = 50e6;
 
 #[derive(Clone, Debug)]
-pub(crate) struct Watch {
+pub(crate) struct CostMonitor {
     budget: BudgetArgs,
     fields: u64,
     begun: Instant,
@@ -65,17 +66,8 @@ impl BudgetArgs {
         self.admit_estimate(work.estimate(), "simulate fewer fields")
     }
 
-    /// Returns an error if the estimate of a set of runs exceeds the budget, before the first run starts. The estimated
-    /// time is the sum of the times of all runs divided by `threads`. The estimated memory is the memory of the largest
-    /// run times `threads`.
-    pub(crate) fn admit_all(&self, runs: impl IntoIterator<Item = RunWork>, threads: usize) -> Result<(), CliError> {
-        let whole = Estimate::of_all(runs.into_iter().map(|work| work.estimate()), threads);
-        self.admit_estimate(whole, "simulate fewer fields")
-    }
-
-    /// Returns an error if a fixed set of experiments would exceed the budget. `advice` is a text about ways to reduce
-    /// the work.
-    pub(crate) fn admit_study(&self, study: Study, advice: &str) -> Result<(), CliError> {
+    /// Returns an error if a study would exceed the budget. `advice` is a text about ways to reduce the work.
+    pub(crate) fn admit_study(&self, study: &impl Study, advice: &str) -> Result<(), CliError> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         self.admit_estimate(study.estimate(threads), advice)
     }
@@ -90,12 +82,12 @@ impl BudgetArgs {
         }
     }
 
-    pub(crate) fn watch(self, fields: u64) -> Watch {
-        Watch { budget: self, fields, begun: Instant::now(), bytes_before: resident_bytes(), first: OnceCell::new() }
+    pub(crate) fn monitor(self, fields: u64) -> CostMonitor {
+        CostMonitor { budget: self, fields, begun: Instant::now(), bytes_before: resident_bytes(), first: OnceCell::new() }
     }
 }
 
-impl Watch {
+impl CostMonitor {
     /// Returns an error if the whole run would exceed the budget. The cost of the run is extrapolated from the first
     /// `done` fields. `planned` is the memory in bytes that the output will take after the run, for these fields.
     pub(crate) fn check(&self, done: u64, planned: f64) -> Result<(), String> {
@@ -194,9 +186,9 @@ mod tests {
         assert_eq!(refusal(90.0, 1.0), None, "100 s in all");
         assert!(refusal(91.0, 1.0).is_some_and(|reason| reason.contains("take 101 s, more than 100")));
         assert!(refusal(101.0, 0.0).is_some(), "too much already");
-        let watch = BUDGET.watch(1_000_000);
+        let monitor = BUDGET.monitor(1_000_000);
         std::thread::sleep(std::time::Duration::from_secs_f64(1.5 * MIN_EXTRAPOLATED_SECONDS));
-        assert_eq!(watch.check(1, 0.0), Ok(()), "what the first field needed took no 750,000 s");
+        assert_eq!(monitor.check(1, 0.0), Ok(()), "what the first field needed took no 750,000 s");
     }
 
     #[cfg(target_os = "linux")]

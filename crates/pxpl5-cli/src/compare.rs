@@ -2,27 +2,25 @@
 
 mod drawings;
 mod gallery;
-mod progress;
 mod table;
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::RunWork;
 use crate::interrupt;
 use crate::numbers::{confidence, count_of, whole};
 use crate::output::OutputFolder;
+use crate::progress::Progress;
 use crate::run::MIN_COVERED;
-use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal::{self, answer, json_text};
-use progress::CompareProgress;
 use pxpl5::compare::{
-    CONFIDENCE, CompareQuery, CompareStore, Comparison, ComparisonRow, MAX_SEEDS, MIN_SEEDS, Precision, ROWS_FOLDER,
-    RecordedLength, RowChoice, UntilPrecise, edge_pictures,
+    CONFIDENCE, CompareQuery, Comparison, ComparisonRow, MAX_SEEDS, MIN_SEEDS, Precision, ROWS_FOLDER, RecordedLength,
+    RowChoice, UntilPrecise, edge_pictures,
 };
 use pxpl5::views::png_bytes;
-use pxpl5::{ExperimentFile, MachineConfig, StopFlag};
+use pxpl5::{ExperimentFile, MachineConfig};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Arguments of `pxpl5 compare`.
 #[derive(clap::Args, Debug)]
@@ -121,22 +119,29 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let (limits, pictures) = (args.limits, folder.is_some());
     let until = args.until_precision.map(|width| UntilPrecise { width, max_seeds: args.max_seeds as usize });
     let CompareArgs { causes, predictors, confidence, .. } = args;
-    let mut query = CompareQuery { shared, only, seeds, limits, causes, predictors, pictures, confidence, until };
+    let mut query =
+        CompareQuery { shared, only, seeds, limits, causes, predictors, pictures, confidence, until, store: None };
     set_length(&mut query, args.quiet)?;
     terminal::warn(query.changes()?.as_slice(), args.quiet);
-    admit(args.budget, &query, args.quiet)?;
+    args.budget.admit_study(&query, "simulate fewer fields")?;
     // The store keeps finished rows, so that an interruption loses only the rows in progress.
-    let rows_of = |out: &PathBuf| query.open_store(&out.join(ROWS_FOLDER), args.resume);
-    let store = args.out.as_ref().map(rows_of).transpose()?;
-    let found = store.as_ref().map_or(0, CompareStore::found);
-    if store.is_some() {
-        interrupt::keeps("the finished rows are kept; the same command with --resume continues".to_owned());
+    if let Some(out) = &args.out {
+        query.store = Some(Arc::new(query.open_store(&out.join(ROWS_FOLDER), args.resume)?));
     }
-    let progress = CompareProgress::new(found, query.rows()?.len(), args.quiet);
-    let (finished, ended) = (|done, of| progress.finished(done, of), |row: &ComparisonRow| progress.ended(row));
-    let comparison = query.run_into(store.as_ref(), &StopFlag::default(), finished, ended);
-    progress.clear();
-    let comparison = comparison?;
+    let found = query.store.as_ref().map_or(0, |store| store.found());
+    let (mut done, rows) = (found, query.rows()?.len());
+    let progress = Progress::new("runs", args.quiet).on_row(|bar, _, row| {
+        done += 1;
+        bar.line(&format!("pxpl5: row {done} of {rows}, {row}; {}\n", bar.left()));
+    });
+    let progress = match query.store {
+        Some(_) => progress.keeping("the finished rows are kept; the same command with --resume continues"),
+        None => progress,
+    };
+    if found > 0 {
+        progress.line(&format!("pxpl5: {found} of {rows} rows were finished before\n"));
+    }
+    let comparison = progress.run(&query)?;
     terminal::warn(&comparison.warnings, args.quiet);
     terminal::warn(out_of_view(&comparison).as_slice(), args.quiet);
     let near = comparison
@@ -146,6 +151,9 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     terminal::warn(&near.collect::<Vec<_>>(), args.quiet);
     // Write all files, then publish the folder in one step.
     let json = json_text(&comparison)?;
+    if interrupt::flag().is_stopped() {
+        return answer(args.json, args.quiet, &json, || table::text(&comparison));
+    }
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;
         folder.put("experiment.toml", query.file_in(folder.path())?.as_bytes())?;
@@ -170,19 +178,6 @@ fn out_of_view(comparison: &Comparison) -> Option<String> {
             MIN_COVERED * 100.0
         )
     })
-}
-
-fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), CliError> {
-    // Seeds may be added up to the maximum, so the budget must cover the maximum.
-    let seeds = query.until.map_or(0, |until| until.max_seeds).max(query.seeds.len());
-    let mut runs = Vec::new();
-    for (row, plan) in query.plans()?.into_iter().enumerate() {
-        // All rows have the same scene, so its warnings are printed once.
-        let scene = scenes::load(&plan, quiet || row > 0)?;
-        let work = RunWork::of(&plan, &scene, true);
-        runs.extend(std::iter::repeat_n(work, seeds));
-    }
-    budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))
 }
 
 fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {

@@ -11,7 +11,6 @@ mod words;
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::RunWork;
 use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
@@ -19,6 +18,7 @@ use crate::too_heavy::too_heavy;
 use clap::Args;
 use command::split;
 use pxpl5::Workstation;
+use pxpl5::lab::estimate::RunWork;
 use pxpl5_sim::parameters::text_of;
 use session::Session;
 use std::fmt::Display;
@@ -56,9 +56,10 @@ pub(crate) fn run(args: DebugArgs) -> Result<(), CliError> {
     let plan = args.settings.gather()?.resolve()?;
     warn(&plan.warnings(), args.quiet);
     let scene = scenes::load(&plan, args.quiet)?;
-    args.budget.admit(&RunWork::of(&plan, &scene, true))?;
     warn(too_heavy(&plan, &scene, plan.fields).as_slice(), args.quiet);
-    let experiment = plan.experiment(scene).host(Workstation::new()).record_traffic(true);
+    let experiment = plan.experiment(scene);
+    args.budget.admit(&RunWork::of(&experiment, true))?;
+    let experiment = experiment.host(Workstation::new()).record_traffic(true);
     let mut session = Session::new(experiment.stepper()?);
     if let Some(number) = args.picture {
         print(&session.execute_line(&format!("run until picture {number}")).map_err(CliError::failure)?)?;

@@ -4,7 +4,8 @@ use crate::error::CliError;
 use crate::report::files::Files;
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::lab::diff::{Changed, Differences, diff};
+use pxpl5::Study;
+use pxpl5::lab::diff::{Changed, DiffQuery, Differences};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -44,7 +45,8 @@ struct PictureDifference {
 }
 
 pub(crate) fn run(args: DiffArgs) -> Result<(), CliError> {
-    let mut found = diff(&report(&args.a)?, &report(&args.b)?);
+    let study = DiffQuery { reports: [report(&args.a)?, report(&args.b)?] };
+    let mut found = study.run(&mut ())?;
     found.results.retain(|changed| changed.percent().is_none_or(|percent| percent.abs() >= args.least));
     let pictures = pictures(&args.a, &args.b)?;
     if args.json {

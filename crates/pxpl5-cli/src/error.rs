@@ -8,6 +8,9 @@ const USAGE: u8 = 2;
 /// Exit code of a valid command that could not finish its work.
 const FAILURE: u8 = 1;
 
+/// Exit code of a command that was ended by Ctrl-C: 128 plus the number of the signal, as in shells.
+pub(crate) const INTERRUPTED: u8 = 130;
+
 /// Exit code if another process is writing into the folder (`EX_TEMPFAIL` of sysexits.h). The same command may succeed
 /// later.
 pub(crate) const BUSY: u8 = 75;
@@ -21,6 +24,10 @@ pub(crate) struct CliError {
 impl CliError {
     pub(crate) fn failure(message: impl Display) -> Self {
         Self { code: FAILURE, message: message.to_string() }
+    }
+
+    pub(crate) fn interrupted(message: impl Display) -> Self {
+        Self { code: INTERRUPTED, message: message.to_string() }
     }
 
     pub(crate) fn usage(message: impl Display) -> Self {
@@ -94,7 +101,8 @@ impl From<StudyError> for CliError {
         match error {
             StudyError::Setting(error) => error.into(),
             StudyError::File(error) => error.into(),
-            _ => Self::usage(error),
+            StudyError::Experiment(error) => error.into(),
+            _ => Self::failure(error),
         }
     }
 }

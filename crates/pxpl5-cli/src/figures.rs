@@ -1,91 +1,32 @@
 //! The command `pxpl5 figures`, which compares every published figure with a simulation.
 
-use crate::budget::BudgetArgs;
+mod address_recalculation;
+mod args;
+mod table;
+mod volumetric;
+
+pub(crate) use args::FiguresArgs;
+
 use crate::error::CliError;
-use crate::estimate::Study;
-use crate::interrupt;
 use crate::output::OutputFile;
-use crate::terminal::{print, print_error, progress};
-use crate::{arp, volume};
-use clap::Args;
+use crate::progress::Progress;
+use crate::terminal::print;
+use args::{ADDRESS_RECALCULATION, VOLUMETRIC};
 use pxpl5::Level;
 use pxpl5::figures::{
-    Alternatives, Basis, Bench, Documents, FigureRow, Figures, Headline, Measurement, TOPICS, all, documents,
+    AlternativeQuery, Alternatives, Basis, Documents, FigureQuery, FigureRow, FigureSettings, Figures, Headline,
+    TOPICS, all, documents,
 };
 use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
-use pxpl5_sim::figures::column::range;
-use pxpl5_sim::figures::significant;
 use serde_json::json;
 use std::fs;
-use std::path::{Path, PathBuf};
-
-/// Simulate every published figure, and compare the result with the published value.
-#[derive(Args, Debug, Default)]
-#[command(after_help = "Examples:
-  pxpl5 figures
-  pxpl5 figures --intervals              takes twice as long
-  pxpl5 figures --only 4,7,R1            these figures, without their intervals
-  pxpl5 figures --group rates            these figures, without their intervals
-  pxpl5 figures --json
-  pxpl5 figures --write ACCURACY.md --pages docs
-  pxpl5 figures --check ACCURACY.md      fails if the file is out of date
-  pxpl5 figures --chart errors.svg       errors with their intervals
-  pxpl5 figures --group address-recalculation --write docs/address-recalculation.md
-  pxpl5 figures --group volumetric --out out/figures    the paper's drawings, redrawn")]
-pub(crate) struct FiguresArgs {
-    /// Measure only the figures of one topic: rendering-control, slats, head-to-light, rates, jitp, trackers,
-    /// address-recalculation or volumetric. The last two have documents and pictures of their own.
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["only", "chart", "intervals", "pages"])]
-    group: Option<String>,
-    /// Print one JSON object.
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Write the document with all figures (ACCURACY.md) to this file.
-    #[arg(long, value_name = "FILE", conflicts_with = "check")]
-    pub(crate) write: Option<PathBuf>,
-    /// Fail if this file differs from the document that --write would write.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) check: Option<PathBuf>,
-    /// With --write or --check, write or check also interpretations.md and the chapter "Time" of numerics.md in this
-    /// folder.
-    #[arg(long, value_name = "DIR")]
-    pages: Option<PathBuf>,
-    /// Write the pictures of the group into this folder.
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Print also the interval of each figure while unpublished parameters vary.
-    #[arg(long)]
-    intervals: bool,
-    /// Write a chart of the errors and their intervals (SVG) to this file.
-    #[arg(long, value_name = "FILE")]
-    chart: Option<PathBuf>,
-    /// Measure only these figures, separated by commas. Each row is printed as soon as it is measured.
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with_all = ["write", "check", "json", "chart", "intervals"])]
-    only: Vec<String>,
-    /// Print nothing but errors and, with --json, the JSON object.
-    #[arg(long, short)]
-    pub(crate) quiet: bool,
-    #[command(flatten)]
-    budget: BudgetArgs,
-}
-
-impl FiguresArgs {
-    /// Returns the arguments of a former command, which measured one group. Prints a note with the new spelling.
-    pub(crate) fn of_former(self, former: &str, group: &str) -> Self {
-        print_error(&format!("pxpl5: note: `pxpl5 {former} figures` is now `pxpl5 figures --group {group}`\n"));
-        Self { group: Some(group.to_owned()), ..self }
-    }
-}
-
-/// Group of the papers on address recalculation.
-pub(crate) const ADDRESS_RECALCULATION: &str = "address-recalculation";
-/// Group of the paper on the volumetric display.
-pub(crate) const VOLUMETRIC: &str = "volumetric";
+use std::path::Path;
+use table::{fresh, titled};
 
 pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     match args.group.as_deref() {
-        Some(ADDRESS_RECALCULATION) => return arp::figures(&args),
-        Some(VOLUMETRIC) => return volume::figures(&args),
+        Some(ADDRESS_RECALCULATION) => return address_recalculation::run(&args),
+        Some(VOLUMETRIC) => return volumetric::run(&args),
         Some(name) => return of_group(name, &args),
         None if args.out.is_some() => {
             return Err(CliError::usage(format!("--out: expected --group {ADDRESS_RECALCULATION} or {VOLUMETRIC}")));
@@ -95,37 +36,23 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     if !args.only.is_empty() {
         return chosen(&args.only);
     }
+    let is_document = args.json || args.write.is_some() || args.check.is_some();
+    // The plain table leaves out the intervals, because a reader waits for it.
+    let intervals = is_document || args.chart.is_some() || args.intervals;
+    let settings = FigureSettings::new(Level::Transaction);
+    let query = FigureQuery { settings: settings.clone(), intervals, only: Vec::new() };
     // Open the output first, so that a bad path fails before the simulations.
-    args.budget.admit_study(Study::Figures, "measure some of them with --only")?;
+    args.budget.admit_study(&query, "measure some of them with --only")?;
     let file = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let chart_file = args.chart.as_deref().map(|path| OutputFile::open(path, "--chart")).transpose()?;
-    let is_document = args.json || args.write.is_some() || args.check.is_some();
-    let bench = Bench::new(Level::Transaction);
-    // The plain table leaves out the intervals, because a reader waits for it.
-    let has_intervals = is_document || args.chart.is_some() || args.intervals;
-    let bench = if has_intervals { bench } else { bench.without_intervals() };
     // Rows are printed as they come, unless the output needs their intervals or is JSON.
-    let mut printer = RowPrinter::default();
-    let mut printed = Ok(());
-    interrupt::keeps("nothing was written, and the rows that were printed are complete".to_owned());
-    let bar = progress(0, "figures", args.quiet);
-    let print_row = |title, row: &FigureRow| {
-        if !has_intervals && !args.quiet && printed.is_ok() {
-            printed = bar.above(|| printer.row(title, row));
-        }
-    };
-    let figures = Figures::run(&bench, |done, of| bar.advance(done, of), print_row).map_err(CliError::failure);
-    bar.clear();
-    let figures = figures?;
-    printed?;
+    let figures = measured(&query, args.quiet || intervals, args.quiet)?;
     let rows: Vec<FigureRow> = figures.rows().cloned().collect();
     chart_file.map(|file| file.write(chart(&rows).svg().as_bytes())).transpose()?;
     // Only the documents and the JSON output have the figures under other assumptions.
     if is_document {
-        let bar = progress(0, "figures under other assumptions", args.quiet);
-        let alternatives = Alternatives::run(&bench, |done, of| bar.advance(done, of)).map_err(CliError::failure);
-        bar.clear();
-        let alternatives = alternatives?;
+        let progress = Progress::new("figures under other assumptions", args.quiet);
+        let alternatives = progress.run(&AlternativeQuery { settings })?;
         let texts = documents(&figures, &alternatives);
         file.map(|file| file.write(texts.accuracy.as_bytes())).transpose()?;
         if let Some(folder) = &args.pages {
@@ -140,15 +67,28 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     if args.quiet {
         return Ok(());
     }
-    if has_intervals {
-        for group in &figures.groups {
-            group.rows.iter().try_for_each(|row| printer.row(group.title, row))?;
-        }
+    if intervals {
+        figures.groups.iter().try_for_each(|group| print(&titled(group.title, &group.rows)))?;
     }
-    printer.end_table()?;
-    print(&volume::figures_table()?)?;
+    volumetric::print_table()?;
     print(&format!("\n{}\n", figures.headline()))?;
-    if has_intervals { Ok(()) } else { print(WITHOUT_INTERVALS) }
+    if intervals { Ok(()) } else { print(WITHOUT_INTERVALS) }
+}
+
+/// Measures figures. Prints each row as soon as it is measured, unless `is_silent`.
+fn measured(query: &FigureQuery, is_silent: bool, is_quiet: bool) -> Result<Figures, CliError> {
+    let mut table = "";
+    let progress = Progress::new("figures", is_quiet);
+    if is_silent {
+        return progress.run(query);
+    }
+    let progress = progress.keeping("the rows that were printed are complete").on_row(|bar, title, row| {
+        let before = std::mem::replace(&mut table, title);
+        let gap = if before.is_empty() { "" } else { "\n" };
+        let head = if before == title { String::new() } else { format!("{gap}{title}\n{}\n", FigureRow::HEADER) };
+        let _ = bar.above(|| print(&format!("{head}{row}\n")));
+    });
+    progress.run(query)
 }
 
 const WITHOUT_INTERVALS: &str =
@@ -178,13 +118,14 @@ fn of_group(name: &str, args: &FiguresArgs) -> Result<(), CliError> {
     if args.write.is_some() || args.check.is_some() || args.out.is_some() {
         return Err(CliError::usage(format!("--group {name} has no document and no pictures of its own")));
     }
+    let only = topic.figures.iter().collect();
+    let query = FigureQuery { settings: FigureSettings::new(Level::Transaction), intervals: false, only };
+    let figures = measured(&query, args.json, args.json || args.quiet)?;
     if args.json {
-        let bench = Bench::new(Level::Transaction);
-        let rows = topic.figures.iter().map(|figure| figure.measured_row(&bench));
-        let rows = rows.collect::<Result<Vec<_>, _>>().map_err(CliError::failure)?;
+        let rows: Vec<&FigureRow> = figures.rows().collect();
         return print(&format!("{:#}\n", json!({ "schema": SCHEMA, "figures": rows })));
     }
-    measure(topic.figures)
+    Ok(())
 }
 
 /// Measures and prints the figures with these numbers.
@@ -192,31 +133,12 @@ fn chosen(numbers: &[String]) -> Result<(), CliError> {
     let find = |number: &String| {
         let known = || all().map(|figure| figure.id).collect::<Vec<_>>().join(", ");
         let figure = all().find(|figure| figure.id == number.as_str());
-        figure
-            .copied()
-            .ok_or_else(|| CliError::usage(format!("--only: expected numbers among {}, found {number}", known())))
+        figure.ok_or_else(|| CliError::usage(format!("--only: expected numbers among {}, found {number}", known())))
     };
     // All numbers are checked before the first experiment runs.
-    measure(&numbers.iter().map(find).collect::<Result<Vec<_>, _>>()?)
-}
-
-fn measure(figures: &[Measurement]) -> Result<(), CliError> {
-    let bench = Bench::new(Level::Transaction);
-    print(HEADER)?;
-    for figure in figures {
-        print(&row_text(&figure.measured_row(&bench).map_err(CliError::failure)?))?;
-    }
-    Ok(())
-}
-
-/// Returns an error if the document on disk differs from the text that `subcommand` would write now.
-pub(crate) fn fresh(path: &Path, document: &str, subcommand: &str) -> Result<(), CliError> {
-    let kept = fs::read_to_string(path).map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
-    if kept == document {
-        return Ok(());
-    }
-    let path = path.display();
-    Err(CliError::failure(format!("{path} is stale: run `pxpl5 {subcommand} --write {path}`")))
+    let only = numbers.iter().map(find).collect::<Result<_, _>>()?;
+    let query = FigureQuery { settings: FigureSettings::new(Level::Transaction), intervals: false, only };
+    measured(&query, false, false).map(drop)
 }
 
 const SCHEMA: &str = "pxpl5-figures/3";
@@ -235,77 +157,6 @@ fn json_text(figures: &Figures, alternatives: &Alternatives) -> String {
     });
     format!("{object:#}\n")
 }
-
-/// Printer of the tables of figures, row by row.
-#[derive(Default)]
-struct RowPrinter {
-    title: &'static str,
-    /// Printed rows of the current table.
-    rows: Vec<FigureRow>,
-}
-
-impl RowPrinter {
-    /// Prints a row. A row of another table ends the current table and begins the other table.
-    fn row(&mut self, title: &'static str, row: &FigureRow) -> Result<(), CliError> {
-        if self.title != title {
-            self.end_table()?;
-            let gap = if self.title.is_empty() { "" } else { "\n" };
-            self.title = title;
-            print(&format!("{gap}{title}\n{HEADER}"))?;
-        }
-        self.rows.push(row.clone());
-        print(&row_text(row))
-    }
-
-    fn end_table(&mut self) -> Result<(), CliError> {
-        let rows = std::mem::take(&mut self.rows);
-        if rows.is_empty() { Ok(()) } else { print(&count_text(&rows)) }
-    }
-}
-
-const HEADER: &str =
-    "#           published    simulated  unit             error  interval               provenance what\n";
-
-/// Formats rows as a table, and counts the rows whose simulated value misses the published value.
-pub(crate) fn rows_text(rows: &[FigureRow]) -> String {
-    let lines: String = rows.iter().map(row_text).collect();
-    format!("{HEADER}{lines}{}", count_text(rows))
-}
-
-fn count_text(rows: &[FigureRow]) -> String {
-    let missed = rows.iter().filter(|row| !row.is_met).count();
-    format!("{} rows, {missed} missed\n", rows.len())
-}
-
-/// Formats one row of a table of figures. The cell of a missing published number is "-".
-fn row_text(row: &FigureRow) -> String {
-    let published = if row.published.is_nan() { "-".to_owned() } else { significant(row.published, DIGITS) };
-    let error = row.error_percent.map_or_else(String::new, |error| format!("{error:+.1}%"));
-    let interval = row.interval.map_or_else(String::new, range);
-    let scene = row.scene.as_ref().map_or_else(String::new, |scene| format!(" ({scene})"));
-    // An experiment is either described in words or has a name such as E1.
-    let name = if row.experiment.contains(' ') { "" } else { row.experiment };
-    format!(
-        "{:<10} {published:>10} {:>12}  {:<13} {error:>8}  {interval:<22} {:<10} {}{}{scene}\n",
-        format!("{name} {}", row.id).trim_start(),
-        significant(row.simulated, DIGITS),
-        row.unit,
-        provenance(row.basis),
-        if row.is_met { "" } else { "miss: " },
-        row.statement
-    )
-}
-
-const fn provenance(basis: Basis) -> &'static str {
-    match basis {
-        Basis::Interpretation(_) => "interpret.",
-        Basis::Unprinted => "interval",
-        Basis::Shape => "shape",
-        _ => basis.name(),
-    }
-}
-
-const DIGITS: i32 = 6;
 
 const CHART_MM: f64 = 165.0;
 

@@ -2,7 +2,6 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::RunWork;
 use crate::numbers::{count_of, whole};
 use crate::output::OutputFile;
 use crate::scenes;
@@ -10,6 +9,7 @@ use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
 use crate::too_heavy::too_heavy;
 use clap::{Args, ValueEnum};
+use pxpl5::lab::estimate::RunWork;
 use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{Eye, PeriodNumber, Pixels};
 use std::path::PathBuf;
@@ -72,9 +72,9 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
     let file = OutputFile::open(&args.out, "--out")?;
     // The run ends one field after the film, because the last picture is final only then.
     let (scene, fields) = (scenes::load(&plan, args.quiet)?, args.from + args.length + 1);
-    args.budget.admit(&RunWork { fields, ..RunWork::of(&plan, &scene, true) })?;
     warn(too_heavy(&plan, &scene, fields).as_slice(), args.quiet);
     let experiment = plan.experiment(scene).pixels(Pixels::Lazy).fields(fields);
+    args.budget.admit(&RunWork::of(&experiment, true))?;
     // The settings are stored in the PNG, so that the film can be reproduced.
     let texts = [("config_hash", experiment.config_hash().to_string()), ("settings", plan.settings().to_string())];
     let mut bytes = Vec::new();

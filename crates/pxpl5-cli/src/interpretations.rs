@@ -3,13 +3,13 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Study;
 use crate::numbers::whole;
-use crate::terminal::{answer, json_text, progress};
+use crate::progress::Progress;
+use crate::terminal::{answer, json_text};
 use clap::Args;
 use pxpl5::Level;
-use pxpl5::figures::Bench;
-use pxpl5::interpretations::{ALIKE, Fit, Interpretations, LeaveOneOut, run as rank};
+use pxpl5::figures::FigureSettings;
+use pxpl5::interpretations::{ALIKE, Fit, InterpretationQuery, Interpretations, LeaveOneOut};
 use std::fmt::Write;
 
 /// Rank all interpretations of the papers' open questions by how well they explain the figures of Rendering Control.
@@ -47,13 +47,10 @@ pub(crate) struct InterpretationsArgs {
 }
 
 pub(crate) fn run(args: InterpretationsArgs) -> Result<(), CliError> {
-    let study = Study::Interpretations { seeds: args.seeds, frames: args.frames, best: args.best };
-    args.budget.admit_study(study, "take fewer --seeds, --frames or --best")?;
-    let bench = Bench::new(Level::Analytic).with_mig(args.seeds, args.frames);
-    let bar = progress(0, "interpretations", args.quiet);
-    let interpretations = rank(&bench, args.best as usize, |done, of| bar.advance(done, of));
-    bar.clear();
-    let interpretations = interpretations?;
+    let settings = FigureSettings::new(Level::Analytic).with_mig(args.seeds, args.frames);
+    let study = InterpretationQuery { settings, best: args.best as usize };
+    let progress = Progress::new("interpretations", args.quiet);
+    let interpretations = progress.run_within(args.budget, "take fewer --seeds, --frames or --best", &study)?;
     answer(args.json, args.quiet, &json_text(&interpretations)?, || text(&interpretations, args.rows))
 }
 

@@ -1,38 +1,33 @@
-//! Handler of Ctrl-C. It prints how far the command came and which results are kept, and ends with exit code 130.
+//! Handler of Ctrl-C. The first one stops the study that runs, so that its finished part is kept. Without a study, and
+//! the second time, the command ends at once.
 
+use crate::error::INTERRUPTED;
 use crate::terminal::print_error;
-use indicatif::ProgressBar;
-use std::sync::{Mutex, PoisonError};
+use pxpl5::StopFlag;
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Exit code of a command that was ended by Ctrl-C: 128 plus the number of the signal, as in shells.
-const INTERRUPTED: i32 = 130;
-
-/// The newest progress bar of the command, which also counts without a terminal.
-static PROGRESS: Mutex<Option<ProgressBar>> = Mutex::new(None);
-/// The results that an interruption keeps, and how to continue.
-static KEPT: Mutex<Option<String>> = Mutex::new(None);
+static STOP: LazyLock<StopFlag> = LazyLock::new(StopFlag::default);
+/// True while work runs that looks at the flag.
+static IS_FOLLOWED: AtomicBool = AtomicBool::new(false);
 
 /// Installs the handler for this process. A process has one handler, so later calls have no effect.
 pub(crate) fn listen() {
-    let _ = ctrlc::set_handler(end);
-}
-
-pub(crate) fn follows(bar: &ProgressBar) {
-    *PROGRESS.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar.clone());
-}
-
-/// Sets the text about the results that an interruption keeps.
-pub(crate) fn keeps(text: String) {
-    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
-}
-
-fn end() {
-    let bar = PROGRESS.lock().unwrap_or_else(PoisonError::into_inner).take();
-    let after = bar.map_or_else(String::new, |bar| {
-        format!(" after {} of {} {}", bar.position(), bar.length().unwrap_or_default(), bar.message())
+    let _ = ctrlc::set_handler(|| {
+        if STOP.is_stopped() || !IS_FOLLOWED.load(Ordering::Relaxed) {
+            print_error("\npxpl5: interrupted; nothing was written\n");
+            std::process::exit(INTERRUPTED.into());
+        }
+        STOP.stop();
     });
-    let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner).take();
-    let kept = kept.unwrap_or_else(|| "nothing was written".to_owned());
-    print_error(&format!("\npxpl5: interrupted{after}; {kept}\n"));
-    std::process::exit(INTERRUPTED);
+}
+
+/// Returns the flag that Ctrl-C sets.
+pub(crate) fn flag() -> StopFlag {
+    STOP.clone()
+}
+
+/// Tells the handler whether work runs that looks at the flag.
+pub(crate) fn follow(is_followed: bool) {
+    IS_FOLLOWED.store(is_followed, Ordering::Relaxed);
 }

@@ -2,11 +2,11 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Study;
 use crate::output::OutputFile;
-use crate::terminal::{json_text, print, progress};
+use crate::progress::Progress;
+use crate::terminal::{json_text, laid_out, print};
 use clap::Args;
-use pxpl5::levels::{LevelQuery, LevelRecord, LevelReport, compare_with};
+use pxpl5::levels::{LevelQuery, LevelRecord, LevelReport};
 use pxpl5::views::charts::{SpeedAndError, level_chart};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -63,18 +63,15 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
 }
 
 fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
-    let study = Study::Levels { experiments: args.experiments, measures_speeds: !args.errors_only };
-    args.budget.admit_study(study, "take fewer --experiments")?;
-    let bar = progress(0, "experiments and figures at all levels", false);
-    let query = LevelQuery { experiments: args.experiments, speeds: !args.errors_only, ..LevelQuery::default() };
-    let record = compare_with(query, |done, of| bar.advance(done, of));
-    bar.clear();
+    let study = LevelQuery { experiments: args.experiments, speeds: !args.errors_only };
+    let progress = Progress::new("experiments and figures at all levels", false);
+    let record = progress.run_within(args.budget, "take fewer --experiments", &study)?;
     // Speeds depend on the host, so the record describes the host.
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let host = format!("{}, {threads} threads", std::env::consts::ARCH);
     let seconds = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).ok();
     let date = seconds.map(|since| date_of(since.as_secs() / 86_400));
-    Ok(LevelRecord { date, host: Some(host), ..record? })
+    Ok(LevelRecord { date, host: Some(host), ..record })
 }
 
 /// Converts days since 1 January 1970 to a date. The Gregorian calendar repeats every 146,097 days.
@@ -116,24 +113,22 @@ const fn pixels(pixels: pxpl5::Pixels) -> &'static str {
 
 fn text(record: &LevelRecord) -> String {
     let unknown = || "-".to_owned();
-    let mut text = format!(
-        "{:<28} {:>9}  {:<26} simulated seconds per second\n{:<28} {:>9}  {:<26} {:>10} {:>10} {:>10}\n",
-        "", "", "against the cycle level", "level", "published", "median (5 to 95 %)", "pixels off", "lazy", "all"
-    );
+    let heads = ["level", "published", "against the cycle level: median (5 to 95 %)", "pixels off", "lazy", "all"];
+    let mut lines = vec![heads.map(str::to_owned).to_vec()];
     // One line for each level: errors, then the speed for each choice of pixels.
     for report in &record.levels {
         let published = report.published_error_percent.map_or_else(unknown, |error| format!("{error:.1} %"));
         let from_cycle = report.from_cycle_percent.map_or_else(unknown, |spread| {
             format!("{:.2} % ({:.2} to {:.2})", spread.median, spread.low_5, spread.high_95)
         });
-        let _ = write!(text, "{:<28} {published:>9}  {from_cycle:<26}", report.name());
-        for choice in [pxpl5::Pixels::Off, pxpl5::Pixels::Lazy, pxpl5::Pixels::All] {
+        let speeds = [pxpl5::Pixels::Off, pxpl5::Pixels::Lazy, pxpl5::Pixels::All].map(|choice| {
             let speed = report.speeds.iter().find(|speed| speed.pixels == choice);
             let speed = speed.and_then(|speed| speed.simulated_seconds_per_second);
-            let _ = write!(text, " {:>10}", speed.map_or_else(unknown, |speed| format!("{speed:.1}")));
-        }
-        text.push('\n');
+            speed.map_or_else(unknown, |speed| format!("{speed:.1}"))
+        });
+        lines.push([vec![report.name().to_owned(), published, from_cycle], speeds.to_vec()].concat());
     }
+    let mut text = laid_out(&lines, 1);
     text.push('\n');
     for report in &record.levels {
         let _ = writeln!(text, "{}: {}.", report.name(), report.advice());
@@ -143,7 +138,7 @@ fn text(record: &LevelRecord) -> String {
     let host = record.host.as_deref().unwrap_or("an unknown machine");
     let _ = write!(
         text,
-        "\npublished: mean error of the free checks. Against the cycle level: {} random experiments with Rendering Control (latency)\n\
+        "\npixels: simulated seconds per second; published: mean error of the free checks. Against the cycle level: {} random experiments with Rendering Control (latency)\n\
          and Slats (time to the first copy). Computing pixels changes no simulated time. Measured {when} on {host}.\n",
         record.experiments
     );

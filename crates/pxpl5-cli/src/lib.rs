@@ -22,7 +22,6 @@ mod debug;
 mod demo;
 mod diff;
 mod error;
-mod estimate;
 mod figures;
 mod film;
 mod i860;
@@ -37,6 +36,7 @@ mod one_picture;
 mod options;
 mod output;
 mod plot;
+mod progress;
 mod report;
 mod rig;
 mod rows;
@@ -153,6 +153,8 @@ pub fn run_arguments(registry: Arc<Registry>, arguments: impl IntoIterator<Item 
     };
     interrupt::listen();
     match run(cli.command) {
+        // A study that was interrupted printed the finished part of its result.
+        Ok(()) if interrupt::flag().is_stopped() => error::INTERRUPTED,
         Ok(()) => 0,
         Err(error) => {
             terminal::print_error(&format!("pxpl5: {}\n", error.message()));

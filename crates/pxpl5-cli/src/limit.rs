@@ -2,15 +2,14 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::RunWork;
 use crate::numbers::{count_of, were, whole};
 use crate::options::{PipelineOptions, option_of, registry};
-use crate::scenes;
-use crate::terminal::{print, progress, warn};
+use crate::progress::Progress;
+use crate::terminal::{print, warn};
 use clap::Args;
-use pxpl5::limit::{CEILING, Limit, LimitQuery, Model, OverLimit, OverQuery, USUAL_SIZES, USUAL_VALUES};
+use pxpl5::limit::{CEILING, Limit, LimitQuery, Model, OverLimit, OverQuery};
 use pxpl5::tracking::time::PS_PER_S;
-use pxpl5::{ExperimentFile, Goal, Level, LimitCriterion, Plan, StopFlag, TestScene};
+use pxpl5::{ExperimentFile, Goal, LimitCriterion, Plan, TestScene};
 use pxpl5_sim::Time;
 use serde_json::json;
 
@@ -95,20 +94,18 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
         return Err(CliError::usage("--from and --to: expected a key with --over that is not triangles"));
     }
     let query = args.query()?;
-    let bar = progress(USUAL_SIZES, "sizes", args.quiet);
-    let limit = query.search_with(|tried, of| bar.advance(tried, of))?;
-    bar.clear();
+    let limit = Progress::new("sizes", args.quiet).run_within(args.budget, FEWER, &query)?;
     if limit.has_limit() && limit.triangles > 1 {
         warn(query.near_edge(limit.triangles)?.as_slice(), args.quiet);
     }
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
 
+const FEWER: &str = "simulate fewer fields";
+
 fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
     let (query, plan) = args.over_query(key)?;
-    let bar = progress(USUAL_VALUES, "values", args.quiet);
-    let limit = query.search(|tried, of| bar.advance(tried, of)).map_err(CliError::failure)?;
-    bar.clear();
+    let limit = Progress::new("values", args.quiet).run_within(args.budget, FEWER, &query)?;
     print(&if args.json { over_json(&query, &plan, &limit)? } else { over_text(&query, &plan, &limit) })
 }
 
@@ -134,11 +131,6 @@ impl LimitArgs {
         } else {
             None
         };
-        // Closed forms cost almost nothing, so only levels with events are checked against the budget.
-        if query.level != Level::Analytic {
-            let size = RunWork { fields, ..RunWork::of(&plan, &*scenes::load(&plan, false)?, false) };
-            self.budget.admit_all([size; USUAL_SIZES as usize], 1)?;
-        }
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
     }
 
@@ -185,10 +177,8 @@ impl LimitArgs {
         last.set_text(&format!("{key}={}", values.text(values.last())), "--over")?;
         let plan = last.resolve()?;
         warn(&first.warnings(), self.quiet);
-        let size = RunWork { fields, ..RunWork::of(&plan, &*scenes::load(&plan, false)?, false) };
-        self.budget.admit_all([size; USUAL_VALUES as usize], 1)?;
         let goal = self.goal()?.unwrap_or(first.limit.goal);
-        Ok((OverQuery { file, key: key.to_owned(), values, goal, stop: StopFlag::default() }, plan))
+        Ok((OverQuery { file, key: key.to_owned(), values, goal }, plan))
     }
 
     /// Returns the papers' test scene with the name in `--scene`, or `None` if `--scene` names another scene.

@@ -3,7 +3,8 @@
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::options::registry;
-use crate::terminal::{print, progress};
+use crate::progress::Bar;
+use crate::terminal::print;
 use clap::Args;
 use pxpl5::{MachineConfig, PRESETS, Parameter, Preset, SettingError, Suitability, suitability, tracking_parameters};
 use serde_json::{Map, Value, json};
@@ -30,11 +31,12 @@ pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
         return print(&if args.json { one_json(&machine) } else { one_text(&machine) });
     }
     // Testing every pipeline on every preset takes some seconds.
-    let bar = progress(PRESETS.len() as u64, "machines", false);
+    let mut bar = Bar::new("machines", false);
     let mut machines = Vec::new();
-    for preset in &PRESETS {
+    for (done, preset) in (1..).zip(&PRESETS) {
         machines.push(Listed::new(preset).map_err(CliError::usage)?);
-        bar.add_one();
+        bar.advance(done, PRESETS.len() as u64);
+        bar.check("nothing was written")?;
     }
     bar.clear();
     print(&if args.json { all_json(&machines) } else { all_text(&machines) })

@@ -3,16 +3,15 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::RunWork;
 use crate::numbers::whole;
+use crate::progress::Progress;
 use crate::settings::SettingArgs;
-use crate::terminal::print;
+use crate::terminal::{json_text, print};
 use clap::Args;
 use pxpl5::Statistics;
-use pxpl5::rig::{PASSES, Rig};
+use pxpl5::rig::{PASSES, Rig, RigQuery, RigReport};
 use pxpl5::tracking::rig::{Measurement, Side};
 use pxpl5::{ExperimentFile, Plan};
-use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// Measure the latency of a pipeline from outside with a pendulum and photodiodes, and compare it with the pipeline's
@@ -47,9 +46,6 @@ pub(crate) struct RigArgs {
     json: bool,
 }
 
-/// Greatest number of display fields between two passes of the pendulum through its lowest point: one second.
-const FIELDS_OF_PASS: u64 = 60;
-
 /// Keys with values from the command itself, which the user must not set.
 const KEYS_SET_BY_RIG: [&str; 9] =
     ["scene", "triangles", "head.motion", "head.place", "head.predict", "head.aim", "head.raster", "fields", "pixels"];
@@ -66,12 +62,12 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     // Options replace single values of the assumed rig.
     let mut rig = Rig { seed: plan.seed, passes: args.passes as usize, ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = args.line.unwrap_or(rig.rig.photodiode_line);
-    let fields = args.passes * FIELDS_OF_PASS;
-    args.budget.admit(&RunWork { fields, ..RunWork::of(&plan, &*plan.load_scene()?, true) })?;
-    let measured = rig.measure(&plan.machine, plan.pipeline.clone()).map_err(CliError::failure)?;
+    let study = RigQuery { rig, machine: plan.machine.clone(), pipeline: plan.pipeline.clone() };
+    let report = Progress::new("measurements", false).run_within(args.budget, "measure fewer --passes", &study)?;
+    let measured = &report.measured;
     // The result is printed even if both sides disagree.
-    print(&if args.json { json_text(&plan, &rig, &measured) } else { text(&plan, &rig, &measured) })?;
-    if measured.agrees() { Ok(()) } else { Err(CliError::failure(verdict(&measured))) }
+    print(&if args.json { json_text(&report)? } else { text(&report) })?;
+    if report.agrees { Ok(()) } else { Err(CliError::failure(verdict(measured))) }
 }
 
 /// Returns the experiment of the measurement. The user chooses pipeline, machine, tracker and seed. The command sets
@@ -89,15 +85,15 @@ fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
 
 type Column = (&'static str, fn(&Side) -> &Statistics);
 
-fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
-    let Measurement { outside, inside, .. } = measured;
+fn text(report: &RigReport) -> String {
+    let (outside, inside) = (&report.outside_ms, &report.inside_ms);
     let mut text = format!(
         "{} on {}: {} low points, {}, photodiode at line {}\n\n{:<20} {:^36} {:^36}\n",
-        plan.pipeline.name(),
-        plan.machine.preset,
-        outside.total.n,
-        rig.tracker.name,
-        rig.rig.photodiode_line,
+        report.pipeline,
+        report.machine,
+        report.n,
+        report.tracker,
+        report.photodiode_line,
         "mean, sd (range) ms",
         "outside",
         "inside"
@@ -111,7 +107,7 @@ fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
     for (name, latency) in rows {
         let _ = writeln!(text, "{name:<20} {:^36} {:^36}", cell(latency(outside)), cell(latency(inside)));
     }
-    let _ = writeln!(text, "\n{}", verdict(measured));
+    let _ = writeln!(text, "\n{}", verdict(&report.measured));
     text.push_str(DEFINITIONS);
     text
 }
@@ -126,7 +122,7 @@ Inside, rendering: from the start of the frame to the time at which the pipeline
 
 fn cell(latency: &Statistics) -> String {
     let Statistics { mean, sd, min, max, .. } = latency;
-    format!("{:.2}, {:.2} ({:.2} to {:.2})", mean * 1e3, sd * 1e3, min * 1e3, max * 1e3)
+    format!("{:.2}, {:.2} ({:.2} to {:.2})", mean, sd, min, max)
 }
 
 fn verdict(measured: &Measurement) -> String {
@@ -140,34 +136,4 @@ fn verdict(measured: &Measurement) -> String {
         measured.rendering_bound_ps as f64 * 1e-9,
         if measured.agrees() { "agree" } else { "DO NOT AGREE" }
     )
-}
-
-fn json_text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
-    let value = json!({
-        "schema": "pxpl5-rig/1",
-        "pipeline": plan.pipeline.name(),
-        "machine": plan.machine.preset,
-        "overrides": plan.machine.overrides(),
-        "tracker": rig.tracker.name,
-        "seed": rig.seed,
-        "photodiode_line": rig.rig.photodiode_line,
-        "n": measured.outside.total.n,
-        "outside_ms": side(&measured.outside),
-        "inside_ms": side(&measured.inside),
-        "outside_less_inside_ms": measured.outside_less_inside_s() * 1e3,
-        "tracking_bound_ms": measured.tracking_bound_ps as f64 * 1e-9,
-        "rendering_early_bound_ms": measured.rendering_early_ps as f64 * 1e-9,
-        "rendering_bound_ms": measured.rendering_bound_ps as f64 * 1e-9,
-        "agrees": measured.agrees(),
-    });
-    format!("{value:#}\n")
-}
-
-fn side(side: &Side) -> Value {
-    json!({"tracking": latency(&side.tracking), "rendering": latency(&side.rendering), "total": latency(&side.total)})
-}
-
-fn latency(latency: &Statistics) -> Value {
-    let Statistics { n, mean, sd, min, max } = latency;
-    json!({"n": n, "mean": mean * 1e3, "sd": sd * 1e3, "min": min * 1e3, "max": max * 1e3})
 }

@@ -4,6 +4,7 @@ use crate::error::CliError;
 use pxpl5::compare::ROWS_FOLDER;
 use pxpl5::lab::manifest::Manifest;
 use pxpl5::sweep::ROWS_FILE;
+use pxpl5::views::results::flat;
 use pxpl5_sim::parameters::text_of;
 use serde_json::{Map, Value};
 use std::fs;
@@ -111,9 +112,7 @@ fn stored_comparison(text: &str) -> Result<ResultRows, String> {
     expect_schema(&about, "pxpl5-comparison-rows")?;
     let row = |(n, line): (usize, &str)| {
         let mut line = parsed(line, &format!("line {}", n + 2))?;
-        let mut row = Row::new();
-        flatten("", line.remove("row").unwrap_or_default(), &mut row);
-        Ok::<_, String>(row)
+        Ok::<_, String>(flat(line.remove("row").unwrap_or_default()))
     };
     let rows = lines.enumerate().map(row).collect::<Result<_, _>>()?;
     Ok(ResultRows { kind: RowsKind::Comparison, rows, about })
@@ -126,40 +125,5 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
         return Err("expected a list `pipelines`".to_owned());
     };
     // A nested object becomes one column for each path.
-    let rows = pipelines.into_iter().map(|pipeline| {
-        let mut row = Row::new();
-        flatten("", pipeline, &mut row);
-        row
-    });
-    Ok(ResultRows { kind: RowsKind::Comparison, rows: rows.collect(), about })
-}
-
-/// Adds all plain values within `value` to a row. The name of each plain value is its JSON path. In this path, an
-/// object in a list appears by the value of its member `cause` or `kind`.
-fn flatten(path: &str, value: Value, row: &mut Row) {
-    match value {
-        Value::Object(inner) => {
-            for (key, value) in inner {
-                let path = if path.is_empty() { key } else { format!("{path}.{key}") };
-                flatten(&path, value, row);
-            }
-        }
-        Value::Array(list) => {
-            for (value, name) in list.into_iter().filter_map(|value| Some((value.clone(), name_of(&value)?))) {
-                flatten(&format!("{path}.{name}"), value, row);
-            }
-        }
-        value => row.push((path.to_owned(), value)),
-    }
-}
-
-/// Returns the name of an object in a list: the value of its member `cause` or `kind`. If `cause` is null, the object
-/// holds the interaction of all causes, and the name is `interaction`.
-fn name_of(value: &Value) -> Option<String> {
-    let object = value.as_object()?;
-    match object.get("cause").or_else(|| object.get("kind"))? {
-        Value::String(name) => Some(name.clone()),
-        Value::Null => Some("interaction".to_owned()),
-        _ => None,
-    }
+    Ok(ResultRows { kind: RowsKind::Comparison, rows: pipelines.into_iter().map(flat).collect(), about })
 }

@@ -5,6 +5,7 @@ use crate::error::CliError;
 use crate::numbers::{count_of, whole};
 use crate::one_picture;
 use crate::output::{OutputFolder, png, timeline};
+use crate::progress::Progress;
 use crate::settings::SettingArgs;
 use crate::simulate::{How, Simulated, simulate};
 use crate::table::{Comparison, table};
@@ -16,7 +17,7 @@ use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::views::results::{origin_lines, quantities_csv};
 use pxpl5::{
     ExperimentFile, HeadReport, KeptRecords, Level, Measured, Optimization, Origin, Outcome, PictureTimes, Plan,
-    Report, Results, SurfaceId, WARM_UP_PERIODS, WARM_UP_PICTURES, WhatIf, what_if,
+    Report, Results, SurfaceId, WARM_UP_PERIODS, WARM_UP_PICTURES, WhatIf, WhatIfQuery,
 };
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -111,7 +112,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
 /// at a time.
 fn more(plan: &Plan) -> Result<Vec<WhatIf>, CliError> {
     let experiment = plan.experiment(crate::scenes::load(plan, false)?);
-    what_if(&plan.registry, &experiment).map_err(CliError::from)
+    Progress::new("resources", true).run(&WhatIfQuery { registry: plan.registry.clone(), experiment })
 }
 
 fn more_text(more: &[WhatIf]) -> String {
@@ -119,14 +120,9 @@ fn more_text(more: &[WhatIf]) -> String {
     let level = more.first().map_or("", |more| more.level);
     let heads = ["10 % more of", "setting", "latency, ms", "updates, Hz"];
     let _ = writeln!(text, "\n{:<32} {:<42} {:<16} {} ({level} level)", heads[0], heads[1], heads[2], heads[3]);
-    let cell = |[before, after]: [Option<f64>; 2]| match before.zip(after) {
-        Some((before, after)) => format!("{before:.1} to {after:.1}"),
-        None => "-".to_owned(),
-    };
-    for WhatIf { resource, key, from, to, latency_ms, updates_hz, .. } in more {
-        let setting = format!("{key} {from} to {to}");
-        let _ = writeln!(text, "{resource:<32} {setting:<42} {:<16} {}", cell(*latency_ms), cell(*updates_hz));
-    }
+    more.iter().for_each(|more| {
+        let _ = writeln!(text, "{more}");
+    });
     text
 }
 

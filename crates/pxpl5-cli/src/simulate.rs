@@ -2,10 +2,11 @@
 
 use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
-use crate::estimate::RunWork;
+use crate::progress::Bar;
 use crate::scenes;
-use crate::terminal::{progress, warn};
+use crate::terminal::warn;
 use crate::too_heavy::too_heavy;
+use pxpl5::lab::estimate::RunWork;
 use pxpl5::{
     ExperimentError, KeptRecords, Observation, Optimization, Outcome, PeriodNumber, Plan, Traffic, Workstation,
 };
@@ -64,20 +65,22 @@ fn trace_bytes(observation: &Observation) -> f64 {
 
 pub(crate) fn simulate(plan: &Plan, how: How<'_>) -> Result<Simulated, CliError> {
     let scene = scenes::load(plan, how.quiet)?;
-    how.budget.admit(&RunWork::of(plan, &scene, how.keep == KeptRecords::Everything))?;
     warn(too_heavy(plan, &scene, plan.fields).as_slice(), how.quiet);
     let host = how.threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
     let experiment = plan.experiment(scene).host(host).keep(how.keep).record_traffic(how.traffic);
+    how.budget.admit(&RunWork::of(&experiment, how.keep == KeptRecords::Everything))?;
     let experiment = how.without.iter().fold(experiment, |experiment, saving| experiment.without(*saving));
     // The run stops at these fields to extrapolate its cost early.
     let stops = EARLY_CHECK_FIELDS.map(|field| PeriodNumber::FIRST.after(field));
-    let bar = progress(plan.fields, "fields", how.quiet);
-    let watch = how.budget.watch(plan.fields);
+    let mut bar = Bar::new("fields", how.quiet);
+    let monitor = how.budget.monitor(plan.fields);
     let outcome = experiment.run_stopping(&stops, |field, machine| {
         let done = field.since(PeriodNumber::FIRST);
         bar.advance(done, plan.fields);
-        watch.check(done, trace_bytes(machine.record().observation())).map_err(ExperimentError::Stopped)
+        bar.check("nothing was written").map_err(|error| ExperimentError::Stopped(error.message().to_owned()))?;
+        monitor.check(done, trace_bytes(machine.record().observation())).map_err(ExperimentError::Stopped)
     });
     bar.clear();
+    bar.check("nothing was written")?;
     Simulated::of(outcome)
 }

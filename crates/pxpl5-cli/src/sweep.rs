@@ -2,15 +2,14 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Estimate;
-use crate::interrupt;
 use crate::numbers::{are, count_of, whole};
 use crate::options::registry;
+use crate::progress::Progress;
 use crate::slurm::{self, Jobs, quoted};
-use crate::terminal::{print, print_error, progress, warn};
+use crate::terminal::{print, print_error, warn};
 use clap::Args;
 use pxpl5::ExperimentFile;
-use pxpl5::sweep::{Header, ROWS_FILE, RunOptions, Shard, Store, Sweep, Swept};
+use pxpl5::sweep::{Header, ROWS_FILE, RunOptions, Shard, Store, Sweep, SweepQuery, Swept};
 use std::path::{Path, PathBuf};
 
 /// Run an experiment at every point of a parameter space.
@@ -114,15 +113,15 @@ impl SweepFolderArgs {
     pub(crate) fn run(&self, sweep: &impl Swept, header: Header, command: &SweepCommand) -> Result<(), CliError> {
         // The store keeps finished rows, so that Ctrl-C loses only the points in progress.
         let mut store = Store::open(&self.out, header, self.resume)?;
-        interrupt::keeps(format!("the finished points are kept. To continue:\n  {}", self.again(command)));
         let total = self.shard.share_of(sweep.space().points());
-        let bar = progress(total, "points", self.quiet);
-        bar.begin_at(store.finished(self.shard));
+        let kept = format!("the finished points are kept. To continue:\n  {}", self.again(command));
         let options = RunOptions { shard: self.shard, threads: command.parallel };
-        pxpl5::sweep::run(sweep, &mut store, options, |_| bar.add_one())?;
-        bar.clear();
+        let progress = Progress::new("points", self.quiet).keeping(&kept).on_row(|_, _, _| ());
+        if progress.run(&SweepQuery::new(sweep, &mut store, options))? < total {
+            return Ok(());
+        }
         // A sweep succeeds if at least one point could be simulated.
-        let failed = report_failures(&store, self.shard, total, command.verb)?;
+        let failed = report_failures(&mut store, self.shard, total, command.verb)?;
         if !self.quiet {
             print(&format!("{} in {}.\n", are(total, "point"), self.out.join(ROWS_FILE).display()))?;
         }
@@ -150,10 +149,8 @@ impl SweepArgs {
         if self.max_memory.is_none() && self.max_seconds.is_none() {
             return Ok(());
         }
-        let all = slurm::estimate(sweep, threads);
-        let share = self.folder.shard.share_of(sweep.space().points()) as f64 / sweep.space().points().max(1) as f64;
-        let ours = Estimate { seconds: all.seconds * share, ..all };
-        BudgetArgs::of(self.max_memory, self.max_seconds).admit_estimate(ours, "sweep fewer points")
+        let estimate = sweep.estimate(self.folder.shard, threads);
+        BudgetArgs::of(self.max_memory, self.max_seconds).admit_estimate(estimate, "sweep fewer points")
     }
 }
 
@@ -176,9 +173,10 @@ fn supposed(sweep: &Sweep) -> Vec<String> {
 
 /// Prints the number of failed points of a shard (part of a sweep), and the error of the first failed point. Returns
 /// the number of failed points.
-fn report_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
+fn report_failures(store: &mut Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
     let failed = store.failed(shard).count() as u64;
-    if let Some(point) = store.failed(shard).next() {
+    let first = store.failed(shard).next();
+    if let Some(point) = first {
         let error = store.row(point)?.and_then(|row| row.error).unwrap_or_default();
         let all = count_of(total, "point");
         print_error(&format!("pxpl5: {failed} of {all} could not be {done}; point {point}: {error}\n"));

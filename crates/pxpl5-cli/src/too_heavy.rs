@@ -1,8 +1,8 @@
 //! Warning before a run whose scene is so large that no picture will be shown in time.
 
-use crate::estimate::RunWork;
 use crate::numbers::count_of;
 use pxpl5::Plan;
+use pxpl5::lab::estimate::RunWork;
 use pxpl5::scene::Scene;
 use std::sync::Arc;
 
@@ -14,12 +14,12 @@ const SHORT_RUN: u64 = 60;
 /// expectation comes from the closed form of the pipeline. For a pipeline without a closed form, the function warns if
 /// the processors cannot transform all primitives once within the run.
 pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<String> {
-    let work = RunWork::of(plan, scene, false);
+    let experiment = plan.experiment(Arc::clone(scene)).fields(fields);
+    let work = RunWork::of(&experiment, false);
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
     // A closed form predicts the first picture; it does not cover tracked heads.
     let expected = match entry.closed_form.filter(|_| plan.head.is_none()) {
         Some(form) => {
-            let experiment = plan.experiment(Arc::clone(scene)).fields(fields);
             match (form.estimates.fields_needed)(&experiment) {
                 Some(needed) if needed <= fields.max(SHORT_RUN) => return None,
                 Some(needed) => {

@@ -1,16 +1,14 @@
 //! The command `pxpl5 volume`, which draws a scene as slices of a spinning volumetric display.
 
 mod compare;
-mod figures;
 mod heads;
 mod run;
-mod settings;
+pub(crate) mod settings;
 mod slices;
 mod sweep;
 mod view;
 
 use crate::error::CliError;
-use crate::figures::{FiguresArgs, VOLUMETRIC};
 use clap::{Args, Subcommand};
 
 /// Draw a scene as the 396 slices of a spinning volumetric display (SpatialGL on Perspecta, 2005).
@@ -44,17 +42,6 @@ enum VolumeCommand {
     Compare(compare::CompareArgs),
     /// Draw a volume at every point of a parameter space.
     Sweep(sweep::SweepArgs),
-    /// Former spelling of `pxpl5 figures --group volumetric`.
-    #[command(hide = true)]
-    Figures(FiguresArgs),
-}
-
-pub(crate) fn figures(args: &FiguresArgs) -> Result<(), CliError> {
-    figures::run(args)
-}
-
-pub(crate) fn figures_table() -> Result<String, CliError> {
-    figures::table()
 }
 
 pub(crate) fn run(args: VolumeArgs) -> Result<(), CliError> {
@@ -66,6 +53,5 @@ pub(crate) fn run(args: VolumeArgs) -> Result<(), CliError> {
         VolumeCommand::Film(args) => view::film(args),
         VolumeCommand::Compare(args) => compare::run(args),
         VolumeCommand::Sweep(args) => sweep::run(args),
-        VolumeCommand::Figures(args) => figures::run(&args.of_former("volume", VOLUMETRIC)),
     }
 }

@@ -115,17 +115,6 @@ fn json_of(output: &std::process::Output) -> serde_json::Value {
     serde_json::from_str(&out(output)).expect("one object")
 }
 
-#[test]
-fn the_latency_of_a_single_shown_picture_has_no_deviation() {
-    let folder = Folder::new("one-picture");
-    let report = json(&folder.run(&with(&FULL, &["--fields", "400", "--json"])));
-    assert_eq!((&report["pictures"], &report["latency_ms"]["sd"]), (&1.into(), &serde_json::Value::Null));
-    // A frame is due every second field, and takes at least 70 fields.
-    let [due, shown] = ["due", "shown"].map(|key| report["due"][key].as_u64().expect("a number"));
-    assert!(due > 100 && (1..=5).contains(&shown), "{shown} of {due}");
-    assert_eq!(report["missed_retraces"].as_u64(), Some(due - shown));
-}
-
 fn read(folder: &Path, name: &str) -> Vec<u8> {
     std::fs::read(folder.join(name)).expect("written")
 }
@@ -257,51 +246,6 @@ fn impossible_numbers_are_refused() {
 fn a_million_triangles_do_not_fit_and_the_error_names_options_that_help() {
     let args = ["run", "--pipeline", "slats", "--scene", "full-screen:1000000", "--pixels", "off"];
     refused(&args, 1, &["GP 0", "bytes", "--gps", "--triangles"]);
-}
-
-/// Returns the text of a PLY file with one triangle. `first` has the coordinates of its first vertex, `last_index` the
-/// last index.
-fn ply(first: &str, last_index: &str, faces: usize) -> String {
-    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
-    let face = if faces == 0 { String::new() } else { format!("3 0 1 {last_index}\n") };
-    format!(
-        "{header}element face {faces}\nproperty list uchar int vertex_indices\nend_header\n{first}\n1 0 0\n0 1 0\n{face}"
-    )
-}
-
-#[test]
-fn bad_model_files_are_refused_with_file_and_place() {
-    let whole = ply("0 0 0", "2", 1);
-    let cases = [
-        ("empty.ply", String::new(), "empty file"),
-        ("truncated.ply", whole[..whole.len() - 12].to_owned(), "line"),
-        ("index.ply", ply("0 0 0", "3", 1), "found 3"),
-        ("nan.ply", ply("nan 0 0", "2", 1), "line 10: expected a coordinate between -1e15 and 1e15, found NaN"),
-        ("infinite.ply", ply("inf 0 0", "2", 1), "line 10: expected a coordinate between -1e15 and 1e15, found inf"),
-        ("huge.ply", ply("1e30 0 0", "2", 1), "coordinate"),
-        ("none.ply", ply("0 0 0", "2", 0), "at least one triangle"),
-        ("notes.txt", whole.clone(), ".ply, .obj, .stl, .gltf, .glb or .pdb"),
-    ];
-    for (name, contents, says) in cases {
-        let folder = Folder::new(name);
-        let path = folder.file(name, contents);
-        let path = path.to_str().expect("text");
-        refused(&["run", "--pipeline", "slats", "--scene", path, "--out", "out"], 2, &[name, says]);
-    }
-    refused(&["run", "--pipeline", "slats", "--scene", "missing.ply"], 2, &["missing.ply", "readable file"]);
-    let folder = Folder::new("good");
-    let good = folder.file("good.ply", whole);
-    let report = json(&folder.run(&[
-        "run",
-        "--pipeline",
-        "slats",
-        "--scene",
-        good.to_str().expect("text"),
-        "--fields",
-        "12",
-        "--json",
-    ]));
-    assert_eq!(report["triangles"], 1);
 }
 
 #[test]
@@ -496,50 +440,6 @@ fn the_files_of_figures_agree_with_accuracy_md_or_state_the_reason() {
         let here = simulated / published.value;
         let there = found / printed;
         assert!((here / there - 1.0).abs() < 0.001, "{name}: {here} of the published value, in ACCURACY.md {there}");
-    }
-}
-
-/// Returns the first cell after the name of a row, in the table that the command prints to the terminal.
-fn cell(text: &str, name: &str) -> String {
-    let line = text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("no {name}: {text}"));
-    line[name.len()..].trim().to_owned()
-}
-
-/// Tests light and heavy runs of all kinds. The table on the terminal must show the rounded values of the JSON report,
-/// and `-` for null.
-#[test]
-fn the_terminal_and_json_show_the_same_values() {
-    let folder = Folder::new("terminal");
-    let pipelines =
-        ["slats", "rendering-control", "jitp-field", "jitp-dual-screen-racing", "frameless", "arp-priority"];
-    for (i, pipeline) in pipelines.into_iter().enumerate() {
-        for (scene, gps) in [("typical:20", "7"), ("typical:900", "3"), ("sphere:200", "13")] {
-            let fields = (12 + 7 * i).to_string();
-            let run =
-                ["run", "--pipeline", pipeline, "--scene", scene, "--gps", gps, "--fields", &fields, "--pixels", "off"];
-            let report = json_of(&folder.run(&with(&run, &["--json"])));
-            let text = out(&folder.run(&run));
-            let case = format!("{pipeline} {scene}: {text}");
-            let number = |path: &str| report.pointer(path).and_then(serde_json::Value::as_f64);
-            let whole = |path: &str| report.pointer(path).and_then(serde_json::Value::as_u64);
-            let dash = || "-".to_owned();
-            let latency = number("/latency_ms/mean").map_or_else(dash, |mean| {
-                let sd = number("/latency_ms/sd").map_or_else(dash, |sd| format!("{sd:.1}"));
-                format!("{mean:.1}, sd {sd}, n {}", report["latency_ms"]["n"])
-            });
-            assert_eq!(cell(&text, "latency, ms: mean"), latency, "{case}");
-            let hz = number("/updates_hz").map_or_else(dash, |hz| format!("{hz:.2}"));
-            assert_eq!(cell(&text, "updates per second"), hz, "{case}");
-            let not_shown = whole("/missed_retraces").zip(whole("/due/due"));
-            let not_shown = not_shown.map_or_else(dash, |(missed, due)| format!("{missed} of {due} pictures due"));
-            assert_eq!(cell(&text, "not shown in time"), not_shown, "{case}");
-            let ends = ["late", "incomplete", "missed"].map(|end| whole(&format!("/due/{end}")).map(|n| n.to_string()));
-            let ends = ends.into_iter().collect::<Option<Vec<_>>>().map_or_else(dash, |ends| ends.join(", "));
-            assert_eq!(cell(&text, "  late, incompl., missed"), ends, "{case}");
-            let window = whole("/window/first_period").zip(whole("/window/last_period"));
-            let window = window.map_or_else(dash, |(first, last)| format!("{first} to {last}"));
-            assert_eq!(cell(&text, "all over periods"), window, "{case}");
-        }
     }
 }
 

@@ -185,25 +185,6 @@ fn every_command_that_computes_is_estimated_before_it_starts() {
     assert!(err(&output).contains("expected to take 3"), "{}", err(&output));
 }
 
-/// Tests costs that depend on the size of a run and not on its length. They must be known before the start.
-#[test]
-fn thousands_of_batches_or_processors_are_estimated_before_the_run() {
-    let folder = Folder::new("estimate");
-    let frameless = ["run", "--pipeline", "frameless", "--scene", "full-screen:4", "--fields", "120", "--out", "o"];
-    for (set, limit, least, most) in [
-        (["--batch", "65535"], ["--max-memory", "300"], 316, 632),
-        (["--gps", "1000"], ["--max-memory", "100"], 101, 300),
-        (["--gps", "1000"], ["--max-seconds", "5"], 5, 40),
-    ] {
-        let output = folder.run(&[&frameless[..], &set, &limit].concat());
-        let text = err(&output);
-        assert!(output.status.code() == Some(1) && text.contains("an estimate before the start"), "{set:?}: {text}");
-        let number = text.split("expected to take ").nth(1).and_then(|rest| rest.split(' ').next()?.parse().ok());
-        assert!(number.is_some_and(|number: u64| (least..=most).contains(&number)), "{set:?}: {text}");
-        assert!(folder.names().is_empty(), "{set:?} left {:?}", folder.names());
-    }
-}
-
 #[test]
 fn a_scene_too_heavy_to_be_shown_is_reported_before_the_run() {
     let folder = Folder::new("too-heavy");

@@ -22,53 +22,6 @@ fn reading_a_model_prints_a_summary() {
     assert_eq!(report["warnings"][0], warning.trim_start_matches("pxpl5: warning: ").trim_end());
 }
 
-#[test]
-fn a_model_in_an_unknown_format_is_refused_with_the_known_formats() {
-    let folder = Folder::new("foreign-format");
-    for name in ["model.fbx", "./model.fbx", "model.FBX", "model.3ds"] {
-        folder.file(name, "solid");
-        let run = folder.run(&["run", "--pipeline", "slats", "--scene", name]);
-        let message = err(&run);
-        let expected = "expected an extension .ply, .obj, .stl, .gltf, .glb or .pdb";
-        assert!(!run.status.success() && message.contains(expected), "{message}");
-    }
-    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "there-is-none.fbx"]);
-    assert!(
-        !run.status.success() && err(&run).contains("there-is-none.fbx: expected an extension .ply"),
-        "{}",
-        err(&run)
-    );
-    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "there-is-none.ply"]);
-    assert!(
-        !run.status.success() && err(&run).contains("there-is-none.ply: expected a readable file"),
-        "{}",
-        err(&run)
-    );
-    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "typical:1.5"]);
-    assert!(!run.status.success() && err(&run).contains("expected N"), "{}", err(&run));
-    folder.file("point.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n");
-    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "point.obj"]);
-    assert!(!run.status.success() && err(&run).contains("point.obj: expected at least one triangle with an area"));
-}
-
-#[test]
-fn a_gltf_file_is_read_by_every_build() {
-    let folder = Folder::new("foreign-gltf");
-    folder.file("model.gltf", r#"{"asset": {"version": "2.0"}}"#);
-    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "model.gltf"]);
-    let expected = "model.gltf: expected at least one triangle, found none";
-    assert!(run.status.code() == Some(2) && err(&run).contains(expected), "{}", err(&run));
-}
-
-#[test]
-fn an_stl_file_can_be_run_as_a_scene() {
-    let folder = Folder::new("foreign-stl");
-    let corners = ["0 0 0", "1 0 0", "0 1 0"].map(|corner| format!("vertex {corner}\n")).concat();
-    folder.file("model.stl", format!("solid\nfacet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\nendsolid\n"));
-    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "model.stl", "--fields", "40", "--json"]);
-    assert!(run.status.success(), "{}", err(&run));
-}
-
 /// Returns the text of a recording with a hundred poses per second for three seconds. It has no pose between 0.28 s and
 /// 2.49 s, and one duplicate.
 fn recording() -> String {
@@ -171,24 +124,6 @@ fn assembler_listings_have_source_lines_and_warnings_can_be_turned_off() {
     assert!(!wrong.status.success() && err(&wrong).contains("lost-result"));
 }
 
-#[test]
-fn columns_of_comparisons_have_the_same_names_in_tables_plots_and_json() {
-    let folder = Folder::new("foreign-columns");
-    let settings = ["--fields", "24", "--seeds", "1", "--scene", "full-screen:2", "--only", "slats"];
-    let settings = [&settings[..], &["--causes", "--predictors"]].concat();
-    let compared = folder.run(&[&["compare", "--out", "c"][..], &settings].concat());
-    assert!(compared.status.success(), "{}", err(&compared));
-    let table = std::fs::read_to_string(folder.0.join("c/rows.csv")).expect("written");
-    let header = table.lines().next().expect("a header").to_owned();
-    // `plot` lists all columns of comparison.json if a requested column does not exist.
-    let unknown = folder.run(&["plot", "c", "--x", "no-column", "--y", "due", "--out", "f.svg"]);
-    let columns: Vec<String> =
-        err(&unknown).trim_end().rsplit_once("There are: ").expect("a list").1.split(", ").map(str::to_owned).collect();
-    for column in header.split(',') {
-        assert!(columns.iter().any(|name| name == column), "{column} is not in {columns:?}");
-    }
-}
-
 /// Wrong inputs of every kind, with a part of the message. All end with exit code 2.
 #[test]
 fn every_wrong_input_ends_with_exit_code_2_and_the_reason() {
@@ -203,6 +138,7 @@ fn every_wrong_input_ends_with_exit_code_2_and_the_reason() {
     for (args, says) in [
         ([&slats[..], &["none.obj"]].concat(), "none.obj: expected a readable file"),
         ([&slats[..], &["bad.obj"]].concat(), "bad.obj: line 1"),
+        ([&slats[..], &["model.fbx"]].concat(), "expected an extension .ply, .obj, .stl, .gltf, .glb or .pdb"),
         (vec!["run", "none.toml"], "none.toml"),
         (vec!["run", "escape.toml"], "\\u{1b}]0;title\\u{7}.obj"),
         (head("late.csv"), "no pose from 0.000 s to 20.000 s"),

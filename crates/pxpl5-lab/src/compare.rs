@@ -4,24 +4,23 @@
 //! head to display, the prediction interval, and the error in pixels by cause. The row also has the largest number of
 //! triangles that the pipeline can draw in time.
 
-mod contender;
+mod compared;
 mod gallery;
 mod interval;
 mod length;
 mod pictures;
 mod precision;
 mod predictors;
-mod progress;
 mod query;
 mod resume;
 mod row;
 mod store;
 mod trial;
 
-pub use crate::head_names::{
+pub use crate::head_parts::{
     MOTIONS, Replay, TRACKERS, is_recording, is_walk, motion, predictor, replayed, tracker, tracker_by, walk,
 };
-pub use contender::RowChoice;
+pub use compared::RowChoice;
 pub use gallery::LastPicture;
 pub use interval::{CONFIDENCE, IntervalMethod, MeanInterval};
 pub use length::RecordedLength;

@@ -1,5 +1,9 @@
 //! Comparison of two reports, value by value.
 
+use crate::error::StudyError;
+use crate::estimate::Estimate;
+use crate::study::Study;
+use pxpl5_sim::Watcher;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -62,8 +66,27 @@ const SETTINGS: [&str; 17] = [
 /// First parts of the paths of values that are not compared, because they do not describe the simulated machine.
 const LEFT_OUT: [&str; 4] = ["config_hash", "trace_hash", "host_seconds", "events"];
 
-/// Compares two reports in JSON, such as the contents of two files `report.json`.
-pub fn diff(a: &Value, b: &Value) -> Differences {
+/// The comparison of two reports in JSON, such as the contents of two files `report.json`.
+#[derive(Clone, Debug)]
+pub struct DiffQuery {
+    /// The two reports.
+    pub reports: [Value; 2],
+}
+
+impl Study for DiffQuery {
+    type Report = Differences;
+
+    fn estimate(&self, _: usize) -> Estimate {
+        Estimate::NOTHING
+    }
+
+    fn run(&self, _: &mut dyn Watcher) -> Result<Differences, StudyError> {
+        let [a, b] = &self.reports;
+        Ok(diff(a, b))
+    }
+}
+
+fn diff(a: &Value, b: &Value) -> Differences {
     let [of_a, of_b] = [a, b].map(|report| {
         let mut leaves = BTreeMap::new();
         flatten(String::new(), report, &mut leaves);

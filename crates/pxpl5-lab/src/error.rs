@@ -31,7 +31,10 @@ pub enum StudyError {
 
 impl StudyError {
     /// Returns a function that converts an error of the experiment of figure `id`.
-    pub(crate) fn of_figure<E: ToString>(id: &'static str) -> impl FnOnce(E) -> Self {
-        move |error| Self::Figure { id, reason: error.to_string() }
+    pub(crate) fn of_figure(id: &'static str) -> impl FnOnce(Self) -> Self {
+        move |error| match error {
+            Self::Experiment(ExperimentError::Stopped(_)) => error,
+            _ => Self::Figure { id, reason: error.to_string() },
+        }
     }
 }

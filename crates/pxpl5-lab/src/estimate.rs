@@ -29,9 +29,7 @@
 //! cost also depends on the visible part of a scene and on repeated head poses, which no formula predicts. An estimate
 //! is good enough to distinguish minutes from weeks. Running experiments are monitored as well.
 
-use crate::Plan;
-use pxpl5_run::{KeyValue, Level, Pixels};
-use pxpl5_scene::Scene;
+use pxpl5_run::{Experiment, KeyValue, Level, Pixels};
 
 /// Quantities of an experiment that determine its memory and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,6 +131,9 @@ const BLOCK_GPS: f64 = 20.0;
 const MIN_BLOCK_S: f64 = 6e-6;
 
 impl Estimate {
+    /// Almost no memory and time.
+    pub const NOTHING: Self = Self { bytes: 0.0, seconds: 0.0 };
+
     /// Combines the estimates of many runs that are divided among `threads` threads. The time is the sum of all times
     /// divided by `threads`. The memory is the largest memory of a run times `threads`.
     #[must_use]
@@ -146,29 +147,30 @@ impl Estimate {
 }
 
 impl RunWork {
-    /// Returns the quantities that determine the cost of an experiment with its scene. Each field has one picture, or
-    /// less if the processors need longer than a field to transform all primitives.
+    /// Returns the quantities that determine the cost of an experiment. Each field has one picture, or less if the
+    /// processors need longer than a field to transform all primitives.
     #[must_use]
-    pub fn of(plan: &Plan, scene: &Scene, keeps_everything: bool) -> Self {
-        let settings = plan.pipeline.settings();
+    pub fn of(experiment: &Experiment, keeps_everything: bool) -> Self {
+        let pipeline = experiment.pipeline();
+        let settings = pipeline.settings();
         // Settings that a pipeline does not have count as 0.
         let whole = |key: &str| match settings.iter().find(|(name, _)| *name == key) {
             Some((_, KeyValue::Whole(value))) => *value,
             _ => 0,
         };
         let mut work = Self {
-            fields: plan.fields,
-            gps: plan.machine.n_gps as u64,
-            primitives: scene.primitives() as u64,
-            eyes: plan.pipeline.eyes() as u64,
+            fields: experiment.fields,
+            gps: experiment.config().n_gps as u64,
+            primitives: experiment.scene().primitives() as u64,
+            eyes: pipeline.eyes() as u64,
             pictures_a_field: 1.0,
             uses_closed_form: false,
             batch: whole("batch"),
             block: whole("block"),
-            is_cycle_level: plan.level == Level::Cycle,
-            keeps_everything: keeps_everything || !plan.pipeline.can_discard_records(),
-            is_tracked: plan.head.is_some(),
-            computes_all_pixels: plan.pixels == Pixels::All,
+            is_cycle_level: experiment.level == Level::Cycle,
+            keeps_everything: keeps_everything || !pipeline.can_discard_records(),
+            is_tracked: experiment.head.is_some(),
+            computes_all_pixels: experiment.pixels == Pixels::All,
         };
         // A pipeline shows at most one picture in a field, and fewer if TRANSFORM takes longer.
         work.pictures_a_field = (1.0 / work.fields_of_transform()).min(1.0);
@@ -226,80 +228,6 @@ impl RunWork {
         let load = if self.uses_closed_form { LOAD_S * eyes * primitives } else { 0.0 };
         let (runs, evaluated) = if self.is_tracked { (RUNS_OF_HEAD, fields * EVALUATED_FIELD_S) } else { (1.0, 0.0) };
         runs * run + load + evaluated
-    }
-}
-
-/// A command with a fixed set of experiments, and the settings that determine its cost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Study {
-    /// The measurement of all published figures.
-    Figures,
-    /// The ranking of interpretations ([`crate::interpretations`]), including the simulation of the fly-through of the
-    /// scene "mig".
-    Interpretations {
-        /// Number of seeds of the fly-through.
-        seeds: u64,
-        /// Number of frames for each seed.
-        frames: u64,
-        /// Number of best interpretations that are also simulated with events.
-        best: u64,
-    },
-    /// The comparison of the levels of detail ([`crate::levels`]).
-    Levels {
-        /// Number of random experiments that measure the error relative to the cycle level.
-        experiments: u64,
-        /// True if the speed of the simulation is measured too.
-        measures_speeds: bool,
-    },
-}
-
-/// CPU seconds to measure all published figures. This constant and the constants below were measured with the build
-/// profile `dist` on one core of 3 GHz (25 November 2026).
-const FIGURES_S: f64 = 36.0;
-/// CPU seconds to rank all interpretations with one frame of an application scene.
-const INTERPRETATIONS_FRAME_S: f64 = 0.0172;
-/// Additional time for each interpretation that is also simulated with events, as a fraction of the time to rank all
-/// interpretations.
-const INTERPRETATIONS_BEST: f64 = 0.1;
-/// CPU seconds to simulate the published figures at all levels of detail. The next two constants are the CPU seconds of
-/// one random experiment at all levels, and of the measurement of all simulation speeds.
-const LEVELS_S: f64 = 56.0;
-const LEVELS_EXPERIMENT_S: f64 = 0.52;
-const SPEEDS_S: f64 = 23.0;
-/// Peak memory in bytes to measure all published figures. This constant and the next two constants were measured with
-/// two threads and rounded up.
-const FIGURES_BYTES: f64 = 300e6;
-const INTERPRETATIONS_BYTES: f64 = 60e6;
-const LEVELS_BYTES: f64 = 800e6;
-
-impl Study {
-    /// Estimates the memory and time of the study on `threads` threads of a computer that also does other work.
-    pub fn estimate(self, threads: usize) -> Estimate {
-        Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() / threads.max(1) as f64 }
-    }
-
-    const fn bytes(self) -> f64 {
-        match self {
-            Self::Figures => FIGURES_BYTES,
-            Self::Interpretations { .. } => INTERPRETATIONS_BYTES,
-            Self::Levels { .. } => LEVELS_BYTES,
-        }
-    }
-
-    /// Returns the run time in seconds on one idle core.
-    fn core_seconds(self) -> f64 {
-        match self {
-            Self::Figures => FIGURES_S,
-            Self::Interpretations { seeds, frames, best } => {
-                // The scene "mig" has all seeds, "molecules" a third of the seeds, and "head" a fifth.
-                let frames = frames * (seeds + seeds.div_ceil(3) + seeds.div_ceil(5));
-                INTERPRETATIONS_FRAME_S * frames as f64 * (1.0 + INTERPRETATIONS_BEST * best as f64)
-            }
-            Self::Levels { experiments, measures_speeds } => {
-                let speeds = if measures_speeds { SPEEDS_S } else { 0.0 };
-                LEVELS_S + LEVELS_EXPERIMENT_S * experiments as f64 + speeds
-            }
-        }
     }
 }
 
@@ -379,31 +307,5 @@ mod tests {
             assert!(more.estimate().bytes >= least.bytes && more.estimate().seconds > least.seconds, "{more:?}");
         }
         assert!(RunWork { block: 16, batch: 5, ..SMALL }.estimate().bytes > least.bytes);
-    }
-
-    /// Measured studies: the study, its CPU time in seconds, and its peak memory in MB. The last two studies were not
-    /// used to fit the constants of the estimates.
-    const STUDIES: [(Study, f64, f64); 11] = [
-        (Study::Figures, 36.1, 280.0),
-        (Study::Interpretations { seeds: 6, frames: 150, best: 20 }, 69.8, 52.7),
-        (Study::Interpretations { seeds: 3, frames: 100, best: 10 }, 21.0, 37.2),
-        (Study::Interpretations { seeds: 2, frames: 120, best: 20 }, 26.2, 36.4),
-        (Study::Interpretations { seeds: 4, frames: 80, best: 5 }, 12.5, 35.6),
-        (Study::Interpretations { seeds: 5, frames: 60, best: 12 }, 20.8, 34.0),
-        (Study::Levels { experiments: 20, measures_speeds: false }, 66.2, 690.3),
-        (Study::Levels { experiments: 200, measures_speeds: false }, 159.5, 779.9),
-        (Study::Levels { experiments: 200, measures_speeds: true }, 182.6, 779.9),
-        (Study::Interpretations { seeds: 8, frames: 40, best: 3 }, 9.0, 38.9),
-        (Study::Levels { experiments: 60, measures_speeds: false }, 86.2, 657.9),
-    ];
-
-    #[test]
-    fn the_estimated_time_of_a_study_is_within_a_third_of_the_measured_time() {
-        for (study, seconds, megabytes) in STUDIES {
-            let time = study.core_seconds() / seconds;
-            let memory = study.bytes() / 1e6 / megabytes;
-            assert!((0.75..1.34).contains(&time), "{study:?}: {time} times {seconds} s");
-            assert!((1.0..2.0).contains(&memory), "{study:?}: {memory} times {megabytes} MB");
-        }
     }
 }

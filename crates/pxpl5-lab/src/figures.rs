@@ -1,7 +1,7 @@
 //! Published figures compared with the model: the printed value, the simulated value and their difference.
 //!
 //! ```text
-//!   TOPICS: lists of Measurement (data and one experiment each) --Bench--> FigureRow: published, simulated, error,
+//!   TOPICS: lists of Measurement (data and one experiment each) --FigureSettings--> FigureRow: published, simulated, error,
 //!                                                                          interval, provenance
 //! ```
 //!
@@ -14,8 +14,8 @@
 //!
 //! Sources: TR94, I3D95, JITP, F89 and others. This project chose the loads of the experiments.
 
+mod alternatives;
 mod applications;
-mod bench;
 mod document;
 mod family;
 mod groups;
@@ -26,138 +26,22 @@ mod jitp;
 mod measurement;
 mod rates;
 mod rendering_control;
+mod rig_lines;
+mod settings;
 mod slats;
+mod topics;
 mod trackers;
+mod value;
 
-pub use bench::Bench;
+pub use alternatives::{AlternativeQuery, Alternatives, Effect};
 pub use document::{Documents, TIME_MARK, documents};
-pub use groups::{FigureGroup, Figures, TOPICS, Topic, all, at_all_levels};
+pub use groups::{FigureGroup, FigureQuery, Figures};
 pub use headline::{Counted, Headline};
-pub use heads::PHOTODIODE_LINE;
 pub use interpretation::{FieldCount, Interpretation, LatencySamples, ROOM};
-pub use measurement::{FigureValue, LatencyDefinition, MISS_PERCENT, Measurement, Varied};
-use pxpl5_run::Level;
+pub use measurement::{LatencyDefinition, MISS_PERCENT, Measurement, Varied};
 pub use pxpl5_sim::figures::{Basis, Detail, FigureRow};
-pub(crate) use rendering_control::DEVIATION;
-
-use crate::error::StudyError;
-use crate::interpretations::{self, Interpretations};
-use crate::parallel;
-use groups::{HEAD, RC, SLATS, row_of, stepped};
-use pxpl5_run::FinishedRegions;
-use serde::Serialize;
-use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Published figures under other assumptions than in [`Figures`].
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Alternatives {
-    /// Rows of Rendering Control, Slats and the head, with the times of executed i860 code.
-    pub of_code: Vec<FigureRow>,
-    /// Rows that depend on the interpretation, with the other rule for finished regions.
-    pub other_rule: Vec<FigureRow>,
-    /// Rates and limits for each size of a renderer's FIFO.
-    pub fifo: Vec<Effect>,
-    /// Latency of the pendulum rig for several times of the host.
-    pub host: Vec<Effect>,
-    /// Fit of the model to the published figures of Rendering Control, for each interpretation of the papers.
-    pub interpretations: Interpretations,
-    /// Latencies of the fly-throughs for several times of the application on the host, at the analytic level.
-    pub application: Vec<Effect>,
-}
-
-/// Values of some figures with changed parameters.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Effect {
-    /// Paths and values of the parameters.
-    pub changes: Vec<(&'static str, u64)>,
-    /// Numbers of the figures with their values and standard deviations, which are NaN for a single number.
-    pub figures: Vec<(&'static str, f64, f64)>,
-}
-
-/// Number of seeds for each application scene in the ranking of interpretations of the papers.
-const SEEDS: u64 = 2;
-/// Number of frames for each seed in the ranking of interpretations of the papers.
-const FRAMES: u64 = 60;
-/// Number of interpretations that are simulated with events, those that the formulas find likeliest.
-const SIMULATED: usize = 20;
-
-/// Sizes of FIFO chips that were sold from 1988 to 1990, in words (recollected).
-const CHIPS: [u64; 4] = [256, 512, 1_024, 2_048];
-/// Rates and limits that depend on the size of the FIFO.
-const OF_FIFO: [&str; 6] = ["R1", "R2", "R3", "12", "13", "14"];
-
-/// Times of the host in milliseconds for one message, or for the application.
-const HOST_MS: [u64; 4] = [2, 4, 6, 8];
-
-/// Mean times of the application in milliseconds. Assumed: from no application to a loop of 25 frames a second.
-const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
-/// Jitters of the application's time in milliseconds, at most the mean. Assumed: up to 30 ms, the period at which a Unix
-/// host polled its serial ports (TR94).
-const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
-
-impl Alternatives {
-    /// Measures all members in parallel. Calls `finished` with the number of finished members and the number of all
-    /// members.
-    ///
-    /// # Errors
-    ///
-    /// Returns the first [`StudyError`].
-    pub fn run(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Self, StudyError> {
-        let done = AtomicU64::new(0);
-        let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, 6);
-        let rows = |bench: &Bench, figures: Vec<&Measurement>| {
-            let rows = parallel::map(&figures, |figure| row_of(figure, bench));
-            rows.into_iter().collect::<Result<Vec<_>, _>>()
-        };
-        let of_code = || stepped(&step, || rows(&bench.clone().with_times_of_code(), at_all_levels().collect()));
-        let other_rule = || {
-            let other = Interpretation { finished: FinishedRegions::Wait, ..bench.interpretation };
-            stepped(&step, || rows(&bench.with(other), all().filter(|figure| figure.is_interpreted).collect()))
-        };
-        let effects = |bench: &Bench, ends: &[Vec<(&'static str, u64)>], ids: &[&'static str]| {
-            stepped(&step, || effects(bench, ends, ids))
-        };
-        let fifo = || effects(bench, &CHIPS.map(|words| vec![(rates::FIFO_WORDS, words)]), &OF_FIFO);
-        let ms = |path| HOST_MS.map(|ms| vec![(path, ms * MS)]);
-        let host = || effects(bench, &[ms("host.message_ns"), ms(APPLICATION)].concat(), &["17"]);
-        let ranked = bench.clone().with_mig(SEEDS, FRAMES);
-        let interpretations = || stepped(&step, || interpretations::run(&ranked, SIMULATED, |_, _| {}));
-        let of_application = || {
-            let times = MEANS_MS.iter().flat_map(|mean| JITTERS_MS.iter().map(move |jitter| (*mean, *jitter)));
-            // A jitter greater than the mean would need negative times.
-            let times = times.filter(|(mean, jitter)| jitter <= mean);
-            let ends = times.map(|(mean, jitter)| vec![(APPLICATION, mean * MS), (JITTER, jitter * MS)]);
-            let bench = Bench { level: Level::Analytic, ..ranked.clone() };
-            effects(&bench, &ends.collect::<Vec<_>>(), &["7", "7b", "7c"])
-        };
-        let both = || parallel::both(other_rule, of_code);
-        let ((other_rule, of_code), ((fifo, host), (interpretations, times))) = parallel::both(both, || {
-            parallel::both(|| parallel::both(fifo, host), || parallel::both(interpretations, of_application))
-        });
-        Ok(Self {
-            of_code: of_code?,
-            other_rule: other_rule?,
-            fifo: fifo?,
-            host: host?,
-            interpretations: interpretations.map_err(StudyError::of_figure("7"))?,
-            application: times?,
-        })
-    }
-}
-
-const APPLICATION: &str = "host.application_ns";
-const JITTER: &str = "host.application_jitter_ns";
-const MS: u64 = 1_000_000;
-
-/// Measures the figures `ids` with the changes of each element of `ends`.
-fn effects(bench: &Bench, ends: &[Vec<(&'static str, u64)>], ids: &[&'static str]) -> Result<Vec<Effect>, StudyError> {
-    let effect = |changes: &Vec<(&'static str, u64)>| {
-        let moved = bench.with_changes(changes.iter().map(|(path, value)| ((*path).to_owned(), *value)));
-        let figure = |id: &&'static str| {
-            let measured = moved.measure(id).map_err(StudyError::of_figure(id))?;
-            Ok::<_, StudyError>((*id, measured.value, measured.detail(DEVIATION).unwrap_or(f64::NAN)))
-        };
-        Ok(Effect { changes: changes.clone(), figures: ids.iter().map(figure).collect::<Result<_, _>>()? })
-    };
-    parallel::map(ends, effect).into_iter().collect()
-}
+pub use rig_lines::PHOTODIODE_LINE;
+pub use settings::FigureSettings;
+pub use topics::{TOPICS, Topic, all, at_all_levels};
+pub(crate) use value::DEVIATION;
+pub use value::FigureValue;

@@ -1,7 +1,7 @@
 //! Ranking of the interpretations of the papers: all figures of Rendering Control under every combination of answers.
 //!
 //! ```text
-//!   Interpretation::all() --Bench, analytic level--> Fit of each --the likeliest, transaction level--> Interpretations
+//!   Interpretation::all() --FigureSettings, analytic level--> Fit of each --the likeliest, transaction level--> Interpretations
 //!                                                   |
 //!                                                   +--without one figure in turn--> LeaveOneOut: its prediction
 //! ```
@@ -17,7 +17,7 @@ mod fit;
 mod rank;
 
 pub use fit::{FigureFit, Fit};
-pub use rank::{ALIKE, Interpretations, LeaveOneOut, run};
+pub use rank::{ALIKE, InterpretationQuery, Interpretations, LeaveOneOut};
 
 use crate::figures::{Basis, Measurement, all};
 

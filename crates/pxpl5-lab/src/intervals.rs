@@ -15,7 +15,7 @@
 //! time, and the interpretations too if they change the figure. The fly-throughs are among them, because the formulas
 //! deviate from the simulation by more than the distance of these latencies to the next retrace.
 
-use crate::figures::{Bench, Interpretation, Measurement, PHOTODIODE_LINE, Varied, all};
+use crate::figures::{FigureSettings, Interpretation, Measurement, PHOTODIODE_LINE, Varied, all};
 use crate::parallel;
 use pxpl5_gp::GpTiming;
 use pxpl5_machine::MachineConfig;
@@ -127,37 +127,37 @@ pub fn variations() -> Vec<Variation> {
     of_machine.chain(of_slats).collect()
 }
 
-/// Computes the intervals of all figures. `bench` has the settings of all measurements. The list is empty if another
-/// thread sets the flag of `bench`.
-pub fn intervals(bench: &Bench) -> Vec<Interval> {
+/// Computes the intervals of all figures. `settings` has the settings of all measurements. The list is empty if another
+/// thread sets the flag of `settings`.
+pub fn intervals(settings: &FigureSettings) -> Vec<Interval> {
     let by_events: Vec<&Measurement> = all().filter(|figure| matches!(figure.varied, Varied::ByEvents(_))).collect();
-    let of_events = || parallel::map(&by_events, |figure| with_events(bench, figure));
-    let (mut intervals, of_events) = parallel::both(|| by_formula(bench), of_events);
+    let of_events = || parallel::map(&by_events, |figure| with_events(settings, figure));
+    let (mut intervals, of_events) = parallel::both(|| by_formula(settings), of_events);
     intervals.extend(of_events.into_iter().flatten());
     // After a stop, values are missing.
-    if bench.stop.is_stopped() { Vec::new() } else { intervals }
+    if settings.stop.is_stopped() { Vec::new() } else { intervals }
 }
 
 /// Computes the intervals at the analytic level.
-fn by_formula(bench: &Bench) -> Vec<Interval> {
+fn by_formula(settings: &FigureSettings) -> Vec<Interval> {
     let figures: Vec<&Measurement> = all().filter(|figure| figure.varied == Varied::ByFormula).collect();
-    let bench = Bench { level: Level::Analytic, ..bench.clone() }.with_mig(MIG.0, MIG.1);
+    let settings = FigureSettings { level: Level::Analytic, ..settings.clone() }.with_mig(MIG.0, MIG.1);
     // A figure without a result is `None`.
-    let measure = |bench: &Bench| -> Vec<Option<f64>> {
-        let value = |figure: &&Measurement| Some(figure.value(bench).ok()?.value).filter(|value| value.is_finite());
+    let measure = |settings: &FigureSettings| -> Vec<Option<f64>> {
+        let value = |figure: &&Measurement| Some(figure.value(settings).ok()?.value).filter(|value| value.is_finite());
         figures.iter().map(value).collect()
     };
     let variations = variations();
-    let nominal = measure(&bench);
+    let nominal = measure(&settings);
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     // Measure at both ends of each range, one parameter at a time.
-    let at_ends = parallel::map(&ends, |(v, value)| measure(&bench.with_changes([(v.path.clone(), *value)])));
+    let at_ends = parallel::map(&ends, |(v, value)| measure(&settings.with_changes([(v.path.clone(), *value)])));
     let samples: Vec<u64> = (0..SAMPLES).collect();
     // Measure machines with all parameters drawn at random.
-    let joint = parallel::map(&samples, |sample| measure(&bench.with_changes(draw(&variations, *sample))));
-    let neighbours = bench.interpretation.neighbours();
+    let joint = parallel::map(&samples, |sample| measure(&settings.with_changes(draw(&variations, *sample))));
+    let neighbours = settings.interpretation.neighbours();
     // Measure with other interpretations, each with another answer to one question.
-    let results = parallel::map(&neighbours, |interpretation| measure(&bench.with(*interpretation)));
+    let results = parallel::map(&neighbours, |interpretation| measure(&settings.with(*interpretation)));
     // Collect the results for each figure. A missing value counts as the value for the presets.
     // A figure without a value on the random machines, as after a stop, has no interval.
     let of_figure = |(index, figure): (usize, &&Measurement)| {
@@ -170,7 +170,7 @@ fn by_formula(bench: &Bench) -> Vec<Interval> {
         let mut interval = interval(figure.id, nominal, &ends, joint, &variations);
         let values =
             neighbours.iter().zip(&results).filter_map(|(interpretation, all)| Some((*interpretation, all[index]?)));
-        interval.add_interpretations(&bench.interpretation, values);
+        interval.add_interpretations(&settings.interpretation, values);
         Some(interval)
     };
     figures.iter().enumerate().filter_map(of_figure).collect()
@@ -179,26 +179,27 @@ fn by_formula(bench: &Bench) -> Vec<Interval> {
 /// Computes the interval of a figure with events. One parameter at a time is set to each end of its range, while all
 /// others have their presets. If the figure depends on the interpretation, each other answer to one question is tried
 /// too. The value for the presets replaces the result of a failed experiment.
-fn with_events(bench: &Bench, figure: &Measurement) -> Option<Interval> {
+fn with_events(settings: &FigureSettings, figure: &Measurement) -> Option<Interval> {
     let Varied::ByEvents(paths) = figure.varied else { return None };
-    let bench = bench.clone().with_mig(MIG_OF_EVENTS.0, MIG_OF_EVENTS.1);
-    let nominal = figure.value(&bench).ok()?.value;
+    let settings = settings.clone().with_mig(MIG_OF_EVENTS.0, MIG_OF_EVENTS.1);
+    let nominal = figure.value(&settings).ok()?.value;
     let all = variations().into_iter().chain(photodiode_line());
     let variations: Vec<_> = all.filter(|v| paths.contains(&v.path.as_str())).collect();
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     let ends = parallel::map(&ends, |(v, value)| {
-        let moved = bench.with_changes([(v.path.clone(), *value)]);
+        let moved = settings.with_changes([(v.path.clone(), *value)]);
         // The end of a range can be the value that all machines have.
-        if bench.has_machines_of(&moved) {
+        if settings.has_machines_of(&moved) {
             return nominal;
         }
         figure.value(&moved).map_or(nominal, |measured| measured.value)
     });
     let mut interval = interval(figure.id, nominal, &ends, vec![nominal], &variations);
     if figure.is_interpreted {
-        let neighbours = bench.interpretation.neighbours();
-        let results = parallel::map(&neighbours, |other| Some((*other, figure.value(&bench.with(*other)).ok()?.value)));
-        interval.add_interpretations(&bench.interpretation, results.into_iter().flatten());
+        let neighbours = settings.interpretation.neighbours();
+        let results =
+            parallel::map(&neighbours, |other| Some((*other, figure.value(&settings.with(*other)).ok()?.value)));
+        interval.add_interpretations(&settings.interpretation, results.into_iter().flatten());
     }
     Some(interval)
 }
@@ -351,7 +352,7 @@ mod tests {
     /// 63.56 us after the first line.
     #[test]
     fn the_figure_of_the_pendulum_rig_moves_with_the_line_of_the_photodiode() {
-        let interval = with_events(&Bench::new(Level::Analytic), figure("17")).expect("it is measured");
+        let interval = with_events(&FigureSettings::new(Level::Analytic), figure("17")).expect("it is measured");
         let line = interval.effects.iter().find(|effect| effect.path == PHOTODIODE_LINE).expect("it moves");
         let [low, high] = line.ends;
         assert!((high - low - 239.0 * 0.063_556).abs() < 0.01, "{low} to {high}");

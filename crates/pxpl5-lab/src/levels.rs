@@ -4,7 +4,7 @@ mod compare;
 mod random;
 mod record;
 
-pub use compare::{LevelQuery, compare_with};
+pub use compare::LevelQuery;
 pub use random::{compared_ms, experiment as random_experiment};
 pub use record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
 
@@ -17,7 +17,7 @@ use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Summary};
 /// Fails in the same cases as [`Experiment::run`]. At the analytic level, returns the error of the pipeline's closed
 /// form, or [`ExperimentError::Level`] if the pipeline has no closed form.
 pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary, ExperimentError> {
-    if experiment.modelling_level() != Level::Analytic {
+    if experiment.level != Level::Analytic {
         return Ok(experiment.run()?.summary());
     }
     let entry = registry.pipeline(experiment.pipeline().name()).ok();

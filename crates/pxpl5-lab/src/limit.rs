@@ -16,12 +16,14 @@ mod over;
 mod search;
 
 pub use over::{OverLimit, OverQuery, STEPS, USUAL_VALUES, Values};
-pub use search::{Hints, Limit, about, most, most_triangles};
+pub use search::{Hints, Limit, about, most};
 
-use crate::StopFlag;
 use crate::edges::{NEAR_FIELDS, to_other_retraces};
+use crate::error::StudyError;
+use crate::estimate::{Estimate, RunWork};
 use crate::experiment_file::{Plan, SceneChoice};
 use crate::levels::summarise;
+use crate::study::{Study, check};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{
     Coverage, Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry,
@@ -29,6 +31,7 @@ use pxpl5_run::{
 };
 use pxpl5_scene::{Decimation, Scene, builtin};
 use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::{StopFlag, Watcher};
 use std::sync::Arc;
 
 /// A search for the largest number of triangles: a pipeline, a machine, the kind of triangles and the goal.
@@ -46,7 +49,11 @@ pub struct LimitQuery {
     pub model: Option<Model>,
     /// Level of detail of all simulations.
     pub level: Level,
-    /// Flag with which another thread stops the search.
+    /// True if the closed form gives hints, which reduce the number of simulations and not their results.
+    pub uses_hints: bool,
+    /// True if sizes above the first miss are tried too, which about doubles the number of simulations.
+    pub looks_above: bool,
+    /// Flag that stops single experiments. A search takes that of its watcher.
     pub stop: StopFlag,
 }
 
@@ -105,6 +112,39 @@ pub const USUAL_SIZES: u64 = 40;
 /// as missed.
 const PICTURES: usize = 4;
 
+impl Study for LimitQuery {
+    type Report = Limit;
+
+    fn estimate(&self, _: usize) -> Estimate {
+        // Closed forms cost almost nothing.
+        if self.level == Level::Analytic {
+            return Estimate::NOTHING;
+        }
+        let scene = || Arc::new(test_scene(self.criterion.scene, 1));
+        let scene = self.model.as_ref().map_or_else(scene, |model| Arc::clone(&model.whole));
+        let one = RunWork::of(&self.experiment_of(scene), false).estimate();
+        Estimate::of_all([one; USUAL_SIZES as usize], 1)
+    }
+
+    /// Searches for the limit. A scene that does not fit into a board's memory, or is never shown, misses the goal.
+    fn run(&self, watcher: &mut dyn Watcher) -> Result<Limit, StudyError> {
+        let query = Self { stop: watcher.stop(), ..self.clone() };
+        let mut tried = 0;
+        let limit = most(query.ceiling(), &query.hints(), self.looks_above, |triangles| {
+            tried += 1;
+            watcher.progress(tried, tried.max(USUAL_SIZES));
+            let reached = query.reached(triangles)?;
+            let misses = if reached { "reach" } else { "miss" };
+            watcher.row("sizes", &format_args!("{triangles} triangles {misses} the goal"));
+            Ok::<_, ExperimentError>(reached)
+        })?;
+        if limit.triangles == 0 {
+            query.check_rate()?;
+        }
+        Ok(limit)
+    }
+}
+
 impl LimitQuery {
     /// Creates a query from the machine, pipeline and level of an experiment, with the pipeline's own criterion.
     #[must_use]
@@ -116,6 +156,8 @@ impl LimitQuery {
             criterion: plan.limit,
             model: None,
             level: plan.level,
+            uses_hints: true,
+            looks_above: true,
             stop: StopFlag::default(),
         }
     }
@@ -130,53 +172,8 @@ impl LimitQuery {
         let unknown = |_| SettingError::combination(format_args!("no pipeline {} is known", pipeline.name()));
         let criterion = (registry.pipeline(pipeline.name()).map_err(unknown)?.limit)(&PipelineSettings::default());
         let (pipeline, level) = (Arc::new(pipeline), Level::Transaction);
-        Ok(Self { registry, config, pipeline, criterion, model: None, level, stop: StopFlag::default() })
-    }
-
-    /// Searches for the limit.
-    ///
-    /// A scene that does not fit into a board's memory, or is never shown, misses the goal.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`ExperimentError`] if the machine cannot be built or the pipeline cannot run on the machine. Returns
-    /// [`ExperimentError::Stopped`] if another thread sets the query's flag.
-    pub fn search(&self) -> Result<Limit, ExperimentError> {
-        self.search_with(|_, _| {})
-    }
-
-    /// Searches for the limit. Calls `progress` with the number of simulated scenes, and with an estimate of the number
-    /// of all scenes.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`search`](Self::search).
-    pub fn search_with(&self, mut progress: impl FnMut(u64, u64)) -> Result<Limit, ExperimentError> {
-        let mut tried = 0;
-        let limit = most(self.ceiling(), &self.hints(), |triangles| {
-            tried += 1;
-            progress(tried, tried.max(USUAL_SIZES));
-            self.reached(triangles)
-        })?;
-        self.check_limit(limit.triangles)?;
-        Ok(limit)
-    }
-
-    /// Returns [`Limit::triangles`] of [`search`](Self::search). This function takes less time than
-    /// [`search`](Self::search), because no sizes above the first miss are tried.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`search`](Self::search).
-    pub fn search_triangles(&self) -> Result<u32, ExperimentError> {
-        let triangles = most_triangles(self.ceiling(), &self.hints(), |triangles| self.reached(triangles))?;
-        self.check_limit(triangles)?;
-        Ok(triangles)
-    }
-
-    /// Returns an error if the found limit `triangles` is 0 because the goal cannot be evaluated.
-    fn check_limit(&self, triangles: u32) -> Result<(), ExperimentError> {
-        if triangles == 0 { self.check_rate() } else { Ok(()) }
+        let (uses_hints, looks_above, stop) = (true, true, StopFlag::default());
+        Ok(Self { registry, config, pipeline, criterion, model: None, level, uses_hints, looks_above, stop })
     }
 
     /// Returns an error if the goal is an update rate that cannot be measured for the scene. A pipeline that draws all
@@ -196,22 +193,13 @@ impl LimitQuery {
         )))
     }
 
-    /// Searches for the limit without the hints of the analytic level. This search takes longer.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`search`](Self::search).
-    pub fn search_without_hints(&self) -> Result<Limit, ExperimentError> {
-        most(self.ceiling(), &Hints::default(), |triangles| self.reached(triangles))
-    }
-
     /// Returns the hints of the analytic level. The hints are empty if the pipeline has no closed form, or if the
-    /// search itself uses the analytic level.
+    /// search itself uses the analytic level or no hints.
     ///
     /// The hints for a model use a test scene of small triangles instead of the model. A model must be decimated to
     /// each number of triangles, which takes as long at the analytic level as at any other level.
     fn hints(&self) -> Hints {
-        if self.level == Level::Analytic && self.model.is_none() {
+        if !self.uses_hints || self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();
         }
         // Small triangles stand for a model, because the decimated sizes of a model are expensive to build.
@@ -261,13 +249,16 @@ impl LimitQuery {
     }
 
     fn experiment(&self, triangles: u32) -> Result<Experiment, ExperimentError> {
-        self.stop.check()?;
-        let scene = self.scene(triangles)?;
-        Ok(Experiment::with(self.config.clone(), Arc::clone(&self.pipeline), scene)
+        check(&self.stop)?;
+        Ok(self.experiment_of(self.scene(triangles)?))
+    }
+
+    fn experiment_of(&self, scene: Arc<Scene>) -> Experiment {
+        Experiment::with(self.config.clone(), Arc::clone(&self.pipeline), scene)
             .fields(self.criterion.fields)
             .pixels(Pixels::Off)
             .level(self.level)
-            .host(self.stop.clone()))
+            .stopped_by(self.stop.clone())
     }
 
     fn summary(&self, triangles: u32) -> Result<Summary, ExperimentError> {
@@ -278,7 +269,7 @@ impl LimitQuery {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`search`](Self::search).
+    /// Fails in the same cases as [`Study::run`].
     pub fn reached(&self, triangles: u32) -> Result<bool, ExperimentError> {
         match self.summary(triangles) {
             Ok(summary) => Ok(is_reached(self.criterion.goal, &summary)),
@@ -292,7 +283,7 @@ impl LimitQuery {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`search`](Self::search).
+    /// Fails in the same cases as [`Study::run`].
     pub fn near_edge(&self, triangles: u32) -> Result<Option<String>, ExperimentError> {
         // The same scene with fewer triangles shows how much of a field a triangle takes.
         let fewer = triangles - triangles.div_ceil(4).min(60);

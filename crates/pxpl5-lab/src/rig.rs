@@ -13,23 +13,25 @@
 //! lowest point come from the pendulum. The light comes from the pixels that the display scans at the photodiode. The
 //! D/A line comes from the board that starts the frame. The pipeline's records give the system's own time stamps.
 
-use crate::StopFlag;
 use crate::error::StudyError;
+use crate::estimate::{Estimate, RunWork};
+use crate::study::Study;
 use core::f64::consts::FRAC_PI_2;
 use glam::{DVec3, Vec3};
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_run::{Coverage, Experiment, ExperimentError, Head, Outcome, PictureTimes, Pipeline, Pixels};
 use pxpl5_scene::{HeadMotion, Lighting, Scene, SceneParts, Vertex};
-use pxpl5_sim::Time;
-use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::parameters::{SettingError, Value};
+use pxpl5_sim::{StopFlag, Time, Watcher};
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use tracking::motion::Still;
 use tracking::predict::PredictorKind;
-use tracking::rig::{InsidePass, LowPointReport, Measurement, Oscilloscope, PendulumRig, ScopeTrace};
+use tracking::rig::{InsidePass, LowPointReport, Measurement, Oscilloscope, PendulumRig, ScopeTrace, Side};
 use tracking::time::nearest_ps;
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 use tracking::{Pose, rotation};
@@ -45,31 +47,105 @@ pub struct Rig {
     pub seed: u64,
     /// Number of measured passes of the pendulum through its lowest point, at least 2.
     pub passes: usize,
-    /// Flag with which another thread stops the measurement.
-    pub stop: StopFlag,
 }
 
 /// Default number of measured passes of the pendulum through its lowest point. A pass can fall at any time within a
 /// field. With this number, the error of the mean wait for a retrace is about a fifth of a field.
 pub const PASSES: usize = 24;
 
+/// The measurement of the latency of a pipeline on a machine with a rig.
+#[derive(Clone, Debug)]
+pub struct RigQuery {
+    /// The pendulum, its tracker, and the photodiodes.
+    pub rig: Rig,
+    /// Machine on which the pipeline runs.
+    pub machine: MachineConfig,
+    /// The measured pipeline.
+    pub pipeline: Arc<dyn Pipeline>,
+}
+
+/// Latencies of a system, measured from outside and from inside.
+#[derive(Clone, Debug, Serialize)]
+pub struct RigReport {
+    /// Name and version of the JSON layout.
+    pub schema: &'static str,
+    /// Name of the measured pipeline.
+    pub pipeline: &'static str,
+    /// Name of the machine's preset.
+    pub machine: String,
+    /// Parameters of the machine that differ from the preset.
+    pub overrides: BTreeMap<String, Value>,
+    /// Name of the tracker.
+    pub tracker: String,
+    /// Seed of the tracker's noise.
+    pub seed: u64,
+    /// Line of the screen under the photodiode.
+    pub photodiode_line: u32,
+    /// Number of measured passes of the pendulum.
+    pub n: u64,
+    /// Latencies measured with the oscilloscope, in milliseconds.
+    pub outside_ms: Side,
+    /// Latencies by the system's own time stamps, in milliseconds.
+    pub inside_ms: Side,
+    /// Mean total latency outside minus that inside, in milliseconds.
+    pub outside_less_inside_ms: f64,
+    /// Greatest amount by which tracking may take longer outside, in milliseconds.
+    pub tracking_bound_ms: f64,
+    /// Greatest amount by which rendering may be shorter outside, in milliseconds.
+    pub rendering_early_bound_ms: f64,
+    /// Greatest amount by which rendering may take longer outside, in milliseconds.
+    pub rendering_bound_ms: f64,
+    /// True if both sides agree.
+    pub agrees: bool,
+    /// The measurement of each pass.
+    #[serde(skip)]
+    pub measured: Measurement,
+}
+
+/// Greatest number of display fields between two passes of the pendulum through its lowest point: one second.
+const FIELDS_OF_PASS: u64 = 60;
+
+impl Study for RigQuery {
+    type Report = RigReport;
+
+    fn estimate(&self, _: usize) -> Estimate {
+        let fields = self.rig.passes as u64 * FIELDS_OF_PASS;
+        let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), Arc::new(lamp()));
+        RunWork { is_tracked: true, ..RunWork::of(&experiment.fields(fields), true) }.estimate()
+    }
+
+    /// Measures the latency. Fails if the pipeline does not show the requested frames.
+    fn run(&self, watcher: &mut dyn Watcher) -> Result<RigReport, StudyError> {
+        let line = self.rig.rig.photodiode_line;
+        let ([measured], _) =
+            self.rig.measure_lines(&self.machine, Arc::clone(&self.pipeline), [line], &watcher.stop())?;
+        Ok(RigReport {
+            schema: "pxpl5-rig/1",
+            pipeline: self.pipeline.name(),
+            machine: self.machine.preset.clone(),
+            overrides: self.machine.overrides(),
+            tracker: self.rig.tracker.name.clone(),
+            seed: self.rig.seed,
+            photodiode_line: line,
+            n: measured.outside.total.n,
+            outside_ms: measured.outside.in_ms(),
+            inside_ms: measured.inside.in_ms(),
+            outside_less_inside_ms: measured.outside_less_inside_s() * 1e3,
+            tracking_bound_ms: measured.tracking_bound_ps as f64 * 1e-9,
+            rendering_early_bound_ms: measured.rendering_early_ps as f64 * 1e-9,
+            rendering_bound_ms: measured.rendering_bound_ps as f64 * 1e-9,
+            agrees: measured.agrees(),
+            measured,
+        })
+    }
+}
+
 impl Rig {
     /// Creates a rig with `tracker` on the pendulum, and with the assumed settings of pendulum, detection and
     /// photodiodes.
     #[must_use]
     pub fn assumed(tracker: TrackerConfig) -> Self {
-        Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES, stop: StopFlag::default() }
-    }
-
-    /// Measures the latency of a pipeline on a machine.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`StudyError`] if the pipeline cannot run on the machine, or does not show the requested frames.
-    pub fn measure(&self, machine: &MachineConfig, pipeline: Arc<dyn Pipeline>) -> Result<Measurement, StudyError> {
-        let (measured, _) = self.measure_lines(machine, pipeline, [self.rig.photodiode_line])?;
-        let [measured] = measured;
-        Ok(measured)
+        Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES }
     }
 
     /// Measures the latency under several lines of the screen in one run. Also returns the run. A photodiode does not
@@ -79,15 +155,16 @@ impl Rig {
         machine: &MachineConfig,
         pipeline: Arc<dyn Pipeline>,
         lines: [u32; N],
+        stop: &StopFlag,
     ) -> Result<([Measurement; N], Outcome), StudyError> {
         let tracker = TrackerModel::new(self.tracker.clone())?;
         check_frames(machine, pipeline.as_ref())?;
         // The pendulum determines when frames start.
         let sightings = self.rig.sightings(&tracker, self.seed, self.passes.max(2))?;
-        let experiment = self.experiment(machine, pipeline, &sightings)?;
-        // Watch the screen during the run, then read the pipeline's records for the inside measurement.
+        let experiment = self.experiment(machine, pipeline, &sightings)?.stopped_by(stop.clone());
+        // Observe the screen during the run, then read the pipeline's records for the inside measurement.
         let mut photodiodes = lines.map(Photodiode::new);
-        let outcome = watch(&mut photodiodes, &experiment)?;
+        let outcome = observe(&mut photodiodes, &experiment)?;
         let measured = photodiodes.map(|photodiode| self.compared(&tracker, &outcome, &sightings, photodiode));
         // Report the error of the first line that has one.
         let mut errors = Vec::new();
@@ -140,11 +217,8 @@ impl Rig {
         });
         let head = Head::new(Arc::new(Still(away())), self.tracker.clone(), PredictorKind::None, self.seed)?;
         let head = head.reporting(reports.collect());
-        let experiment = Experiment::with(machine.clone(), pipeline, Arc::new(lamp()))
-            .head(head)
-            .on_demand()
-            .pixels(Pixels::Lazy)
-            .host(self.stop.clone());
+        let experiment =
+            Experiment::with(machine.clone(), pipeline, Arc::new(lamp())).head(head).on_demand().pixels(Pixels::Lazy);
         let last_ps = sightings.last().map_or(0, |last| last.arrives_ps);
         // The run ends half a period of the pendulum after the last sighting.
         let end = Time(last_ps + nearest_ps(self.rig.pendulum.period_s() / 2.0));
@@ -254,10 +328,10 @@ fn brightness(colour: [u8; 3]) -> u32 {
 }
 
 /// Runs an experiment and samples the photodiodes. A run that is too short to fill the pipeline is not an error.
-fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outcome, StudyError> {
+fn observe(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outcome, StudyError> {
     let machine = experiment.build()?;
     photodiodes.iter().try_for_each(|photodiode| photodiode.check(machine.record().display()))?;
-    let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.length())).collect();
+    let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.fields)).collect();
     let result = experiment.run_stopping(&every, |period, machine| {
         // The stop comes before the retrace that ends the previous period.
         if let Some(over) = period.before(2) {
@@ -320,13 +394,15 @@ mod tests {
         let rig = Rig { passes: 4, ..Rig::assumed(TrackerConfig::optical_ceiling()) };
         let (machine, pipeline) = (MachineConfig::small_hmd(), Arc::new(RenderingControl::stereo()));
         let lines = [0, 100, 239];
-        let (together, _) = rig.measure_lines(&machine, pipeline.clone(), lines).expect("it shows frames");
+        let (together, _) =
+            rig.measure_lines(&machine, pipeline.clone(), lines, &StopFlag::default()).expect("it shows frames");
         for (line, together) in lines.into_iter().zip(together) {
             let rig = Rig { rig: PendulumRig { photodiode_line: line, ..rig.rig }, ..rig.clone() };
-            let alone = rig.measure(&machine, pipeline.clone()).expect("it shows frames");
+            let query = RigQuery { rig, machine: machine.clone(), pipeline: pipeline.clone() };
+            let alone = query.run(&mut ()).expect("it shows frames").measured;
             assert_eq!(format!("{alone:?}"), format!("{together:?}"), "line {line}");
         }
-        let refused = rig.measure_lines(&machine, pipeline, [0, 240]);
+        let refused = rig.measure_lines(&machine, pipeline, [0, 240], &StopFlag::default());
         let refused = refused.expect_err("there are 240 lines").to_string();
         assert_eq!(refused, "line of the photodiode: expected a line from 0 to 239, found 240");
     }

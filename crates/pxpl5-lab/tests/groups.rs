@@ -1,13 +1,13 @@
 //! Tests of the figures by topic. Each figure is measured in a run that could have given another value.
 
-use pxpl5_lab::figures::{Bench, FigureRow, TOPICS};
+use pxpl5_lab::figures::{FigureRow, FigureSettings, TOPICS};
 use pxpl5_run::Level;
 use std::sync::LazyLock;
 
 static ROWS: LazyLock<Vec<FigureRow>> = LazyLock::new(|| {
-    let bench = Bench::new(Level::Transaction);
+    let settings = FigureSettings::new(Level::Transaction);
     let figures = TOPICS.iter().skip(3).flat_map(|topic| topic.figures);
-    figures.map(|figure| figure.measured_row(&bench).expect("every figure has a value")).collect()
+    figures.map(|figure| figure.measured_row(&settings).expect("every figure has a value")).collect()
 });
 
 fn row(id: &str) -> &'static FigureRow {
@@ -68,7 +68,7 @@ fn the_i860_reaches_between_78_and_80_million_operations_per_second() {
 /// Tests that a FIFO without room for a message lowers the rate of the machine.
 #[test]
 fn a_small_fifo_lowers_the_rate_of_the_machine() {
-    let small = Bench::new(Level::Transaction).with_changes([("renderer.fifo_words".to_owned(), 256)]);
+    let small = FigureSettings::new(Level::Transaction).with_changes([("renderer.fifo_words".to_owned(), 256)]);
     for id in ["R1", "R2", "R3"] {
         let rate = small.measure(id).expect("it runs").value;
         assert!(rate < row(id).simulated, "{id}: {rate}");
@@ -79,8 +79,8 @@ fn a_small_fifo_lowers_the_rate_of_the_machine() {
 /// renderers with equal loads would draw 20 x 40 MHz / clocks / 1.3 of them.
 #[test]
 fn a_paraboloid_is_faster_than_a_root_and_both_are_faster_than_the_recollected_rate() {
-    let bench = Bench::new(Level::Transaction);
-    let clocks = |clocks: u64| bench.with_changes([("renderer.phong_sphere_clocks".to_owned(), clocks)]);
+    let settings = FigureSettings::new(Level::Transaction);
+    let clocks = |clocks: u64| settings.with_changes([("renderer.phong_sphere_clocks".to_owned(), clocks)]);
     let [root, paraboloid] = [504, 268].map(|n| clocks(n).measure("R8").expect("it runs").value);
     // FIXME(accuracy): the recollected rate of 700,000 is lower than both.
     assert!(700e3 < root && root < paraboloid, "{root} to {paraboloid}");

@@ -1,6 +1,6 @@
 //! Tests that the transaction level agrees with the cycle level, if the timing table holds the times of executed code.
 
-use pxpl5_lab::figures::Bench;
+use pxpl5_lab::figures::FigureSettings;
 use pxpl5_lab::levels::deviation_percent;
 use pxpl5_run::Level;
 use rayon::prelude::*;
@@ -16,8 +16,8 @@ const MAX_PERCENT: f64 = 5.0;
 #[test]
 fn with_the_times_of_the_code_both_levels_are_within_five_percent() {
     let at = |level: Level, id: &str| {
-        let bench = Bench::new(level).with_mig(1, 20).with_times_of_code();
-        bench.measure(id).unwrap_or_else(|error| panic!("figure {id}: {error}")).value
+        let settings = FigureSettings::new(level).with_mig(1, 20).with_times_of_code();
+        settings.measure(id).unwrap_or_else(|error| panic!("figure {id}: {error}")).value
     };
     let step = if std::env::var_os("PXPL5_ALL_CASES").is_some() { 1 } else { 2 };
     MOVED.par_iter().step_by(step).for_each(|id| {

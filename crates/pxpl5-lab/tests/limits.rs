@@ -4,6 +4,7 @@
 //! `PXPL5_FUZZ_FROM` starts at another number.
 
 use pxpl5_lab::ExperimentFile;
+use pxpl5_lab::Study;
 use pxpl5_lab::levels::summarise;
 use pxpl5_lab::limit::{LimitQuery, test_scene};
 use pxpl5_run::{Experiment, Level, TestScene};
@@ -67,7 +68,7 @@ fn the_analytic_limit_of_slats_is_the_simulated_one_within_its_bound() {
         let (settings, scene) = machine(round);
         let simulated = query(&settings, scene);
         let analytic = LimitQuery { level: Level::Analytic, ..simulated.clone() };
-        let [found, expected] = [&analytic, &simulated].map(|query| query.search().expect("it runs").triangles);
+        let [found, expected] = [&analytic, &simulated].map(|query| query.run(&mut ()).expect("it runs").triangles);
         let percent = 100.0 * (f64::from(found) / f64::from(expected.max(1)) - 1.0);
         // `apart_ms` is the difference of the two limits as a time, by which the first copy begins later.
         let [at_found, at_expected] = [found + 1, expected + 1].map(|size| copies_begin_ms(&analytic, size));
@@ -117,7 +118,7 @@ fn many_senders_are_limited_by_their_shared_channels() {
     let simulated = query(&boards(34, 20), TestScene::Typical);
     let analytic = LimitQuery { level: Level::Analytic, ..simulated.clone() };
     let [simulated, analytic] =
-        [simulated, analytic].map(|query| f64::from(query.search().expect("it runs").triangles));
+        [simulated, analytic].map(|query| f64::from(query.run(&mut ()).expect("it runs").triangles));
     assert!((analytic / simulated - 1.0).abs() < BOUND_PERCENT / 100.0, "{analytic} for {simulated}");
 }
 
@@ -127,7 +128,7 @@ fn many_senders_are_limited_by_their_shared_channels() {
 #[test]
 fn the_limit_is_the_size_just_below_the_smallest_size_that_misses_the_goal() {
     let query = query(&boards(13, 20), TestScene::Typical);
-    let found = query.search().expect("it runs");
+    let found = query.run(&mut ()).expect("it runs");
     let from = found.triangles * 3 / 4;
     let sizes = from..=found.triangles + 13;
     let reached: Vec<u32> = sizes.into_par_iter().filter(|size| query.reached(*size).expect("it runs")).collect();
@@ -141,10 +142,10 @@ fn the_first_miss_is_the_smallest_size_that_misses() {
     for (gps, renderers, copy) in [(1, 5, "split"), (3, 9, "whole")] {
         let settings = [boards(gps, renderers), vec![format!("copy={copy}"), "code=1995".to_owned()]].concat();
         let query = query(&settings, TestScene::FullScreen);
-        let found = query.search().expect("it runs");
+        let found = query.run(&mut ()).expect("it runs");
         let least = (1..=found.triangles + 1).find(|size| !query.reached(*size).expect("it runs"));
         assert_eq!(found.first_miss, least, "{settings:?}");
-        let without = query.search_without_hints().expect("it runs");
+        let without = LimitQuery { uses_hints: false, ..query.clone() }.run(&mut ()).expect("it runs");
         assert_eq!((without.triangles, without.first_miss), (found.triangles, found.first_miss), "{settings:?}");
         assert!(found.tried <= without.tried, "{found:?} {without:?}");
     }

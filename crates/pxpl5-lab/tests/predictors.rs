@@ -79,7 +79,7 @@ fn the_report_names_the_tuning_of_a_filter_and_uses_the_interval_of_the_pipeline
     assert_ne!(training.seed, 1, "not on the noise that is evaluated");
     assert_eq!(head.prediction.kind, PredictorKind::Kalman);
     // The requested predictor determines the experiment's hash. The tuned predictor has a hash of its own.
-    let asked = outcome.experiment().tracked_head().expect("asked for").fingerprint().to_string();
+    let asked = outcome.experiment().head.as_ref().expect("asked for").fingerprint().to_string();
     assert_ne!(head.fingerprint, asked);
 }
 

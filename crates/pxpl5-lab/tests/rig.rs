@@ -2,8 +2,8 @@
 //! measurement reveals faults of the other.
 
 use pphigs::FrameView;
-use pxpl5_lab::StudyError;
-use pxpl5_lab::rig::Rig;
+use pxpl5_lab::rig::{Rig, RigQuery};
+use pxpl5_lab::{Study, StudyError};
 use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_run::{PictureRules, PictureTimes, Pipeline, PipelineSettings, Registry, RenderingControl, Setup, Views};
@@ -21,8 +21,12 @@ fn rig(tracker: TrackerConfig, passes: usize) -> Rig {
     Rig { passes, ..Rig::assumed(noiseless(tracker)) }
 }
 
+fn on(rig: Rig, machine: MachineConfig, pipeline: Arc<dyn Pipeline>) -> Result<Measurement, StudyError> {
+    Ok(RigQuery { rig, machine, pipeline }.run(&mut ())?.measured)
+}
+
 fn measure(tracker: TrackerConfig, pipeline: Arc<dyn Pipeline>, passes: usize) -> Result<Measurement, StudyError> {
-    rig(tracker, passes).measure(&MachineConfig::small_hmd(), pipeline)
+    on(rig(tracker, passes), MachineConfig::small_hmd(), pipeline)
 }
 
 fn named(name: &str) -> Arc<dyn Pipeline> {
@@ -76,7 +80,7 @@ fn pipelines_without_frames_are_refused_with_the_reason() {
 #[test]
 fn the_external_latency_of_slats_is_a_field_plus_the_delay_of_the_photodiode_line() {
     // One processor begins TRANSFORM at the retrace. Several processors would need a message first.
-    let measured = rig(TrackerConfig::fastrak(), 6).measure(&MachineConfig::slats(), named("slats"));
+    let measured = on(rig(TrackerConfig::fastrak(), 6), MachineConfig::slats(), named("slats"));
     let measured = measured.expect("two triangles");
     let line_ms = 4.004 / 63.0;
     // One field has 262.5 lines. Line 120 is 142 lines after the retrace, half a line more in odd fields. The middle
@@ -172,6 +176,6 @@ fn each_measurement_detects_errors_of_the_other_measurement() {
 fn a_photodiode_below_the_screen_is_refused() {
     let mut rig = Rig::assumed(TrackerConfig::ideal());
     rig.rig.photodiode_line = 240;
-    let error = rig.measure(&MachineConfig::small_hmd(), named("slats")).expect_err("there are 240 lines");
+    let error = on(rig, MachineConfig::small_hmd(), named("slats")).expect_err("there are 240 lines");
     assert!(error.to_string().contains("from 0 to 239, found 240"), "{error}");
 }

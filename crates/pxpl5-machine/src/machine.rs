@@ -153,8 +153,8 @@ impl Machine {
     }
 
     /// Disables an optimization of the simulator. Call this method before the machine runs.
-    pub fn disable(&mut self, saving: Optimization) {
-        match saving {
+    pub fn disable(&mut self, optimization: Optimization) {
+        match optimization {
             Optimization::IdleBoards => self.every_edge = true,
             Optimization::Transfers => self.record.ring.move_every_word(),
             Optimization::EmptyRegions => self.record.renderers.iter_mut().for_each(Renderer::draw_every_region),
@@ -206,14 +206,14 @@ impl Machine {
         &self.record.ports
     }
 
-    /// Returns the handle through which a program controls the host or graphics processor at port `node`. `level` is
+    /// Returns the handle through which a program controls the host or graphics processor at port `node`. `priority` is
     /// the CPU priority of the program.
     ///
     /// # Panics
     ///
     /// Panics if no processor has this port.
-    pub fn processor(&self, node: NodeId, level: Priority) -> Gp {
-        self.processors[usize::from(node.0)].handle_for(level)
+    pub fn processor(&self, node: NodeId, priority: Priority) -> Gp {
+        self.processors[usize::from(node.0)].handle_for(priority)
     }
 
     /// Loads a program with a CPU priority onto the host or graphics processor at a port.
@@ -221,8 +221,8 @@ impl Machine {
     /// # Panics
     ///
     /// Panics if no processor has this port.
-    pub fn load(&mut self, node: NodeId, level: Priority, program: Firmware) {
-        self.processors[usize::from(node.0)].load(level, program);
+    pub fn load(&mut self, node: NodeId, priority: Priority, program: Firmware) {
+        self.processors[usize::from(node.0)].load(priority, program);
     }
 
     /// Adds a connection from the host to the first display that bypasses the ring. Call this method before
@@ -299,7 +299,7 @@ impl Machine {
         self.work_events += u64::from(!event.is_of_displays());
         match event {
             Event::Ring(event) => self.ring_event(now, event),
-            Event::FromRing(output) => self.bring(now, output),
+            Event::FromRing(output) => self.take_from_ring(now, output),
             Event::Gp(board, event) => self.gp_event(now, board, event),
             Event::Renderer(board, event) => self.renderer_event(now, board, event),
             Event::HostLine(line) => self.host_line_event(now, line),
@@ -399,7 +399,7 @@ impl Machine {
         schedule_outputs(queue, context);
     }
 
-    fn bring(&mut self, now: Time, output: RingOutput) {
+    fn take_from_ring(&mut self, now: Time, output: RingOutput) {
         let record = &mut self.record;
         let mut traffic = record.observation.traffic.as_deref_mut();
         match output {

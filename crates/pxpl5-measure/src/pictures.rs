@@ -30,7 +30,7 @@ pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> RgbImage {
 /// Returns `None` if the experiment computes no pixels, or before anything was shown.
 pub fn picture(outcome: &Outcome, surface: impl Into<SurfaceId>) -> Option<RgbImage> {
     let surface = surface.into();
-    if outcome.experiment().pixels_wanted() == Pixels::Off {
+    if outcome.experiment().pixels == Pixels::Off {
         return None;
     }
     // A shifted raster needs the offsets of the fields that are visible.

@@ -219,8 +219,8 @@ impl Report {
             commit: program::commit().map(str::to_owned),
             machine: config.preset.clone(),
             config_hash: experiment.config_hash().to_string(),
-            level: experiment.modelling_level().name().to_owned(),
-            seed: experiment.motion_seed(),
+            level: experiment.level.name().to_owned(),
+            seed: experiment.seed,
             pipeline: pipeline.name().to_owned(),
             variant: pipeline
                 .settings()

@@ -107,7 +107,7 @@ fn report_json(outcome: &Outcome) -> String {
 }
 
 fn assert_same(experiment: &Experiment) {
-    let head = experiment.tracked_head().expect("tracked");
+    let head = experiment.head.as_ref().expect("tracked");
     let name = format!("{}, {:?}", experiment.pipeline().name(), head);
     let everything = run(experiment, KeptRecords::Everything);
     let statistics = run(experiment, KeptRecords::Statistics);

@@ -2,7 +2,7 @@
 //! reports progress and reacts to Ctrl-C.
 
 use crate::errors::failed_run;
-use pxpl5::StopFlag;
+use pxpl5::{StopFlag, Study, StudyError, Watcher};
 use pyo3::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -36,6 +36,16 @@ impl Progress {
 }
 
 pub(crate) const POLL_INTERVAL: Duration = Duration::from_millis(50);
+
+impl Watcher for &Progress {
+    fn progress(&mut self, done: u64, of: u64) {
+        self.report(done, of);
+    }
+
+    fn stop(&self) -> StopFlag {
+        self.stop_flag()
+    }
+}
 
 /// Runs `work` on a separate thread. `callback` gets the number of finished steps and the number of all steps. The
 /// callback is called at most twenty times a second, and only after a change.
@@ -79,6 +89,15 @@ pub(crate) fn in_background<T: Send + 'static>(
             }
         }
     }
+}
+
+/// Runs a study on a separate thread.
+pub(crate) fn study<S: Study<Report: Send + 'static> + Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    study: S,
+) -> PyResult<Result<S::Report, StudyError>> {
+    in_background(py, progress, false, move |watch| study.run(&mut &*watch))
 }
 
 /// Stack size of the worker thread in bytes, equal to the stack of a main thread. The emulator has not been tested with

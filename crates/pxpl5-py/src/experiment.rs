@@ -2,7 +2,7 @@
 
 use crate::background::{Progress, in_background};
 use crate::catalogue::python;
-use crate::errors::wrong_setting;
+use crate::errors::{failed_run, wrong_setting};
 use crate::frames::{Frames, film_bytes};
 use crate::motion::Motion;
 use crate::outcome::{Outcome, exception, outcome_of_run};
@@ -15,7 +15,7 @@ use pxpl5::firmware::Shading;
 use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
     Experiment as Native, ExperimentError, Host, KeptRecords, Level, PeriodNumber, Pixels, Plan, PolicyPipeline,
-    RegionPolicy, Results, SurfaceId, Workstation, levels, registry, what_if,
+    RegionPolicy, Results, Study, StudyError, SurfaceId, WhatIfQuery, Workstation, levels, registry,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -63,7 +63,7 @@ impl Experiment {
         let mut native = plan.experiment(scene);
         // A motion in the arguments replaces the motion of the tracked head.
         if let Some(motion) = motion {
-            let Some(head) = native.tracked_head().cloned() else {
+            let Some(head) = native.head.as_ref().cloned() else {
                 return Err(wrong_setting("a motion: expected a head with a tracker, found none"));
             };
             native = native.head(pxpl5::Head::clone(&head).with_motion(Arc::clone(&motion.moving)));
@@ -161,7 +161,7 @@ impl Experiment {
     /// Returns the number of display periods that the experiment simulates.
     #[getter]
     fn fields(&self) -> u64 {
-        self.native.length()
+        self.native.fields
     }
 
     /// Returns the effect of 10 % more of each resource of the machine, as dictionaries. The experiment runs again for
@@ -172,10 +172,17 @@ impl Experiment {
         let (native, functions) = (self.native.clone(), self.functions.clone());
         let result = in_background(py, None, true, move |watch| {
             let host = StoppableHost { workstation: Workstation::with_threads(1), watch, functions };
-            what_if(&registry(), &native.host(host)).map_err(Box::new)
+            let stop = host.watch.stop_flag();
+            WhatIfQuery { registry: registry(), experiment: native.host(host) }.run(&mut stop.clone())
         });
         self.functions.check()?;
-        python(py, &result?.map_err(|error| exception(py, *error, &self.plan.measure))?)
+        python(
+            py,
+            &result?.map_err(|error| match error {
+                StudyError::Experiment(error) => exception(py, error, &self.plan.measure),
+                error => failed_run(error),
+            })?,
+        )
     }
 
     /// Returns the measured quantities by name, at the experiment's own level of modelling, which may be the analytic
@@ -217,7 +224,7 @@ impl Experiment {
     fn film_of(&self, surface: Option<u16>, first: u64, fields: u64) -> (Film, Arc<Progress>) {
         let (native, watch) = self.on_host(Workstation::with_threads(0));
         // The last picture is final only one field later.
-        let length = self.native.length().max(first.saturating_add(fields).saturating_add(1));
+        let length = self.native.fields.max(first.saturating_add(fields).saturating_add(1));
         let surfaces = surface.map_or(FilmSurfaces::All, |surface| FilmSurfaces::One(SurfaceId(surface)));
         let native = native.pixels(Pixels::Lazy).fields(length);
         (Film::new(native, PeriodNumber(first), fields, surfaces), watch)
@@ -234,7 +241,7 @@ fn run(
     functions: PythonFunctions,
     watch: Arc<Progress>,
 ) -> Result<pxpl5::Outcome, Box<ExperimentError>> {
-    let fields = native.length();
+    let fields = native.fields;
     // A short run stops in every field so that Ctrl-C takes effect soon. A long run stops only to report progress.
     let each = if fields <= LOOKED_AT { fields } else { 0 };
     let stops: Vec<PeriodNumber> = PeriodNumber::FIRST.until(PeriodNumber::FIRST.after(each)).collect();

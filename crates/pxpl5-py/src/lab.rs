@@ -1,22 +1,21 @@
 //! Functions that evaluate many experiments: published figures, limits and comparisons.
 
-use crate::background::{Progress, in_background};
+use crate::background::{in_background, study};
 use crate::catalogue::python;
 use crate::errors::{failed_run, failed_sweep, wrong_setting};
 use crate::settings::Settings;
-use pxpl5::Statistics;
 use pxpl5::compare::{CONFIDENCE, CompareQuery, MAX_SEEDS, Precision, RowChoice, UntilPrecise};
-use pxpl5::figures::{Bench, FigureRow, Figures, all};
-use pxpl5::interpretations::run as rank;
-use pxpl5::lab::diff::Changed;
-use pxpl5::levels::{LevelQuery, LevelRecord, compare_with};
+use pxpl5::figures::{FigureQuery, FigureRow, FigureSettings, all};
+use pxpl5::interpretations::InterpretationQuery;
+use pxpl5::lab::diff::{Changed, DiffQuery};
+use pxpl5::levels::{LevelQuery, LevelRecord};
 use pxpl5::limit::{Limit, LimitQuery, Model, OverQuery};
-use pxpl5::rig::{PASSES, Rig};
-use pxpl5::tracking::rig::Side;
-use pxpl5::{Goal, Level, SettingError, StopFlag, StudyError};
+use pxpl5::rig::{PASSES, Rig, RigQuery};
+use pxpl5::{Goal, Level, SettingError, Study, StudyError};
 use pyo3::prelude::*;
 use serde_json::json;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 fn level(name: &str) -> PyResult<Level> {
     name.parse().map_err(|error: SettingError| wrong_setting(error.at("level")))
@@ -44,14 +43,9 @@ pub(crate) fn figure<'py>(
     let Some(figure) = all().find(|figure| figure.id == id) else {
         return Err(wrong_setting(SettingError::unknown("figure", id, all().map(|figure| figure.id))));
     };
-    let measured = in_background(py, progress, false, move |watch| {
-        figure.measured_row(&bench(level, &watch)).map_err(|e| e.to_string())
-    })?;
-    python(py, &row(&measured.map_err(|error| failed_run(format!("figure {id}: {error}")))?))
-}
-
-fn bench(level: Level, watch: &Progress) -> Bench {
-    Bench::new(level).with_stop(watch.stop_flag())
+    let query = FigureQuery { settings: FigureSettings::new(level), intervals: false, only: vec![figure] };
+    let figures = study(py, progress, query)?.map_err(failed_run)?;
+    python(py, &figures.rows().map(row).next())
 }
 
 fn row(row: &FigureRow) -> serde_json::Value {
@@ -77,10 +71,8 @@ pub(crate) fn figures<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let level = self::level(level)?;
-    let figures = in_background(py, progress, false, move |watch| {
-        Figures::run(&bench(level, &watch), |done, of| watch.report(done, of), |_, _| {})
-    })?;
-    let rows: Vec<serde_json::Value> = figures.map_err(failed_run)?.rows().map(row).collect();
+    let query = FigureQuery { settings: FigureSettings::new(level), intervals: true, only: Vec::new() };
+    let rows: Vec<serde_json::Value> = study(py, progress, query)?.map_err(failed_run)?.rows().map(row).collect();
     python(py, &rows)
 }
 
@@ -126,8 +118,8 @@ pub(crate) fn compare<'py>(
     // With a folder, Ctrl-C waits until all runs have stopped, so that the comparison can be resumed at once.
     let waits = folder.is_some();
     let comparison = in_background(py, progress, waits, move |watch| {
-        let store = folder.map(|folder| query.open_store(&folder, resume)).transpose()?;
-        query.run_into(store.as_ref(), &watch.stop_flag(), |done, of| watch.report(done, of), |_| {})
+        query.store = folder.map(|folder| query.open_store(&folder, resume)).transpose()?.map(Arc::new);
+        query.run(&mut &*watch)
     })?;
     python(py, &comparison.map_err(wrong_study)?)
 }
@@ -178,11 +170,7 @@ pub(crate) fn limit<'py>(
     let drawn =
         query.model.as_ref().map_or(query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned());
     let criterion = query.criterion;
-    let found = in_background(py, progress, false, move |watch| {
-        let query = LimitQuery { stop: watch.stop_flag(), ..query };
-        query.search_with(|tried, of| watch.report(tried, of)).map_err(|error| error.to_string())
-    })?;
-    let found = found.map_err(wrong_setting)?;
+    let found = study(py, progress, query)?.map_err(wrong_setting)?;
     let Limit { triangles, first_miss, island, unbroken_from, tried } = found;
     python(
         py,
@@ -228,12 +216,8 @@ pub(crate) fn limit_over<'py>(
     file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "keyword").map_err(wrong_setting)?;
     let values = OverQuery::values(&first, key, low, high).map_err(|error| wrong_setting(error.at("low and high")))?;
     let goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(first.limit.goal);
-    let query = OverQuery { file, key: key.to_owned(), values, goal, stop: StopFlag::default() };
-    let tried = query.clone();
-    let limit = in_background(py, progress, false, move |watch| {
-        let tried = OverQuery { stop: watch.stop_flag(), ..tried };
-        tried.search(|done, of| watch.report(done, of)).map_err(|error| error.to_string())
-    })?;
+    let query = OverQuery { file, key: key.to_owned(), values, goal };
+    let limit = study(py, progress, query.clone())?;
     let mut found = serde_json::to_value(limit.map_err(wrong_setting)?).map_err(wrong_setting)?;
     found["over"] = key.into();
     found["goal"] = json!(query.goal);
@@ -249,7 +233,7 @@ pub(crate) fn limit_over<'py>(
 #[pyfunction]
 pub(crate) fn diff<'py>(py: Python<'py>, a: &str, b: &str) -> PyResult<Bound<'py, PyAny>> {
     let read = |text: &str| serde_json::from_str::<serde_json::Value>(text).map_err(wrong_setting);
-    let found = pxpl5::lab::diff::diff(&read(a)?, &read(b)?);
+    let found = DiffQuery { reports: [read(a)?, read(b)?] }.run(&mut ()).map_err(wrong_setting)?;
     let rows = |changes: &[Changed]| -> Vec<serde_json::Value> {
         let row = |changed: &Changed| json!({ "key": changed.key, "a": changed.a, "b": changed.b, "percent": changed.percent() });
         changes.iter().map(row).collect()
@@ -267,7 +251,7 @@ pub(crate) fn diff<'py>(py: Python<'py>, a: &str, b: &str) -> PyResult<Bound<'py
 
 /// Measures the latency of a pipeline with the pendulum rig of I3D95: from outside with photodiodes, and from inside
 /// with time stamps. ``passes`` is the number of passes of the pendulum through its lowest point, and ``line`` the line
-/// of the photodiode. Returns a dictionary with outside, inside, outside_less_inside_ms, agrees and bounds.
+/// of the photodiode. Returns a dictionary with outside_ms, inside_ms, outside_less_inside_ms, agrees and bounds.
 ///
 /// Raises :class:`pxpl5.SettingError` for invalid settings, and for a pipeline that the rig cannot measure.
 #[pyfunction]
@@ -283,39 +267,8 @@ pub(crate) fn rig<'py>(
     let tracker = tracker.ok_or_else(|| wrong_setting("the rig: expected a head with a tracker, found none"))?;
     let mut rig = Rig { seed: plan.seed, passes: passes.unwrap_or(PASSES), ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = line.unwrap_or(rig.rig.photodiode_line);
-    let measured = in_background(py, None, false, move |watch| {
-        let rig = Rig { stop: watch.stop_flag(), ..rig };
-        rig.measure(&plan.machine, plan.pipeline.clone()).map_err(|error| error.to_string())
-    })?;
-    let measured = measured.map_err(wrong_setting)?;
-    let latency = |latency: &Statistics| {
-        json!({
-            "n": latency.n,
-            "mean_ms": latency.mean * 1e3,
-            "sd_ms": latency.sd * 1e3,
-            "min_ms": latency.min * 1e3,
-            "max_ms": latency.max * 1e3,
-        })
-    };
-    let side = |side: &Side| {
-        json!({
-            "tracking": latency(&side.tracking),
-            "rendering": latency(&side.rendering),
-            "total": latency(&side.total),
-        })
-    };
-    python(
-        py,
-        &json!({
-            "outside": side(&measured.outside),
-            "inside": side(&measured.inside),
-            "outside_less_inside_ms": measured.outside_less_inside_s() * 1e3,
-            "tracking_bound_ms": measured.tracking_bound_ps as f64 * 1e-9,
-            "rendering_bound_ms": measured.rendering_bound_ps as f64 * 1e-9,
-            "rendering_early_ms": measured.rendering_early_ps as f64 * 1e-9,
-            "agrees": measured.agrees(),
-        }),
-    )
+    let query = RigQuery { rig, machine: plan.machine.clone(), pipeline: plan.pipeline.clone() };
+    python(py, &study(py, None, query)?.map_err(wrong_setting)?)
 }
 
 const LEVELS: &str = include_str!("../../pxpl5-cli/src/levels.json");
@@ -335,13 +288,7 @@ pub(crate) fn levels<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let record = match experiments {
         None => LevelRecord::read(LEVELS).map_err(failed_run)?,
-        Some(experiments) => {
-            let measured = in_background(py, progress, false, move |watch| {
-                let query = LevelQuery { experiments, speeds, stop: watch.stop_flag() };
-                compare_with(query, |done, of| watch.report(done, of)).map_err(|error| error.to_string())
-            })?;
-            measured.map_err(failed_run)?
-        }
+        Some(experiments) => study(py, progress, LevelQuery { experiments, speeds })?.map_err(failed_run)?,
     };
     python(py, &record)
 }
@@ -361,9 +308,6 @@ pub(crate) fn interpretations<'py>(
     frames: u64,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let ranked = in_background(py, progress, false, move |watch| {
-        let bench = bench(Level::Analytic, &watch).with_mig(seeds, frames);
-        rank(&bench, best, |done, of| watch.report(done, of)).map_err(|error| error.to_string())
-    })?;
-    python(py, &ranked.map_err(failed_run)?)
+    let settings = FigureSettings::new(Level::Analytic).with_mig(seeds, frames);
+    python(py, &study(py, progress, InterpretationQuery { settings, best })?.map_err(failed_run)?)
 }

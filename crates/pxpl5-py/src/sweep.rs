@@ -4,7 +4,8 @@ use crate::background::in_background;
 use crate::catalogue::python;
 use crate::errors::{failed_sweep, wrong_setting};
 use crate::settings::Settings;
-use pxpl5::sweep::{RunOptions, Shard, Store as NativeStore, Sweep as NativeSweep, SweepRow, run_stoppable};
+use pxpl5::Study;
+use pxpl5::sweep::{RunOptions, Shard, Store as NativeStore, Sweep as NativeSweep, SweepQuery, SweepRow};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -122,17 +123,12 @@ impl Store {
         let mut store = self.store.take().ok_or_else(|| failed_sweep("the store is closed"))?;
         let sweep = Arc::clone(&self.sweep);
         let (store, result) = in_background(py, progress, true, move |watch| {
-            let of = sweep.space().points();
-            let mut done = store.finished(Shard::ALL);
             let options = RunOptions { shard: Shard::ALL, threads };
-            let result = run_stoppable(&*sweep, &mut store, options, &watch.stop_flag(), |_| {
-                done += 1;
-                watch.report(done, of);
-            });
+            let result = SweepQuery::new(&*sweep, &mut store, options).run(&mut &*watch);
             (store, result)
         })?;
         self.store = Some(store);
-        result.map_err(failed_sweep)
+        result.map(drop).map_err(failed_sweep)
     }
 
     /// Returns all rows in the order of their points, each as a line of JSON.

@@ -1,7 +1,7 @@
 //! Scenes drawn as slices for a spinning volumetric display.
 
 use crate::arrays::Count;
-use crate::background::in_background;
+use crate::background::study;
 use crate::catalogue::python;
 use crate::errors::wrong_setting;
 use crate::picture::Picture;
@@ -9,9 +9,10 @@ use crate::scene::Scene;
 use numpy::PyArray3;
 use numpy::ndarray::Array3;
 use pxpl5::PathSettings;
+use pxpl5::lab::volumes::{VolumeFigureQuery, VolumeQuery};
 use pxpl5::volume::pictures::{EyeView, coloured, halftoned, sheet};
 use pxpl5::volume::spatialgl::Threads;
-use pxpl5::volume::{Volume as Native, VolumeSettings, figures};
+use pxpl5::volume::{Volume as Native, VolumeSettings};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -40,10 +41,7 @@ pub(crate) fn volume_figures<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let scenes: Vec<_> = scenes.iter().map(|scene| Arc::clone(&scene.scene)).collect();
-    let all = in_background(py, progress, false, move |watch| {
-        figures::all(&scenes, &Threads::all(), |done, of| watch.report(done, of)).map_err(|error| error.to_string())
-    })?;
-    python(py, &all.map_err(wrong_setting)?)
+    python(py, &study(py, progress, VolumeFigureQuery { scenes })?.map_err(wrong_setting)?)
 }
 
 #[pymethods]
@@ -58,10 +56,8 @@ impl Volume {
         for assignment in &assignments {
             settings.assign(assignment, "Volume").map_err(wrong_setting)?;
         }
-        let scene = Arc::clone(&scene.scene);
-        let drawn = in_background(py, None, false, move |_| {
-            Native::draw(&settings, &scene, &Threads::all()).map_err(|error| error.to_string())
-        })?;
+        let query = VolumeQuery { settings, scene: Arc::clone(&scene.scene), threads: Threads::all() };
+        let drawn = study(py, None, query)?;
         Ok(Self { volume: Arc::new(drawn.map_err(wrong_setting)?) })
     }
 

@@ -1,8 +1,8 @@
 use crate::dry_run::{DryRun, SeenTimes};
 use crate::head_views::HeadViews;
-use crate::observers::{FinalResults, StreamingObserver};
-use crate::picture_ends::WARM_UP_PICTURES;
+use crate::observe::observers::{FinalResults, StreamingObserver};
 use crate::pipeline::PictureTimes;
+use crate::result::picture_ends::WARM_UP_PICTURES;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::LightTimes;
 use pxpl5_wire::{PeriodNumber, ViewNumber};

@@ -1,5 +1,5 @@
-use crate::outcome::Outcome;
-use crate::picture_ends::WARM_UP_PICTURES;
+use crate::result::outcome::Outcome;
+use crate::result::picture_ends::WARM_UP_PICTURES;
 use pxpl5_machine::RunError;
 use pxpl5_sim::parameters::SettingError;
 use thiserror::Error;

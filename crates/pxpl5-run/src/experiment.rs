@@ -5,11 +5,12 @@ use crate::head_views::HeadViews;
 use crate::host::{BareHost, Host};
 use crate::kept_records::{KeptRecords, MIN_RECORDS};
 use crate::level::Level;
-use crate::observers::{FinalResults, ObserverFactory};
+use crate::observe::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
 use crate::raster::Raster;
 use pxpl5_machine::{MachineConfig, Optimization, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
+use pxpl5_sim::StopFlag;
 use pxpl5_sim::parameters::Parameter;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Aim;
@@ -65,22 +66,28 @@ pub struct Experiment {
     pub(crate) config: MachineConfig,
     pub(crate) pipeline: Arc<dyn Pipeline>,
     pub(crate) scene: Arc<Scene>,
-    pub(crate) fields: u64,
-    pub(crate) pixels: Pixels,
-    pub(crate) seed: u64,
+    /// Number of fields to simulate.
+    pub fields: u64,
+    /// The pixels that the run computes.
+    pub pixels: Pixels,
+    /// Seed of the pseudo-random head motion.
+    pub seed: u64,
     pub(crate) host: Arc<dyn Host>,
+    pub(crate) stop: StopFlag,
     pub(crate) shuffle: Option<u64>,
     pub(crate) traffic: bool,
     pub(crate) keep: KeptRecords,
     pub(crate) least_records: usize,
     pub(crate) disabled: BTreeSet<Optimization>,
-    pub(crate) level: Level,
-    pub(crate) head: Option<Arc<Head>>,
+    /// Level of detail of the simulation.
+    pub level: Level,
+    /// The head with its tracker, if the experiment has one.
+    pub head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
     pub(crate) results_from: Option<PeriodNumber>,
     pub(crate) hmd: Hmd,
     pub(crate) estimates: Option<Estimates>,
-    pub(crate) sums: Option<ObserverFactory>,
+    pub(crate) observer: Option<ObserverFactory>,
     pub(crate) dry_run: Option<Arc<DryRun>>,
 }
 
@@ -115,6 +122,7 @@ impl Experiment {
             pixels: Pixels::Lazy,
             seed: 1,
             host: Arc::new(BareHost),
+            stop: StopFlag::default(),
             shuffle: None,
             traffic: false,
             keep: KeptRecords::Everything,
@@ -126,7 +134,7 @@ impl Experiment {
             results_from: None,
             hmd: Hmd::unc(),
             estimates: None,
-            sums: None,
+            observer: None,
             dry_run: None,
         }
     }
@@ -150,6 +158,12 @@ impl Experiment {
     pub const fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
+    }
+
+    /// Sets the flag that ends runs with [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
+    #[must_use]
+    pub fn stopped_by(self, stop: StopFlag) -> Self {
+        Self { stop, ..self }
     }
 
     /// Sets the host computer, which supplies a clock and the threads for [`Pixels::All`]. The host changes no result.
@@ -241,8 +255,8 @@ impl Experiment {
     /// Such a run discards old records. The observer must therefore compute the results for a tracked head during the
     /// run. A run with [`KeptRecords::Everything`] needs no observer.
     #[must_use]
-    pub const fn observed_by(mut self, sums: Option<ObserverFactory>) -> Self {
-        self.sums = sums;
+    pub const fn observed_by(mut self, observer: Option<ObserverFactory>) -> Self {
+        self.observer = observer;
         self
     }
 
@@ -396,32 +410,7 @@ impl Experiment {
         &self.pipeline
     }
 
-    /// Returns the number of fields to simulate.
-    pub const fn length(&self) -> u64 {
-        self.fields
-    }
-
     pub(crate) const fn end(&self) -> PeriodNumber {
         PeriodNumber::FIRST.after(self.fields)
-    }
-
-    /// Returns the seed of the pseudo-random head motion.
-    pub const fn motion_seed(&self) -> u64 {
-        self.seed
-    }
-
-    /// Returns the level of detail of the simulation.
-    pub const fn modelling_level(&self) -> Level {
-        self.level
-    }
-
-    /// Returns the choice of the pixels that the run computes.
-    pub const fn pixels_wanted(&self) -> Pixels {
-        self.pixels
-    }
-
-    /// Returns the head with its tracker, or `None` if the experiment has none.
-    pub const fn tracked_head(&self) -> Option<&Arc<Head>> {
-        self.head.as_ref()
     }
 }

@@ -16,13 +16,12 @@
 
 #![warn(missing_docs)]
 
-mod assembled;
-mod assembly;
 mod board_text;
+mod build;
+mod built_in;
 mod display_list;
 mod dry_run;
 mod dry_run_observer;
-mod due;
 mod error;
 mod estimator;
 mod experiment;
@@ -34,35 +33,25 @@ mod host;
 mod ideal;
 mod kept_records;
 mod keys;
-mod latency;
 mod level;
-mod observed_run;
-mod observers;
-mod outcome;
-mod papers;
-mod picture_ends;
+mod observe;
 mod pipeline;
 mod pipelines;
-mod preparation;
 mod raster;
 mod registry;
 mod report_schedule;
 mod reprojection;
-mod result_window;
+mod result;
 mod running;
 mod scene_views;
 mod stepper;
-mod summary;
-mod tally;
 mod tunings;
 mod views;
-mod window;
 
-pub use assembly::check_coverage;
 pub use board_text::{PixelField, bit_of, in_ms, in_us};
+pub use build::assembly::check_coverage;
 pub use display_list::display_list;
 pub use dry_run::{DryRun, SeenTimes};
-pub use due::DuePictures;
 pub use error::ExperimentError;
 pub use estimator::{Cause, Estimator};
 pub use experiment::{Estimates, Experiment, FIELDS_RANGE, Pixels, out_of_range, warning_without_code};
@@ -72,12 +61,9 @@ pub use head_views::{HeadViews, SampledPose};
 pub use host::{BareHost, Host};
 pub use kept_records::KeptRecords;
 pub use keys::PipelineSettings;
-pub use latency::{LATENCY_PARTS, LatencyParts, PartDefinition};
 pub use level::Level;
-pub use observed_run::ObservedRun;
-pub use observers::{FinalResults, ObserverFactory, StreamingObserver};
-pub use outcome::Outcome;
-pub use picture_ends::{PictureResult, WARM_UP_PICTURES};
+pub use observe::observed_run::ObservedRun;
+pub use observe::observers::{FinalResults, ObserverFactory, StreamingObserver};
 pub use pipeline::{PictureRules, PictureTimes, Pipeline, Setup, Source};
 pub use pipelines::faces::{
     FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, OrientationTiming, RequestedUpdate, RequestedUpdates,
@@ -93,11 +79,15 @@ pub use pxpl5_wire::display::{Aim, Coverage, LightTimes};
 pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};
 pub use reprojection::{Every, Reprojection, Warp};
-pub use result_window::{ResultWindow, WARM_UP_PERIODS, WINDOW_DEFINITION};
+pub use result::due::DuePictures;
+pub use result::latency::{LATENCY_PARTS, LatencyParts, PartDefinition};
+pub use result::outcome::Outcome;
+pub use result::picture_ends::{PictureResult, WARM_UP_PICTURES};
+pub use result::result_window::{ResultWindow, WARM_UP_PERIODS, WINDOW_DEFINITION};
+pub use result::summary::{Summary, retraces};
+pub use result::tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
 pub use scene_views::{hmd_on, views};
 pub use stepper::{Pause, Stepper};
-pub use summary::{Summary, retraces};
-pub use tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
 pub use tunings::Tunings;
 pub use views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
 

@@ -1,5 +1,5 @@
 use crate::head_views::HeadViews;
-use crate::picture_ends::PictureResult;
+use crate::result::picture_ends::PictureResult;
 use crate::views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
 use image::RgbImage;
 use pphigs::{DisplayList, Shading};

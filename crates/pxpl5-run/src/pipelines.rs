@@ -15,9 +15,9 @@ pub use rendering_control::{FinishedRegions, RenderingControl};
 pub use slats::{Code, Slats, SlatsLighting};
 
 use crate::keys::PipelineSettings;
-use crate::picture_ends::PictureResult;
 use crate::pipeline::PictureTimes;
 use crate::registry::PipelineEntry;
+use crate::result::picture_ends::PictureResult;
 use pphigs::Shading;
 use pxpl5_framebuffer::{NtscDisplay, Video};
 use pxpl5_geometry::Viewport;

@@ -5,7 +5,7 @@ use crate::error::ExperimentError;
 use crate::experiment::{Estimates, Experiment};
 use crate::keys::PipelineSettings;
 use crate::pipeline::Pipeline;
-use crate::summary::Summary;
+use crate::result::summary::Summary;
 use pxpl5_machine::{MachineConfig, NamedTable};
 use pxpl5_sim::parameters::Key;
 use pxpl5_sim::parameters::{SettingError, find_named};

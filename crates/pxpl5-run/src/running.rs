@@ -1,8 +1,8 @@
+use crate::build::preparation::Preparation;
 use crate::error::ExperimentError;
 use crate::experiment::Experiment;
 use crate::level::Level;
-use crate::outcome::Outcome;
-use crate::preparation::Preparation;
+use crate::result::outcome::Outcome;
 use crate::stepper::Stepper;
 use pxpl5_machine::Machine;
 use pxpl5_wire::PeriodNumber;
@@ -52,8 +52,8 @@ impl Experiment {
         })
     }
 
-    /// Runs the experiment and calls `at` at the start of each field in `stops`, at every 60th field, and at the end of
-    /// the run.
+    /// Runs the experiment and calls `at` at the start of each field in `stops`, at every 60th field (at every field of the
+    /// cycle level), and at the end of the run.
     ///
     /// `at` receives the field and the machine, before the machine handles any event of this field. An error from `at`
     /// ends the run.
@@ -100,13 +100,14 @@ impl Experiment {
         stepper.finish()
     }
 
-    /// Returns an error if the host no longer needs the result ([`Host::is_stopped`](crate::Host::is_stopped)).
+    /// Returns an error if the result is no longer needed ([`Experiment::stopped_by`],
+    /// [`Host::is_stopped`](crate::Host::is_stopped)).
     ///
     /// # Errors
     ///
     /// Returns [`ExperimentError::Stopped`] in this case.
     pub fn check_stopped(&self) -> Result<(), ExperimentError> {
-        if self.host.is_stopped() {
+        if self.stop.is_stopped() || self.host.is_stopped() {
             return Err(ExperimentError::Stopped("the run was stopped".to_owned()));
         }
         Ok(())

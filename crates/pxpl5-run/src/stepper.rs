@@ -1,15 +1,16 @@
 //! Runs an experiment in steps. Between two steps, the state of the machine can be read.
 
-use crate::assembled::Assembled;
+use crate::build::assembled::Assembled;
+use crate::build::preparation::Preparation;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
 use crate::ideal::ideal_picture;
-use crate::outcome::Outcome;
-use crate::picture_ends::WARM_UP_PICTURES;
+use crate::level::Level;
+use crate::observe::window::Window;
 use crate::pipeline::PictureTimes;
-use crate::preparation::Preparation;
-use crate::result_window::WARM_UP_PERIODS;
-use crate::window::Window;
+use crate::result::outcome::Outcome;
+use crate::result::picture_ends::WARM_UP_PICTURES;
+use crate::result::result_window::WARM_UP_PERIODS;
 use image::RgbImage;
 use pphigs::oracle::IdealPicture;
 use pxpl5_gp::{BreakpointHit, GpSnapshot};
@@ -363,8 +364,9 @@ impl Experiment {
     pub(crate) fn stops(&self, asked: &[PeriodNumber]) -> impl Iterator<Item = PeriodNumber> {
         let end = self.end();
         let mut asked: BTreeSet<PeriodNumber> = asked.iter().copied().filter(|field| *field < end).collect();
-        let mut regular =
-            PeriodNumber(PROGRESS_FIELDS).until(end).step_by(PROGRESS_FIELDS as usize).chain([end]).peekable();
+        // A field of the cycle level takes as long as dozens of other levels.
+        let step = if self.level == Level::Cycle { 1 } else { PROGRESS_FIELDS };
+        let mut regular = PeriodNumber(step).until(end).step_by(step as usize).chain([end]).peekable();
         std::iter::from_fn(move || {
             let next = regular.peek().into_iter().chain(asked.first()).copied().min()?;
             regular.next_if_eq(&next);

@@ -9,4 +9,4 @@ mod row;
 mod table;
 
 pub use row::{Basis, Definition, Detail, FigureRow, around};
-pub use table::{TableColumn, filled, lines, significant, table};
+pub use table::{TableColumn, filled, four, lines, range, significant, table};

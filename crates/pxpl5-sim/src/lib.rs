@@ -40,6 +40,7 @@ mod queue;
 mod random;
 mod samples;
 mod statistics;
+mod study;
 mod time;
 mod trace;
 
@@ -49,6 +50,7 @@ pub use queue::{EventQueue, Phase};
 pub use random::SplitMix64;
 pub use samples::{KEPT_SAMPLES, Samples};
 pub use statistics::{DefinedStatistics, Statistics, number_or_nan};
+pub use study::{SharedWatcher, StopFlag, Watcher};
 pub use time::{Span, Time};
 pub use trace::{TraceHash, mix};
 

@@ -15,7 +15,7 @@ mod origin;
 mod parquet;
 mod pictures;
 
-pub use csv_file::csv_table;
+pub use csv_file::{csv_of, csv_table, flat};
 pub(crate) use origin::count_of;
 pub use origin::{origin, origin_lines};
 #[cfg(feature = "parquet")]

@@ -7,6 +7,7 @@ use crate::pictures::{EyeView, grid};
 use crate::settings::VolumeSettings;
 use image::RgbImage;
 use pxpl5_scene::Scene;
+use pxpl5_sim::Watcher;
 use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use spatialgl::{Coverage, Workers};
@@ -120,8 +121,8 @@ pub fn variant_count() -> u64 {
     variants().len() as u64
 }
 
-/// Draws every variant of a scene. All other settings are the same for all variants. `finished` is called with the
-/// number of finished variants and the number of all variants.
+/// Draws every variant of a scene. All other settings are the same for all variants. After a stop, the result
+/// has the variants that were finished.
 ///
 /// # Errors
 ///
@@ -131,7 +132,7 @@ pub fn compare(
     scene: &Scene,
     viewpoint: Option<ComparePoint>,
     workers: &dyn Workers,
-    finished: impl Fn(u64, u64),
+    watcher: &mut dyn Watcher,
 ) -> Result<VolumeComparison, SettingError> {
     let all = variants();
     let mut comparison = VolumeComparison {
@@ -155,7 +156,8 @@ pub fn compare(
         let volume = reference.draw(settings, scene, workers)?;
         exposure = Some(viewpoint.eye_view(&volume).exposure(&volume, workers)?);
     }
-    for variant in &all {
+    let stop = watcher.stop();
+    for variant in all.iter().take_while(|_| !stop.is_stopped()) {
         let volume = variant.draw(settings, scene, workers)?;
         comparison.triangles = volume.frame.stats.primitives;
         comparison.ring_px = volume.brightness().ring_px;
@@ -163,7 +165,7 @@ pub fn compare(
         if let Some(viewpoint) = viewpoint {
             comparison.pictures.push(viewpoint.eye_view(&volume).picture(&volume, exposure, workers)?);
         }
-        finished(comparison.variants.len() as u64, all.len() as u64);
+        watcher.progress(comparison.variants.len() as u64, all.len() as u64);
     }
     comparison.set_brightness_ratios();
     Ok(comparison)

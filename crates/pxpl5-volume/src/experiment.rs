@@ -5,6 +5,7 @@ use crate::pixel_planes::{ArrayKind, PixelPlanesRenderer, SliceBounds, SliceTraf
 use crate::settings::VolumeSettings;
 use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::SettingError;
+use serde::{Serialize, Serializer};
 use spatialgl::{
     CommandBuffer, HostRenderer, SliceRenderer, SpatialDisplay, Supersampled, SweptDisplay, VolumeFrame, Workers,
     record_scene, render_volume,
@@ -30,6 +31,13 @@ pub struct Volume {
     pub traffic: Option<SliceTraffic>,
     /// Time in which this computer drew the volume, in seconds.
     pub host_seconds: f64,
+}
+
+/// As JSON, a volume is its report.
+impl Serialize for Volume {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.report().serialize(serializer)
+    }
 }
 
 impl Volume {

@@ -15,6 +15,7 @@ pub use shown::ShownStatement;
 
 use crate::experiment::Volume;
 use pxpl5_scene::Scene;
+use pxpl5_sim::Watcher;
 use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::parameters::SettingError;
 use row::order;
@@ -24,7 +25,7 @@ use spatialgl::perspecta::figures::{definitions, formulas, measured, packing};
 use std::sync::Arc;
 
 /// Measures all figures. Figure P17 (the percentage of occupied tiles) and the number of draws with bins are measured
-/// on each of the scenes. `finished` is called with the number of finished steps and the number of all steps.
+/// on each of the scenes.
 ///
 /// # Errors
 ///
@@ -32,7 +33,7 @@ use std::sync::Arc;
 pub fn all(
     scenes: &[Arc<Scene>],
     workers: &dyn Workers,
-    finished: impl Fn(u64, u64),
+    watcher: &mut dyn Watcher,
 ) -> Result<VolumeFigures, SettingError> {
     let steps = scenes.len() as u64 + 2;
     // Figures that need no scene come first.
@@ -40,18 +41,18 @@ pub fn all(
     rows.extend(packing());
     rows.extend(printed::figures(workers)?);
     rows.extend(counted::figures(workers)?);
-    finished(1, steps);
+    watcher.progress(1, steps);
     let mut of_scenes = Vec::new();
     for (i, scene) in scenes.iter().enumerate() {
         let volume = Volume::draw(&plain(), scene, workers)?;
         let found = measured(&volume.frame.stats);
         rows.extend(found.into_iter().map(|row| FigureRow { scene: Some(scene.name().to_owned()), ..row }));
         of_scenes.push(MeasuredScene::of(&volume));
-        finished(i as u64 + 2, steps);
+        watcher.progress(i as u64 + 2, steps);
     }
     rows.sort_by_key(|row| order(row.id));
     let shown = shown::all(scenes, workers)?;
-    finished(steps, steps);
+    watcher.progress(steps, steps);
     let mut definitions = definitions();
     definitions.sort_by_key(|definition| order(definition.id));
     Ok(VolumeFigures { schema: "pxpl5-volume-figures/3", figures: rows, definitions, shown, scenes: of_scenes })

@@ -1,35 +1,35 @@
 //! Workers that report their progress.
 
+use pxpl5_sim::{SharedWatcher, Watcher};
 use spatialgl::{Task, Workers};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
-/// A wrapper of workers, which calls a function after each task. The arguments are the number of finished tasks and the
-/// number of all tasks.
+/// A wrapper of workers, which counts each finished task.
 pub struct Counted<'a> {
     inner: &'a dyn Workers,
-    finished: &'a (dyn Fn(u64, u64) + Sync),
+    watcher: Mutex<&'a mut dyn Watcher>,
 }
 
 impl<'a> Counted<'a> {
-    /// Wraps these workers. `finished` receives the number of finished tasks and the number of all tasks.
+    /// Wraps these workers.
     #[must_use]
-    pub fn new(inner: &'a dyn Workers, finished: &'a (dyn Fn(u64, u64) + Sync)) -> Self {
-        Self { inner, finished }
+    pub fn new(inner: &'a dyn Workers, watcher: &'a mut dyn Watcher) -> Self {
+        Self { inner, watcher: Mutex::new(watcher) }
     }
 }
 
 impl Workers for Counted<'_> {
     fn run(&self, tasks: Vec<Task<'_>>) {
-        let all = tasks.len() as u64;
-        let done = AtomicU64::new(0);
-        // Wrap each task so that it reports its end.
+        let mut watcher = self.watcher.lock().unwrap_or_else(PoisonError::into_inner);
+        let shared = SharedWatcher::new(&mut **watcher, tasks.len() as u64);
+        // Wrap each task so that it reports its end. After a stop, no further task begins.
         let counted = tasks.into_iter().map(|task| {
-            let done = &done;
-            let counted = move || {
-                task();
-                (self.finished)(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-            };
-            Box::new(counted) as Task<'_>
+            let shared = &shared;
+            Box::new(move || {
+                if !shared.stop().is_stopped() {
+                    shared.part(task)
+                }
+            }) as Task<'_>
         });
         self.inner.run(counted.collect());
     }

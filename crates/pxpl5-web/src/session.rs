@@ -145,7 +145,7 @@ impl Session {
 /// Replaces the experiment's head motion by a growing motion, which begins with the recording `begin`. The future of
 /// this motion is unknown, so a predictor is refused.
 fn moved_on_the_page(experiment: Experiment, begin: &[u8]) -> Result<(Experiment, Option<GrowingRecording>), String> {
-    let Some(head) = experiment.tracked_head().cloned() else { return Ok((experiment, None)) };
+    let Some(head) = experiment.head.as_ref().cloned() else { return Ok((experiment, None)) };
     if head.predicts() {
         return Err("a head that is moved now is not known ahead: expected head.predict=none".to_owned());
     }

@@ -20,7 +20,7 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
         "end_ps": stepper.end().0,
         "back_ps": back(stepper).map(|at| at.0),
         "field": stepper.period().0,
-        "fields": stepper.experiment().length(),
+        "fields": stepper.experiment().fields,
         "line": stepper.beam_line(),
         "over": is_over,
         "failure": stepper.failure().map(ToString::to_string),

@@ -14,10 +14,11 @@ mod predicting;
 mod propagation;
 mod tune;
 
-pub use config::{Decay, PredictorConfig, PredictorKind, Start};
+pub use config::{PredictorConfig, PredictorKind, Start};
 pub use evaluate::{PredictionDeviation, prediction_errors};
 pub use exact::ExactPredictor;
 pub use gate::ReportCounts;
+pub use propagation::Decay;
 pub use tune::{Training, Tuned, training_seed, tune};
 
 use crate::pose::Pose;

@@ -9,7 +9,8 @@ use super::row::verdict;
 use super::rules::Rules;
 use crate::pictures::OF_FIGURES;
 use address_recalculation::priority::PriorityTiming;
-use pxpl5_sim::figures::column::{NUMBER, error, four};
+use pxpl5_sim::figures::column::{NUMBER, error};
+use pxpl5_sim::figures::four;
 use pxpl5_sim::figures::{self, Basis, Definition, FigureRow, TableColumn, filled, lines};
 use std::fmt::Write as _;
 

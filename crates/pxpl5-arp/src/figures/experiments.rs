@@ -125,7 +125,7 @@ impl Experiments {
         Ok(Self {
             segments: world.segments.len(),
             slowed: slowed(&world, &cells, &path)?,
-            interpretations: Interpretations::run(|_, _| {})?,
+            interpretations: Interpretations::run(&mut ())?,
             thresholds: threshold_rows(side),
             fits,
             walks,

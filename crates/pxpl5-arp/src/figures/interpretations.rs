@@ -12,6 +12,7 @@ use crate::walk::at_frames;
 use address_recalculation::priority::{Cell, PriorityTiming};
 use glam::DVec3;
 use pxpl5_scene::{Scene, builtin};
+use pxpl5_sim::Watcher;
 use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use tracking::motion::Walk;
@@ -204,22 +205,23 @@ fn best_of<'a>(trials: &'a [Trial], memories: &[usize]) -> Option<&'a Trial> {
 }
 
 impl Interpretations {
-    /// Simulates each set of rules in each situation of [`Situation::ALL`]: a hall with one path. After each situation,
-    /// calls `finished` with the number of finished runs and the number of all runs.
+    /// Simulates each set of rules in each situation of [`Situation::ALL`]: a hall with one path. After a stop, the
+    /// ranking has the sets of rules that were finished.
     ///
     /// # Errors
     ///
     /// Fails in the same cases as [`policy_rates_hz`].
-    pub fn run(finished: impl Fn(u64, u64)) -> Result<Self, SettingError> {
+    pub fn run(watcher: &mut dyn Watcher) -> Result<Self, SettingError> {
         let all = Rules::all();
         let runs = (all.len() * Situation::ALL.len()) as u64;
         let mut ranked = Vec::new();
+        let stop = watcher.stop();
         // Try each set of rules in every situation.
-        for rules in all {
+        for rules in all.into_iter().take_while(|_| !stop.is_stopped()) {
             let mut tried = Vec::new();
             for situation in Situation::ALL {
                 tried.push(Tried::of(rules, situation)?);
-                finished((ranked.len() * Situation::ALL.len() + tried.len()) as u64, runs);
+                watcher.progress((ranked.len() * Situation::ALL.len() + tried.len()) as u64, runs);
             }
             // Average over the situations, because the paper's path and hall are unknown.
             let mean = |value: fn(&Tried) -> f64| tried.iter().map(value).sum::<f64>() / tried.len() as f64;

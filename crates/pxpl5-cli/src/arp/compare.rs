@@ -2,15 +2,16 @@
 //! policy decides which parts of the scene are drawn when. A warp closes gaps between display memories.
 
 use super::run::widths;
-use super::settings::WalkArgs;
+use super::settings::{FEWER_FRAMES, WalkArgs};
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
-use crate::terminal::{answer, json_text, print_error, progress};
+use crate::progress::Progress;
+use crate::terminal::{answer, json_text, laid_out, print_error};
 use clap::Args;
-use pxpl5::arp::{ArpComparison, ComparedRow, compare, variant_count};
-use pxpl5::views::results::csv_table;
-use std::fmt::Write as _;
+use pxpl5::arp::{ArpComparison, ComparedRow, variant_count};
+use pxpl5::lab::walks::{WalkComparisonQuery, WalkQuery};
+use pxpl5::views::results::csv_of;
 use std::path::PathBuf;
 
 /// Compare all policies and warps on one walk through a scene. Print update rates, drawn objects and triangles, the
@@ -36,16 +37,13 @@ pub(super) struct CompareArgs {
 pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp compare")).transpose()?;
     let (scene, plan) = args.walk.gather()?;
-    args.walk.admit(&plan, &scene, variant_count(), false)?;
     // Walk once for each variant, then write files before anything is printed.
-    let bar = progress(variant_count(), "walks", args.walk.quiet);
-    let comparison = compare(&scene, &plan, |done, of| bar.advance(done, of));
-    bar.clear();
+    let study = WalkComparisonQuery(WalkQuery { scene, plan, has_pictures: false });
+    let comparison = Progress::new("walks", args.walk.quiet).run_within(args.walk.budget, FEWER_FRAMES, &study)?;
     let json = json_text(&comparison)?;
     if let Some(mut folder) = folder {
         folder.put("comparison.json", json.as_bytes())?;
-        let rows = comparison.rows.iter().map(|row| COLUMNS.map(|(name, cell)| (name, cell(row)).1));
-        folder.put("rows.csv", csv_table(COLUMNS.map(|(name, _)| name), rows).as_bytes())?;
+        folder.put("rows.csv", csv_of(&comparison.rows).as_bytes())?;
         folder.commit()?;
     }
     answer(args.json, args.walk.quiet, &json, || text(&comparison))?;
@@ -77,16 +75,9 @@ const COLUMNS: [Column; 10] = [
 fn text(comparison: &ArpComparison) -> String {
     let mut text =
         format!("{}: {} at {} m/s\n\n", comparison.scene, count_of(comparison.frames, "frame"), comparison.m_per_s);
-    let heads = COLUMNS.map(|(name, _)| name.to_owned());
-    let rows = comparison.rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)));
-    // Each column is as wide as its longest cell, including its head.
-    let lines: Vec<[String; COLUMNS.len()]> = std::iter::once(heads).chain(rows).collect();
-    let widest: Vec<usize> =
-        (0..COLUMNS.len()).map(|i| lines.iter().map(|line| line[i].len()).max().unwrap_or(0)).collect();
-    for line in &lines {
-        let cells = line.iter().zip(&widest).map(|(cell, width)| format!("{cell:<width$}  "));
-        let _ = writeln!(text, "{}", cells.collect::<String>().trim_end());
-    }
+    let heads = COLUMNS.map(|(name, _)| name.to_owned()).to_vec();
+    let rows = comparison.rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)).to_vec());
+    text.push_str(&laid_out(&std::iter::once(heads).chain(rows).collect::<Vec<_>>(), usize::MAX));
     text.push_str(
         "\ntears: angles between the two directions in which two memories draw a shared vertex (median, 95 %, widest), in texels (90 degrees\n\
          divided by the texels of a face's edge); stretch: angles by which warping moves vertices; eye age: mean distance from the position\n\

@@ -2,9 +2,11 @@
 //! ways. The command ranks these interpretations.
 
 use crate::error::CliError;
-use crate::terminal::{answer, json_text, progress};
+use crate::progress::Progress;
+use crate::terminal::{answer, json_text};
 use clap::Args;
-use pxpl5::arp::figures::{Interpretations, interpretations_text};
+use pxpl5::arp::figures::interpretations_text;
+use pxpl5::lab::walks::WalkInterpretationQuery;
 
 /// Rank the possible answers to the questions that the paper on priority rendering leaves open about its table 1. The
 /// questions concern rings, distances, cascade, hall and path. As a check, each update rate of the table is left out in
@@ -23,9 +25,6 @@ pub(super) struct InterpretationsArgs {
 }
 
 pub(super) fn run(args: InterpretationsArgs) -> Result<(), CliError> {
-    let bar = progress(0, "rules and halls", args.quiet);
-    let all = Interpretations::run(|done, of| bar.advance(done, of));
-    bar.clear();
-    let all = all?;
+    let all = Progress::new("rules and halls", args.quiet).run(&WalkInterpretationQuery)?;
     answer(args.json, args.quiet, &json_text(&all)?, || interpretations_text(&all).trim_start().to_owned())
 }

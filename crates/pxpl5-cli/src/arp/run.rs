@@ -1,15 +1,17 @@
 //! The command `pxpl5 arp run`, which simulates one walk of a viewer along a path.
 
-use super::settings::{WalkArgs, put};
+use super::settings::{FEWER_FRAMES, WalkArgs, put};
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
-use crate::terminal::{answer, json_text, progress};
+use crate::progress::Progress;
+use crate::terminal::{answer, json_text};
 use crate::version::{VERSION, commit_text};
 use clap::Args;
 use pxpl5::Fingerprint;
 use pxpl5::arp::pictures::of_walk;
 use pxpl5::arp::{ArpReport, TearWidths, WalkMemoryReport, WalkOutcome, WalkReport};
+use pxpl5::lab::walks::WalkQuery;
 use pxpl5::scene::Scene;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -42,19 +44,17 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     // Open the output first, so that a bad path fails before the walk.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "arp run")).transpose()?;
     let (scene, plan) = args.walk.gather()?;
-    args.walk.admit(&plan, &scene, 1, args.out.is_some())?;
-    let bar = progress(plan.walk.frames, "frames", args.walk.quiet);
-    let outcome = WalkOutcome::of(&scene, &plan, |done, of| bar.advance(done, of));
-    bar.clear();
-    let outcome = outcome?;
-    let json = json_text(&outcome.report)?;
+    let study = WalkQuery { scene, plan, has_pictures: args.out.is_some() };
+    let outcome = Progress::new("frames", args.walk.quiet).run_within(args.walk.budget, FEWER_FRAMES, &study)?;
+    let json = json_text(&outcome)?;
     if let Some(mut folder) = folder {
         folder.put("report.json", json.as_bytes())?;
-        folder.put("experiment.toml", experiment(&outcome, &scene).as_bytes())?;
+        folder.put("experiment.toml", experiment(&outcome, &study.scene).as_bytes())?;
         folder.put("frames.csv", frames_csv(&outcome).as_bytes())?;
         // The pictures need the scene at all poses, so they are drawn only for an output folder.
-        let walk = &plan.walk;
-        let pictures = of_walk(outcome.world.clone(), &outcome.path, &outcome.settings, walk.m_per_s, walk.frames)?;
+        let walk = &study.plan.walk;
+        let pictures =
+            of_walk(outcome.world.clone(), &outcome.path, &outcome.settings, walk.m_per_s, outcome.report.frames)?;
         put(&mut folder, &pictures, &origin(&outcome))?;
         folder.commit()?;
     }

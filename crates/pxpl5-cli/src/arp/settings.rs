@@ -2,7 +2,6 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::{Estimate, WalkWork};
 use crate::numbers::plain;
 use crate::output::OutputFolder;
 use crate::scenes;
@@ -63,6 +62,9 @@ pub(super) struct WalkArgs {
     pub(super) quiet: bool,
 }
 
+/// Advice for a walk that would take too long.
+pub(super) const FEWER_FRAMES: &str = "walk fewer frames (--set walk.frames)";
+
 /// Path of a setting whose value can name a file with a lens table.
 const LENS: &str = "arp.lens";
 
@@ -92,14 +94,6 @@ impl WalkArgs {
         let scene = load(self.scene.as_deref().unwrap_or(&scene))?;
         scenes::print_warnings(&scene, self.quiet);
         Ok((scene, plan))
-    }
-
-    /// Returns an error if the estimated time or memory of this number of walks exceeds the budget. The error contains
-    /// the estimate and advice to reduce the work.
-    pub(super) fn admit(&self, plan: &WalkPlan, scene: &Scene, walks: u64, has_pictures: bool) -> Result<(), CliError> {
-        let one = WalkWork::of(plan, scene, has_pictures).estimate();
-        let all = Estimate { seconds: walks as f64 * one.seconds, ..one };
-        self.budget.admit_estimate(all, "walk fewer frames (--set walk.frames)")
     }
 
     /// Returns the settings of the address recalculation display. `lens` and `sets` are the values of the options
@@ -172,7 +166,7 @@ fn load(name: &str) -> Result<Arc<Scene>, CliError> {
 }
 
 /// Writes pictures as PNG files into a folder. Each file also holds the settings that reproduce the picture.
-pub(super) fn put(
+pub(crate) fn put(
     folder: &mut OutputFolder,
     pictures: &[ArpPicture],
     origin: &[(&'static str, String)],

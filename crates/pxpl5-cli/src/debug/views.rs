@@ -17,7 +17,7 @@ pub(super) fn place(stepper: &Stepper) -> String {
 /// Returns the time, the line that the display's beam scans, the next event, and the hash of the trace so far.
 pub(super) fn time(stepper: &Stepper) -> String {
     let mut text = String::new();
-    let fields = stepper.experiment().length();
+    let fields = stepper.experiment().fields;
     let beam = stepper.beam_line().map_or_else(String::new, |line| format!(", beam in line {line}"));
     let _ = writeln!(text, "now     {}, field {} of {fields}{}", ms(stepper.now()), stepper.period(), beam);
     // Lines for a failure, the last event and the next event appear only if they exist.

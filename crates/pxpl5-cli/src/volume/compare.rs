@@ -1,17 +1,18 @@
 //! The command `pxpl5 volume compare`. It draws one volume with each combination of a clip (a rule that cuts the scene
 //! into slices) and a projection, and compares the results.
 
-use super::settings::VolumeSettingArgs;
+use super::settings::{SMALLER, VolumeSettingArgs};
 use crate::error::CliError;
 use crate::numbers::{count_of, whole};
 use crate::output::OutputFolder;
-use crate::terminal::{answer, json_text, progress};
+use crate::progress::Progress;
+use crate::terminal::{answer, json_text, laid_out};
 use clap::Args;
+use pxpl5::lab::volumes::VolumeComparisonQuery;
 use pxpl5::views::charts::{ChartAxes, Curve, curve_chart};
 use pxpl5::views::png_bytes;
 use pxpl5::views::results::csv_table;
-use pxpl5::volume::compare::{ComparePoint, VariantRow, VolumeComparison, compare, variant_count};
-use std::fmt::Write as _;
+use pxpl5::volume::compare::{ComparePoint, VariantRow, VolumeComparison};
 use std::path::PathBuf;
 
 /// Compare all clips (ways to cut the scene into slices) and projections. The results are brightness over radius, dead
@@ -41,15 +42,11 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let mut folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "volume compare")).transpose()?;
     let options = &args.volume.settings;
     let settings = options.gather()?;
-    let scene = args.volume.load_scene()?;
-    options.admit(&settings, &scene, variant_count() as usize)?;
     // Pictures are rendered only for an output folder.
     let viewpoint =
         folder.is_some().then_some(ComparePoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: args.size });
-    let bar = progress(variant_count(), "volumes", options.quiet);
-    let comparison = compare(&settings, &scene, viewpoint, &options.threads(), |done, of| bar.advance(done, of));
-    bar.clear();
-    let comparison = comparison?;
+    let study = VolumeComparisonQuery { volume: args.volume.query(&settings)?, viewpoint };
+    let comparison = Progress::new("volumes", options.quiet).run_within(options.budget, SMALLER, &study)?;
     let json = json_text(&comparison)?;
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;
@@ -111,71 +108,15 @@ fn rows_csv(comparison: &VolumeComparison) -> String {
 fn text(comparison: &VolumeComparison) -> String {
     let mut text =
         format!("{} ({}), seed {}\n\n", comparison.scene, count_of(comparison.triangles, "primitive"), comparison.seed);
-    let rows: Vec<[String; COLUMNS.len()]> =
-        comparison.variants.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row))).collect();
-    // Each column is as wide as its longest cell or head.
-    let widths: Vec<usize> = (0..COLUMNS.len())
-        .map(|i| rows.iter().map(|row| row[i].len()).chain(HEADS.iter().map(|head| head[i].len())).max().unwrap_or(0))
-        .collect();
-    for head in &HEADS {
-        let _ = writeln!(text, "{}", laid_out(head.iter().copied(), &widths));
-    }
-    for row in &rows {
-        let _ = writeln!(text, "{}", laid_out(row.iter().map(String::as_str), &widths));
-    }
+    let heads = COLUMNS.map(|(name, _)| name.to_owned()).to_vec();
+    let rows = comparison.variants.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)).to_vec());
+    text.push_str(&laid_out(&std::iter::once(heads).chain(rows).collect::<Vec<_>>(), 2));
     text.push_str(
-        "\nover exact: lit pixels divided by those of the exact clip with the same projection, at 8 to 32 px and at 256 to 344 px from the axis;\n\
-         connected: share of the mesh's intersections with the slices that is shown; volumes/s: rate of the model, with its parts one after\n\
+        "\nover_exact: lit pixels divided by those of the exact clip with the same projection, at 8 to 32 px and at 256 to 344 px from the axis;\n\
+         connected_percent: share of the mesh's intersections with the slices that is shown; volumes/s: rate of the model, with its parts one after\n\
          the other and at the same time. The paper rejects more than one sample as too expensive; connected is beyond the paper.\n",
     );
     text
-}
-
-const HEADS: [[&str; COLUMNS.len()]; 2] = [
-    [
-        "clip",
-        "projection",
-        "samples",
-        "coverage",
-        "passes",
-        "fragments",
-        "fragments",
-        "draws",
-        "tiles",
-        "connected",
-        "dead",
-        "lit",
-        "over exact",
-        "over exact",
-        "volumes/s",
-        "volumes/s",
-    ],
-    [
-        "",
-        "",
-        "",
-        "",
-        "",
-        "generated",
-        "accepted",
-        "left, %",
-        "%",
-        "%",
-        "zone, px",
-        "voxels",
-        "near",
-        "far",
-        "serial",
-        "overlapped",
-    ],
-];
-
-fn laid_out<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> String {
-    let padded = cells.zip(widths).enumerate().map(|(i, (cell, width))| match i {
-        0 | 1 | 3 => format!("{cell:<width$}  "),
-        _ => format!("{cell:>width$}  "),
-    });
-    padded.collect::<String>().trim_end().to_owned()
 }
 
 /// Returns a chart of the number of lit pixels over the distance from the axis, divided by the width of a ring in

@@ -4,12 +4,13 @@ use super::settings::{VolumeSettingArgs, origin};
 use crate::error::CliError;
 use crate::numbers::{count_of, whole};
 use crate::output::OutputFolder;
-use crate::terminal::{json_text, print, progress};
+use crate::progress::Bar;
+use crate::terminal::{json_text, print};
 use clap::Args;
 use pxpl5::lab::motion;
 use pxpl5::views::Animation;
 use pxpl5::views::charts::{ChartAxes, Curve, decade_chart};
-use pxpl5::views::results::csv_table;
+use pxpl5::views::results::csv_of;
 use pxpl5::volume::heads::{HeadComparison, HeadSample, HeadStudy, HeadStudyConfig};
 use std::path::Path;
 
@@ -58,7 +59,7 @@ pub(super) fn run(
     let json = json_text(&study)?;
     // Write the report and the errors, then render the film with the exposure of its first picture.
     folder.put("report.json", json.as_bytes())?;
-    folder.put("errors.csv", errors_csv(&study).as_bytes())?;
+    folder.put("errors.csv", csv_of(&study.samples).as_bytes())?;
     folder.put("errors.svg", errors_svg(&study, name).as_bytes())?;
     // All pictures have one exposure, so that the film does not flicker.
     let instants = before.film_instants(&question, args.frames)?;
@@ -68,39 +69,17 @@ pub(super) fn run(
     let size = (2 * side, 2 * side);
     let mut film =
         Animation::begin(&mut bytes, size, args.frames, (1, rate), &origin(&volume)).map_err(CliError::failure)?;
-    let bar = progress(u64::from(args.frames), "pictures", options.settings.quiet);
-    for time_ps in instants {
+    let mut bar = Bar::new("pictures", options.settings.quiet);
+    for (done, time_ps) in (1..).zip(instants) {
         film.add(&before.picture(time_ps, side, exposure, &threads)?).map_err(CliError::failure)?;
-        bar.add_one();
+        bar.advance(done, u64::from(args.frames));
+        bar.check("nothing was written")?;
     }
     bar.clear();
     film.finish().map_err(CliError::failure)?;
     folder.put("eyes.png", &bytes)?;
     folder.commit()?;
     if options.settings.quiet { Ok(()) } else { print(&text(&study, name, out)) }
-}
-
-type Column = (&'static str, fn(&HeadSample) -> Option<f64>);
-
-const COLUMNS: [Column; 12] = [
-    ("time_s", |sample| Some(sample.time_s)),
-    ("azimuth_deg", |sample| Some(sample.azimuth_deg)),
-    ("elevation_deg", |sample| Some(sample.elevation_deg)),
-    ("distance_mm", |sample| Some(sample.distance_mm)),
-    ("hmd_mean_deg", |sample| sample.hmd_mean_deg),
-    ("hmd_worst_deg", |sample| sample.hmd_worst_deg),
-    ("hmd_mean_px", |sample| sample.hmd_mean_px),
-    ("hmd_mean_mm", |sample| sample.hmd_mean_mm),
-    ("voxel_mean_deg", |sample| Some(sample.voxel_mean_deg)),
-    ("voxel_worst_deg", |sample| Some(sample.voxel_worst_deg)),
-    ("voxel_mean_mm", |sample| Some(sample.voxel_mean_mm)),
-    ("dither_cell_deg", |sample| Some(sample.dither_cell_deg)),
-];
-
-fn errors_csv(study: &HeadStudy) -> String {
-    let cell = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.6}"));
-    let rows = study.samples.iter().map(|sample| COLUMNS.map(|(_, value)| cell(value(sample))));
-    csv_table(COLUMNS.map(|(name, _)| name), rows)
 }
 
 /// Returns a chart of angles over time: the error due to latency, the size of a voxel and the size of a dither cell.

@@ -3,18 +3,19 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::{Estimate, VolumeWork};
 use crate::numbers::whole;
+use crate::progress::Progress;
 use crate::scenes;
-use crate::terminal::{progress, warn};
+use crate::terminal::warn;
 use crate::version::{VERSION, commit_text};
 use clap::Args;
 use image::RgbImage;
+use pxpl5::lab::volumes::VolumeQuery;
 use pxpl5::scene::{Placement, Scene};
 use pxpl5::views::png_bytes;
 use pxpl5::volume::pixel_planes::supported;
 use pxpl5::volume::spatialgl::Threads;
-use pxpl5::volume::{Counted, RendererKind, Volume, VolumeSettings};
+use pxpl5::volume::{RendererKind, Volume, VolumeSettings};
 use pxpl5::{ModelPlace, MotionChoice, PathSettings, SceneChoice};
 use std::num::NonZero;
 use std::sync::Arc;
@@ -77,15 +78,6 @@ pub(super) struct SettingOptions {
 pub(super) const SMALLER: &str = "draw fewer or smaller slices (--set display.slices, display.width, display.height)";
 
 impl SettingOptions {
-    /// Returns an error if the estimated time or memory to draw `volumes` volumes exceeds the budget. The error
-    /// contains the estimate and advice to reduce the work.
-    pub(super) fn admit(&self, settings: &VolumeSettings, scene: &Scene, volumes: usize) -> Result<(), CliError> {
-        let threads = self.threads();
-        let one = VolumeWork::of(settings, scene, threads.0.get()).estimate();
-        let seconds = volumes as f64 * one.seconds / threads.0.get() as f64;
-        self.budget.admit_estimate(Estimate { seconds, ..one }, SMALLER)
-    }
-
     /// Returns the settings of the SpatialGL paper after all options. `--set` is applied last. Prints a warning for
     /// each number outside its documented range.
     pub(super) fn gather(&self) -> Result<VolumeSettings, CliError> {
@@ -130,19 +122,17 @@ impl VolumeSettingArgs {
     }
 
     pub(super) fn draw(&self, settings: &VolumeSettings) -> Result<Volume, CliError> {
-        let scene = self.load_scene()?;
-        self.settings.admit(settings, &scene, 1)?;
-        let bar = progress(0, "batches of slices", self.settings.quiet);
-        let finished = |done, of| bar.advance(done, of);
-        let threads = self.settings.threads();
-        let volume = Volume::draw(settings, &scene, &Counted::new(&threads, &finished));
-        bar.clear();
-        Ok(volume?)
+        let study = self.query(settings)?;
+        Progress::new("batches of slices", self.settings.quiet).run_within(self.settings.budget, SMALLER, &study)
+    }
+
+    pub(super) fn query(&self, settings: &VolumeSettings) -> Result<VolumeQuery, CliError> {
+        Ok(VolumeQuery { settings: settings.clone(), scene: self.load_scene()?, threads: self.settings.threads() })
     }
 }
 
 /// Loads a scene by name or file, and scales it to fit into the display.
-pub(super) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, CliError> {
+pub(crate) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, CliError> {
     Ok(scene_choice(name, triangles).load()?)
 }
 

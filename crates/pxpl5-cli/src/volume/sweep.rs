@@ -4,15 +4,16 @@
 use super::settings::{SMALLER, scene_choice};
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::{Estimate, VolumeWork};
 use crate::numbers::{plain, whole};
 use crate::sweep::{SweepCommand, SweepFolderArgs};
 use crate::version::VERSION;
 use clap::Args;
-use pxpl5::sweep::{Header, PointResults, SceneCache, SweepSpace, Swept, leaves};
+use pxpl5::lab::estimate::Estimate;
+use pxpl5::lab::volumes::VolumeQuery;
+use pxpl5::sweep::{Header, PointResults, SceneCache, Shard, SweepSpace, Swept, leaves};
 use pxpl5::volume::spatialgl::{CommandBuffer, OneThread, Threads};
 use pxpl5::volume::{Volume, VolumeSettings};
-use pxpl5::{Fingerprint, SettingError, StopFlag, StudyError};
+use pxpl5::{Fingerprint, SettingError, StopFlag, Study, StudyError};
 use pxpl5_sim::parameters::{PathSettings, assignment_of, text_of};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -151,7 +152,7 @@ impl VolumeSweep {
         Ok(self.measure.iter().map(|name| (name.clone(), "as in the report pxpl5-volume/1".to_owned())).collect())
     }
 
-    fn draw(&self, all: &BTreeMap<String, toml::Value>, point: u64) -> Result<Volume, CliError> {
+    fn draw(&self, all: &BTreeMap<String, toml::Value>, point: u64, stop: &StopFlag) -> Result<Volume, CliError> {
         let mut settings = VolumeSettings::paper();
         let place = format!("point {point}");
         // `scene` and `triangles` are not settings of the volume.
@@ -168,10 +169,9 @@ impl VolumeSweep {
         let scene = self.scenes.load(&scene_choice(&name, triangles))?;
         settings.swept_display()?;
         // Each point has to fit the budget by itself.
-        let one = VolumeWork::of(&settings, &scene, self.threads.0.get()).estimate();
-        let seconds = one.seconds / self.threads.0.get() as f64;
-        self.budget.admit_estimate(Estimate { seconds, ..one }, SMALLER)?;
-        Ok(Volume::draw(&settings, &scene, &self.threads)?)
+        let query = VolumeQuery { settings, scene, threads: self.threads };
+        self.budget.admit_study(&query, SMALLER)?;
+        Ok(query.run(&mut stop.clone())?)
     }
 }
 
@@ -180,10 +180,14 @@ impl Swept for VolumeSweep {
         &self.space
     }
 
-    fn simulate(&self, point: u64, _stop: &StopFlag) -> Result<PointResults, StudyError> {
+    fn estimate(&self, _: Shard, _: usize) -> Estimate {
+        Estimate::NOTHING
+    }
+
+    fn simulate(&self, point: u64, stop: &StopFlag) -> Result<PointResults, StudyError> {
         let mut all = self.settings.clone();
         all.extend(self.space.settings(point));
-        let volume = self.draw(&all, point).map_err(|error| SettingError::combination(error.message()))?;
+        let volume = self.draw(&all, point, stop).map_err(|error| SettingError::combination(error.message()))?;
         let report = serde_json::to_value(volume.report()).unwrap_or_default();
         let of = |name: &String| (name.clone(), value_of(&report, name).and_then(Value::as_f64));
         let named: Vec<String> = all.iter().map(|(path, value)| format!("{path}={}", plain(value))).collect();

@@ -7,7 +7,7 @@ use super::slices::{say, write};
 use crate::error::CliError;
 use crate::numbers::{count_of, whole};
 use crate::output::OutputFile;
-use crate::terminal::progress;
+use crate::progress::Bar;
 use clap::Args;
 use pxpl5::views::Animation;
 use pxpl5::volume::VolumeSettings;
@@ -136,10 +136,11 @@ pub(super) fn film(args: FilmArgs) -> Result<(), CliError> {
     // Pictures are encoded one by one, so that only one is in memory.
     let mut animation =
         Animation::begin(&mut bytes, size, args.frames, (1, args.rate), &origin(&volume)).map_err(CliError::failure)?;
-    let bar = progress(u64::from(args.frames), "pictures", args.volume.settings.quiet);
-    for picture in view.film(&volume, args.frames, &threads) {
+    let mut bar = Bar::new("pictures", args.volume.settings.quiet);
+    for (done, picture) in (1..).zip(view.film(&volume, args.frames, &threads)) {
         animation.add(&picture?).map_err(CliError::failure)?;
-        bar.add_one();
+        bar.advance(done, u64::from(args.frames));
+        bar.check("nothing was written")?;
     }
     bar.clear();
     animation.finish().map_err(CliError::failure)?;

@@ -56,9 +56,11 @@ impl CompareQuery {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::StopFlag;
     use crate::compare::RowChoice;
     use crate::experiment_file::ExperimentFile;
+    use crate::study::Study;
+    use crate::study::tests::StopsAfter;
+    use std::sync::Arc;
 
     #[test]
     fn a_stopped_comparison_stores_no_row_of_stopped_runs_and_can_be_resumed() {
@@ -71,16 +73,15 @@ mod tests {
         };
         let folder = std::env::temp_dir().join(format!("pxpl5-compare-{}-stopped", std::process::id()));
         let _ = std::fs::remove_dir_all(&folder);
-        let stop = StopFlag::default();
         // The first finished run stops the comparison, so each row has at least one run without a result.
-        let stop_soon = |_, _| stop.stop();
-        let store = query.open_store(&folder, true).expect("a folder");
-        let stopped = query.run_into(Some(&store), &stop, stop_soon, |row| panic!("{} ended", row.pipeline));
+        let mut watcher = StopsAfter { parts: 1, ..StopsAfter::default() };
+        let opened = || query.open_store(&folder, true).map(Arc::new).expect("a folder");
+        let stopped = CompareQuery { store: Some(opened()), ..query.clone() }.run(&mut watcher);
         assert!(matches!(stopped, Err(StudyError::Experiment(pxpl5_run::ExperimentError::Stopped(_)))), "{stopped:?}");
-        drop(store);
-        let store = query.open_store(&folder, true).expect("a folder");
+        assert_eq!(watcher.rows, 0);
+        let store = opened();
         assert_eq!(store.found(), 0);
-        let resumed = query.run_into(Some(&store), &StopFlag::default(), |_, _| {}, |_| {}).expect("it runs");
+        let resumed = CompareQuery { store: Some(store), ..query.clone() }.run(&mut ()).expect("it runs");
         assert_eq!(resumed.pipelines.len(), 2);
         let _ = std::fs::remove_dir_all(&folder);
     }

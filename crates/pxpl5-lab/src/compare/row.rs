@@ -1,6 +1,6 @@
 //! A row of a comparison: the results of one method, combined from the runs of all seeds.
 
-use super::contender::{ComparedPipeline, DELAYED_VIDEO, IDEAL};
+use super::compared::{ComparedPipeline, DELAYED_VIDEO, IDEAL};
 use super::gallery::LastPicture;
 use super::interval::MeanInterval;
 use super::trial::Trial;
@@ -9,6 +9,7 @@ use pxpl5_run::{Cause, Pipeline, ResultWindow, Statistics, number_or_nan};
 use pxpl5_wire::PeriodNumber;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt;
 use tracking::predict::PredictorKind;
 
 /// Pixel errors of a comparison row, over the runs of all seeds.
@@ -144,13 +145,13 @@ pub struct ComparisonRow {
 impl ComparisonRow {
     /// Combines the runs of all seeds into a row. Without runs, the row has no numbers.
     pub(super) fn of(
-        contender: &ComparedPipeline,
+        compared: &ComparedPipeline,
         pipeline: &dyn Pipeline,
         trials: &[&Trial],
         sampling: Sampling,
     ) -> Self {
         let confidence = sampling.confidence;
-        let is_reference = contender.showing == Showing::Ideal;
+        let is_reference = compared.showing == Showing::Ideal;
         // The reference is computed for each pixel's own instant and has no latency.
         let definition = if is_reference {
             "none: computed for the instant of each pixel, without a machine"
@@ -165,8 +166,8 @@ impl ComparisonRow {
         let sums_ms: Vec<f64> = trials.iter().filter_map(|trial| trial.tracking_and_rendering_ms).collect();
         let hz: Vec<f64> = trials.iter().filter_map(|trial| trial.updates_hz).collect();
         Self {
-            pipeline: contender.name.clone(),
-            settings: settings_text(contender),
+            pipeline: compared.name.clone(),
+            settings: settings_text(compared),
             eyes: pipeline.eyes(),
             seeds: sampling.seeds,
             is_precise: None,
@@ -227,6 +228,18 @@ impl ComparisonRow {
     }
 }
 
+impl fmt::Display for ComparisonRow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let px = self.error.mean_px.mean;
+        let error = if px.is_finite() { format!("error {px:.2} px") } else { "no error".to_owned() };
+        write!(f, "{}: {error}", self.pipeline)?;
+        match self.not_shown.filter(|missed| *missed > 0) {
+            Some(missed) => write!(f, ", {missed} of {} pictures not shown", self.due.unwrap_or_default()),
+            None => Ok(()),
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sampling {
     pub(super) seeds: usize,
@@ -243,8 +256,8 @@ fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> 
     present.peek().is_some().then(|| present.sum())
 }
 
-fn settings_text(contender: &ComparedPipeline) -> String {
-    let settings = contender.settings.iter().map(|(key, value)| format!("{key}={value}"));
+fn settings_text(compared: &ComparedPipeline) -> String {
+    let settings = compared.settings.iter().map(|(key, value)| format!("{key}={value}"));
     settings.collect::<Vec<_>>().join(" ")
 }
 

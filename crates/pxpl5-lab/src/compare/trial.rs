@@ -1,6 +1,6 @@
 //! One run of a compared pipeline with one seed.
 
-use super::contender::ComparedPipeline;
+use super::compared::ComparedPipeline;
 use super::gallery::LastPicture;
 use crate::edges::near_edges;
 use crate::experiment_file::{ExperimentFile, Plan};
@@ -49,7 +49,7 @@ impl ComparedPipeline {
 
     /// Runs one experiment of the row. If `causes` is true, the error is split by its causes.
     pub(super) fn trial(&self, experiment: Experiment, causes: bool) -> Result<Trial, String> {
-        let from = common_window_from(experiment.length());
+        let from = common_window_from(experiment.fields);
         let outcome =
             experiment.results_from(from).after_dry_run().and_then(|it| it.run()).map_err(|error| error.to_string())?;
         Ok(Trial::of(&outcome, self.showing, causes))

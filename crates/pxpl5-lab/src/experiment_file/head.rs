@@ -4,7 +4,7 @@
 use super::read::{beside, plain, wrong};
 use super::scene::{SceneChoice, is_file};
 use super::{ExperimentFile, motion, reprojection, tracking_numbers};
-use crate::head_names::{
+use crate::head_parts::{
     Replay, is_recorded_file, is_recording, is_walk, predictor, recording_of, replayed, tracker_by, walk,
 };
 use pxpl5_run::{Aim, Head, HeadPlace, Pipeline};

@@ -97,7 +97,7 @@ const COMMON: &[Key] = &[
         KeyValues::Names(&const { names(&Jumps::NAMES) }),
     )
     .with_default("keep, with a warning"),
-    Key::new("head.tracker", crate::head_names::TRACKERS, KeyValues::ANY),
+    Key::new("head.tracker", crate::head_parts::TRACKERS, KeyValues::ANY),
     Key::new("head.predict", "none, velocity, acceleration or kalman", KeyValues::ANY),
     Key::new(
         "head.aim",

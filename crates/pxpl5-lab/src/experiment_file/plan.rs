@@ -12,8 +12,8 @@ use pxpl5_gp::CodeVersion;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{HeadSum, Measure, Results};
 use pxpl5_run::{
-    Experiment, ExperimentError, Host, Level, LimitCriterion, Pipeline, PipelineEntry, PipelineSettings, Pixels,
-    Registry, check_coverage, out_of_range, warning_without_code,
+    Experiment, ExperimentError, Level, LimitCriterion, Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry,
+    check_coverage, out_of_range, warning_without_code,
 };
 use pxpl5_scene::{Hmd, Scene};
 use pxpl5_sim::Time;
@@ -336,16 +336,16 @@ impl Plan {
     ///
     /// Fails in the same cases as [`Experiment::run`].
     pub fn run(&self, scene: Arc<Scene>) -> Result<Results, ExperimentError> {
-        self.run_on(Workstation::with_threads(1), scene)
+        self.results_of(self.experiment(scene).host(Workstation::with_threads(1)))
     }
 
-    /// Runs the experiment as [`run`](Self::run) does, but on `host`, which can stop the run.
+    /// Runs an experiment of this plan, which may have another host or a flag that stops it, as [`run`](Self::run) does.
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`run`](Self::run). Returns [`ExperimentError::Stopped`] if the host stops the run.
-    pub fn run_on(&self, host: impl Host + 'static, scene: Arc<Scene>) -> Result<Results, ExperimentError> {
-        let experiment = self.experiment(scene).pixels(Pixels::Off).host(host);
+    /// Fails in the same cases as [`Experiment::run`].
+    pub fn results_of(&self, experiment: Experiment) -> Result<Results, ExperimentError> {
+        let experiment = experiment.pixels(Pixels::Off);
         match self.level {
             Level::Analytic => Ok(Results::of_closed_form(summarise(&self.registry, &experiment)?)),
             Level::Transaction | Level::Cycle => Ok(Results::of_run(experiment.run()?)),

@@ -1,7 +1,7 @@
 //! Typed access to the settings of an experiment file.
 
 use super::{ExperimentFile, Setting};
-use crate::head_names;
+use crate::head_parts;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, Value as Number};
 use std::path::Path;
 use toml::Value;
@@ -88,7 +88,7 @@ pub(super) fn unknown<'a>(key: &str, setting: &Setting, valid: impl IntoIterator
     let what = key.rsplit('.').next().unwrap_or(key);
     let found: String = plain(&setting.value).chars().take(60).collect();
     let names: Vec<&str> = valid.into_iter().collect();
-    let error = head_names::unknown(what, &found, names.iter().copied(), &format!("one of {}", names.join(", ")));
+    let error = head_parts::unknown(what, &found, names.iter().copied(), &format!("one of {}", names.join(", ")));
     error.at(setting.place_of(key))
 }
 

@@ -1,8 +1,8 @@
 //! A cache for results that several measurements share. The cache holds application scenes of the papers, loads of
 //! their fly-throughs, measurements of the pendulum rig, and results of experiments.
 
-use super::heads::RigLines;
-use super::measurement::{FigureValue, Result, scene_named};
+use super::rig_lines::RigLines;
+use super::value::{FigureValue, Result, scene_named};
 use pxpl5_analytic::Load;
 use pxpl5_run::{Experiment, FinishedRegions, Summary};
 use pxpl5_scene::Scene;
@@ -87,9 +87,9 @@ pub(super) fn key_of(experiment: &Experiment, scene: &str) -> (String, u64) {
     machine.renderer.kept_bits = 0;
     let key = format!(
         "{scene} {} {} {:?} {:?} {:?}",
-        experiment.length(),
-        experiment.motion_seed(),
-        experiment.modelling_level(),
+        experiment.fields,
+        experiment.seed,
+        experiment.level,
         experiment.pipeline(),
         machine,
     );

@@ -1,17 +1,17 @@
 //! Writer of ACCURACY.md and docs/interpretations.md: the texts are Markdown files with marks, which the writer replaces
 //! by tables and numbers.
 
-use super::measurement::{EARLIER, LATER};
+use super::Interpretation;
+use super::value::{EARLIER, LATER, WHOLE};
 use super::{
     Alternatives, Basis, Effect, FigureGroup, FigureRow, Figures, Headline, MISS_PERCENT, Measurement, TOPICS, all,
 };
-use super::{Interpretation, rendering_control::WHOLE};
 use crate::edges::NEAR_FIELDS;
 use crate::interpretations::{ALIKE, FigureFit, Fit, Interpretations, figures as ranked_figures};
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
-use pxpl5_sim::figures::column::{PROVENANCE, PUBLISHED, SIMULATED, error, four, range};
-use pxpl5_sim::figures::{filled, lines};
+use pxpl5_sim::figures::column::{PROVENANCE, PUBLISHED, SIMULATED, error};
+use pxpl5_sim::figures::{filled, four, lines, range};
 
 /// The texts of both documents.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Figures of the papers on address recalculation, a system other than Pixel-Planes 5.
 
-use super::measurement::{Result, scene_named};
-use super::{Bench, FigureGroup};
+use super::settings::FigureSettings;
+use super::value::{Result, scene_named};
 use crate::error::StudyError;
 use crate::parallel;
 use pxpl5_arp::figures::{Experiments, row, rows, shape};
@@ -33,34 +33,28 @@ const COMPARED: usize = 55;
 /// # Errors
 ///
 /// Returns a [`StudyError`] that names the experiment.
-pub(super) fn address_recalculation(bench: &Bench) -> std::result::Result<FigureGroup, StudyError> {
-    let (turning, experiments) = parallel::both(|| turning(bench), Experiments::run);
+pub(super) fn address_recalculation(settings: &FigureSettings) -> Result<Vec<FigureRow>> {
+    let (turning, experiments) = parallel::both(|| turning(settings), Experiments::run);
     let mut all = turning.map_err(StudyError::of_figure("E1"))?;
-    let experiments = experiments.map_err(StudyError::of_figure("E1"))?;
+    let experiments = experiments?;
     all.extend(rows(&experiments));
-    Ok(FigureGroup {
-        name: "address-recalculation",
-        title: "Address recalculation and priority rendering",
-        about: "Experiment E1 runs on Pixel-Planes 5, experiments E2 to E9 run with an ideal renderer.",
-        document: Some("docs/address-recalculation.md"),
-        rows: all,
-    })
+    Ok(all)
 }
 
 /// Runs experiment E1, which measures two latencies for growing numbers of triangles. One is the latency of the head's
 /// rotation with the address recalculation display. The other is the latency of a picture under Rendering Control. For
 /// Rendering Control, the viewer always faces the triangles, because triangles out of sight are not drawn.
-fn turning(bench: &Bench) -> Result<Vec<FigureRow>> {
+fn turning(settings: &FigureSettings) -> Result<Vec<FigureRow>> {
     // For each size, run the display with faces under a turning head, then Rendering Control without a tracked head.
     let of_size = |triangles: &u32| -> Result<(Vec<u64>, f64)> {
         let faces = FacePipeline::new(FacePolicy::Full);
-        let machine = faces.adapt(bench.machine("small-hmd")?);
+        let machine = faces.adapt(settings.machine("small-hmd")?);
         let scene = scene_named(&format!("sphere:{triangles}"))?;
         let experiment = Experiment::new(machine, faces, Arc::clone(&scene));
-        let latencies = turned(experiment.host(bench.stop.clone()))?;
+        let latencies = turned(experiment.stopped_by(settings.stop.clone()))?;
         let turn = totals_ps(&latencies.rotation_latencies());
-        let drawn = Experiment::new(bench.machine("small-hmd")?, RenderingControl::stereo(), scene);
-        let drawn = drawn.fields(FIELDS).pixels(Pixels::Off).host(bench.stop.clone());
+        let drawn = Experiment::new(settings.machine("small-hmd")?, RenderingControl::stereo(), scene);
+        let drawn = drawn.fields(FIELDS).pixels(Pixels::Off).stopped_by(settings.stop.clone());
         Ok((turn, drawn.run()?.latency_ms().mean))
     };
     let measured = parallel::map(&TRIANGLES, of_size).into_iter().collect::<Result<Vec<_>>>()?;
@@ -82,7 +76,7 @@ fn turning(bench: &Bench) -> Result<Vec<FigureRow>> {
 /// Runs an experiment in which the head turns at 200 degrees per second.
 fn turned(experiment: Experiment) -> Result<Outcome> {
     let head = Head::new(Arc::new(Pan::at(200.0)), TrackerConfig::ideal(), PredictorKind::None, 1)?;
-    experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()
+    Ok(experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?)
 }
 
 fn totals_ps(latencies: &[RotationLatency]) -> Vec<u64> {

@@ -1,52 +1,18 @@
-//! The published figures by topic, and the measurement of all of them.
+//! The measurement of all published figures.
 
+use super::family;
+use super::headline::Headline;
 use super::measurement::Measurement;
-use super::{Bench, FigureRow, Headline, family, heads, jitp, rates, rendering_control, slats, trackers};
+use super::settings::FigureSettings;
+use super::topics::{TOPICS, Topic, all};
 use crate::error::StudyError;
+use crate::estimate::{BUSY, Estimate};
 use crate::intervals::{Interval, fill, intervals};
 use crate::parallel;
+use crate::study::{Study, check};
+use pxpl5_sim::figures::FigureRow;
+use pxpl5_sim::{SharedWatcher, Watcher};
 use serde::Serialize;
-use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Figures of one topic, as entries. A new figure is one entry in a list of a topic.
-#[derive(Clone, Copy, Debug)]
-pub struct Topic {
-    /// Name of the topic in commands.
-    pub name: &'static str,
-    /// Title of the topic's section in ACCURACY.md.
-    pub title: &'static str,
-    /// Conditions that all experiments of the topic share, including conditions that the papers do not state.
-    pub about: &'static str,
-    /// The figures in the order of their numbers.
-    pub figures: &'static [Measurement],
-}
-
-/// Name of the topic "Rendering Control".
-pub(super) const RC: &str = "Rendering Control";
-/// Name of the topic "Slats".
-pub(super) const SLATS: &str = "Slats";
-/// Name of the topic "From head to light".
-pub(super) const HEAD: &str = "from head to light";
-
-/// All topics with experiments on Pixel-Planes 5, in the order of their tables.
-pub static TOPICS: [Topic; 6] = [
-    Topic { name: "rendering-control", title: RC, about: "", figures: rendering_control::FIGURES },
-    Topic { name: "slats", title: SLATS, about: "", figures: slats::FIGURES },
-    Topic { name: "head-to-light", title: "From head to light", about: "", figures: heads::FIGURES },
-    Topic { name: "rates", title: rates::TITLE, about: rates::ABOUT, figures: rates::FIGURES },
-    Topic { name: "jitp", title: jitp::TITLE, about: jitp::ABOUT, figures: jitp::FIGURES },
-    Topic { name: "trackers", title: trackers::TITLE, about: trackers::ABOUT, figures: trackers::FIGURES },
-];
-
-/// Returns the figures of all topics.
-pub fn all() -> impl Iterator<Item = &'static Measurement> {
-    TOPICS.iter().flat_map(|topic| topic.figures)
-}
-
-/// Returns the figures that are measured at every level of detail. The other topics always simulate events.
-pub fn at_all_levels() -> impl Iterator<Item = &'static Measurement> {
-    TOPICS.iter().take(3).flat_map(|topic| topic.figures)
-}
 
 /// Published figures of one topic, with the model's values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -69,58 +35,86 @@ pub struct Figures {
     /// Groups of [`TOPICS`], and then the group of the papers on address recalculation.
     pub groups: Vec<FigureGroup>,
     /// Interval of each figure while the unpublished parameters vary. Figures that depend only on scenes have no
-    /// interval. The list is empty if the settings leave out intervals ([`Bench::without_intervals`]).
+    /// interval. The list is empty if the settings leave out intervals ([`FigureQuery::intervals`]).
     pub intervals: Vec<Interval>,
 }
 
-impl Figures {
-    /// Measures all figures in parallel, with their intervals if the settings include intervals. Calls `finished` with
-    /// the number of finished steps and the number of all steps. Calls `row` with each row and its group, in the order
-    /// of the tables, as soon as all earlier rows are finished. These rows have neither an interval nor an analytic
-    /// value.
-    ///
-    /// # Errors
-    ///
-    /// Returns the first [`StudyError`].
-    pub fn run(
-        bench: &Bench,
-        finished: impl Fn(u64, u64) + Sync,
-        mut row: impl FnMut(&'static str, &FigureRow) + Send,
-    ) -> Result<Self, StudyError> {
-        let tasks: Vec<(&Topic, &Measurement)> =
-            TOPICS.iter().flat_map(|topic| topic.figures.iter().map(move |figure| (topic, figure))).collect();
-        // The last two steps are the group of address recalculation and all intervals.
-        let steps = tasks.len() as u64 + 2;
-        let done = AtomicU64::new(0);
-        let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
+/// CPU seconds to measure all published figures on one core of 3 GHz, with the build profile `dist`.
+const FIGURES_S: f64 = 36.0;
+/// Peak memory in bytes to measure all published figures with two threads, rounded up.
+const FIGURES_BYTES: f64 = 300e6;
+
+/// The measurement of the published figures.
+#[derive(Clone, Debug)]
+pub struct FigureQuery {
+    /// Settings of all measurements.
+    pub settings: FigureSettings,
+    /// True if the figures' intervals are computed too. The intervals take half of the time of all measurements.
+    pub intervals: bool,
+    /// The figures to measure. Empty measures all figures and the group of address recalculation.
+    pub only: Vec<&'static Measurement>,
+}
+
+impl Study for FigureQuery {
+    type Report = Figures;
+
+    fn estimate(&self, threads: usize) -> Estimate {
+        let measured = if self.only.is_empty() { 1.0 } else { self.only.len() as f64 / all().count() as f64 };
+        let seconds = BUSY * FIGURES_S * measured / threads.max(1) as f64;
+        Estimate { bytes: FIGURES_BYTES, seconds }
+    }
+
+    /// Measures all figures in parallel. The watcher gets each row with the title of its group, in the order of the
+    /// tables, as soon as all earlier rows are finished. These rows have neither an interval nor an analytic value.
+    fn run(&self, watcher: &mut dyn Watcher) -> Result<Figures, StudyError> {
+        let is_chosen =
+            |figure: &&Measurement| self.only.is_empty() || self.only.iter().any(|chosen| chosen.id == figure.id);
+        let of_topic =
+            |topic: &'static Topic| topic.figures.iter().filter(is_chosen).map(move |figure| (topic, figure));
+        let tasks: Vec<(&Topic, &Measurement)> = TOPICS.iter().flat_map(of_topic).collect();
+        let is_whole = self.only.is_empty();
+        // The group of address recalculation and all intervals are a part each.
+        let watcher = SharedWatcher::new(watcher, tasks.len() as u64 + 2 * u64::from(is_whole));
+        let settings = FigureSettings { stop: watcher.stop(), ..self.settings.clone() };
         let mut has_failed = false;
         let rows = || {
-            let run = |(_, figure): &(&Topic, &Measurement)| stepped(&step, || row_of(figure, bench));
+            let run = |(_, figure): &(&Topic, &Measurement)| watcher.part(|| row_of(figure, &settings));
             parallel::map_in_order(&tasks, run, |(topic, _), measured| {
                 has_failed |= measured.is_err();
-                measured.iter().filter(|_| !has_failed).for_each(|one| row(topic.title, one));
+                measured.iter().filter(|_| !has_failed).for_each(|one| watcher.row(topic.title, one));
             })
         };
         // The other system takes long and comes last, so its measurement starts first.
-        let other = || stepped(&step, || family::address_recalculation(bench));
-        let vary = || stepped(&step, || if bench.intervals { intervals(bench) } else { Vec::new() });
+        let other = || is_whole.then(|| watcher.part(|| family::address_recalculation(&settings)));
+        let vary = || if self.intervals && is_whole { watcher.part(|| intervals(&settings)) } else { Vec::new() };
         let ((rows, other), intervals) = parallel::both(|| parallel::both(rows, other), vary);
-        let mut rows = rows.into_iter();
-        let mut groups = Vec::new();
-        for Topic { name, title, about, figures } in TOPICS {
-            let rows = rows.by_ref().take(figures.len()).collect::<Result<_, _>>()?;
-            groups.push(FigureGroup { name, title, about, document: None, rows });
+        let mut groups: Vec<FigureGroup> = Vec::new();
+        for ((topic, _), row) in tasks.iter().zip(rows) {
+            if groups.last().is_none_or(|group| group.name != topic.name) {
+                let Topic { name, title, about, .. } = **topic;
+                groups.push(FigureGroup { name, title, about, document: None, rows: Vec::new() });
+            }
+            groups.last_mut().expect("a group").rows.push(row?);
         }
-        groups.extend(other);
+        if let Some(rows) = other.transpose()? {
+            groups.push(FigureGroup {
+                name: "address-recalculation",
+                title: "Address recalculation and priority rendering",
+                about: "Experiment E1 runs on Pixel-Planes 5, experiments E2 to E9 run with an ideal renderer.",
+                document: Some("docs/address-recalculation.md"),
+                rows,
+            });
+        }
         // After a stop, intervals are missing or too narrow.
-        bench.stop.check().map_err(StudyError::of_figure("intervals"))?;
+        check(&watcher.stop())?;
         groups.iter_mut().for_each(|group| fill(&mut group.rows, &intervals));
-        if let Some(other) = groups.last() {
-            other.rows.iter().for_each(|one| row(other.title, one));
-        }
-        Ok(Self { groups, intervals })
+        let others = groups.iter().filter(|group| group.document.is_some());
+        others.for_each(|group| group.rows.iter().for_each(|row| watcher.row(group.title, row)));
+        Ok(Figures { groups, intervals })
     }
+}
 
+impl Figures {
     /// Returns the rows of all topics, without the group of address recalculation.
     pub fn rows(&self) -> impl Iterator<Item = &FigureRow> {
         self.groups.iter().filter(|group| group.document.is_none()).flat_map(|group| &group.rows)
@@ -137,12 +131,6 @@ impl Figures {
     }
 }
 
-pub(super) fn row_of(figure: &Measurement, bench: &Bench) -> Result<FigureRow, StudyError> {
-    figure.measured_row(bench).map_err(StudyError::of_figure(figure.id))
-}
-
-pub(super) fn stepped<T>(step: &impl Fn(), part: impl FnOnce() -> T) -> T {
-    let result = part();
-    step();
-    result
+pub(super) fn row_of(figure: &Measurement, settings: &FigureSettings) -> Result<FigureRow, StudyError> {
+    figure.measured_row(settings).map_err(StudyError::of_figure(figure.id))
 }

@@ -1,7 +1,6 @@
 //! Mean errors of all rows by provenance.
 
-use super::FigureRow;
-use pxpl5_sim::figures::Basis;
+use pxpl5_sim::figures::{Basis, FigureRow};
 use serde::Serialize;
 use std::fmt::{Display, Formatter, Result};
 

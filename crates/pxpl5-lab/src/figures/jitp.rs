@@ -1,8 +1,9 @@
 //! Figures of the paper on just-in-time pixels (JITP, by Mine and Bishop). The figures are errors while the head turns,
 //! the duration of a line, the number of transforms, and the pictures of an edge.
 
-use super::Bench;
-use super::measurement::{FigureValue, Measurement, Result, detail, figure};
+use super::measurement::{Measurement, figure};
+use super::settings::FigureSettings;
+use super::value::{FigureValue, Result, detail};
 use crate::compare::{edge_pictures, edge_scene};
 use crate::parallel;
 use image::RgbImage;
@@ -59,7 +60,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         basis: BY_TURN,
         reason: OF_TURN,
-        ..figure("J1b", JITP, "the same", (33.0, "px"), OF_FIELD, |bench| in_pixels(error_of_field(bench)?))
+        ..figure("J1b", JITP, "the same", (33.0, "px"), OF_FIELD, |settings| in_pixels(error_of_field(settings)?))
     },
     Measurement {
         basis: BY_TURN,
@@ -69,7 +70,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         basis: BY_TURN,
         reason: OF_TURN,
-        ..figure("J2b", JITP, "the same", (0.13, "px"), OF_LINE, |bench| in_pixels(error_of_line(bench)?))
+        ..figure("J2b", JITP, "the same", (0.13, "px"), OF_LINE, |settings| in_pixels(error_of_line(settings)?))
     },
     Measurement {
         range: Some(1.5),
@@ -119,7 +120,7 @@ fn head() -> Result<Head> {
 fn run(machine: MachineConfig, viewpoint: Viewpoint, aim: Aim, fields: u64) -> Result<Outcome> {
     let jitp = Jitp { strip_rows: 1, ..Jitp::new(viewpoint, true) };
     let experiment = Experiment::new(machine, jitp, edge_scene(0.0)).head(head()?.with_aim(aim));
-    experiment.fields(fields).pixels(Pixels::Off).run()
+    Ok(experiment.fields(fields).pixels(Pixels::Off).run()?)
 }
 
 /// Returns the pixel error at one pixel of the evaluated field, in degrees.
@@ -142,8 +143,8 @@ fn in_pixels(angle: FigureValue) -> Result<FigureValue> {
 
 /// Measures row J1 of ACCURACY.md: the head's rotation while the beam draws a field. The rotation is measured from the
 /// first pixel to the last line, and scaled to the time between two retraces.
-fn error_of_field(bench: &Bench) -> Result<FigureValue> {
-    let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
+fn error_of_field(settings: &FigureSettings) -> Result<FigureValue> {
+    let outcome = run(settings.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     let surface = &outcome.record().display().surfaces()[0];
     let [width, height] = [surface.width, surface.height].map(f64::from);
     let focal_px = width / 2.0 / 30_f64.to_radians().tan();
@@ -160,8 +161,8 @@ fn error_of_field(bench: &Bench) -> Result<FigureValue> {
 
 /// Measures row J2 of ACCURACY.md: the head's rotation while the beam draws a line. The rotation is measured between
 /// the first and the last pixel, and scaled to the duration of the whole line.
-fn error_of_line(bench: &Bench) -> Result<FigureValue> {
-    let outcome = run(bench.machine("small-hmd")?, Viewpoint::Strip, Aim::Middle, FIELD.0 + 2)?;
+fn error_of_line(settings: &FigureSettings) -> Result<FigureValue> {
+    let outcome = run(settings.machine("small-hmd")?, Viewpoint::Strip, Aim::Middle, FIELD.0 + 2)?;
     let last = outcome.record().display().surfaces()[0].width - 1;
     // The line is drawn for its middle, so the errors of both ends add up.
     let ends_deg = degrees(&outcome, 0, MIDDLE_LINE)? + degrees(&outcome, last, MIDDLE_LINE)?;
@@ -171,15 +172,15 @@ fn error_of_line(bench: &Bench) -> Result<FigureValue> {
 }
 
 /// Measures row J3 of ACCURACY.md: the time between two successive lines of a field.
-fn time_of_line(bench: &Bench) -> Result<FigureValue> {
-    let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
+fn time_of_line(settings: &FigureSettings) -> Result<FigureValue> {
+    let outcome = run(settings.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     Ok((beam_s(&outcome, (0, 0), (0, 2)) * 1e6).into())
 }
 
 /// Measures row J4 of ACCURACY.md: the slant of a vertical edge in a conventional picture, and in a picture of
 /// just-in-time pixels.
-fn slant_removed(bench: &Bench) -> Result<FigureValue> {
-    let plates = edge_pictures(&bench.machine("small-hmd")?, PAN)?;
+fn slant_removed(settings: &FigureSettings) -> Result<FigureValue> {
+    let plates = edge_pictures(&settings.machine("small-hmd")?, PAN)?;
     let [conventional, just_in_time] = [&plates.conventional_seen, &plates.just_in_time_seen].map(slant);
     let details =
         vec![detail("conventional", conventional, "px a field"), detail("just-in-time", just_in_time, "px a field")];
@@ -202,9 +203,9 @@ fn slant(picture: &RgbImage) -> f64 {
 
 /// Measures row J5 of ACCURACY.md from the number of vertex transforms per field, over [`COUNTED`] fields. The
 /// transforms before these fields are counted in a run without these fields, and then subtracted.
-fn transforms(bench: &Bench) -> Result<FigureValue> {
+fn transforms(settings: &FigureSettings) -> Result<FigureValue> {
     let counted = |viewpoint, fields| -> Result<u64> {
-        Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
+        Ok(run(free_slave(settings)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
     };
     // The difference of two runs removes the start.
     let a_field = |viewpoint| -> Result<f64> {
@@ -225,8 +226,8 @@ const COUNTED: u64 = 20;
 
 /// Returns a machine with one slave. All software takes no simulated time, because only the number of transforms is
 /// measured.
-fn free_slave(bench: &Bench) -> Result<MachineConfig> {
-    let mut machine = MachineConfig { n_gps: 2, code: None, ..bench.machine("small-hmd")? };
+fn free_slave(settings: &FigureSettings) -> Result<MachineConfig> {
+    let mut machine = MachineConfig { n_gps: 2, code: None, ..settings.machine("small-hmd")? };
     for name in ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"] {
         machine.set(&format!("gp.{name}_ns"), 0)?;
     }

@@ -1,13 +1,20 @@
 //! A published figure as one entry: what the paper prints, how the model measures it, and what moves it.
 
-use super::Bench;
-use pxpl5_run::ExperimentError;
-use pxpl5_scene::{Scene, builtin};
-use pxpl5_sim::figures::{Basis, Detail, FigureRow, around};
+use super::settings::FigureSettings;
+use super::value::{FigureValue, Result};
+use crate::study::check;
+use pxpl5_sim::figures::{Basis, FigureRow, around};
 use serde::Serialize;
-use std::sync::Arc;
 
-pub(super) type Result<T> = std::result::Result<T, ExperimentError>;
+/// Name of the topic "Rendering Control".
+pub(super) const RC: &str = "Rendering Control";
+/// Name of the topic "Slats".
+pub(super) const SLATS: &str = "Slats";
+/// Name of the topic "From head to light".
+pub(super) const HEAD: &str = "from head to light";
+
+/// The rule that decides the limits of Slats, and that was chosen by comparison with figures 12 and 13.
+pub(super) const CLUMP_RULE: &str = "when a clump's buffer is free";
 
 /// Error in percent above which the model misses a figure, if the paper prints no range.
 pub const MISS_PERCENT: f64 = 3.0;
@@ -48,7 +55,7 @@ pub struct Measurement {
     /// Known cause of a difference between model and paper. Empty if no cause is known, or the model meets the figure.
     pub cause: &'static str,
     /// Simulates the figure.
-    pub measure: fn(&Bench) -> Result<FigureValue>,
+    pub measure: fn(&FigureSettings) -> Result<FigureValue>,
 }
 
 /// Definition of a published latency: its beginning, its end, its eyes, and its statistic.
@@ -77,57 +84,6 @@ pub enum Varied {
     ByEvents(&'static [&'static str]),
 }
 
-/// Result of the experiment that simulates a published figure.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FigureValue {
-    /// Value of the figure, in the figure's unit.
-    pub value: f64,
-    /// Additional numbers of the same experiment, each with its own unit.
-    pub details: Vec<Detail>,
-    /// Minimum and maximum of the figure over a condition that the paper does not print. `None` if the paper prints all
-    /// conditions.
-    pub unprinted: Option<[f64; 2]>,
-}
-
-impl FigureValue {
-    pub(super) const fn with(value: f64, details: Vec<Detail>) -> Self {
-        Self { value, details, unprinted: None }
-    }
-
-    /// Adds how near the pictures of the experiment come to another retrace, in fields: by how much later, and by how
-    /// much earlier, their copies would have to end.
-    pub(super) fn beside(mut self, edges: Option<[f64; 2]>) -> Self {
-        if let Some([later, earlier]) = edges {
-            self.details.extend([detail(LATER, later, "fields"), detail(EARLIER, earlier, "fields")]);
-        }
-        self
-    }
-
-    /// Returns the additional number called `name`.
-    pub fn detail(&self, name: &str) -> Option<f64> {
-        self.details.iter().find(|detail| detail.name == name).map(|detail| detail.value)
-    }
-}
-
-/// Name of the detail with the least delay of a copy that would show a picture a field later.
-pub(super) const LATER: &str = "to a later retrace";
-/// Name of the detail with the least saving that would show a picture a field earlier.
-pub(super) const EARLIER: &str = "to an earlier retrace";
-
-impl From<f64> for FigureValue {
-    fn from(value: f64) -> Self {
-        Self::with(value, Vec::new())
-    }
-}
-
-pub(super) fn detail(name: &str, value: f64, unit: &'static str) -> Detail {
-    Detail { name: name.to_owned(), value, unit }
-}
-
-pub(super) fn scene_named(name: &str) -> Result<Arc<Scene>> {
-    Ok(Arc::new(builtin(name)?))
-}
-
 /// Creates a figure to which nothing was fitted and for which nothing varies. Each list of figures replaces the members
 /// that differ.
 pub(super) const fn figure(
@@ -136,7 +92,7 @@ pub(super) const fn figure(
     statement: &'static str,
     (value, unit): (f64, &'static str),
     experiment: &'static str,
-    measure: fn(&Bench) -> Result<FigureValue>,
+    measure: fn(&FigureSettings) -> Result<FigureValue>,
 ) -> Measurement {
     Measurement {
         id,
@@ -159,15 +115,15 @@ pub(super) const fn figure(
 }
 
 impl Measurement {
-    /// Simulates the figure with the settings of `bench`.
+    /// Simulates the figure with the settings of `settings`.
     ///
     /// # Errors
     ///
     /// Returns [`ExperimentError`] if the experiment fails, and [`ExperimentError::Stopped`] if another thread sets the
-    /// flag of `bench`.
-    pub fn value(&self, bench: &Bench) -> Result<FigureValue> {
-        bench.stop.check()?;
-        (self.measure)(bench)
+    /// flag of `settings`.
+    pub fn value(&self, settings: &FigureSettings) -> Result<FigureValue> {
+        check(&settings.stop)?;
+        (self.measure)(settings)
     }
 
     /// Returns the table row of the figure, with the printed value and the simulated value `measured`.
@@ -196,8 +152,15 @@ impl Measurement {
     /// # Errors
     ///
     /// Fails in the same cases as [`Self::value`].
-    pub fn measured_row(&self, bench: &Bench) -> Result<FigureRow> {
-        Ok(FigureRow { basis: bench.basis_of(self), ..self.row(self.value(bench)?) })
+    pub fn measured_row(&self, settings: &FigureSettings) -> Result<FigureRow> {
+        // With times of executed code no time of a triangle is fitted, so the limits of Slats become checks.
+        let basis = match self.basis {
+            Basis::Fitted(chosen) if settings.has_times_of_code && chosen.starts_with("gp.triangle_ns") => {
+                Basis::Interpretation(CLUMP_RULE)
+            }
+            basis => basis,
+        };
+        Ok(FigureRow { basis, ..self.row(self.value(settings)?) })
     }
 }
 
@@ -205,7 +168,7 @@ impl Measurement {
 mod tests {
     use super::*;
 
-    fn of_nothing(_: &Bench) -> Result<FigureValue> {
+    fn of_nothing(_: &FigureSettings) -> Result<FigureValue> {
         Ok(0.0.into())
     }
 

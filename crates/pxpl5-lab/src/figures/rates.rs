@@ -1,8 +1,9 @@
 //! Published peak rates: triangles and spheres per second of the machine, triangles of a renderer, and operations of the
 //! i860.
 
-use super::Bench;
-use super::measurement::{FigureValue, Measurement, Result, Varied, detail, figure, scene_named};
+use super::measurement::{Measurement, Varied, figure};
+use super::settings::FigureSettings;
+use super::value::{FigureValue, Result, detail, scene_named};
 use glam::Vec3;
 use i860::{Cpu, Ram, RunEnd, assemble};
 use pphigs::Shading;
@@ -66,7 +67,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "Gouraud triangles a second",
             (1.6e6, "triangles/s"),
             "typical:40000 mono on large: the result is the number of triangles of a frame times the frames per second",
-            |bench| triangle_rate(bench, "large", Shading::Gouraud),
+            |settings| triangle_rate(settings, "large", Shading::Gouraud),
         )
     },
     Measurement {
@@ -80,7 +81,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "Phong triangles a second: 1+ M, taken as more than 1 and less than the 1.6 M of Gouraud",
             (1.3e6, "triangles/s"),
             "as R1 with Phong shading",
-            |bench| triangle_rate(bench, "large", Shading::Phong),
+            |settings| triangle_rate(settings, "large", Shading::Phong),
         )
     },
     Measurement {
@@ -93,7 +94,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "Phong triangles a second on 32 processors and 16 renderers",
             (1e6, "triangles/s"),
             "as R2 on design-maximum",
-            |bench| triangle_rate(bench, "design-maximum", Shading::Phong),
+            |settings| triangle_rate(settings, "design-maximum", Shading::Phong),
         )
     },
     Measurement {
@@ -143,28 +144,41 @@ const TRIANGLES: u64 = 40_000;
 /// Number of display fields in a run, which suffice for 15 to 20 frames.
 const FIELDS: u64 = 44;
 
-fn drawn(bench: &Bench, machine: MachineConfig, shading: Shading, scene: Arc<Scene>, fields: u64) -> Result<Outcome> {
-    let pipeline = RenderingControl { shading, mono: true, ..bench.interpretation.pipeline() };
-    Experiment::new(machine, pipeline, scene).fields(fields).pixels(Pixels::Off).host(bench.stop.clone()).run()
+fn drawn(
+    settings: &FigureSettings,
+    machine: MachineConfig,
+    shading: Shading,
+    scene: Arc<Scene>,
+    fields: u64,
+) -> Result<Outcome> {
+    let pipeline = RenderingControl { shading, mono: true, ..settings.interpretation.pipeline() };
+    let experiment = Experiment::new(machine, pipeline, scene).fields(fields).pixels(Pixels::Off);
+    Ok(experiment.stopped_by(settings.stop.clone()).run()?)
 }
 
 /// Measures the number of primitives that a machine draws in a second. The result is cached, because the tables of
 /// intervals and of FIFO sizes share it.
-fn rate(bench: &Bench, preset: &str, shading: Shading, scene: &str, primitives: u64) -> Result<FigureValue> {
-    let machine = bench.machine(preset)?;
-    bench.applications.value(format!("{scene} {shading:?} {machine:?} {:?}", bench.interpretation), || {
+fn rate(
+    settings: &FigureSettings,
+    preset: &str,
+    shading: Shading,
+    scene: &str,
+    primitives: u64,
+) -> Result<FigureValue> {
+    let machine = settings.machine(preset)?;
+    settings.applications.value(format!("{scene} {shading:?} {machine:?} {:?}", settings.interpretation), || {
         let scene = if scene == SPHERES { spheres()? } else { scene_named(scene)? };
-        let hz = drawn(bench, machine, shading, scene, FIELDS)?.updates_hz().unwrap_or(f64::NAN);
+        let hz = drawn(settings, machine, shading, scene, FIELDS)?.updates_hz().unwrap_or(f64::NAN);
         Ok(FigureValue::with(primitives as f64 * hz, vec![detail("frames a second", hz, "Hz")]))
     })
 }
 
-pub(super) fn triangle_rate(bench: &Bench, preset: &str, shading: Shading) -> Result<FigureValue> {
-    rate(bench, preset, shading, &format!("typical:{TRIANGLES}"), TRIANGLES)
+pub(super) fn triangle_rate(settings: &FigureSettings, preset: &str, shading: Shading) -> Result<FigureValue> {
+    rate(settings, preset, shading, &format!("typical:{TRIANGLES}"), TRIANGLES)
 }
 
-fn sphere_rate(bench: &Bench) -> Result<FigureValue> {
-    rate(bench, "large", Shading::Phong, SPHERES, TRIANGLES / 2)
+fn sphere_rate(settings: &FigureSettings) -> Result<FigureValue> {
+    rate(settings, "large", Shading::Phong, SPHERES, TRIANGLES / 2)
 }
 
 const SPHERES: &str = "spheres";
@@ -188,10 +202,10 @@ fn spheres() -> Result<Arc<Scene>> {
 
 /// Measures the rate at which a renderer executes commands, over the time in which its pixel array works. All but 80 of
 /// the 26,000 commands of a frame are triangles.
-fn renderer_rate(bench: &Bench) -> Result<FigureValue> {
-    let machine = MachineConfig { n_renderers: 1, ..bench.machine("small-hmd")? };
+fn renderer_rate(settings: &FigureSettings) -> Result<FigureValue> {
+    let machine = MachineConfig { n_renderers: 1, ..settings.machine("small-hmd")? };
     let scene = scene_named(&format!("typical:{}", TRIANGLES / 2))?;
-    let outcome = drawn(bench, machine, Shading::Phong, scene, 2 * FIELDS)?;
+    let outcome = drawn(settings, machine, Shading::Phong, scene, 2 * FIELDS)?;
     // Idle time of the array does not count.
     let rates = outcome.record().renderers().iter().map(|renderer| {
         let busy_s = renderer.busy().0 as f64 / 1e12;
@@ -221,7 +235,7 @@ fn i860_peak() -> Result<FigureValue> {
         let before = cpu.clocks();
         match cpu.run(&mut ram, Some(end), 1_000_000) {
             RunEnd::Stopped => clocks = cpu.clocks() - before,
-            other => return Err(failed(format!("expected the end of the loop, found {other:?}"))),
+            other => return Err(failed(format!("expected the end of the loop, found {other:?}")).into()),
         }
     }
     // Each multiply-add counts as two operations.

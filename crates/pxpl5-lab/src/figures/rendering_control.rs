@@ -1,22 +1,17 @@
 //! Figures of Rendering Control: times of copies, latencies, application scenes, full bins and the pendulum rig.
 
-use super::applications::key_of;
-use super::heads::{self, PHOTODIODE_LINE};
-use super::interpretation::{FieldCount, Interpretation, LatencySamples};
-use super::measurement::{FigureValue, LatencyDefinition, Measurement, Result, Varied, detail, figure};
-use super::{Bench, RC};
+mod experiments;
+
+use super::measurement::{LatencyDefinition, Measurement, RC, Varied, figure};
+use super::rig_lines::PHOTODIODE_LINE;
+use super::value::rate_hz;
 use crate::edges::to_other_retraces;
-use crate::parallel;
-use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformCost};
-use pxpl5_analytic::{StereoModel, stereo_loads};
-use pxpl5_geometry::Viewport;
-use pxpl5_machine::MachineConfig;
-use pxpl5_renderer::{CommandKind, Layout};
-use pxpl5_run::{Experiment, Level, Statistics, Summary, WARM_UP_PICTURES, display_list, views};
-use pxpl5_scene::{Hmd, Scene};
-use pxpl5_sim::Time;
+use experiments::{
+    application, copy_alone, equal_stages, full_bins, inside_and_outside, long_stages, most_in_bins, regions_touched,
+    rig, spread_ms, trivial,
+};
+use pxpl5_run::Statistics;
 use pxpl5_sim::figures::Basis;
-use std::sync::Arc;
 
 const TR94: (&str, &str) = ("TR94", RC);
 const I3D95: (&str, &str) = ("I3D95", RC);
@@ -112,7 +107,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "copy of one region",
             (780.0, "us"),
             "mean over all regions of a stereo frame, per 15,360 pixels of port time",
-            |bench| Ok(trivial(bench)?.region_copy_us.into()),
+            |settings| Ok(trivial(settings)?.region_copy_us.into()),
         )
     },
     Measurement {
@@ -125,7 +120,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "copy of both eyes in stereo",
             (31.2, "ms"),
             "full-screen:12 on small-hmd: the time of COPY left plus COPY right of a frame, each from its first word to its last word",
-            |bench| trivial(bench).map(|summary| (summary.first_copy_ms + summary.last_copy_ms).into()),
+            |settings| trivial(settings).map(|summary| (summary.first_copy_ms + summary.last_copy_ms).into()),
         )
     },
     Measurement {
@@ -155,9 +150,9 @@ pub(super) const FIGURES: &[Measurement] = &[
             "small HMD machine, 12 triangles that cover the screen: from the start of TRANSFORM to the swap",
             (56.5, "ms"),
             "full-screen:12 on small-hmd",
-            |bench| {
-                let summary = trivial(bench)?;
-                let latencies = bench.interpretation.latencies_ms(&summary).iter().copied();
+            |settings| {
+                let summary = trivial(settings)?;
+                let latencies = settings.interpretation.latencies_ms(&summary).iter().copied();
                 Ok(spread_ms(Statistics::of(latencies)).beside(to_other_retraces(&summary)))
             },
         )
@@ -167,8 +162,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         reason: "Copies of 31.2 ms fit into two fields and not into one",
         is_interpreted: true,
         varied: Varied::ByFormula,
-        ..figure("4b", TR94, "the same: frames per second", (30.0, "Hz"), "full-screen:12 on small-hmd", |bench| {
-            trivial(bench).map(|summary| rate_hz(&summary).into())
+        ..figure("4b", TR94, "the same: frames per second", (30.0, "Hz"), "full-screen:12 on small-hmd", |settings| {
+            trivial(settings).map(|summary| rate_hz(&summary).into())
         })
     },
     Measurement {
@@ -219,7 +214,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "Mig, 417 triangles, fly-through in an HMD (sd 0.589)",
             (4.61, "fields"),
             "mig on large without back faces, 10 seeds of head motion with 150 frames each",
-            |bench| application(bench, "mig", 1),
+            |settings| application(settings, "mig", 1),
         )
     },
     Measurement {
@@ -236,7 +231,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "molecules, 2,620 triangles and 1,219 spheres, fly-through (sd 0.502)",
             (4.47, "fields"),
             "molecules as in figure 7: 4 seeds of head motion, 150 frames each",
-            |bench| application(bench, "molecules", 3),
+            |settings| application(settings, "molecules", 3),
         )
     },
     Measurement {
@@ -253,7 +248,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "head, 59,592 triangles, fly-through (sd 2.48)",
             (8.13, "fields"),
             "head as in figure 7: 2 seeds of head motion, 150 frames each",
-            |bench| application(bench, "head", 5),
+            |settings| application(settings, "head", 5),
         )
     },
     Measurement {
@@ -266,7 +261,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "regions that a typical triangle touches, an eye",
             (1.3, "regions"),
             "mig, molecules and head during 20 s of their head motions: the result is the number of entries of all bins per triangle on the screen",
-            |bench| bench.applications.value("8".to_owned(), || regions_touched(bench)),
+            |settings| settings.applications.value("8".to_owned(), || regions_touched(settings)),
         )
     },
     Measurement {
@@ -289,9 +284,14 @@ pub(super) const FIGURES: &[Measurement] = &[
         reason: OF_BINS,
         is_interpreted: true,
         varied: Varied::ByFormula,
-        ..figure("16b", TR94, "7,700 of them: frames a second", (2.0, "Hz"), "full-screen:7700 on small-hmd", |bench| {
-            full_bins(bench).map(|summary| rate_hz(&summary).into())
-        })
+        ..figure(
+            "16b",
+            TR94,
+            "7,700 of them: frames a second",
+            (2.0, "Hz"),
+            "full-screen:7700 on small-hmd",
+            |settings| full_bins(settings).map(|summary| rate_hz(&summary).into()),
+        )
     },
     Measurement {
         basis: BIN_RULE,
@@ -305,7 +305,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "the same: mean frame time, about 17.5 fields",
             (293.0, "ms"),
             "full-screen:7700 on small-hmd: the time of an eye from the start of its TRANSFORM to the end of its COPY",
-            |bench| Ok(spread_ms(Statistics::of(full_bins(bench)?.eye_latencies_ms.iter().copied()))),
+            |settings| Ok(spread_ms(Statistics::of(full_bins(settings)?.eye_latencies_ms.iter().copied()))),
         )
     },
     Measurement {
@@ -350,292 +350,3 @@ pub(super) const FIGURES: &[Measurement] = &[
         )
     },
 ];
-
-/// Milliseconds of TRANSFORM, and also of RENDER, for one eye in row 6 of ACCURACY.md. Both stages take longer than
-/// COPY. The results for several times are averaged, because the swap waits for a retrace.
-const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
-
-/// Number of display fields in the runs with full bins (rows 16b and 16c of ACCURACY.md). In these runs, a frame takes
-/// about 30 fields.
-const FIELDS_OF_FULL_BINS: u64 = 600;
-
-/// Number of head poses for each scene when the regions under triangles are counted (row 8 of ACCURACY.md).
-const VIEWS: u64 = 40;
-/// Picoseconds between two head poses for row 8 of ACCURACY.md.
-const VIEW_PERIOD_PS: u64 = 500_000_000_000;
-
-fn stereo(bench: &Bench, machine: MachineConfig) -> Result<Arc<Summary>> {
-    bench.controlled(machine, "full-screen:12", 80)
-}
-
-/// Runs the experiment of rows 1, 2 and 4 of ACCURACY.md: twelve triangles that cover the screen.
-fn trivial(bench: &Bench) -> Result<Arc<Summary>> {
-    stereo(bench, bench.machine("small-hmd")?)
-}
-
-/// Runs the experiment of rows 16b and 16c of ACCURACY.md. The scene has as many screen-filling triangles as fit into
-/// the bins according to the papers.
-fn full_bins(bench: &Bench) -> Result<Arc<Summary>> {
-    bench.controlled(bench.machine("small-hmd")?, "full-screen:7700", FIELDS_OF_FULL_BINS)
-}
-
-/// Measures row 3 of ACCURACY.md: the latency if all work except COPY takes no time.
-fn copy_alone(bench: &Bench) -> Result<FigureValue> {
-    let mut machine = bench.machine("small-hmd")?;
-    let gp = ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"];
-    let gp = gp.map(|name| format!("gp.{name}_ns"));
-    machine.code = None;
-    let array = ["triangle", "phong_triangle", "select", "clear", "shade"];
-    let array = array.map(|name| format!("renderer.{name}_clocks"));
-    for path in gp.iter().chain(&array) {
-        machine.set(path, 0)?;
-    }
-    Ok(spread_ms(Statistics::of(stereo(bench, machine)?.eye_latencies_ms.iter().copied())))
-}
-
-/// Computes row 16 of ACCURACY.md: the number of screen-filling triangles whose entries fit into the slaves' bins, for
-/// one eye or for both eyes.
-fn most_in_bins(bench: &Bench) -> Result<FigureValue> {
-    let machine = bench.interpreted("small-hmd")?;
-    let slaves = machine.n_gps as u64 - 1;
-    let regions = u64::from(Viewport::FRAME.grid().regions());
-    let of_slave = machine.gp.bin_bytes / (regions * BIN_ENTRY_BYTES) / bench.interpretation.bins;
-    Ok(((of_slave * slaves) as f64).into())
-}
-
-/// Measures the latency with the pendulum rig (row 17 of ACCURACY.md) for three lines of the photodiode, unless the
-/// settings choose one line.
-fn rig(bench: &Bench) -> Result<FigureValue> {
-    match bench.photodiode_line() {
-        Some(_) => bench.rig_measurement().map(|measured| heads::rendering(&measured)),
-        None => Ok(bench.rig_lines()?.figure()),
-    }
-}
-
-/// Measures row 17b of ACCURACY.md. The details compare it with the measurement from outside, if events are simulated.
-fn inside_and_outside(bench: &Bench) -> Result<FigureValue> {
-    let summary = trivial(bench)?;
-    let value = Statistics::of(bench.interpretation.latencies_ms(&summary).iter().copied()).mean;
-    if bench.level == Level::Analytic {
-        return Ok(value.into());
-    }
-    let measured = bench.rig_measurement()?;
-    let [inside, outside] = [measured.inside.rendering, measured.outside.rendering].map(|side| side.mean * 1e3);
-    let details = vec![
-        detail("inside, on demand", inside, "ms"),
-        detail("outside, on demand", outside, "ms"),
-        detail("outside less inside", outside - value, "ms"),
-    ];
-    Ok(FigureValue::with(value, details))
-}
-
-/// Returns a machine and a scene for which TRANSFORM and RENDER of one eye each take `ms` milliseconds.
-///
-/// RENDER takes this time because enough triangles cover the screen. Slower renderers would distort the result. Commands
-/// behind a full input FIFO, such as a copy command, would then wait longer by the same factor. TRANSFORM takes this
-/// time because its code is slow. Slow code of TRANSFORM delays no other stage.
-fn stages_of(bench: &Bench, ms: f64) -> Result<(MachineConfig, String)> {
-    let mut machine = bench.machine("small-hmd")?;
-    let slaves = machine.n_gps as u64 - 1;
-    let regions = u64::from(Viewport::FRAME.grid().regions());
-    let of_renderer = regions.div_ceil(machine.n_renderers as u64) as f64;
-    // Time of a region on a renderer: its triangles, and a constant part.
-    let ns = |kind| machine.renderer.span(kind).unwrap_or_default().as_ms() * 1e6;
-    let besides_ns = ns(CommandKind::Clear) + ns(CommandKind::Shade) + machine.renderer.backing_block().as_ms() * 1e6;
-    let triangles = (ms * 1e6 / of_renderer - besides_ns) / ns(CommandKind::PhongTriangle);
-    // All slaves get the same number of triangles.
-    let of_slave = ((triangles / slaves as f64).round() as u64).max(1);
-    let rest = TransformCost { structures: 1, entries: regions * of_slave, ..TransformCost::PASS };
-    machine.set("gp.triangle_ns", ((ms * 1e6) as u64).saturating_sub(rest.ns(&machine.gp)) / of_slave)?;
-    machine.code = None;
-    Ok((machine, format!("full-screen:{}", of_slave * slaves)))
-}
-
-/// Runs equal stages of `ms` milliseconds. Returns the times from TRANSFORM of each frame's first eye to the end of
-/// COPY of its second eye, and the summary.
-fn frames_to_copy(bench: &Bench, ms: f64) -> Result<(Statistics, Arc<Summary>)> {
-    let (machine, scene) = stages_of(bench, ms)?;
-    let summary = bench.controlled(machine, &scene, 160)?;
-    let second = |samples: &[f64]| samples.iter().skip(1).step_by(2).copied().collect::<Vec<_>>();
-    let [to_swap, to_copy] = [&summary.eye_swap_latencies_ms, &summary.eye_latencies_ms].map(|all| second(all));
-    // The second eye waits for the retrace after its COPY. The frame's latency to the swap contains this wait, too.
-    let waits = to_swap.iter().zip(&to_copy).map(|(swap, copy)| swap - copy);
-    Ok((Statistics::of(summary.latencies_ms.iter().zip(waits).map(|(frame, wait)| frame - wait)), summary))
-}
-
-fn equal_stages(bench: &Bench) -> Result<FigureValue> {
-    let (latency, summary) = frames_to_copy(bench, 15.6)?;
-    let to_swap = Statistics::of(summary.latencies_ms.iter().copied()).max;
-    let details = vec![
-        detail("mean", latency.mean, "ms"),
-        detail("greatest, to the swap", to_swap, "ms"),
-        detail("frames a second", rate_hz(&summary), "Hz"),
-    ];
-    Ok(FigureValue::with(latency.max, details))
-}
-
-fn long_stages(bench: &Bench) -> Result<FigureValue> {
-    let means = LONG_STAGES_MS.map(|ms| frames_to_copy(bench, ms as f64).map(|(latency, _)| latency.mean));
-    let means = means.into_iter().collect::<Result<Vec<_>>>()?;
-    Ok(spread_ms(Statistics::of(means.into_iter())))
-}
-
-/// Name of the detail with the mean in whole retraces.
-pub(super) const WHOLE: &str = "whole retraces";
-/// Name of the detail with the mean in exact fields.
-pub(super) const EXACT: &str = "exact fields";
-/// Name of the detail with the standard deviation of the samples.
-pub(crate) const DEVIATION: &str = "standard deviation";
-
-/// Measures rows 7, 7b and 7c of ACCURACY.md: a fly-through of an application scene. The number of seeds is divided by
-/// `seeds_of_one`, because larger scenes get fewer fly-throughs.
-fn application(bench: &Bench, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
-    let samples_a_frame = if bench.interpretation.samples == LatencySamples::EachEye { 2 } else { 1 };
-    let seeds: Vec<u64> = (1..=bench.seeds.div_ceil(seeds_of_one)).collect();
-    // One seed gives one fly-through.
-    let summaries = parallel::map(&seeds, |seed| fly_through(bench, scene, *seed, seeds.len() as u64));
-    let summaries = summaries.into_iter().collect::<Result<Vec<Arc<Summary>>>>()?;
-    let of_seed = |summary: &Arc<Summary>| -> Vec<(f64, f64)> {
-        let samples = bench.interpretation.latencies_ms(summary).iter().take(samples_a_frame * bench.frames as usize);
-        samples.map(|ms| (*ms, summary.field_ms)).collect()
-    };
-    let latencies: Vec<(f64, f64)> = summaries.iter().flat_map(of_seed).collect();
-    // Both definitions of the unit "field" are stated, whatever the interpretation counts.
-    let in_fields = |fields| {
-        let counted = Interpretation { fields, ..bench.interpretation };
-        Statistics::of(latencies.iter().map(|(ms, field_ms)| counted.fields_of(*ms, *field_ms)))
-    };
-    let all = in_fields(bench.interpretation.fields);
-    let (name, other) = match bench.interpretation.fields {
-        FieldCount::Exact => (WHOLE, in_fields(FieldCount::Whole)),
-        FieldCount::Whole => (EXACT, in_fields(FieldCount::Exact)),
-    };
-    let details = vec![
-        detail(DEVIATION, all.sd, "fields"),
-        detail("least", all.min, "fields"),
-        detail("greatest", all.max, "fields"),
-        detail("samples", latencies.len() as f64, ""),
-        detail(name, other.mean, "fields"),
-        detail("their deviation", other.sd, "fields"),
-    ];
-    // The picture that is nearest to an edge counts.
-    let edges = summaries.iter().filter_map(|summary| to_other_retraces(summary));
-    let nearest = edges.reduce(|[a, b], [c, d]| [a.min(c), b.min(d)]);
-    Ok(FigureValue::with(all.mean, details).beside(nearest))
-}
-
-fn fly_through(bench: &Bench, scene: &'static str, seed: u64, seeds: u64) -> Result<Arc<Summary>> {
-    let experiment = application_experiment(bench, scene, seed)?;
-    let drawn = format!("{scene} {} {seeds}", bench.interpretation.culled);
-    let key = key_of(&experiment.clone().level(bench.level), &drawn);
-    bench.applications.summary(key, || fly_through_once(bench, &experiment, (scene, seed, seeds)))
-}
-
-fn fly_through_once(
-    bench: &Bench,
-    experiment: &Experiment,
-    (scene, seed, seeds): (&'static str, u64, u64),
-) -> Result<(Summary, bool)> {
-    // At the analytic level the loads of all views are computed once for all seeds.
-    if bench.level != Level::Analytic {
-        return bench.summarise(experiment);
-    }
-    let of_seeds = || (1..=seeds).map(|seed| stereo_loads(&application_experiment(bench, scene, seed)?)).collect();
-    let loads = bench.applications.loads((scene, bench.interpretation.culled, seeds, bench.frames), of_seeds)?;
-    let model = StereoModel::new(experiment.config(), bench.interpretation.pipeline())?;
-    Ok((model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()), true))
-}
-
-/// Returns the experiment of a fly-through, with two display fields for each frame (30 Hz). If frames take longer, the
-/// run has fewer frames.
-fn application_experiment(bench: &Bench, scene: &'static str, seed: u64) -> Result<Experiment> {
-    let fields = 2 * (bench.frames + WARM_UP_PICTURES as u64) + 8;
-    let machine = bench.interpreted(bench.interpretation.machine)?;
-    let drawn = bench.applications.scene(scene, bench.interpretation.culled)?;
-    Ok(Experiment::with(machine, Arc::new(bench.interpretation.pipeline()), drawn).fields(fields).seed(seed))
-}
-
-/// Measures row 8 of ACCURACY.md: the number of regions under a triangle, which is the number of bin entries per visible
-/// triangle. Each scene is seen from poses along its own head motion. The figure is the mean over three scenes.
-fn regions_touched(bench: &Bench) -> Result<FigureValue> {
-    const SCENES: [&str; 3] = ["mig", "molecules", "head"];
-    let of = |binning| {
-        SCENES
-            .iter()
-            .map(|name| touched(&bench.applications.scene(name, false)?, binning, VIEWS))
-            .collect::<Result<Vec<_>>>()
-    };
-    let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
-    let [edges, boxes] = [of(RegionBinning::Touched)?, of(RegionBinning::Boxes)?];
-    let mut details: Vec<_> = SCENES.iter().zip(&edges).map(|(name, found)| detail(name, *found, "regions")).collect();
-    details.push(detail("by bounding boxes", mean(&boxes), "regions"));
-    Ok(FigureValue::with(mean(&edges), details))
-}
-
-/// Returns the number of bin entries per visible triangle, over both eyes and `n_views` head poses.
-fn touched(scene: &Arc<Scene>, binning: RegionBinning, n_views: u64) -> Result<f64> {
-    let list = Arc::new(display_list(scene)?);
-    let (views, _) = views(scene, 1, Hmd::unc(), 2);
-    let share = Share::new(list, 0, 1);
-    let layout = Layout::rendering_control_phong();
-    let picture = Picture { viewport: Viewport::FRAME, shading: Shading::Phong, binning, layout, pixels: false };
-    let mut entries = 0u64;
-    let mut triangles = 0u64;
-    for number in 0..n_views {
-        let view = views(pxpl5_wire::ViewNumber(number), Time(number * VIEW_PERIOD_PS));
-        for eye in 0..2 {
-            // Both eyes of every view count.
-            let pass = share.transform(&view, eye, picture);
-            let regions = (0..picture.viewport.grid().regions() as u16).map(pxpl5_wire::RegionId);
-            entries += regions.map(|region| u64::from(pass.counts(region).triangles)).sum::<u64>();
-            triangles += u64::from(pass.screen_counts().triangles);
-        }
-    }
-    Ok(entries as f64 / triangles.max(1) as f64)
-}
-
-/// Returns the number of complete pictures per second, or 0 if no picture was shown.
-pub(super) fn rate_hz(summary: &Summary) -> f64 {
-    summary.updates_hz.unwrap_or_default()
-}
-
-/// Returns the mean as the value of a figure, with standard deviation, minimum and maximum as details.
-fn spread_ms(statistics: Statistics) -> FigureValue {
-    let Statistics { mean, sd, min, max, .. } = statistics;
-    let details = vec![detail(DEVIATION, sd, "ms"), detail("least", min, "ms"), detail("greatest", max, "ms")];
-    FigureValue::with(mean, details)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::limit::test_scene;
-    use pxpl5_run::TestScene;
-    use pxpl5_scene::config::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
-
-    /// Tests the mean number of regions of a right-angled triangle. Its two short sides are parallel to the region
-    /// borders and `leg` pixels long. Its position is random within `TYPICAL_SPREAD_PX`.
-    ///
-    /// The triangle touches the regions of those pixels whose centres it covers. A short side crosses a border at
-    /// `leg - 1` of its possible positions. Four borders separate the columns of regions, which gives the factor
-    /// `1 + 4 (leg - 1) / width`. Three borders separate the rows, which gives `1 + 3 (leg - 1) / height`. The product
-    /// of both factors is the mean for the triangle's bounding box.
-    ///
-    /// In some positions, the box contains a point where four regions meet. In half of these positions, the triangle
-    /// misses one of the four regions.
-    #[test]
-    fn triangles_of_18_pixels_and_their_boxes_touch_as_many_regions_as_their_formulas() {
-        let [width, height] = TYPICAL_SPREAD_PX;
-        let columns = 4.0 * (TYPICAL_LEG_PX - 1.0) / width;
-        let rows = 3.0 * (TYPICAL_LEG_PX - 1.0) / height;
-        let boxes = (1.0 + columns) * (1.0 + rows);
-        let scene = Arc::new(test_scene(TestScene::Typical, 4_000));
-        for (binning, expected) in
-            [(RegionBinning::Touched, boxes - columns * rows / 2.0), (RegionBinning::Boxes, boxes)]
-        {
-            let found = touched(&scene, binning, 1).expect("it has triangles");
-            // The 4,000 positions sample the average to a few thousandths.
-            assert!((found - expected).abs() < 0.005, "{binning:?}: {found}, expected {expected}");
-        }
-    }
-}

@@ -1,10 +1,11 @@
 //! Figures of Slats: latency, copies, and the largest numbers of triangles.
 
-use super::measurement::{FigureValue, LatencyDefinition, Measurement, Result, Varied, detail, figure};
-use super::rendering_control::rate_hz;
-use super::{Bench, SLATS};
+use super::measurement::{CLUMP_RULE, LatencyDefinition, Measurement, SLATS, Varied, figure};
+use super::settings::FigureSettings;
+use super::value::{FigureValue, Result, detail, rate_hz};
 use crate::edges::to_other_retraces;
 use crate::limit::LimitQuery;
+use crate::study::Study;
 use pxpl5_run::{Slats, Summary};
 use pxpl5_sim::figures::Basis;
 use std::sync::Arc;
@@ -12,9 +13,6 @@ use std::sync::Arc;
 const TR94: (&str, &str) = ("TR94", SLATS);
 const I3D95: (&str, &str) = ("I3D95", SLATS);
 const BOTH: (&str, &str) = ("TR94, I3D95", SLATS);
-
-/// The rule that decides the limits of Slats, and that was chosen by comparison with figures 12 and 13.
-pub(super) const CLUMP_RULE: &str = "when a clump's buffer is free";
 
 const OF_CLUMP: &str = "The time of a triangle is that of the project's code, without a fit. The rule for the buffer was chosen among three by comparison \
                         with rows 12 and 13, because the paper is silent about it";
@@ -56,7 +54,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "updates per second",
             (60.0, "Hz"),
             "full-screen:100 on slats with the COPY optimisation",
-            |bench| run(bench, 100, Slats::split()).map(|summary| rate_hz(&summary).into()),
+            |settings| run(settings, 100, Slats::split()).map(|summary| rate_hz(&summary).into()),
         )
     },
     Measurement {
@@ -69,7 +67,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "20 field regions to two frame buffers",
             (11.0, "region times"),
             "full-screen:60 on slats without the COPY optimisation: the time from the first word to the last word, in units of 780 us",
-            |bench| run(bench, 60, Slats::whole()).map(|s| (s.first_copy_ms * 1e3 / s.region_copy_us).into()),
+            |settings| run(settings, 60, Slats::whole()).map(|s| (s.first_copy_ms * 1e3 / s.region_copy_us).into()),
         )
     },
     Measurement {
@@ -82,7 +80,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "half of them",
             (3.9, "ms"),
             "full-screen:100 on slats with the COPY optimisation: the time from the first word to the last word of the bottom regions",
-            |bench| Ok(run(bench, 100, Slats::split())?.last_copy_ms.into()),
+            |settings| Ok(run(settings, 100, Slats::split())?.last_copy_ms.into()),
         )
     },
     Measurement {
@@ -96,7 +94,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "most triangles without the COPY optimisation",
             (110.0, "triangles"),
             "limit of full-screen:N on slats",
-            |bench| limit(bench, "slats", Slats::whole()),
+            |settings| limit(settings, "slats", Slats::whole()),
         )
     },
     Measurement {
@@ -110,7 +108,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "most triangles with the COPY optimisation",
             (140.0, "triangles"),
             "limit of full-screen:N on slats",
-            |bench| limit(bench, "slats", Slats::split()),
+            |settings| limit(settings, "slats", Slats::split()),
         )
     },
     Measurement {
@@ -123,7 +121,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "most triangles with the COPY optimisation, code of 1995: about",
             (100.0, "triangles"),
             "limit of full-screen:N on slats-1995",
-            |bench| limit(bench, "slats-1995", Slats::split()),
+            |settings| limit(settings, "slats-1995", Slats::split()),
         )
     },
     Measurement {
@@ -141,36 +139,37 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
 ];
 
-fn run(bench: &Bench, triangles: u32, pipeline: Slats) -> Result<Arc<Summary>> {
-    bench.run(bench.machine("slats")?, pipeline, &format!("full-screen:{triangles}"), 40)
+fn run(settings: &FigureSettings, triangles: u32, pipeline: Slats) -> Result<Arc<Summary>> {
+    settings.run(settings.machine("slats")?, pipeline, &format!("full-screen:{triangles}"), 40)
 }
 
-fn latency(bench: &Bench) -> Result<FigureValue> {
-    let summary = run(bench, 100, Slats::split())?;
+fn latency(settings: &FigureSettings) -> Result<FigureValue> {
+    let summary = run(settings, 100, Slats::split())?;
     let fields = summary.latency_fields();
     let details = vec![detail("least", fields.min, "fields"), detail("greatest", fields.max, "fields")];
     Ok(FigureValue::with(fields.mean, details).beside(to_other_retraces(&summary)))
 }
 
-fn limit(bench: &Bench, preset: &str, pipeline: Slats) -> Result<FigureValue> {
-    let most = most(bench, preset, pipeline)?;
+fn limit(settings: &FigureSettings, preset: &str, pipeline: Slats) -> Result<FigureValue> {
+    let most = most(settings, preset, pipeline)?;
     let triangles = f64::from(most);
     let details = vec![detail("both eyes, 60 fields a second", triangles * 120.0, "triangles/s")];
-    let at_limit = bench.run(bench.machine(preset)?, pipeline, &format!("full-screen:{most}"), 40)?;
+    let at_limit = settings.run(settings.machine(preset)?, pipeline, &format!("full-screen:{most}"), 40)?;
     Ok(FigureValue::with(triangles, details).beside(to_other_retraces(&at_limit)))
 }
 
 /// Returns the largest number of triangles that Slats draws in time. The result is cached, because two figures need the
 /// same search.
-fn most(bench: &Bench, preset: &str, pipeline: Slats) -> Result<u32> {
-    let (level, stop) = (bench.level, bench.stop.clone());
-    let query = LimitQuery { level, stop, ..LimitQuery::of_papers(bench.machine(preset)?, pipeline)? };
+fn most(settings: &FigureSettings, preset: &str, pipeline: Slats) -> Result<u32> {
+    let level = settings.level;
+    let of_papers = LimitQuery::of_papers(settings.machine(preset)?, pipeline)?;
+    let query = LimitQuery { level, looks_above: false, ..of_papers };
     let key = format!("{:?} {pipeline:?} {:?}", query.level, query.config);
-    bench.applications.limit(key, || query.search_triangles())
+    settings.applications.limit(key, || Ok(query.run(&mut settings.stop.clone())?.triangles))
 }
 
-fn time_before_copy(bench: &Bench) -> Result<FigureValue> {
-    let most = most(bench, "slats", Slats::split())?;
-    let summary = run(bench, most, Slats::split())?;
+fn time_before_copy(settings: &FigureSettings) -> Result<FigureValue> {
+    let most = most(settings, "slats", Slats::split())?;
+    let summary = run(settings, most, Slats::split())?;
     Ok(FigureValue::with(summary.copy_begins_ms, vec![detail("triangles", most.into(), "triangles")]))
 }

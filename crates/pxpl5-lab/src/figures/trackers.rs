@@ -1,7 +1,9 @@
 //! Figures of trackers and of the host's serial line.
 
-use super::Bench;
-use super::measurement::{FigureValue, Measurement, Result, detail, figure, scene_named};
+use super::measurement::{Measurement, figure};
+use super::settings::FigureSettings;
+use super::value::{FigureValue, Result, detail, scene_named};
+use crate::error::StudyError;
 use pxpl5_measure::Budget;
 use pxpl5_run::{Experiment, ExperimentError, Head, Pixels};
 use pxpl5_sim::figures::Basis;
@@ -60,7 +62,7 @@ fn model(config: TrackerConfig) -> Result<TrackerModel> {
 const SEEDS: u64 = 200;
 const REPORTS: usize = 240;
 
-fn polling(bench: &Bench) -> Result<FigureValue> {
+fn polling(settings: &FigureSettings) -> Result<FigureValue> {
     let patched = TrackerConfig::fastrak();
     let polled = patched.clone().with_polling_by(&Tables::PAPERS);
     let mut waits_ms = Vec::new();
@@ -69,7 +71,7 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
         let arrivals = |config: &TrackerConfig| {
             let reports: Vec<TrackerReport> =
                 model(config.clone())?.reports(Still(Pose::IDENTITY), seed).take(REPORTS).collect();
-            Ok::<_, ExperimentError>(reports)
+            Ok::<_, StudyError>(reports)
         };
         let pairs = arrivals(&polled)?.into_iter().zip(arrivals(&patched)?);
         waits_ms.extend(pairs.map(|(late, early)| (late.arrives_ps - early.arrives_ps) as f64 / 1e9));
@@ -78,7 +80,7 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
     let mean = waits_ms.iter().sum::<f64>() / waits_ms.len() as f64 / field_ms;
     let greatest = waits_ms.iter().copied().fold(0.0, f64::max) / field_ms;
     // A run of the pipeline shows the same delay from outside.
-    let in_a_run = (pose_to_transform_ms(bench, polled)? - pose_to_transform_ms(bench, patched)?) / field_ms;
+    let in_a_run = (pose_to_transform_ms(settings, polled)? - pose_to_transform_ms(settings, patched)?) / field_ms;
     let details = vec![detail("mean of all reports", mean, "fields"), detail("mean in a run", in_a_run, "fields")];
     Ok(FigureValue::with(greatest, details))
 }
@@ -87,10 +89,10 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
 const FIELDS: u64 = 600;
 
 /// Returns the mean time in ms from the measurement of a head pose to the start of TRANSFORM for this pose.
-fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
+fn pose_to_transform_ms(settings: &FigureSettings, tracker: TrackerConfig) -> Result<f64> {
     let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1)?;
-    let machine = bench.interpreted("small-hmd")?;
-    let experiment = Experiment::new(machine, bench.interpretation.pipeline(), scene_named("full-screen:12")?);
+    let machine = settings.interpreted("small-hmd")?;
+    let experiment = Experiment::new(machine, settings.interpretation.pipeline(), scene_named("full-screen:12")?);
     let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, .. } = Budget::of(&outcome);
     Ok(tracking_ms + waiting_ms + sending_ms)

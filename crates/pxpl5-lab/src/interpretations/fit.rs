@@ -1,8 +1,8 @@
 //! The fit of one interpretation of the papers to the published figures.
 
 use super::figures;
-use crate::figures::{Bench, DEVIATION, Interpretation, Measurement};
-use pxpl5_run::ExperimentError;
+use crate::error::StudyError;
+use crate::figures::{DEVIATION, FigureSettings, Interpretation, Measurement};
 use serde::Serialize;
 
 /// Agreement of one published figure with the model under one interpretation of the papers.
@@ -59,8 +59,8 @@ const DISCREPANCY: f64 = 0.02;
 const SAMPLES: f64 = 87.0;
 
 impl FigureFit {
-    fn new(bench: &Bench, figure: &Measurement) -> Result<Self, ExperimentError> {
-        let measured = figure.value(bench)?;
+    fn new(settings: &FigureSettings, figure: &Measurement) -> Result<Self, StudyError> {
+        let measured = figure.value(settings)?;
         let sd = measured.detail(DEVIATION);
         let off = measured.value - figure.value;
         // A printed range counts as exact within its bounds.
@@ -103,10 +103,10 @@ impl Fit {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Bench::measure`].
-    pub fn of(bench: &Bench, interpretation: Interpretation) -> Result<Self, ExperimentError> {
-        let bench = Bench { interpretation, ..bench.clone() };
-        let figures = figures().map(|figure| FigureFit::new(&bench, figure)).collect::<Result<Vec<_>, _>>()?;
+    /// Fails in the same cases as [`FigureSettings::measure`].
+    pub fn of(settings: &FigureSettings, interpretation: Interpretation) -> Result<Self, StudyError> {
+        let settings = FigureSettings { interpretation, ..settings.clone() };
+        let figures = figures().map(|figure| FigureFit::new(&settings, figure)).collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             interpretation,
             words: interpretation.to_string(),

@@ -2,12 +2,15 @@
 
 use super::figures;
 use super::fit::Fit;
-use crate::figures::{Bench, Interpretation};
+use crate::error::StudyError;
+use crate::estimate::{BUSY, Estimate};
+use crate::figures::{FigureSettings, Interpretation};
 use crate::parallel;
+use crate::study::Study;
 use pxpl5_run::{ExperimentError, Level};
+use pxpl5_sim::{SharedWatcher, Watcher};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Test of the interpretations on one published figure (leave-one-out cross-validation).
 ///
@@ -58,44 +61,67 @@ impl Interpretations {
     }
 }
 
-/// Ranks all interpretations at the analytic level, with the numbers of seeds and frames in `bench`. The `best` likeliest
-/// interpretations, and the interpretation of this project, are then simulated at the transaction level. Calls `finished` with the number of finished runs and
-/// the number of all runs.
-///
-/// # Errors
-///
-/// Fails in the same cases as [`Bench::measure`].
-pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Result<Interpretations, ExperimentError> {
-    let interpretations = Interpretation::all();
-    let best = best.min(interpretations.len());
-    let steps = (interpretations.len() + best) as u64 + u64::from(best > 0);
-    let done = AtomicU64::new(0);
-    let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
-    // The same steps serve both levels.
-    let fits = |level: Level, interpretations: &[Interpretation]| {
-        let bench = Bench { level, ..bench.clone() };
-        let of_group = |group: &Vec<Interpretation>| {
-            let fit = |interpretation: &Interpretation| {
-                let fit = Fit::of(&bench, *interpretation);
-                step();
-                fit
-            };
-            group.iter().map(fit).collect::<Result<Vec<_>, _>>()
-        };
-        let fits = parallel::map(&groups(interpretations), of_group);
-        fits.into_iter().collect::<Result<Vec<_>, _>>().map(|fits| ranked(fits.concat()))
-    };
-    let analytic = fits(Level::Analytic, &interpretations)?;
-    // Only the likeliest interpretations are simulated with all events, which takes long.
-    let mut chosen: Vec<Interpretation> = analytic.iter().take(best).map(|fit| fit.interpretation).collect();
-    if best > 0 && !chosen.contains(&Interpretation::USUAL) {
-        chosen.push(Interpretation::USUAL);
+/// A ranking of all interpretations.
+#[derive(Clone, Debug)]
+pub struct InterpretationQuery {
+    /// Settings of all measurements, with the numbers of seeds and frames of a fly-through.
+    pub settings: FigureSettings,
+    /// Number of likeliest interpretations that are also simulated with events, besides that of this project.
+    pub best: usize,
+}
+
+/// CPU seconds to rank all interpretations with one frame of an application scene, on one core of 3 GHz with the build
+/// profile `dist`.
+const FRAME_S: f64 = 0.0172;
+/// Additional time for each interpretation that is also simulated with events, as a fraction of the time to rank all
+/// interpretations.
+const BEST: f64 = 0.1;
+/// Peak memory in bytes with two threads, rounded up.
+const BYTES: f64 = 60e6;
+
+impl Study for InterpretationQuery {
+    type Report = Interpretations;
+
+    fn estimate(&self, threads: usize) -> Estimate {
+        let FigureSettings { seeds, frames, .. } = self.settings;
+        // The scene "mig" has all seeds, "molecules" a third of the seeds, and "head" a fifth.
+        let frames = frames * (seeds + seeds.div_ceil(3) + seeds.div_ceil(5));
+        let seconds = FRAME_S * frames as f64 * (1.0 + BEST * self.best as f64);
+        Estimate { bytes: BYTES, seconds: BUSY * seconds / threads.max(1) as f64 }
     }
-    let transaction = fits(Level::Transaction, &chosen)?;
-    let mut ranking =
-        Interpretations { schema: "pxpl5-interpretations/2", analytic, transaction, left_out: Vec::new() };
-    ranking.left_out = figures().filter_map(|figure| left_out(ranking.ranked(), figure.id)).collect();
-    Ok(ranking)
+
+    /// Ranks all interpretations at the analytic level, and then the likeliest at the transaction level.
+    fn run(&self, watcher: &mut dyn Watcher) -> Result<Interpretations, StudyError> {
+        let interpretations = Interpretation::all();
+        let best = self.best.min(interpretations.len());
+        let watcher = SharedWatcher::new(watcher, (interpretations.len() + best) as u64 + u64::from(best > 0));
+        let settings = FigureSettings { stop: watcher.stop(), ..self.settings.clone() };
+        // The same steps serve both levels.
+        let fits = |level: Level, interpretations: &[Interpretation]| {
+            let settings = FigureSettings { level, ..settings.clone() };
+            let of_group = |group: &Vec<Interpretation>| {
+                let fit = |interpretation: &Interpretation| watcher.part(|| Fit::of(&settings, *interpretation));
+                group.iter().map(fit).collect::<Result<Vec<_>, _>>()
+            };
+            let fits = parallel::map(&groups(interpretations), of_group);
+            fits.into_iter().collect::<Result<Vec<_>, _>>().map(|fits| ranked(fits.concat()))
+        };
+        let analytic = fits(Level::Analytic, &interpretations)?;
+        // Only the likeliest interpretations are simulated with all events, which takes long.
+        let mut chosen: Vec<Interpretation> = analytic.iter().take(best).map(|fit| fit.interpretation).collect();
+        if best > 0 && !chosen.contains(&Interpretation::USUAL) {
+            chosen.push(Interpretation::USUAL);
+        }
+        let transaction = match fits(Level::Transaction, &chosen) {
+            // The ranking at the analytic level is a result of its own.
+            Err(StudyError::Experiment(ExperimentError::Stopped(_))) => Vec::new(),
+            fits => fits?,
+        };
+        let mut ranking =
+            Interpretations { schema: "pxpl5-interpretations/2", analytic, transaction, left_out: Vec::new() };
+        ranking.left_out = figures().filter_map(|figure| left_out(ranking.ranked(), figure.id)).collect();
+        Ok(ranking)
+    }
 }
 
 /// Groups the interpretations that differ at most in the number of regions in a backing store. Each group begins with
@@ -135,10 +161,10 @@ mod tests {
     /// Tests that the fit of an interpretation is the same with a shared cache of runs and with an empty cache.
     #[test]
     fn sharing_runs_among_interpretations_changes_no_fit() {
-        let shared = Bench::new(Level::Analytic).with_mig(1, 12);
+        let shared = FigureSettings::new(Level::Analytic).with_mig(1, 12);
         for interpretation in Interpretation::all().into_iter().step_by(67) {
-            let alone = Bench::new(Level::Analytic).with_mig(1, 12);
-            let [one, other] = [&shared, &alone].map(|bench| Fit::of(bench, interpretation).expect("it runs"));
+            let alone = FigureSettings::new(Level::Analytic).with_mig(1, 12);
+            let [one, other] = [&shared, &alone].map(|settings| Fit::of(settings, interpretation).expect("it runs"));
             assert_eq!(serde_json::to_string(&one).ok(), serde_json::to_string(&other).ok(), "{}", one.words);
         }
     }

@@ -1,14 +1,16 @@
 //! Limits of any numeric setting: the smallest or greatest value with which an experiment reaches a goal.
 
 use super::is_reached;
-use crate::StopFlag;
 use crate::error::StudyError;
+use crate::estimate::{Estimate, RunWork};
 use crate::experiment_file::{ExperimentFile, Plan};
+use crate::study::{Study, check};
 use pxpl5_machine::PRESETS;
 use pxpl5_measure::{CriticalPath, Resource, Shares, Utilisation};
 use pxpl5_run::{Experiment, ExperimentError, Goal, KeptRecords, Level, Outcome, Pixels};
 use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::{SettingError, Value};
+use pxpl5_sim::{StopFlag, Watcher};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -77,8 +79,6 @@ pub struct OverQuery {
     pub values: Values,
     /// Goal that the experiment must reach.
     pub goal: Goal,
-    /// Flag with which another thread stops the search.
-    pub stop: StopFlag,
 }
 
 /// Result of a search for the values of a setting that reach a goal.
@@ -108,6 +108,75 @@ struct Trial {
     /// Closeness of the result to the goal, in the unit of the goal. A greater score is better.
     score: f64,
     because: Option<String>,
+}
+
+impl Study for OverQuery {
+    type Report = OverLimit;
+
+    /// Estimates the search by the experiment with the greatest value.
+    fn estimate(&self, _: usize) -> Estimate {
+        let work = || {
+            let plan = self.plan(self.values.last()).ok()?;
+            Some(RunWork::of(&plan.experiment(plan.load_scene().ok()?), false).estimate())
+        };
+        work().map_or(Estimate::NOTHING, |one| Estimate::of_all([one; USUAL_VALUES as usize], 1))
+    }
+
+    /// Searches for the limit.
+    ///
+    /// The search first tries the ends of the range and three values between them. If one of these values reaches the
+    /// goal, the search bisects the range on both sides of this value. Values that miss may separate values that reach
+    /// the goal. Then the limits are those of the largest group, and of two equal groups those of the group at an end
+    /// of the range. The limit is exact if all values on one side of the limit reach the goal and all values on the
+    /// other side miss.
+    fn run(&self, watcher: &mut dyn Watcher) -> Result<OverLimit, StudyError> {
+        let mut search =
+            Search { query: self, stop: watcher.stop(), trials: BTreeMap::new(), refused: None, scene: None };
+        let last = self.values.count - 1;
+        for number in [0, last, last / 2, last / 4, last - last / 4] {
+            search.reaches(number);
+            search.report(watcher);
+        }
+        // The values after a stop were not tried.
+        check(&watcher.stop())?;
+        let Some(inside) = search.largest_group() else { return search.none() };
+        // Search towards smaller values, then towards greater values.
+        let misses = |search: &Search<'_>, down: bool| {
+            let of = search.trials.iter().filter(|(_, trial)| !trial.reached).map(|(number, _)| *number);
+            if down { of.filter(|number| *number < inside).max() } else { of.filter(|number| *number > inside).min() }
+        };
+        let mut ends = [None, None];
+        for (end, down) in ends.iter_mut().zip([true, false]) {
+            let Some(mut miss) = misses(&search, down) else { continue };
+            let mut hit = inside;
+            while miss.abs_diff(hit) > 1 {
+                let middle = u64::midpoint(miss, hit);
+                if search.reaches(middle) {
+                    hit = middle
+                } else {
+                    miss = middle
+                }
+                search.report(watcher);
+            }
+            *end = Some((hit, miss));
+        }
+        check(&watcher.stop())?;
+        let [least, most] = ends;
+        let miss = least.or(most).map(|(_, miss)| miss);
+        let is_beyond =
+            |number: u64| least.is_some_and(|(hit, _)| number < hit) || most.is_some_and(|(hit, _)| number > hit);
+        let again = search.trials.iter().filter(|(number, trial)| trial.reached && is_beyond(**number));
+        let islands = again.map(|(number, _)| self.values.value(*number)).collect();
+        Ok(OverLimit {
+            least: least.map(|(hit, _)| self.values.value(hit)),
+            most: most.map(|(hit, _)| self.values.value(hit)),
+            reached: true,
+            missed_at: miss.map(|miss| self.values.value(miss)),
+            because: miss.and_then(|miss| search.trials[&miss].because.clone()),
+            islands,
+            tried: search.tried(),
+        })
+    }
 }
 
 impl OverQuery {
@@ -159,67 +228,6 @@ impl OverQuery {
         })
     }
 
-    /// Searches for the limit. Calls `progress` with the number of tried values, and with an estimate of the number of
-    /// all values.
-    ///
-    /// The search first tries the ends of the range and three values between them. If one of these values reaches the
-    /// goal, the search bisects the range on both sides of this value. Values that miss may separate values that reach
-    /// the goal. Then the limits are those of the largest group, and of two equal groups those of the group at an end
-    /// of the range. The limit is exact if all values on one side of the limit reach the goal and all values on the
-    /// other side miss.
-    ///
-    /// # Errors
-    ///
-    /// Returns a [`SettingError`] or [`ExperimentError`] if no value at all can be run, and
-    /// [`ExperimentError::Stopped`] if another thread sets the query's flag.
-    pub fn search(&self, mut progress: impl FnMut(u64, u64)) -> Result<OverLimit, StudyError> {
-        let mut search = Search { query: self, trials: BTreeMap::new(), refused: None, scene: None };
-        let last = self.values.count - 1;
-        for number in [0, last, last / 2, last / 4, last - last / 4] {
-            search.reaches(number);
-            search.report(&mut progress);
-        }
-        // The values after a stop were not tried.
-        self.stop.check()?;
-        let Some(inside) = search.largest_group() else { return search.none() };
-        // Search towards smaller values, then towards greater values.
-        let misses = |search: &Search<'_>, down: bool| {
-            let of = search.trials.iter().filter(|(_, trial)| !trial.reached).map(|(number, _)| *number);
-            if down { of.filter(|number| *number < inside).max() } else { of.filter(|number| *number > inside).min() }
-        };
-        let mut ends = [None, None];
-        for (end, down) in ends.iter_mut().zip([true, false]) {
-            let Some(mut miss) = misses(&search, down) else { continue };
-            let mut hit = inside;
-            while miss.abs_diff(hit) > 1 {
-                let middle = u64::midpoint(miss, hit);
-                if search.reaches(middle) {
-                    hit = middle
-                } else {
-                    miss = middle
-                }
-                search.report(&mut progress);
-            }
-            *end = Some((hit, miss));
-        }
-        self.stop.check()?;
-        let [least, most] = ends;
-        let miss = least.or(most).map(|(_, miss)| miss);
-        let is_beyond =
-            |number: u64| least.is_some_and(|(hit, _)| number < hit) || most.is_some_and(|(hit, _)| number > hit);
-        let again = search.trials.iter().filter(|(number, trial)| trial.reached && is_beyond(**number));
-        let islands = again.map(|(number, _)| self.values.value(*number)).collect();
-        Ok(OverLimit {
-            least: least.map(|(hit, _)| self.values.value(hit)),
-            most: most.map(|(hit, _)| self.values.value(hit)),
-            reached: true,
-            missed_at: miss.map(|miss| self.values.value(miss)),
-            because: miss.and_then(|miss| search.trials[&miss].because.clone()),
-            islands,
-            tried: search.tried(),
-        })
-    }
-
     fn plan(&self, value: f64) -> Result<Plan, SettingError> {
         let mut file = self.file.clone();
         file.set_text(&format!("{}={}", self.key, self.values.text(value)), "limit")?;
@@ -229,6 +237,7 @@ impl OverQuery {
 
 struct Search<'a> {
     query: &'a OverQuery,
+    stop: StopFlag,
     trials: BTreeMap<u64, Trial>,
     /// The error of the last value with which no experiment could run.
     refused: Option<StudyError>,
@@ -253,7 +262,7 @@ impl Search<'_> {
     }
 
     fn run(&mut self, value: f64) -> Result<Trial, StudyError> {
-        self.query.stop.check()?;
+        check(&self.stop)?;
         let plan = self.query.plan(value)?;
         let scene = self.load(&plan)?;
         let goal = self.query.goal;
@@ -264,7 +273,7 @@ impl Search<'_> {
             return Ok(Trial { reached: is_reached(goal, &summary), score, because: None });
         }
         let experiment: Experiment =
-            plan.experiment(scene).pixels(Pixels::Off).keep(KeptRecords::Statistics).host(self.query.stop.clone());
+            plan.experiment(scene).pixels(Pixels::Off).keep(KeptRecords::Statistics).stopped_by(self.stop.clone());
         // A run that ended early misses the goal, but its records still show the limiting resource.
         let (outcome, is_whole) = match experiment.run() {
             Ok(outcome) => (outcome, true),
@@ -298,9 +307,9 @@ impl Search<'_> {
         groups.max_by_key(size).map(|group| group[group.len() - 1].0)
     }
 
-    fn report(&self, progress: &mut impl FnMut(u64, u64)) {
+    fn report(&self, watcher: &mut dyn Watcher) {
         let tried = self.trials.len() as u64;
-        progress(tried, tried.max(USUAL_VALUES));
+        watcher.progress(tried, tried.max(USUAL_VALUES));
     }
 
     fn tried(&self) -> Vec<(f64, bool)> {

@@ -168,30 +168,26 @@ impl<F> Tried<F> {
 /// Below [`Limit::unbroken_from`], the search tries the sizes of the hints and five sizes at growing distances. A miss
 /// at any size between them is not found.
 ///
+/// Without `looks_above`, no size above the first miss is tried. These sizes never change the limit and are about half of
+/// all tried sizes.
+///
 /// # Errors
 ///
 /// Returns the first error of `reached`.
-pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<Limit, E> {
+pub fn most<E>(
+    ceiling: u32,
+    hints: &Hints,
+    looks_above: bool,
+    reached: impl FnMut(u32) -> Result<bool, E>,
+) -> Result<Limit, E> {
     let mut tried = Tried { answers: BTreeMap::new(), reached };
     tried.find_limit(ceiling, hints)?;
     // Islands (sizes above the first miss that reach the goal) do not change the limit, but the result reports them.
     let limit = tried.limit(ceiling).triangles;
-    for size in above(limit, ceiling) {
+    for size in above(limit, ceiling).filter(|_| looks_above) {
         tried.ask(size)?;
     }
     Ok(tried.limit(ceiling))
-}
-
-/// Returns [`Limit::triangles`] of [`most`], without the sizes above the first miss. These sizes never change the limit
-/// and are about half of all tried sizes.
-///
-/// # Errors
-///
-/// Returns the first error of `reached`.
-pub fn most_triangles<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<u32, E> {
-    let mut tried = Tried { answers: BTreeMap::new(), reached };
-    tried.find_limit(ceiling, hints)?;
-    Ok(tried.limit(ceiling).triangles)
 }
 
 /// Returns the limit found by bisection alone, as a hint for a search at another level of detail.
@@ -238,7 +234,7 @@ mod tests {
     }
 
     fn with(ceiling: u32, hints: &Hints, reached: impl Fn(u32) -> bool) -> Limit {
-        most(ceiling, hints, |size| Ok::<_, Infallible>(reached(size))).expect("infallible")
+        most(ceiling, hints, true, |size| Ok::<_, Infallible>(reached(size))).expect("infallible")
     }
 
     #[test]
@@ -302,8 +298,8 @@ mod tests {
         ) {
             let hints = Hints { near, doubtful };
             let reached = |size: u32| Ok::<_, Infallible>(!misses.contains(&size));
-            let whole = most(ceiling, &hints, reached).expect("infallible");
-            prop_assert_eq!(most_triangles(ceiling, &hints, reached), Ok(whole.triangles));
+            let whole = most(ceiling, &hints, true, reached).expect("infallible");
+            prop_assert_eq!(most(ceiling, &hints, false, reached).map(|limit| limit.triangles), Ok(whole.triangles));
         }
 
         #[test]

@@ -2,7 +2,7 @@
 
 use super::point::row;
 use super::{Status, Sweep, SweepRow};
-use std::sync::Arc;
+use pxpl5_sim::StopFlag;
 use std::time::{Duration, Instant};
 
 impl Sweep {
@@ -17,7 +17,7 @@ impl Sweep {
         let mut rows = Vec::new();
         for point in points {
             let start = Instant::now();
-            let row = row(self, *point, &Arc::default());
+            let row = row(self, *point, &StopFlag::default());
             rows.push((row, start.elapsed().as_secs_f64()));
             if begin.elapsed() >= at_most {
                 break;
@@ -37,7 +37,8 @@ impl SweepRow {
 #[cfg(test)]
 mod tests {
     use crate::ExperimentFile;
-    use crate::sweep::{RunOptions, Shard, Store, Sweep, run};
+    use crate::study::Study;
+    use crate::sweep::{RunOptions, Shard, Store, Sweep, SweepQuery};
     use std::time::Duration;
 
     fn sweep(text: &str) -> Sweep {
@@ -52,7 +53,8 @@ mod tests {
         let sweep = sweep(SPACE);
         let folder = std::env::temp_dir().join(format!("pxpl5-chunk-{}", std::process::id()));
         let mut store = Store::open(&folder, sweep.header().expect("a header"), true).expect("a folder");
-        run(&sweep, &mut store, RunOptions { shard: Shard::ALL, threads: 2 }, |_| {}).expect("it can be written");
+        let options = RunOptions { shard: Shard::ALL, threads: 2 };
+        SweepQuery::new(&sweep, &mut store, options).run(&mut ()).expect("it can be written");
         for (row, seconds) in sweep.rows(&[2, 0, 1], Duration::MAX) {
             assert_eq!(store.row(row.point).expect("readable"), Some(row.clone()));
             assert!(seconds >= 0.0 && row.is_done() == (row.point != 2), "{row:?}");

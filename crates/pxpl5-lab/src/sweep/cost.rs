@@ -44,8 +44,9 @@ impl Sweep {
         if plan.level == Level::Analytic {
             return nothing;
         }
-        let mut work = RunWork::of(&plan, &scene, true);
-        if let Some(pictures_a_field) = pictures_from_closed_form(&plan, plan.experiment(scene)) {
+        let experiment = plan.experiment(scene);
+        let mut work = RunWork::of(&experiment, true);
+        if let Some(pictures_a_field) = pictures_from_closed_form(&plan, experiment) {
             work = RunWork { pictures_a_field, uses_closed_form: true, ..work };
         }
         Estimate { bytes: work.bytes(), seconds: POINT + work.core_seconds() }

@@ -2,7 +2,7 @@
 
 use super::Sweep;
 use crate::experiment_file::{ExperimentFile, beside, is_file};
-use crate::head_names::is_recorded_file;
+use crate::head_parts::is_recorded_file;
 use pxpl5_run::Fingerprint;
 use pxpl5_scene::{Placement, load_placed};
 use std::collections::BTreeMap;

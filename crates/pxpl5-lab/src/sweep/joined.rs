@@ -10,7 +10,7 @@ use super::{Header, ROWS_FILE, Status, SweepRow};
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Number of bytes of a file of rows that are read at a time: some tens of rows.
 const BLOCK: usize = 16 << 10;
@@ -51,6 +51,22 @@ impl Joined {
         Ok(joined)
     }
 
+    /// Builds the index of the rows in one file, for the sweep of `header`. The file may be missing. Also returns the length
+    /// in bytes up to the end of the last complete line.
+    pub(super) fn of_file(path: &Path, header: &Header) -> Result<(Self, u64), FileError> {
+        let mut joined = Self::new(header.clone());
+        joined.files.push(RowBlocks::of(path.to_owned()));
+        if matches!(path.try_exists(), Ok(false)) {
+            return Ok((joined, 0));
+        }
+        let mut scan = Scan::open(path)?;
+        check_header(path, header, scan.header.as_ref())?;
+        while let Some((row, byte)) = scan.next()? {
+            joined.add(&row, byte)?;
+        }
+        Ok((joined, scan.whole_bytes))
+    }
+
     fn new(header: Header) -> Self {
         let points = usize::try_from(header.points).unwrap_or(usize::MAX);
         let (files, failed, duplicates) = (Vec::new(), Points::default(), Vec::new());
@@ -58,7 +74,7 @@ impl Joined {
     }
 
     /// Adds a row of the last added file to the index. `byte` is the byte position of the row in the file.
-    fn add(&mut self, row: &SweepRow, byte: u64) -> Result<(), FileError> {
+    pub(super) fn add(&mut self, row: &SweepRow, byte: u64) -> Result<(), FileError> {
         let point = row.point as usize;
         // A second row of a point must equal the first.
         if let Some(first) = self.row(row.point)? {
@@ -82,21 +98,34 @@ impl Joined {
         &self.header
     }
 
-    pub(super) fn missing(&self) -> Vec<u64> {
-        (0..).zip(&self.holders).filter(|(_, holder)| **holder == 0).map(|(point, _)| point).collect()
+    pub(super) fn holds(&self, point: u64) -> bool {
+        usize::try_from(point).ok().and_then(|point| self.holders.get(point)).is_some_and(|holder| *holder > 0)
     }
 
-    pub(super) fn failed(&self) -> u64 {
-        (0..self.header.points).filter(|point| self.failed.holds(*point)).count() as u64
+    /// Returns the points with a row, in ascending order.
+    pub(super) fn points(&self) -> impl Iterator<Item = u64> {
+        (0..self.header.points).filter(|point| self.holds(*point))
+    }
+
+    pub(super) fn missing(&self) -> Vec<u64> {
+        (0..self.header.points).filter(|point| !self.holds(*point)).collect()
+    }
+
+    /// Returns the points that could not be simulated, in ascending order.
+    pub(super) fn failed(&self) -> impl Iterator<Item = u64> {
+        (0..self.header.points).filter(|point| self.failed.holds(*point))
     }
 
     pub(super) fn duplicates(&self) -> &[u64] {
         &self.duplicates
     }
 
-    /// Returns the row of a point, if it has one. `point` must be less than the number of points of the sweep.
+    /// Returns the row of a point, if it has one.
     pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, FileError> {
-        let Some(file) = (self.holders[point as usize] as usize).checked_sub(1) else { return Ok(None) };
+        if !self.holds(point) {
+            return Ok(None);
+        }
+        let file = self.holders[point as usize] as usize - 1;
         self.files[file].row_at(self.places[point as usize]).map(Some)
     }
 }

@@ -37,7 +37,7 @@ pub fn merge(folders: &[PathBuf], out: &Path, allow_missing: bool) -> Result<Mer
         return Err(missing_points(missing.len() as u64, points, &ranges(&missing)));
     }
     write(&mut joined, folders, out)?;
-    Ok(Merged { points, failed: joined.failed(), duplicates: joined.duplicates().to_vec(), missing })
+    Ok(Merged { points, failed: joined.failed().count() as u64, duplicates: joined.duplicates().to_vec(), missing })
 }
 
 fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), FileError> {

@@ -1,14 +1,18 @@
 //! Simulates one point of a sweep. Each point of a sweep is one experiment.
 
 use super::header::json;
-use super::{Sweep, SweepSpace, measures};
+use super::{Shard, Sweep, SweepSpace, measures};
+use crate::StudyError;
+use crate::estimate::Estimate;
 use crate::experiment_file::Plan;
-use crate::{StopFlag, StudyError};
+use pxpl5_run::BareHost;
 use pxpl5_scene::Scene;
+use pxpl5_sim::StopFlag;
 use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
@@ -39,6 +43,14 @@ pub struct SweepRow {
     pub trace_hash: Option<String>,
     /// Reason why the point could not be simulated.
     pub error: Option<String>,
+}
+
+impl fmt::Display for SweepRow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parameters = self.parameters.iter().map(|(key, value)| format!("{key}={value}"));
+        let result = self.error.as_deref().unwrap_or("simulated");
+        write!(f, "point {}, {}: {result}", self.point, parameters.collect::<Vec<_>>().join(" "))
+    }
 }
 
 impl Sweep {
@@ -87,11 +99,21 @@ pub trait Swept: Sync {
     ///
     /// Returns the error of a point that cannot be simulated.
     fn simulate(&self, point: u64, stop: &StopFlag) -> Result<PointResults, StudyError>;
+
+    /// Estimates the memory and time of the points of a shard on `threads` threads.
+    fn estimate(&self, shard: Shard, threads: usize) -> Estimate;
 }
 
 impl Swept for Sweep {
     fn space(&self) -> &SweepSpace {
         &self.space
+    }
+
+    fn estimate(&self, shard: Shard, threads: usize) -> Estimate {
+        let sample = self.sample();
+        let points = shard.share_of(self.space.points()) as f64;
+        let threads = threads.max(1) as f64;
+        Estimate { bytes: sample.most_bytes * threads, seconds: sample.mean_s * points / threads }
     }
 
     fn simulate(&self, point: u64, stop: &StopFlag) -> Result<PointResults, StudyError> {
@@ -100,7 +122,7 @@ impl Swept for Sweep {
         // The hash identifies the point even if its run fails later.
         let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
         // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times.
-        let results = plan.run_on(stop.clone(), scene)?;
+        let results = plan.results_of(plan.experiment(scene).host(BareHost).stopped_by(stop.clone()))?;
         let measured = measures(&plan).iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();
         let trace_hash = results.run.map(|(_, report)| report.trace_hash);
         Ok(PointResults { measured, config_hash, trace_hash })

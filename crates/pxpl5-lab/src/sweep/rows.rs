@@ -1,101 +1,11 @@
-//! Reader of a file of result rows through an index of byte positions. A row is read only when it is needed.
+//! Sequential reader of a file of result rows.
 
-use super::{Header, MAX_POINTS, Status, SweepRow};
+use super::{Header, MAX_POINTS, SweepRow};
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use serde::de::DeserializeOwned;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-
-/// Index of a file of result rows, with eight bytes for each point and one bit for each failed point.
-#[derive(Debug, Default)]
-pub(super) struct RowFile {
-    path: PathBuf,
-    header: Option<Header>,
-    /// Byte position of the row of each point. 0 means no row, because the header is at position 0.
-    places: Vec<u64>,
-    finished: u64,
-    failed: Points,
-    /// Length in bytes up to the end of the last complete line.
-    whole_bytes: u64,
-}
-
-impl RowFile {
-    /// Builds the index of a file of result rows. An incomplete last line is ignored.
-    pub(super) fn open(path: &Path) -> Result<Self, FileError> {
-        let mut scan = Scan::open(path)?;
-        let mut found = Self { path: path.to_owned(), header: scan.header.take(), ..Self::default() };
-        while let Some((row, byte)) = scan.next()? {
-            found.check_and_add(&row, byte)?;
-        }
-        found.whole_bytes = scan.whole_bytes;
-        Ok(found)
-    }
-
-    /// Builds the index of a file of result rows. The index is empty if the file does not exist.
-    pub(super) fn open_or_none(path: &Path) -> Result<Self, FileError> {
-        match path.try_exists() {
-            Ok(false) => Ok(Self { path: path.to_owned(), ..Self::default() }),
-            _ => Self::open(path),
-        }
-    }
-
-    fn check_and_add(&mut self, row: &SweepRow, byte: u64) -> Result<(), FileError> {
-        if !self.holds(row.point) {
-            self.add(row, byte);
-        } else if self.reader()?.row(row.point)?.as_ref() != Some(row) {
-            let path = self.path.display().to_string();
-            return Err(contradiction(row.point, &path, &path));
-        }
-        Ok(())
-    }
-
-    pub(super) fn add(&mut self, row: &SweepRow, byte: u64) {
-        let point = row.point as usize;
-        if self.places.len() <= point {
-            self.places.resize(point + 1, 0);
-        }
-        self.places[point] = byte;
-        self.finished += 1;
-        if row.status == Status::Failed {
-            self.failed.put(row.point);
-        }
-    }
-
-    pub(super) const fn header(&self) -> Option<&Header> {
-        self.header.as_ref()
-    }
-
-    pub(super) const fn whole_bytes(&self) -> u64 {
-        self.whole_bytes
-    }
-
-    pub(super) const fn finished(&self) -> u64 {
-        self.finished
-    }
-
-    pub(super) fn holds(&self, point: u64) -> bool {
-        self.place(point).is_some()
-    }
-
-    pub(super) fn is_failed(&self, point: u64) -> bool {
-        self.failed.holds(point)
-    }
-
-    pub(super) fn points(&self) -> impl Iterator<Item = u64> {
-        (0..).zip(&self.places).filter(|(_, place)| **place > 0).map(|(point, _)| point)
-    }
-
-    fn place(&self, point: u64) -> Option<u64> {
-        let place = usize::try_from(point).ok().and_then(|point| self.places.get(point));
-        place.copied().filter(|place| *place > 0)
-    }
-
-    pub(super) fn reader(&self) -> Result<RowReader<'_>, FileError> {
-        let file = File::open(&self.path).map_err(FileError::io(&self.path, "cannot be read"))?;
-        Ok(RowReader { rows: self, file: BufReader::new(file), at: 0 })
-    }
-}
 
 /// Sequential reader of a file of rows, from its beginning to its last complete line.
 #[derive(Debug)]
@@ -167,29 +77,6 @@ impl Scan {
 pub(super) fn contradiction(point: u64, first: &str, second: &str) -> FileError {
     let reason = format_args!("point {point} has different rows in {first} and {second}");
     FileError::because(FileErrorKind::Damaged, reason)
-}
-
-/// Reader of the row of any point. Reading is fastest in the order of the file.
-#[derive(Debug)]
-pub(super) struct RowReader<'a> {
-    rows: &'a RowFile,
-    file: BufReader<File>,
-    at: u64,
-}
-
-impl RowReader<'_> {
-    pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, FileError> {
-        let Some(place) = self.rows.place(point) else { return Ok(None) };
-        let row = self.row_at(place).map_err(FileError::io(&self.rows.path, "cannot be read again"))?;
-        Ok(Some(row))
-    }
-
-    fn row_at(&mut self, place: u64) -> std::io::Result<SweepRow> {
-        self.file.seek_relative(place.wrapping_sub(self.at).cast_signed())?;
-        let mut line = Vec::new();
-        self.at = place + self.file.read_until(b'\n', &mut line)? as u64;
-        Ok(serde_json::from_slice(&line)?)
-    }
 }
 
 fn excerpt(line: &[u8]) -> String {

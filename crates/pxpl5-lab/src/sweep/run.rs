@@ -4,10 +4,13 @@ use super::point::row;
 use super::rows::Points;
 use super::shard::Shard;
 use super::{Store, SweepRow, Swept};
-use crate::StopFlag;
+use crate::error::StudyError;
+use crate::estimate::Estimate;
+use crate::study::Study;
 use crossbeam_channel::{Sender, bounded};
-use pxpl5_sim::parameters::FileError;
+use pxpl5_sim::{StopFlag, Watcher};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
 
@@ -23,61 +26,70 @@ pub struct RunOptions {
 /// Maximum number of finished rows that wait to be written. A crash loses the waiting rows.
 const WAITING_ROWS: usize = 64;
 
-/// Simulates the points of a shard that have no row in `store`, the folder of the sweep. Calls `finished` with each
-/// stored row.
-///
-/// # Errors
-///
-/// Returns a [`FileError`] if a row cannot be stored. Points in progress are then finished, and their rows are lost.
-pub fn run(
-    sweep: &impl Swept,
-    store: &mut Store,
-    options: RunOptions,
-    finished: impl FnMut(&SweepRow),
-) -> Result<(), FileError> {
-    run_stoppable(sweep, store, options, &StopFlag::default(), finished)
+/// The simulation of the points of a shard that have no row yet.
+#[derive(Debug)]
+pub struct SweepQuery<'a, S> {
+    /// The sweep.
+    pub sweep: &'a S,
+    /// The folder of the sweep.
+    pub store: Mutex<&'a mut Store>,
+    /// Shard and number of threads.
+    pub options: RunOptions,
 }
 
-/// Simulates the points of a shard as [`run`] does, until another thread sets `stop`. The simulations in progress then
-/// end within a few display periods, and their points get no row.
-///
-/// # Errors
-///
-/// Fails in the same cases as [`run`].
-pub fn run_stoppable(
-    sweep: &impl Swept,
-    store: &mut Store,
-    options: RunOptions,
-    stop: &StopFlag,
-    mut finished: impl FnMut(&SweepRow),
-) -> Result<(), FileError> {
-    let work = Work {
-        sweep,
-        shard: options.shard,
-        finished: store.held(),
-        next: AtomicU64::new(0),
-        ended: AtomicBool::new(false),
-        stop,
-    };
-    let (sender, rows) = bounded(WAITING_ROWS);
-    // Workers send rows to this thread, which owns the store.
-    thread::scope(|scope| {
-        let points = usize::try_from(sweep.space().points()).unwrap_or(usize::MAX);
-        for _ in 0..options.threads.clamp(1, points.max(1)) {
-            let sender = sender.clone();
-            scope.spawn(|| work.run(sender));
-        }
-        drop(sender);
-        // This thread alone writes into the store. On an error the workers stop after their current points.
-        let result = rows.iter().try_for_each(|(row, seconds)| {
-            store.append(&row, seconds)?;
-            finished(&row);
-            Ok(())
-        });
-        work.ended.store(true, Ordering::Relaxed);
-        drop(rows);
-        result
-    })
+impl<'a, S: Swept> SweepQuery<'a, S> {
+    /// Creates the simulation of the points of a shard that have no row in `store`.
+    pub const fn new(sweep: &'a S, store: &'a mut Store, options: RunOptions) -> Self {
+        Self { sweep, store: Mutex::new(store), options }
+    }
+}
+
+impl<S: Swept> Study for SweepQuery<'_, S> {
+    /// Number of points of the shard that have a row.
+    type Report = u64;
+
+    fn estimate(&self, threads: usize) -> Estimate {
+        self.sweep.estimate(self.options.shard, threads)
+    }
+
+    /// Simulates the points and stores their rows. Simulations in progress end soon after a stop, and their points get
+    /// no row.
+    fn run(&self, watcher: &mut dyn Watcher) -> Result<u64, StudyError> {
+        let (sweep, options, stop) = (self.sweep, self.options, watcher.stop());
+        let mut store = self.store.lock().unwrap_or_else(PoisonError::into_inner);
+        let all = options.shard.share_of(sweep.space().points());
+        let mut done = store.finished(options.shard);
+        watcher.progress(done, all);
+        let work = Work {
+            sweep,
+            shard: options.shard,
+            finished: store.held(),
+            next: AtomicU64::new(0),
+            ended: AtomicBool::new(false),
+            stop: &stop,
+        };
+        let (sender, rows) = bounded(WAITING_ROWS);
+        // Workers send rows to this thread, which owns the store.
+        thread::scope(|scope| {
+            let points = usize::try_from(sweep.space().points()).unwrap_or(usize::MAX);
+            for _ in 0..options.threads.clamp(1, points.max(1)) {
+                let sender = sender.clone();
+                scope.spawn(|| work.run(sender));
+            }
+            drop(sender);
+            // This thread alone writes into the store. On an error the workers stop after their current points.
+            let result = rows.iter().try_for_each(|(row, seconds)| {
+                store.append(&row, seconds)?;
+                done += 1;
+                watcher.progress(done, all);
+                watcher.row("points", &row);
+                Ok(())
+            });
+            work.ended.store(true, Ordering::Relaxed);
+            drop(rows);
+            result.map(|()| done)
+        })
+    }
 }
 
 /// Work that all threads of a sweep share. Each thread takes one unfinished point at a time.

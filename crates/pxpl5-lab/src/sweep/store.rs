@@ -1,8 +1,9 @@
 //! The folder of a sweep, with one row of results for each simulated point. Each row is appended by one write, so
 //! finished rows survive a crash at any moment.
 
+use super::joined::Joined;
 use super::replacement::Replacement;
-use super::rows::{Points, RowFile};
+use super::rows::Points;
 use super::shard::Shard;
 use super::table::Table;
 use super::{Header, SweepRow};
@@ -27,7 +28,7 @@ const LOCK_FILE: &str = ".lock";
 pub struct Store {
     folder: PathBuf,
     header: Header,
-    rows: RowFile,
+    rows: Joined,
     /// Byte position at which the next row is written.
     end: u64,
     rows_file: File,
@@ -64,18 +65,16 @@ impl Store {
         let lock = lock(folder)?;
         remove_leftover_files(folder);
         let path = folder.join(ROWS_FILE);
-        let rows = RowFile::open_or_none(&path)?;
-        check_header(&path, &header, rows.header())?;
+        let (rows, end) = Joined::of_file(&path, &header)?;
         // Without `resume`, existing rows are never extended by accident.
-        if !resume && rows.finished() > 0 {
-            let points = rows.finished();
+        let points = rows.points().count();
+        if !resume && points > 0 {
             let reason = format_args!(
                 "there are {points} finished points here already; resume the sweep, or choose another folder"
             );
             return Err(FileError::because(FileErrorKind::Unfinished, reason).in_file(folder.display()));
         }
         // Both files continue after their last complete line; a new file starts with the header.
-        let end = rows.whole_bytes();
         let rows_file = opened(&path, end)?;
         let times_path = folder.join(TIMES_FILE);
         let times_end = whole_lines(&times_path);
@@ -113,7 +112,7 @@ impl Store {
 
     /// Returns the points of a shard (part of the sweep) that could not be simulated, in ascending order.
     pub fn failed(&self, shard: Shard) -> impl Iterator<Item = u64> {
-        self.rows.points().filter(move |point| shard.holds(*point) && self.rows.is_failed(*point))
+        self.rows.failed().filter(move |point| shard.holds(*point))
     }
 
     /// Reads the row of a point from its file. Returns `None` if the point is not finished.
@@ -121,8 +120,8 @@ impl Store {
     /// # Errors
     ///
     /// Returns a [`FileError`] if the file cannot be read.
-    pub fn row(&self, point: u64) -> Result<Option<SweepRow>, FileError> {
-        self.rows.reader()?.row(point)
+    pub fn row(&mut self, point: u64) -> Result<Option<SweepRow>, FileError> {
+        self.rows.row(point)
     }
 
     /// Appends the row of a finished point, and the computing time of the point in seconds.
@@ -139,8 +138,7 @@ impl Store {
         let begin = self.end;
         self.append_line(&line_of(row))?;
         self.append_time(&line_of(&PointTime { point: row.point, host_seconds }))?;
-        self.rows.add(row, begin);
-        Ok(())
+        self.rows.add(row, begin)
     }
 
     /// Appends a line to the file of rows by one write. After a crash, at most this line is incomplete.
@@ -162,10 +160,10 @@ impl Store {
     /// # Errors
     ///
     /// Returns a [`FileError`] if a file cannot be read or written.
-    pub fn finish(self) -> Result<(), FileError> {
-        let mut reader = self.rows.reader()?;
-        let rows = self.rows.points().filter_map(|point| reader.row(point).transpose());
-        write_all(&self.folder, &self.header, rows)
+    pub fn finish(mut self) -> Result<(), FileError> {
+        let Self { folder, header, rows, .. } = &mut self;
+        let rows = (0..header.points).filter_map(|point| rows.row(point).transpose());
+        write_all(folder, header, rows)
     }
 }
 

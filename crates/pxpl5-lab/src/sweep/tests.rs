@@ -1,6 +1,7 @@
 use super::*;
-use crate::StopFlag;
 use crate::experiment_file::ExperimentFile;
+use crate::study::Study;
+use crate::study::tests::StopsAfter;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -22,12 +23,13 @@ fn folder(name: &str) -> PathBuf {
     path
 }
 
-fn rows(store: &Store, points: u64) -> Vec<SweepRow> {
+fn rows(store: &mut Store, points: u64) -> Vec<SweepRow> {
     (0..points).map(|point| store.row(point).expect("readable").expect("finished")).collect()
 }
 
 fn all(sweep: &Sweep, store: &mut Store) {
-    run(sweep, store, RunOptions { shard: Shard::ALL, threads: 2 }, |_| {}).expect("it runs");
+    let options = RunOptions { shard: Shard::ALL, threads: 2 };
+    SweepQuery::new(sweep, store, options).run(&mut ()).expect("it runs");
 }
 
 #[test]
@@ -126,7 +128,7 @@ fn a_failed_point_is_recorded_and_the_others_continue() {
     let path = folder("fails");
     let mut store = Store::open(&path, sweep.header().expect("a valid point"), false).expect("writable");
     all(&sweep, &mut store);
-    let rows = rows(&store, 3);
+    let rows = rows(&mut store, 3);
     let statuses: Vec<Status> = rows.iter().map(|row| row.status).collect();
     assert_eq!(statuses, [Status::Failed, Status::Failed, Status::Done]);
     assert!(rows[0].error.as_deref().is_some_and(|e| e.contains("n_renderers must be 1 to 1000, found 0")));
@@ -143,10 +145,10 @@ fn rows_are_read_and_written_bit_for_bit() {
     let path = folder("bits");
     let mut store = Store::open(&path, sweep.header().expect("valid"), false).expect("writable");
     all(&sweep, &mut store);
-    let before = rows(&store, 3);
+    let before = rows(&mut store, 3);
     drop(store);
-    let store = Store::open(&path, sweep.header().expect("valid"), true).expect("ours");
-    assert_eq!(rows(&store, 3), before);
+    let mut store = Store::open(&path, sweep.header().expect("valid"), true).expect("ours");
+    assert_eq!(rows(&mut store, 3), before);
     store.finish().expect("writable");
     let text = std::fs::read_to_string(path.join(ROWS_FILE)).expect("written");
     let lines: Vec<String> = before.iter().map(|row| serde_json::to_string(row).expect("JSON")).collect();
@@ -340,23 +342,13 @@ fn a_stopped_sweep_keeps_its_finished_rows_and_continues_to_the_same_rows() {
     all(&sweep, &mut whole);
     // A sweep that was stopped before it began has no row.
     let mut store = open("stopped");
-    let stop = StopFlag::default();
-    stop.stop();
+    let mut watcher = StopsAfter::default();
     let options = RunOptions { shard: Shard::ALL, threads: 1 };
-    run_stoppable(&sweep, &mut store, options, &stop, |_| {}).expect("it stops");
-    assert_eq!(store.finished(Shard::ALL), 0);
+    assert_eq!(SweepQuery::new(&sweep, &mut store, options).run(&mut watcher).expect("it stops"), 0);
     // A stop after the second row leaves rows without a result. No row says that its run was stopped.
-    let stop = StopFlag::default();
-    let mut rows_before = 0;
-    run_stoppable(&sweep, &mut store, options, &stop, |row| {
-        assert!(row.is_done(), "{:?}", row.error);
-        rows_before += 1;
-        if rows_before >= 2 {
-            stop.stop();
-        }
-    })
-    .expect("it stops");
-    assert!(rows_before >= 2 && store.finished(Shard::ALL) == rows_before);
+    let mut watcher = StopsAfter { parts: 2, ..StopsAfter::default() };
+    let found = SweepQuery::new(&sweep, &mut store, options).run(&mut watcher).expect("it stops");
+    assert!((2..8).contains(&found) && found == watcher.rows && store.failed(Shard::ALL).count() == 0);
     all(&sweep, &mut store);
-    assert_eq!(rows(&store, 8), rows(&whole, 8));
+    assert_eq!(rows(&mut store, 8), rows(&mut whole, 8));
 }

@@ -1,9 +1,9 @@
 use super::jitp::{TABLES, config, load, whole_pass};
 use super::{ntsc, samples};
 use crate::keys::PipelineSettings;
-use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
+use crate::result::picture_ends::PictureResult;
 use jitp::{BlockOrder, DrawingSchedule, JitpConfig};
 use pphigs::TransformCost;
 use pxpl5_framebuffer::Video;

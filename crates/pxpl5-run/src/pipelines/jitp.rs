@@ -1,8 +1,8 @@
 use super::{late_regions, ntsc, samples};
 use crate::keys::PipelineSettings;
-use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
+use crate::result::picture_ends::PictureResult;
 use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, host, master, slave};
 use pphigs::{Share, TransformCost};
 use pxpl5_framebuffer::Video;

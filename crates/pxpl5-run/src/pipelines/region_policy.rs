@@ -4,9 +4,9 @@
 //! One graphics processor draws frames for a single eye and shows each frame when it is finished. The policy is called
 //! after TRANSFORM, so it receives the final number of primitives in every region.
 
-use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
 use crate::pipelines::{shading_value, whole_picture};
+use crate::result::picture_ends::PictureResult;
 use pphigs::{DisplayList, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages};
 use pxpl5_gp::{Fault, Gp, Priority, Stage};
 use pxpl5_machine::{Machine, Ports, Record};

@@ -1,8 +1,8 @@
 use super::{late_regions, ntsc, samples};
 use crate::keys::PipelineSettings;
-use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
+use crate::result::picture_ends::PictureResult;
 use pphigs::{RegionBinning, Shading, Share};
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, Priority};

@@ -9,6 +9,7 @@ mod container;
 mod document;
 #[cfg(feature = "files")]
 mod host;
+mod json;
 mod numbers;
 
 use std::collections::BTreeSet;
@@ -20,7 +21,8 @@ use serde_json::Value;
 
 use self::buffers::Buffers;
 use self::container::Chunks;
-use self::document::{COMPRESSION, Document, Extensions, Mesh, Node, Primitive, Root, SceneNodes, Whole, parsed};
+use self::document::Document;
+use self::json::{COMPRESSION, Extensions, Mesh, Node, Primitive, Root, SceneNodes, Whole, parsed};
 use self::numbers::{ComponentType, Numbers};
 use super::Source;
 use super::model::{Model, Places, counted, direction, push_with_slow_growth};

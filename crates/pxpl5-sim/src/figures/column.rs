@@ -1,6 +1,7 @@
 //! Columns that several tables of figures share. Numbers have four significant digits.
 
-use super::{Basis, FigureRow, TableColumn, significant};
+use super::table::{four, range};
+use super::{Basis, FigureRow, TableColumn};
 
 /// Number under which the documents of the project list the figure.
 pub const NUMBER: TableColumn<FigureRow> = ("#", |row| row.id.to_owned());
@@ -29,12 +30,4 @@ pub const PROVENANCE: TableColumn<FigureRow> = ("provenance", |row| match row.ba
 /// Formats the relative error in percent, or "-" if the published number is 0 or missing.
 pub fn error(row: &FigureRow) -> String {
     row.error_percent.map_or_else(|| "-".to_owned(), |error| format!("{error:+.1} %"))
-}
-
-pub fn four(value: f64) -> String {
-    significant(value, 4)
-}
-
-pub fn range([low, high]: [f64; 2]) -> String {
-    format!("{} to {}", four(low), four(high))
 }

@@ -1,9 +1,11 @@
 //! Two types of rows. A [`FigureRow`] compares a published figure with a model. A [`Definition`] is an input of the
 //! model, so it has no comparison.
 
+use super::table::{range, significant};
 use crate::parameters::Provenance;
 use serde::Serialize;
 use std::borrow::Cow;
+use std::fmt;
 
 /// Provenance of a row: the relation between a published figure and the choices made in the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -95,6 +97,35 @@ pub struct FigureRow {
     pub details: Vec<Detail>,
 }
 
+/// A row of a table on the terminal, below [`FigureRow::HEADER`].
+impl fmt::Display for FigureRow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let published = if self.published.is_nan() { "-".to_owned() } else { significant(self.published, DIGITS) };
+        let error = self.error_percent.map_or_else(String::new, |error| format!("{error:+.1}%"));
+        let interval = self.interval.map_or_else(String::new, range);
+        let scene = self.scene.as_ref().map_or_else(String::new, |scene| format!(" ({scene})"));
+        // An experiment is either described in words or has a name such as E1.
+        let name = if self.experiment.contains(' ') { "" } else { self.experiment };
+        let provenance = match self.basis {
+            Basis::Interpretation(_) => "interpret.",
+            Basis::Unprinted => "interval",
+            Basis::Shape => "shape",
+            _ => self.basis.name(),
+        };
+        write!(
+            f,
+            "{:<10} {published:>10} {:>12}  {:<13} {error:>8}  {interval:<22} {provenance:<10} {}{}{scene}",
+            format!("{name} {}", self.id).trim_start(),
+            significant(self.simulated, DIGITS),
+            self.unit,
+            if self.is_met { "" } else { "miss: " },
+            self.statement
+        )
+    }
+}
+
+const DIGITS: i32 = 6;
+
 /// Returns the lowest and the highest value that differ from `middle` by at most `half`.
 pub const fn around(middle: f64, half: f64) -> [f64; 2] {
     [middle - half, middle + half]
@@ -104,6 +135,10 @@ pub const fn around(middle: f64, half: f64) -> [f64; 2] {
 const ROUNDING: f64 = 0.01;
 
 impl FigureRow {
+    /// Head of a table of rows on the terminal.
+    pub const HEADER: &'static str =
+        "#           published    simulated  unit             error  interval               provenance what";
+
     /// Returns the known cause of a difference between model and paper, or a sentence that states that no cause is
     /// known.
     pub const fn cause_or_unknown(&self) -> &'static str {

@@ -42,6 +42,14 @@ pub fn lines<const N: usize>(rows: impl IntoIterator<Item = [String; N]>) -> Str
     rows.into_iter().map(|cells| format!("| {} |\n", cells.join(" | "))).collect()
 }
 
+pub fn four(value: f64) -> String {
+    significant(value, 4)
+}
+
+pub fn range([low, high]: [f64; 2]) -> String {
+    format!("{} to {}", four(low), four(high))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

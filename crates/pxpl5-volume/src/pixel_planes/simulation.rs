@@ -175,7 +175,7 @@ impl<'a> Machine<'a> {
         while let Some((now, _, event)) = self.queue.next_event() {
             match event {
                 Event::Ring(event) => self.ring_event(now, event),
-                Event::FromRing(output) => self.bring(now, output),
+                Event::FromRing(output) => self.take_from_ring(now, output),
                 Event::Renderer(board, event) => self.renderer_event(now, board, event),
                 Event::Made(processor) => self.made(processor, now),
             }
@@ -298,7 +298,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    fn bring(&mut self, now: Time, output: RingOutput) {
+    fn take_from_ring(&mut self, now: Time, output: RingOutput) {
         let first = self.processors.len();
         match output {
             RingOutput::Announce { message, first_word_at, .. } => {

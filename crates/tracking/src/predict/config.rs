@@ -8,6 +8,7 @@ use super::extrapolation::{Extrapolation, Order};
 use super::orientation_kalman::OrientationKalman;
 use super::position_kalman::{NoiseModel, PositionKalman};
 use super::predicting::GatedFilterPair;
+use super::propagation::Decay;
 use crate::config as table;
 use crate::error::check;
 use crate::tracker::TrackerConfig;
@@ -90,24 +91,6 @@ pub struct PredictorConfig {
     /// Limits by which the predictor accepts or rejects reports.
     #[serde(default = "default_gate")]
     pub gate: table::Gate,
-}
-
-/// Rates at which a Kalman filter lets velocity and acceleration decay, as in the model of Singer (1970).
-///
-/// With both rates 0 the acceleration stays constant. A great rate of acceleration leaves a constant velocity, and
-/// great rates of both leave the last pose: the other prediction methods are limits of this one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Decay {
-    /// Rate at which a velocity decays, 1/s.
-    pub velocity: f64,
-    /// Rate at which an acceleration decays, 1/s.
-    pub acceleration: f64,
-}
-
-impl Decay {
-    /// No decay: the acceleration stays constant.
-    pub const NONE: Self = Self { velocity: 0.0, acceleration: 0.0 };
 }
 
 /// Standard deviations that a Kalman filter assumes for the head's motion before the first report. The assumed mean is

@@ -1,8 +1,7 @@
 use glam::{DMat3, DVec3};
 
 use super::channel::Channel;
-use super::config::Decay;
-use super::propagation::{Propagation, Propagations};
+use super::propagation::{Decay, Propagation, Propagations};
 use crate::time::span_s;
 
 #[derive(Clone, Copy, Debug)]

@@ -1,12 +1,30 @@
 use glam::{DMat3, DVec3};
 
-use super::config::Decay;
+use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 
 /// Terms of the power series. With rates of at most [`LARGEST_DECAY`] in a step, the rest is below 1e-9 of the sum.
 const TERMS: u32 = 10;
 /// Greatest product of decay rate and time for which the power series is used.
 const LARGEST_DECAY: f64 = 0.125;
+
+/// Rates at which a Kalman filter lets velocity and acceleration decay, as in the model of Singer (1970).
+///
+/// With both rates 0 the acceleration stays constant. A great rate of acceleration leaves a constant velocity, and
+/// great rates of both leave the last pose: the other prediction methods are limits of this one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Decay {
+    /// Rate at which a velocity decays, 1/s.
+    pub velocity: f64,
+    /// Rate at which an acceleration decays, 1/s.
+    pub acceleration: f64,
+}
+
+impl Decay {
+    /// No decay: the acceleration stays constant.
+    pub const NONE: Self = Self { velocity: 0.0, acceleration: 0.0 };
+}
 
 /// The change of value, velocity and acceleration over a time, and of their covariance.
 ///

@@ -2,6 +2,7 @@ use super::{Detection, PendulumRig, ScopeTrace};
 use crate::time::{nearest_ps, span_s};
 use crate::tracker::TrackerModel;
 use pxpl5_sim::Statistics;
+use serde::Serialize;
 
 /// The report by which the host detects that the pendulum has passed its lowest point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +42,7 @@ fn over<P>(passes: &[P], span: impl Fn(&P) -> (u64, u64)) -> Statistics {
 
 /// Tracking, rendering and total latency over all passes in seconds, measured with the oscilloscope ("outside") or by
 /// time stamps ("inside").
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Side {
     /// Latency from the pendulum's motion to the start of a frame. The outside latency begins when the pendulum passes
     /// its lowest point. The inside latency begins at the report's time stamp.
@@ -54,6 +55,17 @@ pub struct Side {
 }
 
 impl Side {
+    /// Returns the latencies in milliseconds instead of seconds.
+    #[must_use]
+    pub fn in_ms(&self) -> Self {
+        let in_ms = |latency: Statistics| {
+            let Statistics { n, mean, sd, min, max } = latency;
+            Statistics { n, mean: mean * 1e3, sd: sd * 1e3, min: min * 1e3, max: max * 1e3 }
+        };
+        let Self { tracking, rendering, total } = *self;
+        Self { tracking: in_ms(tracking), rendering: in_ms(rendering), total: in_ms(total) }
+    }
+
     fn outside(passes: &[OutsidePass]) -> Self {
         Self {
             tracking: over(passes, |p| (p.low_point_ps, p.dac_ps)),

@@ -1,9 +1,9 @@
 //! History of the cube faces that were drawn around the viewer's head, and the latency of head rotation.
 
-use crate::observers::FinalResults;
-use crate::outcome::Outcome;
+use crate::observe::observers::FinalResults;
 use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming, RotationLatency};
 use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
+use crate::result::outcome::Outcome;
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory};
 use pxpl5_machine::Record;
 use pxpl5_wire::display::{Aim, Display};

@@ -8,9 +8,9 @@ use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use serde_json::value::RawValue;
 
-use super::document::{Buffer, parsed};
 #[cfg(feature = "files")]
 use super::host::read_file;
+use super::json::{Buffer, parsed};
 use crate::config::MAX_FILE_BYTES;
 use crate::import::Source;
 

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use pxpl5_sim::parameters::FileError;
 use serde_json::Value;
 
-use super::document::Root;
+use super::json::Root;
 use crate::error::FilePlace;
 use crate::import::Source;
 use crate::import::source::{MARK, excerpt, without_padding};

@@ -3,7 +3,8 @@
 
 use pxpl5_sim::parameters::FileError;
 
-use super::document::{Accessor, Document, View, Whole};
+use super::document::Document;
+use super::json::{Accessor, View, Whole};
 
 /// The type of the numbers of an accessor. A file states it by a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,8 +6,8 @@ use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
 use crate::head::Head;
 use crate::kept_records::KeptRecords;
-use crate::observers::{ObserverFactory, StreamingObserver};
-use crate::outcome::Outcome;
+use crate::observe::observers::{ObserverFactory, StreamingObserver};
+use crate::result::outcome::Outcome;
 use std::sync::Arc;
 
 /// Number of fields of a dry run if the firmware computes the display times of its views.
@@ -79,10 +79,17 @@ impl Experiment {
 
     fn without_prediction(&self, head: &Head, fields: u64) -> Result<DryRun, ExperimentError> {
         let plain = Some(Arc::new(head.without_prediction()));
-        let (keep, sums): (KeptRecords, ObserverFactory) =
+        let (keep, observer): (KeptRecords, ObserverFactory) =
             (KeptRecords::Statistics, || Box::<DryRunObserver>::default());
-        let plain =
-            Self { head: plain, pixels: Pixels::Off, traffic: false, keep, sums: Some(sums), fields, ..self.clone() };
+        let plain = Self {
+            head: plain,
+            pixels: Pixels::Off,
+            traffic: false,
+            keep,
+            observer: Some(observer),
+            fields,
+            ..self.clone()
+        };
         // If the run has few pictures, the dry run before it has few pictures too.
         let outcome = match plain.perform(Preparation::default(), &[], |_, _| Ok(())) {
             Err(ExperimentError::TooShort { partial, .. }) => *partial,

@@ -9,7 +9,7 @@
 //!
 //! The window ends with the last complete period, or one period earlier if no picture is ever due.
 
-use crate::picture_ends::{PictureResult, PictureResults};
+use crate::result::picture_ends::{PictureResult, PictureResults};
 use pxpl5_wire::PeriodNumber;
 use serde::{Deserialize, Serialize};
 

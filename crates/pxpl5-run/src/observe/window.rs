@@ -1,13 +1,13 @@
 //! Bounded memory in long runs: adds final results to the statistics of the run, and discards their records.
 
-use crate::assembled::Assembled;
+use crate::build::assembled::Assembled;
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
 use crate::kept_records::KeptRecords;
-use crate::observers::{FinalResults, StreamingObserver};
+use crate::observe::observers::{FinalResults, StreamingObserver};
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::result_window::ResultWindow;
-use crate::tally::Tally;
+use crate::result::result_window::ResultWindow;
+use crate::result::tally::Tally;
 use pxpl5_machine::Record;
 use pxpl5_sim::KEPT_SAMPLES;
 use pxpl5_sim::Time;
@@ -56,8 +56,8 @@ impl Window {
         let forgets = may_discard && experiment.pipeline.can_discard_records();
         let samples = if forgets { KEPT_SAMPLES } else { usize::MAX };
         let tally = Tally::new(experiment.end(), field_ms(record), samples);
-        let sums = experiment.sums.filter(|_| forgets && experiment.keep == KeptRecords::Statistics);
-        let sum = sums.map(|begin| begin());
+        let observer = experiment.observer.filter(|_| forgets && experiment.keep == KeptRecords::Statistics);
+        let sum = observer.map(|begin| begin());
         let least_records = experiment.least_records;
         Self {
             tally,

@@ -1,13 +1,16 @@
 //! The figures of the SpatialGL paper, as a table, a document and drawings.
 
-use super::settings::load;
+use super::args::FiguresArgs;
+use super::table::{fresh, rows_text, titled};
 use crate::error::CliError;
-use crate::figures::{FiguresArgs, fresh, rows_text};
 use crate::output::{OutputFile, OutputFolder};
-use crate::terminal::{answer, json_text, progress};
+use crate::progress::Progress;
+use crate::terminal::{answer, json_text, print};
+use crate::volume::settings::load;
+use pxpl5::lab::volumes::VolumeFigureQuery;
 use pxpl5::scene::Scene;
 use pxpl5::views::png_bytes;
-use pxpl5::volume::figures::{FigureDrawing, VolumeFigures, all, drawings, markdown};
+use pxpl5::volume::figures::{FigureDrawing, VolumeFigures, drawings, markdown};
 use pxpl5::volume::spatialgl::Threads;
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -32,18 +35,16 @@ pub(super) fn run(args: &FiguresArgs) -> Result<(), CliError> {
     answer(args.json, args.quiet, &json_text(&figures)?, || text(&figures))
 }
 
-/// Returns the scenes and the figures of all of them. Drawings use the first scene.
+/// Measures the figures on all scenes. Drawings use the first scene.
 fn measured(quiet: bool) -> Result<(Vec<Arc<Scene>>, VolumeFigures), CliError> {
-    let scenes = SCENES.iter().map(|name| load(name, None)).collect::<Result<Vec<_>, _>>()?;
-    let bar = progress(0, "scenes", quiet);
-    let figures = all(&scenes, &Threads::all(), |done, of| bar.advance(done, of));
-    bar.clear();
-    Ok((scenes, figures?))
+    let study = VolumeFigureQuery { scenes: SCENES.iter().map(|name| load(name, None)).collect::<Result<_, _>>()? };
+    let figures = Progress::new("scenes", quiet).run(&study)?;
+    Ok((study.scenes, figures))
 }
 
-/// Returns the table of the figures with its title, for `pxpl5 figures`.
-pub(super) fn table() -> Result<String, CliError> {
-    Ok(format!("\nVolumetric slices (docs/volumetric.md)\n{}", rows_text(&measured(false)?.1.figures)))
+/// Prints the table of the figures with its title, for `pxpl5 figures`.
+pub(super) fn print_table() -> Result<(), CliError> {
+    print(&titled("Volumetric slices (docs/volumetric.md)", &measured(false)?.1.figures))
 }
 
 fn draw(folder: &mut OutputFolder, scenes: &[Arc<Scene>]) -> Result<(), CliError> {

@@ -2,7 +2,7 @@
 
 use crate::head_views::HeadViews;
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::result_window::ResultWindow;
+use crate::result::result_window::ResultWindow;
 use pxpl5_machine::{Arrival, Record};
 use pxpl5_scene::Hmd;
 use pxpl5_wire::PeriodNumber;

@@ -3,11 +3,11 @@
 //! Each picture is processed once, after all its records are complete, in the order in which pictures are shown. Memory
 //! grows only by one byte per display period if the number of samples is limited.
 
-use crate::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
-use crate::observers::FinalResults;
-use crate::picture_ends::PictureResults;
+use crate::observe::observers::FinalResults;
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::summary::retraces;
+use crate::result::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
+use crate::result::picture_ends::PictureResults;
+use crate::result::summary::retraces;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
 use pxpl5_sim::Samples;

@@ -10,8 +10,8 @@
 //!
 //! A picture is evaluated when its period ends, so a longer run does not change the result.
 
-use crate::picture_ends::{PictureResult, PictureResults};
-use crate::result_window::ResultWindow;
+use crate::result::picture_ends::{PictureResult, PictureResults};
+use crate::result::result_window::ResultWindow;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 

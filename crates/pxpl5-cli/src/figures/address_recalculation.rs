@@ -1,10 +1,12 @@
 //! The figures of the papers on address recalculation with an ideal renderer, as a table, a document and pictures.
 
-use super::settings::put;
+use super::args::FiguresArgs;
+use super::table::{fresh, rows_text};
+use crate::arp::settings::put;
 use crate::error::CliError;
-use crate::figures::{FiguresArgs, fresh, rows_text};
 use crate::output::{OutputFile, OutputFolder};
-use crate::terminal::{answer, progress};
+use crate::progress::Bar;
+use crate::terminal::answer;
 use pxpl5::arp::{figures, pictures};
 use serde_json::json;
 
@@ -13,9 +15,10 @@ pub(super) fn run(args: &FiguresArgs) -> Result<(), CliError> {
     // Open all outputs before the walks, so that a bad path fails at once.
     let document = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "figures")).transpose()?;
-    let bar = progress(2, "walks and pictures", args.quiet);
+    let mut bar = Bar::new("walks and pictures", args.quiet);
     let (experiments, rows) = figures::all()?;
-    bar.add_one();
+    bar.advance(1, 2);
+    bar.check("nothing was written")?;
     let markdown = figures::markdown(&experiments, &rows);
     document.map(|document| document.write(markdown.as_bytes())).transpose()?;
     if let Some(mut folder) = folder {

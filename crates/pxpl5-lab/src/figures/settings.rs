@@ -1,23 +1,22 @@
 //! Settings of all measurements of figures, and the cached runs that several figures share.
 
 use super::applications::{Applications, key_of};
-use super::heads::{self, PHOTODIODE_LINE, RigLines};
 use super::interpretation::Interpretation;
-use super::measurement::{FigureValue, Measurement, Result, scene_named};
-use super::{all, slats};
-use crate::StopFlag;
+use super::rig_lines::{self, PHOTODIODE_LINE, RigLines};
+use super::value::{Result, scene_named};
 use crate::levels::summarise;
+use crate::study::check;
 use pxpl5_gp::CodeUse;
 use pxpl5_machine::{MachineConfig, PRESETS, Preset};
-use pxpl5_run::{Experiment, ExperimentError, Level, Pipeline, Pixels, Summary};
-use pxpl5_sim::figures::Basis;
+use pxpl5_run::{Experiment, Level, Pipeline, Pixels, Summary};
+use pxpl5_sim::StopFlag;
 use pxpl5_sim::parameters::{ParameterTable, SettingError, Value};
 use std::sync::Arc;
 use tracking::rig::Measurement as RigMeasurement;
 
 /// Settings of all measurements of figures: the level of detail, and changes of machine parameters.
 #[derive(Clone, Debug)]
-pub struct Bench {
+pub struct FigureSettings {
     /// Level of detail at which each figure is measured.
     pub level: Level,
     /// Paths of parameters, with values that replace the values of the presets. A path that begins with a preset's name
@@ -30,18 +29,16 @@ pub struct Bench {
     pub frames: u64,
     /// Answers to the questions that the papers leave open about Rendering Control.
     pub interpretation: Interpretation,
-    /// True if the figures' intervals are computed too. The intervals take half of the time of all measurements.
-    pub intervals: bool,
     /// True if the times of triangles come from executed code ([`Self::with_times_of_code`]), so that none is fitted.
     pub has_times_of_code: bool,
     /// Flag with which another thread stops the measurements.
-    pub stop: StopFlag,
+    pub(crate) stop: StopFlag,
     pub(crate) applications: Arc<Applications>,
 }
 
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
 
-impl Bench {
+impl FigureSettings {
     /// Returns settings with unchanged presets. The fly-through of the scene "mig" has 10 seeds of 150 frames.
     #[must_use]
     pub fn new(level: Level) -> Self {
@@ -51,7 +48,6 @@ impl Bench {
             seeds: 10,
             frames: 150,
             interpretation: Interpretation::USUAL,
-            intervals: true,
             has_times_of_code: false,
             stop: StopFlag::default(),
             applications: Arc::default(),
@@ -64,19 +60,7 @@ impl Bench {
         Self { seeds, frames, ..self }
     }
 
-    /// Returns the same settings without intervals of the figures.
-    #[must_use]
-    pub fn without_intervals(self) -> Self {
-        Self { intervals: false, ..self }
-    }
-
-    /// Returns the same settings with the flag `stop`, with which another thread stops the measurements.
-    #[must_use]
-    pub fn with_stop(self, stop: StopFlag) -> Self {
-        Self { stop, ..self }
-    }
-
-    /// Returns the same settings with `changes` in addition to the changes of this bench.
+    /// Returns the same settings with `changes` in addition to the changes of these settings.
     #[must_use]
     pub fn with_changes(&self, changes: impl IntoIterator<Item = (String, u64)>) -> Self {
         Self { changes: self.changes.iter().cloned().chain(changes).collect(), ..self.clone() }
@@ -101,28 +85,6 @@ impl Bench {
             }
         }
         self
-    }
-
-    /// Measures the figure with the number `id`.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`ExperimentError`] if the experiment fails, [`ExperimentError::Scene`] for an unknown figure, and
-    /// [`ExperimentError::Stopped`] if another thread sets the flag.
-    pub fn measure(&self, id: &str) -> Result<FigureValue> {
-        let figure = all().find(|figure| figure.id == id);
-        figure.ok_or_else(|| ExperimentError::Scene(format!("there is no figure {id}")))?.value(self)
-    }
-
-    /// Returns the provenance of a figure under these settings. With times of executed code, no time of a triangle is
-    /// fitted, so the limits of Slats become checks.
-    pub(super) fn basis_of(&self, figure: &Measurement) -> Basis {
-        match figure.basis {
-            Basis::Fitted(chosen) if self.has_times_of_code && chosen.starts_with("gp.triangle_ns") => {
-                Basis::Interpretation(slats::CLUMP_RULE)
-            }
-            basis => basis,
-        }
     }
 
     /// Returns the machine of a preset with the changed parameters.
@@ -187,8 +149,8 @@ impl Bench {
 
     /// Runs an experiment and returns its summary. The boolean is true if a backing store may have been full.
     pub(super) fn summarise(&self, experiment: &Experiment) -> Result<(Summary, bool)> {
-        self.stop.check()?;
-        let experiment = experiment.clone().pixels(Pixels::Off).level(self.level).host(self.stop.clone());
+        check(&self.stop)?;
+        let experiment = experiment.clone().pixels(Pixels::Off).level(self.level).stopped_by(self.stop.clone());
         if self.level == Level::Analytic {
             return Ok((summarise(&crate::registry(), &experiment)?, true));
         }
@@ -205,7 +167,7 @@ impl Bench {
             return Ok(measured);
         }
         let machine = self.interpreted("small-hmd")?;
-        heads::under_line(&machine, (&self.interpretation, &self.stop), line).map(Arc::new)
+        rig_lines::under_line(&machine, (&self.interpretation, &self.stop), line).map(Arc::new)
     }
 
     pub(super) fn photodiode_line(&self) -> Option<u64> {
@@ -231,17 +193,17 @@ mod tests {
     /// Tests which changes of parameters require new machines. A change to the preset's own value requires none.
     #[test]
     fn only_changes_of_the_machine_or_the_photodiode_need_another_run() {
-        let bench = Bench::new(Level::Transaction);
-        let with = |path: &str, value| bench.with_changes([(path.to_owned(), value)]);
+        let settings = FigureSettings::new(Level::Transaction);
+        let with = |path: &str, value| settings.with_changes([(path.to_owned(), value)]);
         let words = MachineConfig::small_hmd().renderer.fifo_words;
-        assert!(bench.has_machines_of(&with("renderer.fifo_words", words)));
+        assert!(settings.has_machines_of(&with("renderer.fifo_words", words)));
         for (path, value) in [
             ("renderer.fifo_words", words + 1),
             ("slats:renderer.fifo_words", words + 1),
             (PHOTODIODE_LINE, 3),
             ("no.such_parameter", 1),
         ] {
-            assert!(!bench.has_machines_of(&with(path, value)), "{path}");
+            assert!(!settings.has_machines_of(&with(path, value)), "{path}");
         }
     }
 }

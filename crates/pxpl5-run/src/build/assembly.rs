@@ -1,6 +1,8 @@
 //! Builds the machine of an experiment and loads its programs.
 
-use crate::assembled::Assembled;
+use crate::build::assembled::Assembled;
+use crate::build::preparation::Preparation;
+use crate::built_in::displays;
 use crate::display_list::display_list_for;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
@@ -8,10 +10,8 @@ use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::keys::PipelineSettings;
 use crate::level::{Level, with_clocks_of_instructions};
-use crate::papers::displays;
 use crate::pipeline::{Pipeline, Setup};
 use crate::pipelines;
-use crate::preparation::Preparation;
 use crate::registry::{DisplayEntry, PipelineEntry};
 use crate::scene_views::{hmd_on, poses, views};
 use crate::views::{FrameStarts, ReportTimes};

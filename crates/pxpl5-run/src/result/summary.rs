@@ -1,4 +1,4 @@
-use crate::due::DuePictures;
+use crate::result::due::DuePictures;
 use pxpl5_sim::Samples;
 use pxpl5_sim::Statistics;
 

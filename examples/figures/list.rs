@@ -1,22 +1,20 @@
 //! The diagrams of pipelines in the papers, redrawn from simulations.
 
-use crate::error::StudyError;
-use crate::experiment_file::ExperimentFile;
-use pxpl5_run::Outcome;
+use pxpl5::{ExperimentFile, Outcome, StudyError};
 
 /// A diagram of a pipeline in a paper, with the experiment that redraws it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PipelineFigure {
+pub(crate) struct PipelineFigure {
     /// Name of the drawing's file, without the extension.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// Paper and figure number.
-    pub source: &'static str,
+    pub(crate) source: &'static str,
     /// Caption of the drawing: the pipeline, and the effect that is visible.
-    pub shows: &'static str,
+    pub(crate) shows: &'static str,
     /// Text of the experiment file.
-    pub experiment: &'static str,
+    pub(crate) experiment: &'static str,
     /// Number of drawn display fields. `None` draws a default number.
-    pub fields: Option<u64>,
+    pub(crate) fields: Option<u64>,
 }
 
 /// The papers' diagrams of pipelines. The papers name no scenes. This project chose scenes for which the durations of
@@ -25,7 +23,7 @@ pub struct PipelineFigure {
 ///
 /// TR94's figures 3 and 4 show theory. Like all rows of ACCURACY.md, both figures follow the rules in the text of TR94: a
 /// renderer with a finished region continues with another region.
-pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
+pub(crate) const PIPELINE_FIGURES: [PipelineFigure; 6] = [
     PipelineFigure {
         name: "tr94-1-rendering-control-mono",
         source: "TR94 figure 1",
@@ -77,13 +75,13 @@ impl PipelineFigure {
     /// # Errors
     ///
     /// Returns [`StudyError`] if the experiment cannot run.
-    pub fn run(&self) -> Result<Outcome, StudyError> {
+    pub(crate) fn run(&self) -> Result<Outcome, StudyError> {
         let plan = ExperimentFile::parse(self.experiment, self.name)?.resolve()?;
         Ok(plan.experiment(plan.load_scene()?).run()?)
     }
 
     /// Returns the title of the diagram, which stands above the drawing.
-    pub fn title(&self) -> String {
+    pub(crate) fn title(&self) -> String {
         format!("{} ({})", self.shows, self.source)
     }
 }

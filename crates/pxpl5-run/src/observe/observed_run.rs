@@ -1,11 +1,11 @@
 //! The part of a run that has been simulated, as input for timelines and tables.
 
 use crate::experiment::Experiment;
-use crate::latency::{LatencyParts, parts};
-use crate::outcome::Outcome;
 use crate::pipeline::{PictureTimes, Pipeline};
+use crate::result::latency::{LatencyParts, parts};
+use crate::result::outcome::Outcome;
+use crate::result::tally::of_picture;
 use crate::stepper::Stepper;
-use crate::tally::of_picture;
 use pxpl5_machine::{Observation, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use std::borrow::Cow;
@@ -69,7 +69,7 @@ impl ObservedRun<'_> {
 
     /// Returns the number of periods of the first display that the whole run takes.
     pub const fn fields(&self) -> u64 {
-        self.experiment.length()
+        self.experiment.fields
     }
 
     /// Returns the instant at which the observations end.
