@@ -164,16 +164,19 @@ fn under_wait(rows: &[&FigureRow], other_rule: &[FigureRow]) -> String {
 fn tables(figures: &Figures) -> String {
     let mut text = String::new();
     for group in figures.groups.iter().filter(|group| group.document.is_none()) {
-        let mut above = String::new();
+        let mut above = (String::new(), "");
         let rows = group.rows.iter().map(|row| {
             let provenance = PROVENANCE.1(row);
-            let is_repeated = provenance == above && provenance.contains(' ');
-            above = provenance.clone();
+            let paper = row.source.rsplit_once(", ").map_or("", |(paper, _)| paper);
+            // A source, or a provenance of several words, is not repeated in the next row.
+            let is_repeated = provenance == above.0 && provenance.contains(' ');
+            let source = if paper == above.1 { String::new() } else { format!(" ({paper})") };
+            above = (provenance.clone(), paper);
             [
                 row.id.to_owned(),
-                format!("{} ({})", row.statement, row.source.rsplit_once(", ").map_or("", |(paper, _)| paper)),
+                format!("{}{source}", row.statement),
                 PUBLISHED.1(row),
-                SIMULATED.1(row),
+                SIMULATED.1(row).replacen(&format!(" {}", row.unit), "", 1),
                 format!("{}{}", error(row), if row.is_met { "" } else { " **miss**" }),
                 row.interval.map_or_else(|| "-".to_owned(), range)
                     + if row.is_out_of_reach() { ", **out of reach**" } else { "" },
@@ -377,19 +380,9 @@ fn of_application(effects: &[Effect]) -> String {
 fn host(effects: &[Effect]) -> String {
     let cells = effects.iter().filter_map(|effect| {
         let ((path, value), (_, latency, _)) = (effect.changes.first()?, effect.figures.first()?);
-        Some((format!("`{path}`"), format!("{} ms: {} ms", four(*value as f64 / 1e6), four(*latency))))
+        Some((format!("{} ms: {} ms", four(*value as f64 / 1e6), four(*latency)), format!("`{path}`")))
     });
-    let mut rows: Vec<(String, Vec<String>)> = Vec::new();
-    for (path, cell) in cells {
-        match rows.last_mut().filter(|(last, _)| *last == path) {
-            Some((_, cells)) => cells.push(cell),
-            None => rows.push((path, vec![cell])),
-        }
-    }
-    rows_of(
-        ["parameter", "its value, and row 17 with it"],
-        rows.into_iter().map(|(path, cells)| [path, cells.join(", ")]),
-    )
+    rows_of(["value, and row 17 with it", "parameter"], grouped(cells))
 }
 
 fn fifo(effects: &[Effect]) -> String {

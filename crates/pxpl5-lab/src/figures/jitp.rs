@@ -100,7 +100,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         basis: Basis::Derived("240 visible lines"),
         reason: "Each visible line has one transform",
-        cause: "A field has 240 visible lines, and nothing is drawn for the lines of the retrace. JITP prints a round number",
+        cause: "A field has 240 visible lines, and JITP prints a round number",
         ..figure(
             "J5",
             JITP,

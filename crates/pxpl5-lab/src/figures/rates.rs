@@ -100,7 +100,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         reason: "The steps of the array's program and the bits of its numbers give the rate",
         varied: OF_RENDERER,
-        cause: "The published rate is a round number of the design. The rate of the model follows from the bit-serial program of the pixel array",
+        cause: "The published rate is a round number of the design; the model's follows from the array's bit-serial program",
         ..figure(
             "R4b",
             ("F89", "renderer"),
