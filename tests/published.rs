@@ -9,8 +9,8 @@ use pxpl5::figures::{
     AlternativeQuery, Basis, Documents, FigureQuery, FigureRow, FigureSettings, Figures, Varied, all, at_all_levels,
     documents,
 };
-use pxpl5_sim::figures::column::{PUBLISHED, SIMULATED, error};
 use pxpl5::{Level, Study, Watcher};
+use pxpl5_sim::figures::column::{PUBLISHED, SIMULATED, error};
 use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::ops::Deref;
@@ -48,8 +48,11 @@ impl Watcher for Reports {
 
 impl Measured {
     fn all() -> Self {
-        let query =
-            FigureQuery { settings: FigureSettings::new(Level::Transaction), intervals: runs_all_cases(), only: Vec::new() };
+        let query = FigureQuery {
+            settings: FigureSettings::new(Level::Transaction),
+            intervals: runs_all_cases(),
+            only: Vec::new(),
+        };
         let mut reports = Reports::default();
         let figures = query.run(&mut reports).expect("every experiment runs on its preset");
         Self { figures, reports }

@@ -83,7 +83,13 @@ impl BudgetArgs {
     }
 
     pub(crate) fn monitor(self, fields: u64) -> CostMonitor {
-        CostMonitor { budget: self, fields, begun: Instant::now(), bytes_before: resident_bytes(), first: OnceCell::new() }
+        CostMonitor {
+            budget: self,
+            fields,
+            begun: Instant::now(),
+            bytes_before: resident_bytes(),
+            first: OnceCell::new(),
+        }
     }
 }
 

@@ -47,7 +47,7 @@ struct PictureDifference {
 pub(crate) fn run(args: DiffArgs) -> Result<(), CliError> {
     let study = DiffQuery { reports: [report(&args.a)?, report(&args.b)?] };
     let mut found = study.run(&mut ())?;
-    found.results.retain(|changed| changed.percent().is_none_or(|percent| percent.abs() >= args.least));
+    found.results.retain(|changed| changed.percent.is_none_or(|percent| percent.abs() >= args.least));
     let pictures = pictures(&args.a, &args.b)?;
     if args.json {
         let mut object = serde_json::to_value(&found).map_err(CliError::failure)?;
@@ -153,7 +153,7 @@ fn line(changed: &Changed) -> String {
         Some(Value::Number(number)) if number.is_f64() => format!("{:.4}", number.as_f64().unwrap_or(f64::NAN)),
         Some(other) => other.to_string(),
     };
-    let percent = changed.percent().map_or_else(String::new, |percent| format!("  {percent:+.1} %"));
+    let percent = changed.percent.map_or_else(String::new, |percent| format!("  {percent:+.1} %"));
     format!("{:<44} {:>16} {:>16}{percent}\n", changed.key, cell(&changed.a), cell(&changed.b))
 }
 
@@ -163,10 +163,9 @@ mod tests {
 
     #[test]
     fn a_difference_shows_the_relative_change_and_a_dash_for_a_missing_number() {
-        let changed =
-            Changed { key: "latency_ms.mean".to_owned(), a: Some(Value::from(20.0)), b: Some(Value::from(25.0)) };
+        let changed = Changed::new("latency_ms.mean", Some(&Value::from(20.0)), Some(&Value::from(25.0)));
         assert!(line(&changed).ends_with("20.0000          25.0000  +25.0 %\n"), "{}", line(&changed));
-        let missing = Changed { b: None, ..changed };
+        let missing = Changed::new("latency_ms.mean", Some(&Value::from(20.0)), None);
         assert!(line(&missing).ends_with("20.0000                -\n"), "{}", line(&missing));
     }
 }

@@ -17,15 +17,18 @@ pub struct Changed {
     pub a: Option<Value>,
     /// Value in the second report. `None` if the second report lacks the value.
     pub b: Option<Value>,
+    /// Change from the first to the second value, in percent of the first value. `None` unless both values are numbers
+    /// and the first is not 0.
+    pub percent: Option<f64>,
 }
 
 impl Changed {
-    /// Returns the change from the first to the second value, in percent of the first value. `None` unless both values
-    /// are numbers and the first is not 0.
-    pub fn percent(&self) -> Option<f64> {
-        let [a, b] = [&self.a, &self.b].map(|value| value.as_ref().and_then(Value::as_f64));
-        let (a, b) = (a?, b?);
-        (a != 0.0).then(|| (b / a - 1.0) * 100.0)
+    /// Creates the difference of two values.
+    #[must_use]
+    pub fn new(key: &str, a: Option<&Value>, b: Option<&Value>) -> Self {
+        let numbers = a.and_then(Value::as_f64).zip(b.and_then(Value::as_f64)).filter(|(a, _)| *a != 0.0);
+        let percent = numbers.map(|(a, b)| (b / a - 1.0) * 100.0);
+        Self { key: key.to_owned(), a: a.cloned(), b: b.cloned(), percent }
     }
 }
 
@@ -112,7 +115,7 @@ fn diff(a: &Value, b: &Value) -> Differences {
             all.equal += usize::from(!is_setting);
             continue;
         }
-        let changed = Changed { key: key.clone(), a: a.cloned(), b: b.cloned() };
+        let changed = Changed::new(key, a, b);
         if is_setting { all.settings.push(changed) } else { all.results.push(changed) }
     }
     all
@@ -155,7 +158,7 @@ mod tests {
             (vec!["pipeline".to_owned()], vec!["latency_ms.mean".to_owned()])
         );
         assert_eq!((found.equal, found.same_trace), (2, false));
-        assert!((found.results[0].percent().expect("numbers") - 25.0).abs() < 1e-9);
+        assert!((found.results[0].percent.expect("numbers") - 25.0).abs() < 1e-9);
     }
 
     #[test]
@@ -166,7 +169,7 @@ mod tests {
         let found = diff(&a, &b);
         let keys: Vec<&str> = found.results.iter().map(|changed| changed.key.as_str()).collect();
         assert_eq!(keys, ["latency_parts_ms.copy.mean", "latency_parts_ms.copy.name"]);
-        assert!(found.results.iter().all(|changed| changed.b.is_none() && changed.percent().is_none()));
+        assert!(found.results.iter().all(|changed| changed.b.is_none() && changed.percent.is_none()));
     }
 
     #[test]

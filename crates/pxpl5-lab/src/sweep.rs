@@ -49,11 +49,12 @@ pub use inputs::hash_of_model;
 pub use merge::{Merged, merge};
 pub use point::{PointResults, Status, SweepRow, Swept};
 pub use resources::{PointSample, TaskResources};
+pub use rows::ROWS_FILE;
 pub use run::{RunOptions, SweepQuery};
 pub use scenes::SceneCache;
 pub use shard::Shard;
 pub use space::{Axis, AxisValues, MAX_POINTS, SweepSpace, leaves};
-pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
+pub use store::{RESULTS_FILE, Store, TIMES_FILE};
 
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_measure::Measure;

@@ -7,7 +7,7 @@ use crate::settings::Settings;
 use pxpl5::compare::{CONFIDENCE, CompareQuery, MAX_SEEDS, Precision, RowChoice, UntilPrecise};
 use pxpl5::figures::{FigureQuery, FigureRow, FigureSettings, all};
 use pxpl5::interpretations::InterpretationQuery;
-use pxpl5::lab::diff::{Changed, DiffQuery};
+use pxpl5::lab::diff::DiffQuery;
 use pxpl5::levels::{LevelQuery, LevelRecord};
 use pxpl5::limit::{Limit, LimitQuery, Model, OverQuery};
 use pxpl5::rig::{PASSES, Rig, RigQuery};
@@ -234,19 +234,7 @@ pub(crate) fn limit_over<'py>(
 pub(crate) fn diff<'py>(py: Python<'py>, a: &str, b: &str) -> PyResult<Bound<'py, PyAny>> {
     let read = |text: &str| serde_json::from_str::<serde_json::Value>(text).map_err(wrong_setting);
     let found = DiffQuery { reports: [read(a)?, read(b)?] }.run(&mut ()).map_err(wrong_setting)?;
-    let rows = |changes: &[Changed]| -> Vec<serde_json::Value> {
-        let row = |changed: &Changed| json!({ "key": changed.key, "a": changed.a, "b": changed.b, "percent": changed.percent() });
-        changes.iter().map(row).collect()
-    };
-    python(
-        py,
-        &json!({
-            "same_trace": found.same_trace,
-            "settings": rows(&found.settings),
-            "results": rows(&found.results),
-            "equal": found.equal,
-        }),
-    )
+    python(py, &found)
 }
 
 /// Measures the latency of a pipeline with the pendulum rig of I3D95: from outside with photodiodes, and from inside

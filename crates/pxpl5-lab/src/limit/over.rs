@@ -82,7 +82,7 @@ pub struct OverQuery {
 }
 
 /// Result of a search for the values of a setting that reach a goal.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct OverLimit {
     /// Smallest value that reaches the goal. `None` if no value reaches the goal, or if no smaller value misses the
     /// goal.
@@ -326,15 +326,7 @@ impl Search<'_> {
         let best = self.trials.iter().max_by(|a, b| a.1.score.total_cmp(&b.1.score));
         let (missed_at, because) =
             best.map(|(number, trial)| (self.query.values.value(*number), trial.because.clone())).unzip();
-        Ok(OverLimit {
-            least: None,
-            most: None,
-            reached: false,
-            tried: self.tried(),
-            missed_at,
-            because: because.flatten(),
-            islands: Vec::new(),
-        })
+        Ok(OverLimit { tried: self.tried(), missed_at, because: because.flatten(), ..OverLimit::default() })
     }
 }
 

@@ -3,10 +3,11 @@
 use super::{Axis, AxisValues, Sweep, SweepSpace, measures};
 use pxpl5_measure::Measure;
 use pxpl5_run::Fingerprint;
-use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::parameters::{FileError, FileErrorKind, SettingError};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Data that all rows of a sweep share.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -89,6 +90,26 @@ impl Header {
         }
         inputs.iter().for_each(|(name, contents)| hash.setting("input", format_args!("{name}={contents}")));
         Self { config_hash: hash.to_string(), ..self }
+    }
+
+    /// Returns an error that names the first difference if the file at `path` has the header of another sweep.
+    pub(super) fn check(&self, path: &Path, found: &Self) -> Result<(), FileError> {
+        if found == self {
+            return Ok(());
+        }
+        let pairs = [
+            ("schema", &self.schema, &found.schema),
+            ("version", &self.version, &found.version),
+            ("machine", &self.machine, &found.machine),
+            ("config_hash", &self.config_hash, &found.config_hash),
+        ];
+        let differing = pairs.into_iter().find(|(_, expected, found)| expected != found);
+        let (what, expected, found) = match differing {
+            Some((what, expected, found)) => (what, expected.clone(), found.clone()),
+            None => ("title", format!("{:?}", self.title), format!("{:?}", found.title)),
+        };
+        let reason = format_args!("these are results of another sweep: {what} was {found}, expected {expected}");
+        Err(FileError::because(FileErrorKind::Occupied, reason).in_file(path.display()))
     }
 }
 

@@ -4,9 +4,8 @@
 //! thousand shards of a million points take 28 MB. A separate table for each file would take 8 GB and exceed the number
 //! of files that a process may open.
 
-use super::rows::{Points, Scan, contradiction};
-use super::store::check_header;
-use super::{Header, ROWS_FILE, Status, SweepRow};
+use super::rows::{Points, ROWS_FILE, Scan, contradiction};
+use super::{Header, Status, SweepRow};
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -39,7 +38,7 @@ impl Joined {
             // A shard that was interrupted at its start contributes nothing.
             let Some(header) = scan.header.take() else { continue };
             let joined = joined.get_or_insert_with(|| Self::new(header.clone()));
-            check_header(&path, &joined.header, Some(&header))?;
+            joined.header.check(&path, &header)?;
             joined.files.push(RowBlocks::of(path));
             while let Some((row, byte)) = scan.next()? {
                 joined.add(&row, byte)?;
@@ -60,7 +59,9 @@ impl Joined {
             return Ok((joined, 0));
         }
         let mut scan = Scan::open(path)?;
-        check_header(path, header, scan.header.as_ref())?;
+        if let Some(found) = &scan.header {
+            header.check(path, found)?;
+        }
         while let Some((row, byte)) = scan.next()? {
             joined.add(&row, byte)?;
         }

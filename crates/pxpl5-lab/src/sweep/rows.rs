@@ -7,6 +7,9 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
+/// Name of the file of result rows: a header line, then one line for each point.
+pub const ROWS_FILE: &str = "rows.jsonl";
+
 /// Sequential reader of a file of rows, from its beginning to its last complete line.
 #[derive(Debug)]
 pub(super) struct Scan {

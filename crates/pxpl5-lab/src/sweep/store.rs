@@ -3,20 +3,17 @@
 
 use super::joined::Joined;
 use super::replacement::Replacement;
-use super::rows::Points;
+use super::rows::{Points, ROWS_FILE};
 use super::shard::Shard;
 use super::table::Table;
 use super::{Header, SweepRow};
 use crate::manifest::{MANIFEST_FILE, Manifest};
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use serde::Serialize;
-use std::fmt::Display;
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 
-/// Name of the file of result rows: a header line, then one line for each point.
-pub const ROWS_FILE: &str = "rows.jsonl";
 /// Name of the file of durations: the header line, then one line for each point with its computing time.
 pub const TIMES_FILE: &str = "times.jsonl";
 /// Name of the file with the rows as comma-separated values.
@@ -170,8 +167,8 @@ impl Store {
 pub(super) fn check_command(folder: &Path) -> Result<(), FileError> {
     match Manifest::read(folder)? {
         Some(manifest) if manifest.command() != Manifest::SWEEP => {
-            let command = manifest.command();
-            Err(occupied(folder, format_args!("these are files of `pxpl5 {command}`; choose another folder")))
+            let reason = format_args!("these are files of `pxpl5 {}`; choose another folder", manifest.command());
+            Err(FileError::because(FileErrorKind::Occupied, reason).in_file(folder.display()))
         }
         _ => Ok(()),
     }
@@ -268,27 +265,4 @@ fn whole_lines(path: &Path) -> u64 {
         line.clear();
     }
     whole
-}
-
-/// Returns an error if the header of a file differs from the header of this sweep. The error names the first
-/// difference.
-pub(super) fn check_header(path: &Path, expected: &Header, found: Option<&Header>) -> Result<(), FileError> {
-    let Some(found) = found.filter(|found| *found != expected) else { return Ok(()) };
-    let pairs = [
-        ("schema", &expected.schema, &found.schema),
-        ("version", &expected.version, &found.version),
-        ("machine", &expected.machine, &found.machine),
-        ("config_hash", &expected.config_hash, &found.config_hash),
-    ];
-    let differing = pairs.into_iter().find(|(_, expected, found)| expected != found);
-    let (what, expected, found) = match differing {
-        Some((what, expected, found)) => (what, expected.clone(), found.clone()),
-        None => ("title", format!("{:?}", expected.title), format!("{:?}", found.title)),
-    };
-    let reason = format_args!("these are results of another sweep: {what} was {found}, expected {expected}");
-    Err(occupied(path, reason))
-}
-
-fn occupied(path: &Path, reason: impl Display) -> FileError {
-    FileError::because(FileErrorKind::Occupied, reason).in_file(path.display())
 }
