@@ -17,10 +17,6 @@ use tracking::tracker::TrackerConfig;
 /// Triangle counts of the spheres in experiment E1 (`turning`). The papers' diagram ends at 1,000 triangles.
 const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 
-/// Duration of an NTSC field in ms. Rendering Control shows pictures at retraces, so a smaller growth of latency may be
-/// invisible.
-const FIELD_MS: f64 = 1001.0 / 60.0;
-
 const FIELDS: u64 = 60;
 /// Number of compared rotation latencies in each run of experiment E1 (`turning`). All runs must have the same number,
 /// because they are compared field by field.
@@ -66,9 +62,11 @@ fn turning(settings: &FigureSettings) -> Result<Vec<FigureRow>> {
     let greatest = differences.max().filter(|_| turns.iter().all(|turn| turn.len() == COMPARED));
     let grows = "latency of a picture with 10,000 triangles under Rendering Control less that with 10";
     let growth = drawn_ms[3] - drawn_ms[0];
+    // The diagram has no numbers, and its curve rises. A small scene waits for a retrace, so it may take no longer.
+    let rises = growth > 0.0 && drawn_ms.is_sorted();
     let rows = [
         row("A4", same, "ps", [0.0, greatest.map_or(f64::NAN, |ps| ps as f64)], Basis::Free),
-        shape("fig. 1", grows, "ms", [f64::NAN, growth], growth > FIELD_MS),
+        shape("fig. 1", grows, "ms", [f64::NAN, growth], rises),
     ];
     Ok(rows.map(|row| FigureRow { experiment: "E1", ..row }).to_vec())
 }
