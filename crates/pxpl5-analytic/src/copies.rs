@@ -1,6 +1,7 @@
 //! Copies of regions to the frame buffers. A frame-buffer port receives one region at a time, in order of arrival.
 
-use super::renderer::{Array, Times};
+use super::model::SlatsModel;
+use super::renderer::{Array, Times, later};
 
 /// Computes an array with one value for each machine. The compiler turns the loop into vector instructions.
 macro_rules! lanes {
@@ -98,6 +99,44 @@ pub(super) fn make<const N: usize>(
     ports.copy_apart(arrays, &left, region);
     *free = ports.free;
     std::array::from_fn(|i| CopyTimes { begin_ns: ports.begins.0[i], end_ns: ports.ends.0[i] })
+}
+
+/// Returns the times of the copies of the top regions, if renderers with few bottom regions may ask for them before other
+/// renderers have asked for all of theirs. The ports serve both in order of arrival.
+///
+/// `queues` are the copies of the bottom and of the top regions. `ready` is the time at which a renderer asks for its
+/// first top region if it has copied its bottom regions at `ends`.
+pub(super) fn overtaking(
+    model: &SlatsModel,
+    [bottom, top]: [[Queue; MAX_RENDERERS]; 2],
+    ready: [f64; MAX_RENDERERS],
+    ends: [f64; MAX_RENDERERS],
+) -> CopyTimes {
+    // Copies that a renderer has left of one half, the time at which it asks for the next one, and true for the top half.
+    let of_renderer = |r: usize| match bottom[r].0 {
+        0 => (top[r], ready[r], true),
+        _ => (bottom[r], (r / model.source_channels + 1) as f64 * model.copy_order_ns(), false),
+    };
+    let mut renderers: Vec<(Queue, f64, bool)> = (0..model.renderers).map(of_renderer).collect();
+    let mut free = [f64::MIN; 2];
+    let mut times = CopyTimes { begin_ns: f64::INFINITY, end_ns: f64::MIN };
+    loop {
+        let asking = renderers.iter().enumerate().filter(|(_, (left, ..))| left.0 != 0).map(|(r, (_, at, _))| (*at, r));
+        let first = asking.reduce(|first, other| if other.0 < first.0 { other } else { first });
+        let Some((at, r)) = first else { return times };
+        let (left, next, is_top) = &mut renderers[r];
+        let port = &mut free[usize::from(left.0 & Queue::RIGHT != 0)];
+        let begin = later(*port, at);
+        *port = begin + model.region_ns;
+        if *is_top {
+            times = CopyTimes { begin_ns: times.begin_ns.min(begin), end_ns: later(times.end_ns, *port) };
+        }
+        left.0 >>= Queue::BITS;
+        *next = *port;
+        if left.0 == 0 && !*is_top {
+            (*left, *next, *is_top) = (top[r], ready[r] + later(0.0, *port - ends[r]), true);
+        }
+    }
 }
 
 /// Returns the index of the renderer that makes the next copy on all machines. Returns `None` if this renderer differs

@@ -185,6 +185,17 @@ impl SlatsModel {
         FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
     }
 
+    /// Returns the time from the retrace to the begin of TRANSFORM, in nanoseconds. Before, the first of several
+    /// processors prepares the messages that clear the regions, and the view of the others.
+    pub(super) fn transform_begins_ns(&self) -> f64 {
+        if self.gps > 1 { 2.0 * self.message_ns } else { 0.0 }
+    }
+
+    /// Returns the time of a message with copy commands for two regions, of 11 words each, in nanoseconds.
+    pub(super) fn copy_order_ns(&self) -> f64 {
+        self.overhead_ns + 2.0 * 11.0 * self.word_ns
+    }
+
     /// Returns the time of TRANSFORM for `triangles` triangles and both eyes, in nanoseconds.
     pub(super) fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
         let both_eyes = EYES * triangles;

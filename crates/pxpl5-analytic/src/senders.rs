@@ -255,7 +255,7 @@ impl<'a> Ring<'a> {
             }
             // The first GP continues after the software cost of both chains, and sends when both have been accepted.
             accepted_ns = begin_ns[1..].iter().fold(accepted_ns, |last, begin| later(last, begin - model.message_ns));
-            begin_ns[0] += 2.0 * model.message_ns;
+            begin_ns[0] += model.transform_begins_ns();
         }
         let sender = |(gp, clumps): (usize, &'c Vec<Clump>)| {
             let mut sender = Sender {

@@ -27,9 +27,9 @@ impl SlatsModel {
         let models = std::array::from_ref(self);
         let mut arrays = [Array::idle(); MAX_RENDERERS];
         let arrays = &mut arrays[..self.renderers];
-        let free = begin(models, arrays);
+        let bottom = begin(models, arrays);
         let done = senders::render(self, arrays, clumps).map(Times::all);
-        let [times] = end(models, arrays, done, free);
+        let [times] = end(models, arrays, done, bottom);
         times
     }
 
@@ -68,21 +68,32 @@ fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTri
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
     let mut arrays = [Array::idle(); MAX_RENDERERS];
     let arrays = &mut arrays[..models[0].renderers];
-    let free = begin(models, arrays);
+    let bottom = begin(models, arrays);
     let done = clumps::render(models, arrays, triangles, each);
-    end(models, arrays, done, free)
+    end(models, arrays, done, bottom)
 }
 
-/// With split copies, makes the renderers first copy the lower half of the previous field. Returns the times from which
-/// the ports of the two frame buffers are free.
+fn of_previous(model: &SlatsModel) -> [Queue; MAX_RENDERERS] {
+    model.layout(|region| region >= REGIONS / 2)
+}
+
+/// Copies of the lower half of the previous field.
+struct Before<const N: usize> {
+    /// Times from which the ports of the two frame buffers are free.
+    free: [Times<N>; 2],
+    /// Time at which each renderer has made its copies.
+    ends: [Times<N>; MAX_RENDERERS],
+}
+
+/// With split copies, makes the renderers first copy the lower half of the previous field.
 #[inline(always)]
-fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) -> [Times<N>; 2] {
-    let mut free = [Times::all(f64::MIN); 2];
+fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) -> Before<N> {
+    let mut before = Before { free: [Times::all(f64::MIN); 2], ends: [Times::all(f64::MIN); MAX_RENDERERS] };
     if models[0].split {
-        let of_bottom = models[0].layout(|region| region >= REGIONS / 2);
-        copy(models, arrays, Times::all(0.0), &of_bottom, &mut free);
+        copy(models, arrays, Times::all(0.0), &of_previous(&models[0]), &mut before.free);
+        arrays.iter().zip(&mut before.ends).for_each(|(array, end)| *end = array.free);
     }
-    free
+    before
 }
 
 /// Computes the copies of a field. `rendered` is the time at which the renderers have accepted all triangles. `cpu` is
@@ -92,7 +103,7 @@ fn end<const N: usize>(
     models: &[SlatsModel; N],
     arrays: &mut [Array<N>],
     [rendered, cpu]: [Times<N>; 2],
-    mut free: [Times<N>; 2],
+    Before { mut free, ends }: Before<N>,
 ) -> [FieldTimes; N] {
     let is_split = models[0].split;
     let of_top = models[0].layout(|region| !is_split || region < REGIONS / 2);
@@ -100,7 +111,18 @@ fn end<const N: usize>(
     let message = Times::each(|i| models[i].message_ns);
     // The copy commands are prepared while the clumps are sent, and follow them.
     let ordered = rendered.later(cpu + message);
-    let top = copy(models, arrays, ordered, &of_top, &mut free);
+    let mut ready = [Times::all(f64::MAX); MAX_RENDERERS];
+    arrays.iter().enumerate().for_each(|(r, array)| ready[r] = commanded(models, ordered, r).later(array.free));
+    let mut top = copy(models, arrays, ordered, &of_top, &mut free);
+    // A renderer may be ready for its top regions before another one asks for its last bottom region.
+    for i in 0..N {
+        let lane = |times: &[Times<N>; MAX_RENDERERS]| times.map(|time| time.0[i]);
+        let (ready, ends) = (lane(&ready), lane(&ends));
+        let last = ends.into_iter().fold(f64::MIN, f64::max) - models[i].region_ns;
+        if is_split && ready.into_iter().fold(f64::MAX, f64::min) < last {
+            top[i] = copies::overtaking(&models[i], [of_previous(&models[i]), of_top], ready, ends);
+        }
+    }
     // No closure here: a closure that is not inlined would lack the vector instructions.
     let bottom = if is_split {
         let retrace = Times::each(|i| models[i].field_ns);
@@ -121,13 +143,18 @@ fn copy<const N: usize>(
     queues: &[Queue; MAX_RENDERERS],
     free: &mut [Times<N>; 2],
 ) -> [CopyTimes; N] {
-    // A message with two copies has 22 words: SelectRegion and CopyRegion take 11 words per region.
-    let each = Times::<N>::each(|i| models[i].overhead_ns + 2.0 * 11.0 * models[i].word_ns);
     for (renderer, array) in arrays.iter_mut().enumerate() {
-        let commanded = from + each * Times::all((renderer + 1) as f64);
-        array.free = commanded.later(array.free);
+        array.free = commanded(models, from, renderer).later(array.free);
     }
     copies::make(arrays, queues, Times::each(|i| models[i].region_ns), free)
+}
+
+/// Returns the time at which a renderer has received its copy commands, if the first renderer's are sent at `from` and a
+/// board sends on several channels at a time.
+#[inline(always)]
+fn commanded<const N: usize>(models: &[SlatsModel; N], from: Times<N>, renderer: usize) -> Times<N> {
+    let round = (renderer / models[0].source_channels + 1) as f64;
+    from + Times::each(|i| models[i].copy_order_ns()) * Times::all(round)
 }
 
 pub(super) const CLOSED_FORM: ClosedForm =
@@ -187,7 +214,7 @@ fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
         region_copy_us: model.region_ns * 1e-3,
         first_copy_ms: length_ms(times.top),
         last_copy_ms: times.bottom.map_or(0.0, length_ms),
-        copy_begins_ms: times.top.begin_ns * 1e-6,
+        copy_begins_ms: (times.top.begin_ns - model.transform_begins_ns()) * 1e-6,
     }
 }
 
