@@ -24,8 +24,6 @@ pxpl5_sim::parameters::parameter_table! {
         frame_hz: f64 = 60.0, "Hz", Published, 60.0..=60.0 in 1.0..=1000.0, "CPR05 4.2";
         /// Number of display memories with different rates.
         memories: 4, "memories", Published, 1..=8, "CPR05 tables 1 and 2";
-        /// Fastest rotation of a head, used for faces that are out of sight.
-        fastest_turn_deg_per_s: f64 = 370.0, "deg/s", Published, 200.0..=600.0 in 1.0..=100000.0, "JITP, LIST83: the peak turn of a head";
     }
 }
 

@@ -29,7 +29,7 @@ const fn choice(name: &'static str, about: &'static str, values: KeyValues, para
     NumberKey { key: Key::new(name, about, values), parameter, per_unit: 1.0 }
 }
 
-const KEYS: [NumberKey; 12] = [
+const KEYS: [NumberKey; 11] = [
     number("display.width", "px", "visible pixels of a line", "width"),
     number("display.height", "px", "visible lines", "height"),
     number("display.hz", "Hz", "scans a second", "refresh_hz"),
@@ -69,7 +69,6 @@ const KEYS: [NumberKey; 12] = [
         ..number("display.response_ms", "ms", "time constant of a pixel's brightness", "response_us")
     },
     number("display.ports", "", "ports of a board on the ring", "ports"),
-    number("display.word_ns", "ns", "time of one word at a port", "word_ns"),
     number("display.bits", "", "bits of a pixel's colour", "bits"),
 ];
 
