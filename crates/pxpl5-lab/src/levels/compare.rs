@@ -26,9 +26,6 @@ const VARIANTS: [(Level, bool); 5] = [
 /// Choices of computed pixels for which the speed is measured. The analytic level has no pixels.
 const PIXELS: [Pixels; 3] = [Pixels::Off, Pixels::Lazy, Pixels::All];
 
-/// Number of seeds and of frames of the scene "mig". Small numbers suffice, because only the levels are compared.
-const MIG: (u64, u64) = (2, 60);
-
 /// Number of experiments whose speed is measured. They run one after the other on an otherwise idle computer.
 const TIMED: u64 = 16;
 
@@ -121,8 +118,7 @@ impl Study for LevelQuery {
 /// Returns the settings with which each variant measures figures. All variants share one cache, because some results do
 /// not depend on the level of detail.
 fn settings(stop: &StopFlag) -> Vec<FigureSettings> {
-    let by_table = FigureSettings::new(Level::Transaction).with_mig(MIG.0, MIG.1);
-    let by_table = FigureSettings { stop: stop.clone(), ..by_table };
+    let by_table = FigureSettings { stop: stop.clone(), ..FigureSettings::new(Level::Transaction) };
     let by_code = by_table.clone().with_times_of_code();
     let of = |(level, times_of_code)| {
         let settings = if times_of_code { &by_code } else { &by_table };
