@@ -5,7 +5,8 @@ use crate::error::CliError;
 use crate::numbers::{count_of, were, whole};
 use crate::options::{PipelineOptions, option_of, registry};
 use crate::progress::Progress;
-use crate::terminal::{print, warn};
+use crate::settings::set_within;
+use crate::terminal::{print, print_error, warn};
 use clap::Args;
 use pxpl5::limit::{CEILING, Limit, LimitQuery, Model, OverLimit, OverQuery};
 use pxpl5::tracking::time::PS_PER_S;
@@ -70,9 +71,12 @@ pub(crate) struct LimitArgs {
     /// Fields simulated for each number of triangles; default: enough to reach a steady state of the pipeline.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(0, 10_000_000))]
     fields: Option<u64>,
-    /// Level of modelling: analytic, transaction or cycle; default transaction.
+    /// Level of modelling: analytic, transaction, cycle or auto (the cheapest within a bound); default transaction.
     #[arg(long)]
     level: Option<String>,
+    /// Bound of --level auto, such as 2% or 2; default 5%.
+    #[arg(long, value_name = "PERCENT")]
+    within: Option<String>,
     /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
@@ -98,7 +102,12 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
     if limit.has_limit() && limit.triangles > 1 {
         warn(query.near_edge(limit.triangles)?.as_slice(), args.quiet);
     }
-    print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
+    let choice = query.level_choice(limit.triangles.max(1))?;
+    if let Some(choice) = choice.as_ref().filter(|_| !args.quiet) {
+        print_error(&format!("pxpl5: with {} triangles, {choice}\n", limit.triangles));
+    }
+    let level = choice.map_or(query.level, |choice| choice.level);
+    print(&if args.json { json_text(&query, limit, level) } else { text(&query, limit) })
 }
 
 const FEWER: &str = "simulate fewer fields";
@@ -208,6 +217,7 @@ impl LimitArgs {
         for (key, option, value) in texts {
             value.clone().map(|value| file.set(key, value, option)).transpose()?;
         }
+        set_within(&mut file, self.within.as_deref())?;
         let numbers = [("machine.n_gps", "--gps", self.gps), ("machine.n_renderers", "--renderers", self.renderers)];
         for (key, option, value) in numbers {
             value.map(|value| file.set(key, i64::try_from(value).unwrap_or(i64::MAX), option)).transpose()?;
@@ -285,13 +295,13 @@ fn over_json(query: &OverQuery, plan: &Plan, limit: &OverLimit) -> Result<String
         "n_gps": plan.machine.n_gps,
         "n_renderers": plan.machine.n_renderers,
         "fields": plan.fields,
-        "level": plan.level.name(),
+        "level": plan.level_name(),
     });
     object["limit"] = serde_json::to_value(limit).map_err(CliError::failure)?;
     Ok(format!("{object:#}\n"))
 }
 
-fn json_text(query: &LimitQuery, limit: Limit) -> String {
+fn json_text(query: &LimitQuery, limit: Limit, level: Level) -> String {
     let object = json!({
         "schema": "pxpl5-limit/2",
         "triangles": limit.has_limit().then_some(limit.triangles),
@@ -307,7 +317,7 @@ fn json_text(query: &LimitQuery, limit: Limit) -> String {
         "n_gps": query.config.n_gps,
         "n_renderers": query.config.n_renderers,
         "fields": query.criterion.fields,
-        "level": query.level.name(),
+        "level": level.name(),
     });
     format!("{object:#}\n")
 }

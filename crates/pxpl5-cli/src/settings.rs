@@ -93,9 +93,13 @@ pub(crate) struct SettingArgs {
     /// Number of display periods to simulate: NTSC fields of 1/60 s; default 120.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     fields: Option<i64>,
-    /// Level of modelling: transaction, cycle or (for sweeps) analytic; default transaction.
+    /// Level of modelling: transaction, cycle, (for sweeps) analytic, or auto; default transaction. auto takes the
+    /// cheapest level whose deviation from the cycle level stays within a bound, and prints which and why.
     #[arg(long)]
     level: Option<String>,
+    /// Bound of --level auto, such as 2% or 2; default 5%.
+    #[arg(long, value_name = "PERCENT")]
+    within: Option<String>,
     /// Pixels that are computed: off, lazy (only pixels that are read) or all; default lazy.
     #[arg(long)]
     pixels: Option<String>,
@@ -106,6 +110,12 @@ pub(crate) struct SettingArgs {
     /// machines small-hmd` lists all numbers; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
+}
+
+/// Sets the bound of `--level auto`, with or without a percent sign.
+pub(crate) fn set_within(file: &mut ExperimentFile, within: Option<&str>) -> Result<(), CliError> {
+    let Some(within) = within else { return Ok(()) };
+    Ok(file.set_text(&format!("within={}", within.trim_end_matches('%')), "--within")?)
 }
 
 impl SettingArgs {
@@ -137,6 +147,7 @@ impl SettingArgs {
         for (key, option, value) in texts {
             value.map(|value| file.set(key, value, option)).transpose()?;
         }
+        set_within(&mut file, self.within.as_deref())?;
         // Options with whole numbers, each with its key.
         let numbers = [
             ("triangles", "--triangles", self.triangles),

@@ -4,7 +4,7 @@ use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
 use crate::progress::Bar;
 use crate::scenes;
-use crate::terminal::warn;
+use crate::terminal::{print_error, warn};
 use crate::too_heavy::too_heavy;
 use pxpl5::lab::estimate::RunWork;
 use pxpl5::{
@@ -67,7 +67,9 @@ pub(crate) fn simulate(plan: &Plan, how: How<'_>) -> Result<Simulated, CliError>
     let scene = scenes::load(plan, how.quiet)?;
     warn(too_heavy(plan, &scene, plan.fields).as_slice(), how.quiet);
     let host = how.threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
-    let experiment = plan.experiment(scene).host(host).keep(how.keep).record_traffic(how.traffic);
+    let (experiment, choice) = plan.with_chosen_level(scene, true);
+    choice.filter(|_| !how.quiet).into_iter().for_each(|choice| print_error(&format!("pxpl5: {choice}\n")));
+    let experiment = experiment.host(host).keep(how.keep).record_traffic(how.traffic);
     how.budget.admit(&RunWork::of(&experiment, how.keep == KeptRecords::Everything))?;
     let experiment = how.without.iter().fold(experiment, |experiment, saving| experiment.without(*saving));
     // The run stops at these fields to extrapolate its cost early.

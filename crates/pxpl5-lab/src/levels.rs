@@ -1,9 +1,11 @@
 //! A common interface to all levels of detail, and a comparison of the levels by speed and error.
 
+mod auto;
 mod compare;
 mod random;
 mod record;
 
+pub use auto::{LevelChoice, choose_level};
 pub use compare::LevelQuery;
 pub use random::{compared_ms, experiment as random_experiment};
 pub use record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};

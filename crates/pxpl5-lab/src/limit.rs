@@ -22,7 +22,7 @@ use crate::edges::{NEAR_FIELDS, to_other_retraces};
 use crate::error::StudyError;
 use crate::estimate::{Estimate, RunWork};
 use crate::experiment_file::{Plan, SceneChoice};
-use crate::levels::summarise;
+use crate::levels::{LevelChoice, choose_level, summarise};
 use crate::study::{Study, check};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{
@@ -49,6 +49,8 @@ pub struct LimitQuery {
     pub model: Option<Model>,
     /// Level of detail of all simulations.
     pub level: Level,
+    /// Bound of the deviation from the cycle level in percent, if the level is chosen for each scene instead.
+    pub within_percent: Option<f64>,
     /// True if the closed form gives hints, which reduce the number of simulations and not their results.
     pub uses_hints: bool,
     /// True if sizes above the first miss are tried too, which about doubles the number of simulations.
@@ -156,6 +158,7 @@ impl LimitQuery {
             criterion: plan.limit,
             model: None,
             level: plan.level,
+            within_percent: plan.within_percent,
             uses_hints: true,
             looks_above: true,
             stop: StopFlag::default(),
@@ -172,8 +175,18 @@ impl LimitQuery {
         let unknown = |_| SettingError::combination(format_args!("no pipeline {} is known", pipeline.name()));
         let criterion = (registry.pipeline(pipeline.name()).map_err(unknown)?.limit)(&PipelineSettings::default());
         let (pipeline, level) = (Arc::new(pipeline), Level::Transaction);
-        let (uses_hints, looks_above, stop) = (true, true, StopFlag::default());
-        Ok(Self { registry, config, pipeline, criterion, model: None, level, uses_hints, looks_above, stop })
+        Ok(Self {
+            registry,
+            config,
+            pipeline,
+            criterion,
+            model: None,
+            level,
+            within_percent: None,
+            uses_hints: true,
+            looks_above: true,
+            stop: StopFlag::default(),
+        })
     }
 
     /// Returns an error if the goal is an update rate that cannot be measured for the scene. A pipeline that draws all
@@ -205,7 +218,7 @@ impl LimitQuery {
         // Small triangles stand for a model, because the decimated sizes of a model are expensive to build.
         let scene = if self.model.is_some() { TestScene::Typical } else { self.criterion.scene };
         let criterion = LimitCriterion { scene, ..self.criterion };
-        let analytic = Self { level: Level::Analytic, model: None, criterion, ..self.clone() };
+        let analytic = Self { level: Level::Analytic, within_percent: None, model: None, criterion, ..self.clone() };
         let near = about(self.ceiling(), |triangles| analytic.reached(triangles)).ok();
         let doubtful = near.filter(|_| self.model.is_none()).map(|near| analytic.doubtful(near));
         Hints { near, doubtful: doubtful.unwrap_or_default() }
@@ -262,7 +275,24 @@ impl LimitQuery {
     }
 
     fn summary(&self, triangles: u32) -> Result<Summary, ExperimentError> {
-        summarise(&self.registry, &self.experiment(triangles)?)
+        summarise(&self.registry, &self.chosen(triangles)?.0)
+    }
+
+    fn chosen(&self, triangles: u32) -> Result<(Experiment, Option<LevelChoice>), ExperimentError> {
+        let experiment = self.experiment(triangles)?;
+        let Some(within) = self.within_percent else { return Ok((experiment, None)) };
+        let (choice, chosen) = choose_level(&self.registry, &experiment, within, false);
+        Ok((chosen, Some(choice)))
+    }
+
+    /// Returns the level of detail that was chosen for the scene with this number of triangles. `None` if the level is
+    /// not chosen for each scene.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`search`](Self::search).
+    pub fn level_choice(&self, triangles: u32) -> Result<Option<LevelChoice>, ExperimentError> {
+        Ok(self.chosen(triangles)?.1)
     }
 
     /// Returns true if the pipeline reaches the goal with this number of triangles.

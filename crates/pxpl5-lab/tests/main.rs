@@ -1,7 +1,9 @@
 //! Tests of the studies.
 
 // Figures and levels.
+mod auto_level;
 mod code_times;
+mod effects;
 mod groups;
 mod levels_of_code;
 mod limits;

@@ -236,6 +236,11 @@ impl Measure {
         self.0.definition
     }
 
+    /// Returns true if only a run with events has this quantity, and not the analytic level.
+    pub const fn needs_events(&self) -> bool {
+        matches!(self.0.value, Value::OfRun(_))
+    }
+
     /// Returns the value of this quantity in `results`, or `None` if `results` has no finite value for this quantity.
     pub fn of(&self, results: &Results) -> Option<f64> {
         let value = match self.0.value {

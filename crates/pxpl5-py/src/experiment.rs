@@ -27,6 +27,7 @@ use std::sync::Arc;
 pub(crate) struct Experiment {
     plan: Plan,
     native: Native,
+    level: String,
     functions: PythonFunctions,
 }
 
@@ -60,7 +61,9 @@ impl Experiment {
             let policy: Arc<dyn RegionPolicy> = Arc::<Asked>::clone(asked);
             plan.pipeline = Arc::new(PolicyPipeline::new(policy, shading));
         }
-        let mut native = plan.experiment(scene);
+        // Runs in Python have events.
+        let (mut native, choice) = plan.with_chosen_level(scene, true);
+        let level = choice.map_or_else(|| plan.level_name(), |choice| choice.to_string());
         // A motion in the arguments replaces the motion of the tracked head.
         if let Some(motion) = motion {
             let Some(head) = native.head.as_ref().cloned() else {
@@ -69,7 +72,7 @@ impl Experiment {
             native = native.head(pxpl5::Head::clone(&head).with_motion(Arc::clone(&motion.moving)));
         }
         let motion = motion.and_then(|motion| motion.called.clone());
-        Ok(Self { plan, native, functions: PythonFunctions { motion, policy } })
+        Ok(Self { plan, native, level, functions: PythonFunctions { motion, policy } })
     }
 
     /// Returns a hash of all settings and inputs on which the trace of the run depends.
@@ -85,6 +88,11 @@ impl Experiment {
     /// range, and runs at the cycle level in which some times do not come from executed code.
     fn warnings(&self) -> Vec<String> {
         self.native.warnings()
+    }
+
+    /// Returns the level of modelling of the run. For ``level = "auto"``, the reason follows.
+    fn level(&self) -> String {
+        self.level.clone()
     }
 
     /// Returns all parameters by path with values, units and sources, including the parameters of the tracker.

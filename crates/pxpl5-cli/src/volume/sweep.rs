@@ -195,6 +195,7 @@ impl Swept for VolumeSweep {
             measured: self.measure.iter().map(of).collect(),
             config_hash: Fingerprint::of(named.join("\n").as_bytes()).to_string(),
             trace_hash: report["volume_hash"].as_str().map(str::to_owned),
+            level: None,
         })
     }
 }

@@ -159,11 +159,14 @@ const COMMON: &[Key] = &[
         .with_default("lazy"),
     Key::new(
         "level",
-        "detail of the model of the processors: analytic (sweeps of pipelines with a closed form only), transaction or \
-             cycle",
-        KeyValues::Names(&[Level::Analytic.name(), Level::Transaction.name(), Level::Cycle.name()]),
+        "detail of the model of the processors: analytic (sweeps of pipelines with a closed form only), transaction, \
+             cycle, or auto (the cheapest of them within a bound)",
+        KeyValues::Names(&[Level::Analytic.name(), Level::Transaction.name(), Level::Cycle.name(), super::plan::AUTO]),
     )
     .with_default("transaction"),
+    Key::new("within", "bound of the deviation from the cycle level, for the level auto", KeyValues::NUMBER)
+        .with_unit("%")
+        .with_default("5"),
     Key::new("machine.preset", "a preset of `pxpl5 machines`", KeyValues::ANY),
     Key::new(
         "machine.code",

@@ -7,7 +7,7 @@ use super::read::{not_applicable, plain, wrong};
 use super::scene::SceneChoice;
 use super::{ExperimentFile, Setting, display};
 use crate::Workstation;
-use crate::levels::summarise;
+use crate::levels::{LevelChoice, choose_level, summarise};
 use pxpl5_gp::CodeVersion;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{HeadSum, Measure, Results};
@@ -82,8 +82,10 @@ pub struct Plan {
     pub fields: u64,
     /// Seed of the random head motion; default 1.
     pub seed: u64,
-    /// Level of detail; default transaction.
+    /// Level of detail; default transaction. Without effect for `level = "auto"`.
     pub level: Level,
+    /// Bound, in percent, of the deviation from the cycle level for `level = "auto"`. `None` for a level by name.
+    pub within_percent: Option<f64>,
     /// Tracked head. `None` if the head follows the scene's own motion without delay.
     pub head: Option<HeadChoice>,
     /// Head-mounted display of the viewer.
@@ -99,6 +101,11 @@ pub struct Plan {
     /// Origin of the results beside the experiment file, if a command wrote the file with its results.
     pub origin: Origin,
 }
+
+/// Name of the level that the program chooses.
+pub(super) const AUTO: &str = "auto";
+/// Bound of the deviation from the cycle level without a key `within`, in percent.
+const WITHIN_PERCENT: f64 = 5.0;
 
 /// Largest seed that TOML can represent.
 pub(super) const MAX_SEED: u64 = i64::MAX as u64;
@@ -122,7 +129,8 @@ impl ExperimentFile {
             scene: SceneChoice::read(self)?,
             fields: self.whole("fields")?.unwrap_or(120),
             seed,
-            level: self.level(entry, head.is_some())?,
+            level: self.level(entry, head.is_some())?.unwrap_or(Level::Transaction),
+            within_percent: self.within()?,
             limit: (entry.limit)(&given),
             hmd: hmd::read(self, pipeline.as_ref())?,
             pipeline,
@@ -172,12 +180,23 @@ impl ExperimentFile {
         Ok(())
     }
 
-    fn level(&self, entry: &PipelineEntry, has_head: bool) -> Result<Level, SettingError> {
-        let choices = Level::ALL.map(|level| (level.name(), level));
-        let level = self.choice("level", &choices)?.unwrap_or(Level::Transaction);
+    /// Returns the bound of `level = "auto"`, or `None` for another level.
+    fn within(&self) -> Result<Option<f64>, SettingError> {
+        let bound = self.number("within")?;
+        match (self.text("level")? == Some(AUTO), self.get("within")) {
+            (true, _) => Ok(Some(bound.unwrap_or(WITHIN_PERCENT))),
+            (false, None) => Ok(None),
+            (false, Some(setting)) => Err(not_applicable("within", "a level by name", AUTO).at(&setting.place)),
+        }
+    }
+
+    /// Returns the level of detail, or `None` for a level that the program chooses.
+    fn level(&self, entry: &PipelineEntry, has_head: bool) -> Result<Option<Level>, SettingError> {
+        let choices = Level::ALL.map(|level| (level.name(), Some(level))).into_iter().chain([(AUTO, None)]);
+        let level = self.choice("level", &choices.collect::<Vec<_>>())?.unwrap_or(Some(Level::Transaction));
         // A closed form does not cover tracked heads.
         let has_form = entry.closed_form.is_some() && !has_head;
-        match self.get("level").filter(|_| level == Level::Analytic && !has_form) {
+        match self.get("level").filter(|_| level == Some(Level::Analytic) && !has_form) {
             Some(setting) => Err(wrong("level", setting, "transaction or cycle for this pipeline or a head.motion")),
             None => Ok(level),
         }
@@ -295,7 +314,16 @@ impl Plan {
 
     /// Returns the name of the level of detail.
     pub fn level_name(&self) -> String {
-        self.level.name().to_owned()
+        self.within_percent.map_or(self.level.name(), |_| AUTO).to_owned()
+    }
+
+    /// Returns the experiment with its loaded scene, and the choice of its level for `level = "auto"`. The analytic level
+    /// is not chosen if the caller needs events.
+    pub fn with_chosen_level(&self, scene: Arc<Scene>, needs_events: bool) -> (Experiment, Option<LevelChoice>) {
+        let experiment = self.at_named_level(scene);
+        let Some(within) = self.within_percent else { return (experiment, None) };
+        let (choice, chosen) = choose_level(&self.registry, &experiment, within, needs_events);
+        (chosen, Some(choice))
     }
 
     /// Returns the name of the display on which the pipeline shows its pictures.
@@ -312,8 +340,12 @@ impl Plan {
         Some(config.build(&nodes, self.machine.ring.word()).ok()?.period_at(time).0)
     }
 
-    /// Returns the experiment with its loaded scene, for a run on this computer.
+    /// Returns the experiment with its loaded scene, for a run with events on this computer.
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
+        self.with_chosen_level(scene, true).0
+    }
+
+    fn at_named_level(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();
         let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
             .with_estimates(entry.and_then(|entry| Some(entry.closed_form?.estimates)))
@@ -336,7 +368,9 @@ impl Plan {
     ///
     /// Fails in the same cases as [`Experiment::run`].
     pub fn run(&self, scene: Arc<Scene>) -> Result<Results, ExperimentError> {
-        self.results_of(self.experiment(scene).host(Workstation::with_threads(1)))
+        let needs_events = self.measure.iter().any(Measure::needs_events);
+        let (experiment, _) = self.with_chosen_level(scene, needs_events);
+        self.results_of(experiment.host(Workstation::with_threads(1)))
     }
 
     /// Runs an experiment of this plan, which may have another host or a flag that stops it, as [`run`](Self::run) does.
@@ -346,7 +380,7 @@ impl Plan {
     /// Fails in the same cases as [`Experiment::run`].
     pub fn results_of(&self, experiment: Experiment) -> Result<Results, ExperimentError> {
         let experiment = experiment.pixels(Pixels::Off);
-        match self.level {
+        match experiment.modelling_level() {
             Level::Analytic => Ok(Results::of_closed_form(summarise(&self.registry, &experiment)?)),
             Level::Transaction | Level::Cycle => Ok(Results::of_run(experiment.run()?)),
         }

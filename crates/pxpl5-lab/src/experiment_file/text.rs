@@ -54,6 +54,7 @@ impl Plan {
         all.put("seed", self.seed as i64);
         all.put("pixels", self.pixels.to_string());
         all.put("level", self.level_name());
+        self.within_percent.into_iter().for_each(|bound| all.put("within", bound));
         all.put("measure", self.measure.iter().map(|m| Value::from(m.name())).collect::<Vec<_>>());
         all.put("output.pictures", self.output.pictures);
         all.put("output.timeline", self.output.timeline);

@@ -5,6 +5,7 @@ use super::{Shard, Sweep, SweepSpace, measures};
 use crate::StudyError;
 use crate::estimate::Estimate;
 use crate::experiment_file::Plan;
+use pxpl5_measure::Measure;
 use pxpl5_run::BareHost;
 use pxpl5_scene::Scene;
 use pxpl5_sim::StopFlag;
@@ -41,6 +42,9 @@ pub struct SweepRow {
     pub config_hash: Option<String>,
     /// Hash over the trace of all events. Null at the analytic level, which has no events.
     pub trace_hash: Option<String>,
+    /// Level of detail that `level = "auto"` chose for the point, with the reason.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<String>,
     /// Reason why the point could not be simulated.
     pub error: Option<String>,
 }
@@ -86,6 +90,8 @@ pub struct PointResults {
     pub config_hash: String,
     /// Hash of the simulated events or of the drawn volume, if there is one.
     pub trace_hash: Option<String>,
+    /// Chosen level of detail with the reason, as in [`SweepRow::level`].
+    pub level: Option<String>,
 }
 
 /// An experiment with settings that vary in a parameter space.
@@ -119,13 +125,16 @@ impl Swept for Sweep {
     fn simulate(&self, point: u64, stop: &StopFlag) -> Result<PointResults, StudyError> {
         let plan = self.plan(point)?;
         let scene = self.scene(&plan)?;
+        let needs_events = plan.measure.iter().any(Measure::needs_events);
+        let (experiment, choice) = plan.with_chosen_level(scene, needs_events);
         // The hash identifies the point even if its run fails later.
-        let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
+        let config_hash = experiment.config_hash().to_string();
         // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times.
-        let results = plan.results_of(plan.experiment(scene).host(BareHost).stopped_by(stop.clone()))?;
+        let results = plan.results_of(experiment.host(BareHost).stopped_by(stop.clone()))?;
+        let level = choice.map(|choice| choice.to_string());
         let measured = measures(&plan).iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();
         let trace_hash = results.run.map(|(_, report)| report.trace_hash);
-        Ok(PointResults { measured, config_hash, trace_hash })
+        Ok(PointResults { measured, config_hash, trace_hash, level })
     }
 }
 
@@ -145,11 +154,12 @@ pub(super) fn row(sweep: &impl Swept, point: u64, stop: &StopFlag) -> SweepRow {
         measured: BTreeMap::new(),
         config_hash: None,
         trace_hash: None,
+        level: None,
         error: None,
     };
     match results {
-        Ok(PointResults { measured, config_hash, trace_hash }) => {
-            SweepRow { status: Status::Done, measured, config_hash: Some(config_hash), trace_hash, ..empty }
+        Ok(PointResults { measured, config_hash, trace_hash, level }) => {
+            SweepRow { status: Status::Done, measured, config_hash: Some(config_hash), trace_hash, level, ..empty }
         }
         Err(error) => SweepRow { error: Some(error), ..empty },
     }
