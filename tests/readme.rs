@@ -90,3 +90,11 @@ fn the_table_of_scripts_has_each_script_once() {
     let rows = text.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` |"));
     assert_eq!(rows.map(|(name, _)| name).collect::<Vec<_>>(), found);
 }
+
+#[test]
+fn the_readme_has_the_table_of_the_last_measurement_of_levels() {
+    let record = pxpl5::levels::LevelRecord::read(&read("crates/pxpl5-cli/src/levels.json")).expect("a record");
+    let table = record.table();
+    let is_fresh = read("README.md").contains(&format!("<!-- levels -->\n\n{table}\n<!-- end of levels -->"));
+    assert!(is_fresh, "README.md must have between the marks of levels:\n{table}");
+}

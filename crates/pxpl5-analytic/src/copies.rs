@@ -115,7 +115,7 @@ pub(super) fn overtaking(
     // Copies that a renderer has left of one half, the time at which it asks for the next one, and true for the top half.
     let of_renderer = |r: usize| match bottom[r].0 {
         0 => (top[r], ready[r], true),
-        _ => (bottom[r], (r / model.source_channels + 1) as f64 * model.copy_order_ns(), false),
+        _ => (bottom[r], (r + 1) as f64 * model.copy_order_ns(), false),
     };
     let mut renderers: Vec<(Queue, f64, bool)> = (0..model.renderers).map(of_renderer).collect();
     let mut free = [f64::MIN; 2];

@@ -149,12 +149,10 @@ fn copy<const N: usize>(
     copies::make(arrays, queues, Times::each(|i| models[i].region_ns), free)
 }
 
-/// Returns the time at which a renderer has received its copy commands, if the first renderer's are sent at `from` and a
-/// board sends on several channels at a time.
+/// Returns the time at which a renderer has received its copy commands, if the first renderer's are sent at `from`.
 #[inline(always)]
 fn commanded<const N: usize>(models: &[SlatsModel; N], from: Times<N>, renderer: usize) -> Times<N> {
-    let round = (renderer / models[0].source_channels + 1) as f64;
-    from + Times::each(|i| models[i].copy_order_ns()) * Times::all(round)
+    from + Times::each(|i| models[i].copy_order_ns()) * Times::all((renderer + 1) as f64)
 }
 
 pub(super) const CLOSED_FORM: ClosedForm =

@@ -93,6 +93,26 @@ impl LevelRecord {
         }
         Err(wrong("schema", SCHEMA, record.schema))
     }
+
+    /// Returns the table of README.md in Markdown: errors of each level, and its speed without pixels.
+    pub fn table(&self) -> String {
+        let percent = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1} %"));
+        let row = |level: &LevelReport| {
+            let spread = level.from_cycle_percent;
+            let off = level.speeds.iter().find(|speed| speed.pixels == Pixels::Off);
+            let speed = off.and_then(|speed| speed.simulated_seconds_per_second);
+            format!(
+                "| {} | {} | {} | {} | {} |\n",
+                level.name(),
+                percent(spread.map(|spread| spread.median)),
+                percent(spread.map(|spread| spread.high_95)),
+                percent(level.published_error_percent),
+                speed.map_or_else(|| "-".to_owned(), |speed| format!("{speed:.1}"))
+            )
+        };
+        let head = "| level | against the cycle level: median | 95 % point | against the papers | simulated seconds a second |";
+        format!("{head}\n|---|---|---|---|---|\n{}", self.levels.iter().map(row).collect::<String>())
+    }
 }
 
 impl LevelReport {
