@@ -192,6 +192,8 @@ impl Machine {
     /// Ends the run and returns the boards and all observations.
     pub fn into_record(mut self) -> Record {
         self.finish_pixels();
+        // The ring counts a message at its next event, which may come after the run.
+        self.record.ring.settle(self.now);
         self.record.events = self.queue.events_taken();
         self.record.vertex_transforms = self.processors.iter().map(|board| board.vertex_transforms()).sum();
         self.record.met_full_store = self.record.renderers.iter().any(|board| board.waited_for_room())

@@ -24,6 +24,8 @@ pub(crate) struct ErrorSum {
     /// Display mode of the pictures. `None` uses the mode of the head's display.
     showing: Option<Showing>,
     without: Option<Cause>,
+    /// Time by which all prediction intervals are too long, in picoseconds.
+    later_ps: i64,
     evaluation: Option<Evaluation>,
     /// First period of the result window. `None` while the window is unknown.
     window_from: Option<PeriodNumber>,
@@ -32,9 +34,9 @@ pub(crate) struct ErrorSum {
 
 impl ErrorSum {
     /// Creates an empty sum for pictures in the display mode `showing`. If `without` is set, pictures are evaluated as
-    /// if this cause of error did not exist.
-    pub(crate) fn of(showing: Showing, without: Option<Cause>) -> Self {
-        Self { showing: Some(showing), without, ..Self::default() }
+    /// if this cause of error did not exist. Their prediction intervals are longer by `later_ps`, or shorter.
+    pub(crate) fn of(showing: Showing, without: Option<Cause>, later_ps: i64) -> Self {
+        Self { showing: Some(showing), without, later_ps, ..Self::default() }
     }
 
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
@@ -54,9 +56,9 @@ impl ErrorSum {
         });
         evaluation.shown.take(run, head);
         let fields = evaluation.fields(run);
-        // With a cause turned off, recompute the poses that these fields show.
-        if let Some(cause) = self.without {
-            evaluation.replace_poses(run, head, &fields, cause);
+        // With a cause turned off or a wrong interval, recompute the poses that these fields show.
+        if self.without.is_some() || self.later_ps != 0 {
+            evaluation.replace_poses(run, head, &fields, (self.without, self.later_ps));
         }
         fields.for_each(|field| evaluation.evaluate(run, field, collected));
         evaluation.shown.discard(run);
@@ -155,13 +157,13 @@ impl Evaluation {
     }
 
     /// Replaces the poses of all visible views. The new poses are the poses that the run would have had without one
-    /// cause of error.
+    /// cause of error, and with prediction intervals that are longer by some picoseconds.
     fn replace_poses(
         &mut self,
         run: &FinalResults<'_>,
         head: &Arc<HeadViews>,
         fields: &(impl Iterator<Item = PeriodNumber> + Clone),
-        cause: Cause,
+        changed: (Option<Cause>, i64),
     ) {
         let display = run.record.display();
         let shown = &self.shown;
@@ -171,7 +173,7 @@ impl Evaluation {
             pixels.flat_map(move |(x, y, at)| shown.views_at(run, [x, y], field, at))
         };
         let seen: BTreeSet<ViewNumber> = fields.clone().flat_map(of_field).collect();
-        self.shown.replace_poses(head, &seen, cause);
+        self.shown.replace_poses(head, &seen, changed);
     }
 
     fn evaluate(&mut self, run: &FinalResults<'_>, field: PeriodNumber, collected: &mut Collected) {
