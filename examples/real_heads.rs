@@ -24,7 +24,21 @@ const PREDICTORS: [&str; 3] = ["none", "velocity", "kalman"];
 
 const RASTERS: [&str; 3] = ["plain", "rotation", "depth"];
 
-const FIELDS: i64 = 540;
+/// Rows, at least one of each family. In `room`, the others differ from one of these by at most 0.1 px behind a rotation.
+const ROWS: [&str; 10] = [
+    "rendering-control",
+    "slats",
+    "ideal",
+    "frameless",
+    "jitp-field",
+    "jitp-field-racing",
+    "jitp-scanline-racing",
+    "jitp-dual-view-racing",
+    "arp-full",
+    "arp-ideal",
+];
+
+const FIELDS: i64 = 300;
 
 const SEEDS: u64 = 3;
 
@@ -42,8 +56,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
         text += &table(head, &all)?;
+        replace(&folder.join("reprojection.md"), text.trim())?;
     }
-    replace(&folder.join("reprojection.md"), text.trim())?;
     Ok(())
 }
 
@@ -162,7 +176,8 @@ fn compared([head, train]: [&str; 2], raster: &str, predictor: &str) -> Result<C
         file.set("head.reprojection.every", "line", "real_heads")?;
     }
     file.set("fields", FIELDS, "real_heads")?;
-    let query = CompareQuery { only: RowChoice::All, seeds: (1..=SEEDS).collect(), ..CompareQuery::new(file) };
+    let only = RowChoice::Named(ROWS.map(str::to_owned).to_vec());
+    let query = CompareQuery { only, seeds: (1..=SEEDS).collect(), ..CompareQuery::new(file) };
     Ok(query.run(|_, _| {})?)
 }
 

@@ -72,31 +72,18 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         let first = self.gp.field().after(2);
         let mut prepared = first;
         let strips = self.config.grid().rows();
-        let pass = self.pass_span(viewpoint);
-        // End of the TRANSFORMs that the slaves have been ordered to do, and fields that they have no time for.
-        let mut busy_until = Time::ZERO;
-        let mut left_out: VecDeque<PeriodNumber> = VecDeque::new();
         for field in first.onwards() {
             for strip in 0..strips {
                 // Send the orders for the fields whose preparation must begin before this strip.
                 let order_at = before(self.config.deadline(field, strip), ahead);
                 while viewpoint != Viewpoint::Strip && self.preparation_at(prepared, viewpoint, ahead) <= order_at {
-                    let at = self.preparation_at(prepared, viewpoint, ahead);
-                    self.gp.sleep_until(at).await;
-                    // If TRANSFORM cannot end in time, all slaves leave out the same field. Otherwise each would leave
-                    // out another one, and no field would be complete.
-                    if busy_until <= at + pass / 2 {
-                        busy_until = busy_until.max(at) + pass;
-                        self.order_field(prepared, viewpoint).await?;
-                    } else {
-                        left_out.push_back(prepared);
-                    }
+                    self.gp.sleep_until(self.preparation_at(prepared, viewpoint, ahead)).await;
+                    self.order_field(prepared, viewpoint).await?;
                     prepared = prepared.next();
                 }
                 // The master sends no order for a strip whose deadline has passed.
                 self.gp.sleep_until(order_at).await;
-                left_out.retain(|left_out| *left_out >= field);
-                if self.gp.now() < self.config.deadline(field, strip) && left_out.front() != Some(&field) {
+                if self.gp.now() < self.config.deadline(field, strip) {
                     self.order_strip(field, strip, viewpoint).await?;
                 }
             }
@@ -111,15 +98,13 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     /// TRANSFORM. With i860 code, the slaves have a whole field, because the time of the code is unknown in advance
     /// (pphigs's kernels/order_rules.md).
     fn preparation_at(&self, field: PeriodNumber, viewpoint: Viewpoint, ahead: Span) -> Time {
-        let pass = self.pass_span(viewpoint);
-        let wanted = if self.gp.runs_code() { self.config.field_time() } else { pass + pass / 2 };
-        before(self.config.deadline(field, 0), ahead + wanted)
-    }
-
-    /// Returns the time of TRANSFORM for a field, or zero for i860 code.
-    fn pass_span(&self, viewpoint: Viewpoint) -> Span {
+        let first_strip = self.config.deadline(field, 0);
+        if self.gp.runs_code() {
+            return before(first_strip, ahead + self.config.field_time());
+        }
         let views = if viewpoint == Viewpoint::Field { 1 } else { 2 };
-        if self.gp.runs_code() { Span::ZERO } else { self.pass.span(&self.gp.timing()) * views }
+        let span = self.pass.span(&self.gp.timing()) * views;
+        before(first_strip, ahead + span + span / 2)
     }
 
     async fn order_field(&mut self, field: PeriodNumber, viewpoint: Viewpoint) -> Result<(), Fault> {

@@ -203,10 +203,10 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
         });
         let _ = writeln!(
             text,
-            "Head to light: {} ms, 50, 95, 99 %: {}, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}).",
+            "Head to light: {} ms, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}); 50, 95, 99 %: {} ms.",
             number_or_dash(end_to_end.total_ms, 2),
-            percentiles(&report.percentiles_ms.head_to_light, 2),
             end_to_end.n,
+            percentiles(&report.percentiles_ms.head_to_light, 2),
         );
         let miss = &report.percentiles_ms.aim_miss;
         if miss.max > 0.0 {
