@@ -90,7 +90,7 @@ const BANDS_HZ: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 fn statistics() -> Result<String, Box<dyn Error>> {
     let mut text = "| motion | turn, deg/s: mean, 95 % | walk, m/s: mean, 95 % | turn, deg/s^2: rms |".to_owned();
     let edges: Vec<String> = BANDS_HZ.iter().map(f64::to_string).collect();
-    text += &format!(" power of the turn below {} Hz, between, above, % |", edges.join(", "));
+    text += &format!(" power of the turn, %: bands up to {} Hz, and above |", edges.join(", "));
     text += " error at 90 ms / at 50 ms |\n|---|---|---|---|---|---|\n";
     for (name, seconds) in [(HEADS[0][0], 29), (HEADS[1][0], 9), ("synthetic:1", 120), ("synthetic:2", 120)] {
         let head = motion(name)?;

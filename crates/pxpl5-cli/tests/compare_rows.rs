@@ -181,7 +181,7 @@ fn rows_show_their_pictures_through_the_device_of_the_settings() {
     let folder = Folder::new("compare-raster");
     let run = |more: &[&str]| {
         let shared = ["compare", "--only", "slats,arp-full,ideal", "--seeds", "1", "--fields", "60", "--json"];
-        let ran = folder.run(&[&shared, &["--head", "recorded:vive-dev", "--predict", "none"], more].concat());
+        let ran = folder.run(&[&shared[..], &["--head", "recorded:vive-dev", "--predict", "none"], more].concat());
         assert!(ran.status.success(), "{}", err(&ran));
         let json: Value = serde_json::from_slice(&ran.stdout).expect("JSON");
         let px = |row: &str| {

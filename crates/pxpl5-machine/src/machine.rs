@@ -192,8 +192,6 @@ impl Machine {
     /// Ends the run and returns the boards and all observations.
     pub fn into_record(mut self) -> Record {
         self.finish_pixels();
-        // The ring counts a message at its next event, which may come after the run.
-        self.record.ring.settle(self.now);
         self.record.events = self.queue.events_taken();
         self.record.vertex_transforms = self.processors.iter().map(|board| board.vertex_transforms()).sum();
         self.record.met_full_store = self.record.renderers.iter().any(|board| board.waited_for_room())
@@ -285,6 +283,8 @@ impl Machine {
         }
         let Some((now, event)) = self.queue.next_event_before(end) else {
             self.now = self.now.max(end);
+            // The ring counts the messages that have ended since its last event.
+            self.record.ring.settle(self.now);
             return None;
         };
         self.now = now;

@@ -173,7 +173,8 @@ pub(crate) fn of_pictures<'a>(
 
 /// Returns, for each complete picture in the result window, the distance between the instant for which the picture was
 /// predicted and the instant at which it should have been predicted, in milliseconds. A pipeline that draws parts of a
-/// picture for their own instants computes these instants exactly and has no such distance.
+/// picture for their own instants computes these instants exactly and has no such distance. Neither has a picture without
+/// prediction.
 fn misses_ms<'a>(run: &'a FinalResults<'_>, poses: &'a Poses) -> impl Iterator<Item = f64> + 'a {
     let display = run.record.display();
     let nexts = run.pictures.iter().skip(1).map(Some).chain([run.next]);
@@ -183,7 +184,7 @@ fn misses_ms<'a>(run: &'a FinalResults<'_>, poses: &'a Poses) -> impl Iterator<I
     };
     let counted = run.pictures.iter().zip(nexts).filter(move |(times, _)| is_counted(times));
     counted.filter_map(|(times, next)| {
-        let aimed_at = poses.get(&times.view)?.objects_at;
+        let aimed_at = poses.get(&times.view)?.predicted_for?;
         let right = run.aim.instant(&run.pipeline.shown(run.record, times, next));
         Some(right.0.abs_diff(aimed_at.0) as f64 * 1e-9)
     })

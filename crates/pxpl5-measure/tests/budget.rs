@@ -83,8 +83,8 @@ fn stages_from_head_to_light_add_up() {
         // The report has their percentiles. Without a change of the load, all pictures are lit when the dry run says.
         let found = LatencyPercentiles::of(&outcome);
         let expected = Percentiles::of(totals.into_iter());
-        [(found.head_to_light.p50, expected.p50), (found.head_to_light.p95, expected.p95)]
-            .map(|(found, expected)| assert_near(found, expected, name));
+        assert_near(found.head_to_light.p50, expected.p50, name);
+        assert_near(found.head_to_light.p95, expected.p95, name);
         assert_eq!((found.head_to_light.n, found.latency.n), (n as u64, outcome.latency_ms().n), "{name}");
         assert!(found.aim_miss.n == 0 || found.aim_miss.max == 0.0, "{name}: {found:?}");
         // The report takes 3.75 ms to the first character, and 47 bytes at 115,200 baud.
