@@ -20,7 +20,7 @@ pub use pxpl5_lab::ExperimentFile;
 
 /// Finds the resources of a machine that limit the latency.
 ///
-/// The example prints the latency before and after each change. Formulas give the latencies.
+/// The example prints the latency before and after each change. Each latency comes from a run.
 ///
 /// ```
 /// use pxpl5::prelude::*;

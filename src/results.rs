@@ -259,9 +259,10 @@ pub use pxpl5_run::StreamingObserver;
 pub use pxpl5_measure::reproject_with_depth;
 
 pub use pxpl5_measure::{
-    Budget, DepthPicture, ErrorPart, EyeReport, FieldMisregistration, LatencyPartStatistics, PathPart, Percentiles,
-    PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, ReprojectionReport, Resource, Results, Showing,
-    SurfaceStatistics, TooHeavy, Utilisation, picture, reproject, side_by_side,
+    Budget, DepthPicture, ErrorPart, EyeReport, FieldMisregistration, HeadTimes, LatencyPartStatistics,
+    LatencyPercentiles, PathPart, Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration,
+    ReprojectionReport, Resource, Results, Showing, SurfaceStatistics, TooHeavy, Utilisation, head_times, picture,
+    reproject, side_by_side,
 };
 pub use pxpl5_run::{
     DefinedStatistics, DuePictures, FinalResults, LATENCY_PARTS, LatencyParts, ObserverFactory, PartDefinition,

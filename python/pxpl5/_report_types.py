@@ -117,6 +117,16 @@ class PercentilesData(TypedDict):
     max: float | None
 
 
+class LatencyPercentilesData(TypedDict):
+    """Percentiles of the times of pictures, in milliseconds."""
+
+    latency: PercentilesData
+    #: From the head's pose to the light of the picture's middle.
+    head_to_light: PercentilesData
+    #: Error of the prediction interval.
+    aim_miss: PercentilesData
+
+
 class PixelErrorsData(TypedDict):
     """Distances on the screen between pixels and the right places of their contents."""
 
@@ -328,6 +338,7 @@ class ReportData(HeadReportData):
     pictures: int
     latency_fields: DefinedStatisticsData
     latency_ms: DefinedStatisticsData
+    percentiles_ms: LatencyPercentilesData
     latency_parts_ms: list[LatencyPartData]
     latency_by_eye_ms: list[SurfaceLatencyData]
     shown: int

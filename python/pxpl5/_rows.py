@@ -48,6 +48,10 @@ class PictureRow(TypedDict):
     copy_ps: int | None
     wait_for_retrace_ps: int | None
     scan_ps: int | None
+    measured_at_ps: int | None
+    aimed_at_ps: int | None
+    light_at_ps: int | None
+    head_to_light_ps: int | None
 
 
 class StageRow(TypedDict):

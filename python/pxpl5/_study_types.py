@@ -138,6 +138,13 @@ class PredictorMeanData(TypedDict):
     mean_px: float | None
 
 
+class MisaimedMeanData(TypedDict):
+    """Mean pixel error if all prediction intervals were longer (later_ms above 0) or shorter."""
+
+    later_ms: int
+    mean_px: float | None
+
+
 class ComparedData(TypedDict):
     """A row of a comparison."""
 
@@ -149,6 +156,7 @@ class ComparedData(TypedDict):
     latency_definition: str
     latency_ms: StatisticsData
     head_to_light_ms: StatisticsData
+    head_to_light_percentiles_ms: PercentilesData
     turn_to_light_ms: StatisticsData
     tracking_and_rendering_ms: IntervalData
     end_to_end: BudgetData
@@ -165,6 +173,7 @@ class ComparedData(TypedDict):
     covered_share: float | None
     window: WindowData | None
     causes: list[CauseData]
+    misaimed: list[MisaimedMeanData]
     predictors: list[PredictorMeanData]
     triangles_possible: int | None
     has_no_limit: bool

@@ -5,12 +5,13 @@ use super::copies::{self, CopyTimes, MAX_RENDERERS, Queue};
 use super::model::{FieldTimes, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Times};
 use super::senders::{self, Clumps};
-use crate::pipeline_of;
+use crate::{no_form, pipeline_of};
 use multiversion::multiversion;
 use pphigs::RegionBinning;
 use pxpl5_run::{
     ClosedForm, Estimates, Experiment, ExperimentError, Samples, Slats, Summary, WARM_UP_PERIODS, WARM_UP_PICTURES,
 };
+use slats::CopySchedule;
 
 impl SlatsModel {
     /// Returns the times of a field after many equal fields. With split copies, renderers first copy the lower half of
@@ -159,12 +160,20 @@ pub(super) const CLOSED_FORM: ClosedForm =
     ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, primitives_in_time } };
 
 fn primitives_in_time(experiment: &Experiment) -> Option<u64> {
-    crate::primitives_in_time(experiment, closed_form)
+    let of_one = |experiment: &Experiment| -> Result<Summary, ExperimentError> {
+        let (model, times) = steady_field(experiment)?;
+        Ok(summary(experiment.length(), &model, times))
+    };
+    crate::primitives_in_time(experiment, of_one)
 }
 
 fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     let (model, times) = steady_field(experiment)?;
-    Ok(summary(experiment.fields, &model, times))
+    // All fields are equal here, and with a backup a late field delays others.
+    if !times.in_time && pipeline_of::<Slats>(experiment)?.copy == CopySchedule::Backup {
+        return Err(no_form("late fields with copy = backup").into());
+    }
+    Ok(summary(experiment.length(), &model, times))
 }
 
 /// Number of fields before the first evaluated picture. In two of these fields, the host's first view is sent and

@@ -2,13 +2,14 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::RunWork;
 use crate::numbers::{count_of, whole};
 use crate::one_picture;
 use crate::output::{OutputFolder, png, timeline};
-use crate::progress::Progress;
+use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::simulate::{How, Simulated, simulate};
-use crate::table::{Comparison, table};
+use crate::table::{Comparison, percentiles, table};
 use crate::terminal::{print, warn};
 use clap::Args;
 use pxpl5::lab::near_edges;
@@ -17,7 +18,7 @@ use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::views::results::{origin_lines, quantities_csv};
 use pxpl5::{
     ExperimentFile, HeadReport, KeptRecords, Level, Measured, Optimization, Origin, Outcome, PictureTimes, Plan,
-    Report, Results, SurfaceId, WARM_UP_PERIODS, WARM_UP_PICTURES, WhatIf, WhatIfQuery,
+    Report, Results, SurfaceId, WARM_UP_PERIODS, WARM_UP_PICTURES, WhatIf, what_if,
 };
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -52,8 +53,7 @@ pub(crate) struct RunArgs {
     out: Option<PathBuf>,
     #[command(flatten)]
     budget: BudgetArgs,
-    /// Also print the effect of 10 % more of each resource. The effect comes from the pipeline's closed form if the
-    /// form applies, otherwise from six more runs.
+    /// Also print the effect of 10 % more of each resource, from seven more runs.
     #[arg(long)]
     what_if: bool,
     /// Also explain one picture: its times and waits, beside those of other pictures. The timeline shows it.
@@ -79,6 +79,10 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let keep =
         if folder.is_some() || args.picture.is_some() { KeptRecords::Everything } else { KeptRecords::Statistics };
     let (without, budget, quiet) = (&args.without[..], args.budget, args.quiet);
+    if args.what_if {
+        let work = RunWork::of(&plan, &*scenes::load(&plan, true)?, false);
+        budget.admit_all([work; WHAT_IF_RUNS], std::thread::available_parallelism().map_or(1, usize::from))?;
+    }
     let how = How { threads: args.threads, without, keep, budget, quiet, ..How::default() };
     let Simulated { outcome, too_short } = simulate(&plan, how)?;
     let results = Results::of_run(outcome);
@@ -86,7 +90,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     // A file from a folder of results says whether the run repeats those results.
     warn(plan.origin.changes(&Origin::of(outcome.experiment())).as_slice(), args.quiet);
     warn(out_of_view(report).as_slice(), args.quiet);
-    warn(&near_edges(&outcome.summary()), args.quiet);
+    warn(&near_edges(outcome), args.quiet);
     // A run without a latency still writes its files and its report, and then ends with an error.
     let picture = args.picture.map(|number| one_picture::find(outcome, number)).transpose()?;
     let written = folder.map(|folder| write(folder, &plan, &results, picture)).transpose()?;
@@ -108,11 +112,14 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
+/// Number of runs of `--what-if`: the experiment, and one for each resource.
+const WHAT_IF_RUNS: usize = 7;
+
 /// Returns the latency and update rate of the experiment with 10 % more of each resource of the machine, one resource
 /// at a time.
 fn more(plan: &Plan) -> Result<Vec<WhatIf>, CliError> {
-    let experiment = plan.experiment(crate::scenes::load(plan, false)?);
-    Progress::new("resources", true).run(&WhatIfQuery { registry: plan.registry.clone(), experiment })
+    let experiment = plan.experiment(scenes::load(plan, true)?);
+    what_if(&plan.registry, &experiment).map_err(CliError::from)
 }
 
 fn more_text(more: &[WhatIf]) -> String {
@@ -120,9 +127,14 @@ fn more_text(more: &[WhatIf]) -> String {
     let level = more.first().map_or("", |more| more.level);
     let heads = ["10 % more of", "setting", "latency, ms", "updates, Hz"];
     let _ = writeln!(text, "\n{:<32} {:<42} {:<16} {} ({level} level)", heads[0], heads[1], heads[2], heads[3]);
-    more.iter().for_each(|more| {
-        let _ = writeln!(text, "{more}");
-    });
+    let cell = |[before, after]: [Option<f64>; 2]| match before.zip(after) {
+        Some((before, after)) => format!("{before:.1} to {after:.1}"),
+        None => "-".to_owned(),
+    };
+    for WhatIf { resource, key, from, to, latency_ms, updates_hz, .. } in more {
+        let setting = format!("{key} {from} to {to}");
+        let _ = writeln!(text, "{resource:<32} {setting:<42} {:<16} {}", cell(*latency_ms), cell(*updates_hz));
+    }
     text
 }
 
@@ -146,6 +158,9 @@ fn nothing_shown(report: &Report) -> CliError {
 /// Returns the error for a run in which all pictures belong to the warm-up. The number of fields that the error advises
 /// has two pictures after the warm-up at the rate of this run.
 fn nothing_measured(report: &Report) -> CliError {
+    if let Some(heavy) = &report.too_heavy {
+        return CliError::failure(format!("no picture after the warm-up was shown in time: {}", heavy.advice));
+    }
     let every = report.fields.div_ceil(report.shown.max(1));
     let needed = WARM_UP_PERIODS.max((WARM_UP_PICTURES as u64 + 1) * every) + 2 * every;
     CliError::failure(format!(
@@ -188,10 +203,15 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
         });
         let _ = writeln!(
             text,
-            "Head to light: {} ms, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}).",
+            "Head to light: {} ms, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}); 50, 95, 99 %: {} ms.",
             number_or_dash(end_to_end.total_ms, 2),
             end_to_end.n,
+            percentiles(&report.percentiles_ms.head_to_light, 2),
         );
+        let miss = &report.percentiles_ms.aim_miss;
+        if miss.max > 0.0 {
+            let _ = writeln!(text, "Prediction interval: wrong by {:.2} ms, at most {:.2} ms.", miss.mean, miss.max);
+        }
         let covered = error
             .covered_share
             .map_or_else(String::new, |share| format!("; the scene covers {:.1} % of the picture", share * 100.0));

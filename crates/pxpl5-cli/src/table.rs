@@ -1,8 +1,7 @@
 //! A text table of runs, with one column for each run and one row for each quantity.
 
 use crate::numbers::count_of;
-use crate::terminal::laid_out;
-use pxpl5::{DuePictures, Report, Statistics};
+use pxpl5::{DuePictures, Percentiles, Report, Statistics};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Comparison {
@@ -21,7 +20,7 @@ impl Comparison {
 
 type TableRow = (&'static str, fn(&Report) -> String);
 
-const ROWS: [TableRow; 13] = [
+const ROWS: [TableRow; 14] = [
     ("pipeline", |r| r.pipeline.clone()),
     ("machine", boards),
     ("scene", |r| r.scene.clone()),
@@ -31,6 +30,7 @@ const ROWS: [TableRow; 13] = [
     ("  min to max", |r| range(&r.latency_fields.statistics, 2)),
     ("latency, ms: mean", |r| mean_and_sd(&r.latency_ms.statistics, 1)),
     ("  min to max", |r| range(&r.latency_ms.statistics, 1)),
+    ("  50, 95, 99 %", |r| percentiles(&r.percentiles_ms.latency, 1)),
     ("updates per second", |r| r.updates_hz.map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}"))),
     ("not shown in time", not_shown),
     ("  late, incompl., missed", ends),
@@ -44,8 +44,7 @@ pub(crate) fn table(runs: &[(&Report, Option<&Comparison>)]) -> String {
     if runs.iter().any(|(_, comparison)| comparison.is_some()) {
         rows.extend(comparison_rows(runs));
     }
-    let lines = rows.into_iter().map(|(name, cells)| [vec![name.to_owned()], cells].concat());
-    laid_out(&lines.collect::<Vec<_>>(), usize::MAX)
+    laid_out(&rows)
 }
 
 fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, Vec<String>); 4] {
@@ -104,6 +103,32 @@ fn range(s: &Statistics, digits: usize) -> String {
         return "-".to_owned();
     }
     format!("{:.digits$} to {:.digits$}", s.min, s.max)
+}
+
+/// Formats median, 95 % and 99 % of a set of numbers.
+pub(crate) fn percentiles(of: &Percentiles, digits: usize) -> String {
+    if of.n == 0 {
+        return "-".to_owned();
+    }
+    format!("{:.digits$}, {:.digits$}, {:.digits$}", of.p50, of.p95, of.p99)
+}
+
+fn laid_out(rows: &[(&str, Vec<String>)]) -> String {
+    let columns = rows.iter().map(|(_, cells)| cells.len()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(|column| width(rows, column)).collect();
+    let mut text = String::new();
+    for (name, cells) in rows {
+        let padded = cells.iter().zip(&widths).map(|(cell, width)| format!("  {cell:<width$}"));
+        let line = format!("{name:<25}{}", padded.collect::<String>());
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}
+
+/// Returns the length of the longest cell of a column in bytes.
+fn width(rows: &[(&str, Vec<String>)], column: usize) -> usize {
+    rows.iter().filter_map(|(_, cells)| cells.get(column)).map(String::len).max().unwrap_or(0)
 }
 
 fn boards(report: &Report) -> String {

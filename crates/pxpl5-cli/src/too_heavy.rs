@@ -18,18 +18,20 @@ pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<
     let work = RunWork::of(&experiment, false);
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
     // A closed form predicts the first picture; it does not cover tracked heads.
-    let expected = match entry.closed_form.filter(|_| plan.head.is_none()) {
+    let longer = ", or simulate more fields";
+    let (expected, longer) = match entry.closed_form.filter(|_| plan.head.is_none()) {
         Some(form) => {
             match (form.estimates.fields_needed)(&experiment) {
                 Some(needed) if needed <= fields.max(SHORT_RUN) => return None,
                 Some(needed) => {
-                    format!(
-                        "the analytic level predicts that the first picture with a latency is shown after about {needed} fields"
-                    )
+                    let expected =
+                        "the analytic level predicts that the first picture with a latency is shown after about";
+                    (format!("{expected} {needed} fields"), longer)
                 }
                 // The closed form covers only some machines and displays. Without a prediction there is no warning.
                 None if (form.summary)(&experiment).is_ok_and(|summary| summary.updates_hz.is_none()) => {
-                    "the analytic level predicts that no picture is shown in time".to_owned()
+                    // All pictures are alike, so a longer run shows none either.
+                    ("the analytic level predicts that no picture is shown in time".to_owned(), "")
                 }
                 None => return None,
             }
@@ -40,11 +42,11 @@ pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<
             if transform <= fields as f64 {
                 return None;
             }
-            format!("the processors take about {transform:.0} fields to transform the whole scene once")
+            (format!("the processors take about {transform:.0} fields to transform the whole scene once"), longer)
         }
     };
     Some(format!(
-        "TOO HEAVY: {} on {}, and the run has {}: {expected}; draw fewer primitives (--triangles), or simulate more fields",
+        "TOO HEAVY: {} on {}, and the run has {}: {expected}; draw fewer primitives (--triangles){longer}",
         count_of(work.primitives, "primitive"),
         count_of(work.gps, "graphics processor"),
         count_of(fields, "field")

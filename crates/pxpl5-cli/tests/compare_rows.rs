@@ -174,6 +174,31 @@ fn seeds_are_added_until_the_interval_is_narrow_or_the_maximum_is_reached() {
     assert!(err(&refused).contains("share of the mean (10%) or in pixels (0.2px)"), "{}", err(&refused));
 }
 
+/// Tests rows behind a device that moves pictures by their depths. Errors are smaller, and a row whose pictures it cannot
+/// move says so.
+#[test]
+fn rows_show_their_pictures_through_the_device_of_the_settings() {
+    let folder = Folder::new("compare-raster");
+    let run = |more: &[&str]| {
+        let shared = ["compare", "--only", "slats,arp-full,ideal", "--seeds", "1", "--fields", "60", "--json"];
+        let ran = folder.run(&[&shared[..], &["--head", "recorded:vive-dev", "--predict", "none"], more].concat());
+        assert!(ran.status.success(), "{}", err(&ran));
+        let json: Value = serde_json::from_slice(&ran.stdout).expect("JSON");
+        let px = |row: &str| {
+            json["pipelines"].as_array().unwrap().iter().find(|one| one["pipeline"] == row).cloned().unwrap()
+        };
+        ["slats", "ideal", "arp-full"].map(px)
+    };
+    let mean = |row: &Value| row["error"]["mean_px"]["mean"].as_f64();
+    let [plain, ideal, faces] = run(&[]);
+    let [moved, same, refused] = run(&["--raster", "depth"]);
+    assert!(mean(&moved) < mean(&plain) && mean(&same) == mean(&ideal), "{moved} {plain}");
+    assert!(faces["failure"].is_null() && mean(&refused).is_none(), "{refused}");
+    assert!(refused["failure"].as_str().unwrap().contains("head.raster = depth"), "{refused}");
+    // A recording on which the predictor is tuned changes nothing without a predictor.
+    assert_eq!(mean(&run(&["--set", "head.train=recorded:vive-tracked"])[0]), mean(&plain));
+}
+
 /// Tests the experiment file in the folder of a comparison. It has the overrides and a way to the model, it makes the
 /// same comparison again, and after a change of the model it says so.
 #[test]

@@ -4,7 +4,7 @@
 //! fields have an edge of their own: a latency just above a whole number counts as one field more. Source of both:
 //! docs/numerics.md, chapter "Time".
 
-use pxpl5_run::Summary;
+use pxpl5_run::{Outcome, Summary};
 
 /// Distance from an edge in fields below which a result counts as near it.
 pub const NEAR_FIELDS: f64 = 0.05;
@@ -28,12 +28,17 @@ pub(crate) fn to_other_retraces(summary: &Summary) -> Option<[f64; 2]> {
     least.is_finite().then_some([least, (1.0 - greatest).max(0.0)])
 }
 
-/// Returns a warning for each statistic of a run that lies within [`NEAR_FIELDS`] of an edge.
-pub fn near_edges(summary: &Summary) -> Vec<String> {
+/// Returns a warning for each statistic of a run that lies within [`NEAR_FIELDS`] of an edge. A pipeline that draws each
+/// part of a picture for its own instant has no such edge.
+pub fn near_edges(outcome: &Outcome) -> Vec<String> {
+    if outcome.pipeline().knows_when_seen() { Vec::new() } else { of_summary(&outcome.summary()) }
+}
+
+fn of_summary(summary: &Summary) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some([later, earlier]) = to_other_retraces(summary) {
         let mut near = |distance: f64, what: &str| {
-            if distance < NEAR_FIELDS {
+            if (0.0..NEAR_FIELDS).contains(&distance) {
                 warnings.push(format!(
                     "a copy ends within {distance:.3} field of {what} retrace: a small change moves a latency by a whole field"
                 ));
@@ -84,10 +89,10 @@ mod tests {
         let far = summary([4.3, 3.3], [3.2, 2.9]);
         let [later, earlier] = to_other_retraces(&far).expect("shown");
         assert!((later - 0.4).abs() < 1e-9 && (earlier - 0.6).abs() < 1e-9, "{later} {earlier}");
-        assert_eq!(near_edges(&far), [""; 0]);
-        assert!(near_edges(&summary([4.3, 3.3], [3.2, 3.26]))[0].contains("within 0.040 field of a missed retrace"));
-        assert!(near_edges(&summary([4.3, 3.3], [3.2, 2.33]))[0].contains("within 0.030 field of an earlier retrace"));
-        assert!(near_edges(&summary([4.3, 3.03], [3.2, 2.5]))[0].starts_with("1 of 2 latencies"));
+        assert_eq!(of_summary(&far), [""; 0]);
+        assert!(of_summary(&summary([4.3, 3.3], [3.2, 3.26]))[0].contains("within 0.040 field of a missed retrace"));
+        assert!(of_summary(&summary([4.3, 3.3], [3.2, 2.33]))[0].contains("within 0.030 field of an earlier retrace"));
+        assert!(of_summary(&summary([4.3, 3.03], [3.2, 2.5]))[0].starts_with("1 of 2 latencies"));
     }
 
     #[test]
@@ -97,6 +102,6 @@ mod tests {
             eye_swap_latencies_ms: Samples::default(),
             ..summary([1.0, 1.0], [1.0, 1.0])
         };
-        assert!(near_edges(&slats)[0].contains("within 0.040 field of a missed retrace"));
+        assert!(of_summary(&slats)[0].contains("within 0.040 field of a missed retrace"));
     }
 }

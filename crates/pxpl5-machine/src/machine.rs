@@ -283,6 +283,8 @@ impl Machine {
         }
         let Some((now, event)) = self.queue.next_event_before(end) else {
             self.now = self.now.max(end);
+            // The ring counts the messages that have ended since its last event.
+            self.record.ring.settle(self.now);
             return None;
         };
         self.now = now;

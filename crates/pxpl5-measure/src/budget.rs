@@ -1,7 +1,10 @@
 //! Latency from the measurement of the head's pose until the picture is lit, by stage.
 
+use crate::distribution::Distribution;
+use crate::percentiles::Percentiles;
 use pxpl5_run::{FinalResults, Outcome, PictureTimes, SampledPose, Samples, number_or_nan};
-use pxpl5_wire::{PeriodNumber, ViewNumber};
+use pxpl5_sim::Time;
+use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::BTreeMap;
 
 /// Mean time of each stage from the measurement of the head's pose until the picture is lit, in milliseconds.
@@ -98,6 +101,9 @@ pub(crate) struct BudgetSum {
     /// First period of the result window. `None` while the window is unknown.
     window_from: Option<PeriodNumber>,
     stages_ms: [Samples; STAGES],
+    /// Time from the head's pose to the light of each picture, and the error of its prediction interval.
+    totals_ms: Distribution,
+    misses_ms: Distribution,
     /// Poses of recent and future pictures, by the number of the view.
     ///
     /// Poses are copied for two reasons. A head discards old poses, and later pictures may use the last pose of a
@@ -121,17 +127,25 @@ impl BudgetSum {
             // The window has moved. All sums so far belong to periods before the window.
             self.window_from = window_from;
             self.stages_ms = std::array::from_fn(|_| Samples::keeping(run.samples));
+            [self.totals_ms, self.misses_ms] = [(); 2].map(|()| Distribution::keeping(run.samples));
         }
         // Sum the stages of the new pictures.
         self.poses.append(&mut poses(run));
         for stages in of_pictures(run, &self.poses, run.steady_pictures()) {
+            self.totals_ms.push(stages.iter().sum());
             self.stages_ms.iter_mut().zip(stages).for_each(|(samples, ms)| samples.push(ms));
         }
+        misses_ms(run, &self.poses).for_each(|ms| self.misses_ms.push(ms));
         // Discard poses that no later picture can use.
         if let Some(newest) = run.pictures.last() {
             let oldest = self.poses.range(..newest.view).rev().nth(OLDER_POSES).map(|(view, _)| *view);
             self.poses = self.poses.split_off(&oldest.unwrap_or_default());
         }
+    }
+
+    /// Returns the percentiles of the times from head to light, and of the errors of the prediction interval.
+    pub(crate) fn percentiles(&self) -> [Percentiles; 2] {
+        [&self.totals_ms, &self.misses_ms].map(Distribution::percentiles)
     }
 
     pub(crate) fn result(self) -> Budget {
@@ -157,6 +171,52 @@ pub(crate) fn of_pictures<'a>(
     complete.filter_map(|times| of_picture(run, times, poses.get(&times.view)?)).collect()
 }
 
+/// Returns, for each complete picture in the result window, the distance between the instant for which the picture was
+/// predicted and the instant at which it should have been predicted, in milliseconds. A pipeline that draws parts of a
+/// picture for their own instants computes these instants exactly and has no such distance. Neither has a picture without
+/// prediction.
+fn misses_ms<'a>(run: &'a FinalResults<'_>, poses: &'a Poses) -> impl Iterator<Item = f64> + 'a {
+    let display = run.record.display();
+    let nexts = run.pictures.iter().skip(1).map(Some).chain([run.next]);
+    let is_counted = |times: &PictureTimes| {
+        let is_steady = run.window.is_some_and(|window| window.holds_picture(display.period_at(times.shown_at)));
+        is_steady && times.is_shown() && times.layer == 0 && !run.pipeline.knows_when_seen()
+    };
+    let counted = run.pictures.iter().zip(nexts).filter(move |(times, _)| is_counted(times));
+    counted.filter_map(|(times, next)| {
+        let aimed_at = poses.get(&times.view)?.predicted_for?;
+        let right = run.aim.instant(&run.pipeline.shown(run.record, times, next));
+        Some(right.0.abs_diff(aimed_at.0) as f64 * 1e-9)
+    })
+}
+
+/// Times of the head that belong to one picture.
+#[derive(Clone, Copy, Debug)]
+pub struct HeadTimes {
+    /// Time of the measurement that is the newest one in the picture's pose.
+    pub measured_at: Option<Time>,
+    /// Instant for which the picture is drawn.
+    pub aimed_at: Time,
+    /// Middle of the light of the picture's middle.
+    pub light_at: Time,
+}
+
+/// Returns the times of the head for each picture of a run whose records are in memory.
+pub fn head_times(outcome: &Outcome) -> BTreeMap<PictureNumber, HeadTimes> {
+    let run = outcome.final_results();
+    let poses = poses(&run);
+    let of = |times: &PictureTimes| {
+        let sampled = poses.get(&times.view)?;
+        let light_at = light_at(&run, times);
+        Some((times.picture, HeadTimes { measured_at: sampled.measured_at, aimed_at: sampled.objects_at, light_at }))
+    };
+    run.pictures.iter().filter_map(of).collect()
+}
+
+fn light_at(run: &FinalResults<'_>, times: &PictureTimes) -> Time {
+    run.pipeline.light(run.record, times) + run.record.display().light().centre()
+}
+
 /// Returns the durations of a picture's latency stages, from the measurement of the pose until the picture is lit, in
 /// milliseconds.
 fn of_picture(run: &FinalResults<'_>, times: &PictureTimes, sampled: &SampledPose) -> Option<[f64; STAGES]> {
@@ -171,7 +231,7 @@ fn of_picture(run: &FinalResults<'_>, times: &PictureTimes, sampled: &SampledPos
         times.copied_at?,
         times.shown_at,
         light,
-        light + run.record.display().light().centre(),
+        light_at(run, times),
     ];
     Some(std::array::from_fn(|i| (path[i + 1].0 as f64 - path[i].0 as f64) * 1e-9))
 }

@@ -14,7 +14,7 @@ const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
 /// Up to `limit` numbers are kept, and percentiles are exact. Beyond `limit` the numbers are counted in bins, which are
 /// intervals of numbers. A percentile is then the middle of a bin, with a relative error of at most 1/2048. Count, mean
 /// and maximum are always exact.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Distribution {
     samples: Samples,
     limit: usize,

@@ -4,6 +4,7 @@ use crate::budget::{Budget, BudgetSum};
 use crate::error_observer::ErrorSum;
 use crate::errors::PixelErrors;
 use crate::eye_report::EyeReport;
+use crate::percentiles::Percentiles;
 use crate::step_observer::{StepSum, Steps};
 use crate::turn_observer::{RotationLatencySum, Turns};
 use pxpl5_run::{FinalResults, StreamingObserver};
@@ -42,13 +43,15 @@ impl StreamingObserver for HeadSum {
         let Self { budget, turns, steps, errors } = *self;
         let (turns, steps) = (turns.result(), steps.result());
         let (error, eye) = errors.result();
-        Box::new(HeadResults { end_to_end: budget.result(), turns, steps, error, eye })
+        let percentiles = budget.percentiles();
+        Box::new(HeadResults { end_to_end: budget.result(), percentiles, turns, steps, error, eye })
     }
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct HeadResults {
     pub(crate) end_to_end: Budget,
+    pub(crate) percentiles: [Percentiles; 2],
     pub(crate) turns: Turns,
     pub(crate) steps: Vec<Steps>,
     pub(crate) error: PixelErrors,

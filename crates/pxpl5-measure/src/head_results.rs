@@ -6,9 +6,12 @@ use crate::error_observer::ErrorSum;
 use crate::errors::{PixelErrors, Showing};
 use crate::eye_report::EyeReport;
 use crate::head_observer::HeadResults;
+use crate::latency::LatencyPercentiles;
+use crate::percentiles::Percentiles;
 use crate::step_observer::{StepSum, Steps};
 use crate::turn_observer::{RotationLatencySum, Turns};
 use pxpl5_run::{Cause, Outcome};
+use tracking::time::PS_PER_MS;
 
 impl HeadResults {
     fn from_observer(outcome: &Outcome) -> Option<&Self> {
@@ -43,7 +46,7 @@ impl PixelErrors {
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
         let results = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster().into());
-        results.map_or_else(|| evaluated(outcome, showing, None).0, |results| results.error.clone())
+        results.map_or_else(|| evaluated(outcome, showing, None, 0).0, |results| results.error.clone())
     }
 
     /// Returns the errors that the run would have without one cause of error. All times stay the same.
@@ -51,12 +54,27 @@ impl PixelErrors {
     /// For a run that discarded its records, the result covers only the last periods.
     #[must_use]
     pub fn without(outcome: &Outcome, showing: Showing, cause: Cause) -> Self {
-        evaluated(outcome, showing, Some(cause)).0
+        evaluated(outcome, showing, Some(cause), 0).0
+    }
+
+    /// Returns the errors that the run would have if each picture's pose were predicted for an instant that is `later_ms`
+    /// milliseconds too late, or too early if negative. All times stay the same, and so does what a device does to the
+    /// pictures.
+    ///
+    /// For a run that discarded its records, the result covers only the last periods.
+    #[must_use]
+    pub fn misaimed(outcome: &Outcome, showing: Showing, later_ms: i64) -> Self {
+        evaluated(outcome, showing, None, later_ms * PS_PER_MS as i64).0
     }
 }
 
-fn evaluated(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> (PixelErrors, Option<EyeReport>) {
-    let mut sum = ErrorSum::of(showing, without);
+fn evaluated(
+    outcome: &Outcome,
+    showing: Showing,
+    without: Option<Cause>,
+    later_ps: i64,
+) -> (PixelErrors, Option<EyeReport>) {
+    let mut sum = ErrorSum::of(showing, without, later_ps);
     sum.take(&outcome.final_results());
     sum.result()
 }
@@ -66,7 +84,7 @@ impl EyeReport {
     ///
     /// Returns `None` for a run without a head, and for a display without persistence and without reprojection.
     pub fn shown(outcome: &Outcome, showing: Showing) -> Option<Self> {
-        outcome.head().and_then(|_| evaluated(outcome, showing, None).1)
+        outcome.head().and_then(|_| evaluated(outcome, showing, None, 0).1)
     }
 }
 
@@ -75,7 +93,7 @@ impl EyeReport {
 pub(crate) fn errors_and_eye(outcome: &Outcome) -> Option<(PixelErrors, Option<EyeReport>)> {
     let showing = outcome.head()?.head().raster().into();
     let results = HeadResults::from_observer(outcome).map(|results| (results.error.clone(), results.eye.clone()));
-    Some(results.unwrap_or_else(|| evaluated(outcome, showing, None)))
+    Some(results.unwrap_or_else(|| evaluated(outcome, showing, None, 0)))
 }
 
 /// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.
@@ -88,12 +106,7 @@ impl Budget {
     /// complete and have a measured pose.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
-        if let Some(results) = HeadResults::from_observer(outcome) {
-            return results.end_to_end;
-        }
-        let mut sum = BudgetSum::default();
-        sum.take(&outcome.final_results());
-        sum.result()
+        HeadResults::from_observer(outcome).map_or_else(|| budget_sum(outcome).result(), |results| results.end_to_end)
     }
 
     /// Returns the latency of each picture whose records are in memory, in milliseconds. The latency lasts from the
@@ -102,6 +115,23 @@ impl Budget {
         let run = outcome.final_results();
         let stages = of_pictures(&run, &poses(&run), run.steady_pictures());
         stages.iter().map(|stages| stages.iter().sum()).collect()
+    }
+}
+
+fn budget_sum(outcome: &Outcome) -> BudgetSum {
+    let mut sum = BudgetSum::default();
+    sum.take(&outcome.final_results());
+    sum
+}
+
+impl LatencyPercentiles {
+    /// Returns the percentiles of a run. Those that concern the head are empty without a head.
+    #[must_use]
+    pub fn of(outcome: &Outcome) -> Self {
+        let of_head = HeadResults::from_observer(outcome).map(|results| results.percentiles);
+        let [head_to_light, aim_miss] = of_head.unwrap_or_else(|| budget_sum(outcome).percentiles());
+        let latency = Percentiles::of(outcome.tally().latency_ms.iter().copied());
+        Self { latency, head_to_light, aim_miss }
     }
 }
 

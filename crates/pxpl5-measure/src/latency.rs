@@ -1,5 +1,6 @@
 //! Statistics of the latency of pictures and its parts.
 
+use crate::percentiles::Percentiles;
 use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
 
 /// Returns the latency parts of the complete pictures in the result window.
@@ -17,6 +18,18 @@ pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<LatencyPartStati
         statistics: ms.statistics().defined(part.definition),
     });
     named.collect()
+}
+
+/// Percentiles of the times of pictures in milliseconds, over the complete pictures in the result window.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct LatencyPercentiles {
+    /// Latency by the definition of the pipeline. Covers the first [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) pictures.
+    pub latency: Percentiles,
+    /// Time from the measurement of the head's pose until the middle of the light of the picture's middle.
+    pub head_to_light: Percentiles,
+    /// Error of the prediction interval: distance between the instant for which the picture was predicted and the
+    /// instant for which it should have been. Empty for pipelines that draw each part for its own instant.
+    pub aim_miss: Percentiles,
 }
 
 /// One part of the latency of pictures, with its statistics.

@@ -52,7 +52,7 @@ mod turn_observer;
 mod turned;
 mod utilisation;
 
-pub use budget::{Budget, tracking_and_rendering_ms};
+pub use budget::{Budget, HeadTimes, head_times, tracking_and_rendering_ms};
 pub use causes::{ErrorCauses, ErrorPart};
 pub use critical_path::{CriticalPath, PICTURES_FOLLOWED, PathPart};
 pub use depth_warp::{DepthPicture, reproject_with_depth};
@@ -61,7 +61,7 @@ pub use eye_report::{EyeReport, ReprojectionReport};
 pub use faces_report::{FacesReport, MemoryReport};
 pub use head_observer::HeadSum;
 pub use head_results::pixel_errors;
-pub use latency::{LatencyPartStatistics, SurfaceStatistics, latency_by_surface, latency_parts};
+pub use latency::{LatencyPartStatistics, LatencyPercentiles, SurfaceStatistics, latency_by_surface, latency_parts};
 pub use latency_curve::LatencyCurve;
 pub use measured::Measured;
 pub use percentiles::Percentiles;

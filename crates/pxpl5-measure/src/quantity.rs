@@ -50,6 +50,11 @@ const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome
 const LATENCY: &str =
     "latency by the definition of the pipeline (see the report), over all complete pictures in the window";
 
+const TO_LIGHT: &str =
+    "from the head's pose to the light of the picture's middle; without an ending the mean; only with a head.motion";
+
+const AIM_MISS: &str = "error of the prediction interval: distance between the instant for which a picture is predicted and the one for which it should be; only with a head.motion, and not for pipelines that draw each part for its own instant";
+
 const EYE_LATENCY: &str = "from the start of an eye's TRANSFORM to the swap of its frame, over both eyes of all complete pictures in the window; none for Slats";
 
 const EYE_RETRACES: &str = "number of retraces from the start of an eye's TRANSFORM to the swap, the retrace of the swap included, over both eyes of all complete pictures in the window; none for Slats";
@@ -61,7 +66,7 @@ const PATH: &str = "share of the latency that waits for this resource, 0 to 1, o
 /// All quantities that can be measured, by name.
 ///
 /// Quantities that need a simulated run have no value at the analytic level.
-pub static QUANTITIES: [Quantity; 57] = [
+pub static QUANTITIES: [Quantity; 66] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().rounded().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().rounded().sd),
     of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
@@ -70,6 +75,9 @@ pub static QUANTITIES: [Quantity; 57] = [
     of_summary("latency_ms.sd", LATENCY, |s| s.latency_ms().rounded().sd),
     of_summary("latency_ms.min", LATENCY, |s| s.latency_ms().min),
     of_summary("latency_ms.max", LATENCY, |s| s.latency_ms().max),
+    of_run("latency_ms.p50", LATENCY, |_, r| Some(r.percentiles_ms.latency.p50)),
+    of_run("latency_ms.p95", LATENCY, |_, r| Some(r.percentiles_ms.latency.p95)),
+    of_run("latency_ms.p99", LATENCY, |_, r| Some(r.percentiles_ms.latency.p99)),
     of_summary("eye_latency_ms.mean", EYE_LATENCY, |s| s.eye_latency_ms().rounded().mean),
     of_summary("eye_latency_ms.sd", EYE_LATENCY, |s| s.eye_latency_ms().rounded().sd),
     of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces().rounded().mean),
@@ -115,11 +123,12 @@ pub static QUANTITIES: [Quantity; 57] = [
     of_summary("eye_ms", "from the start of an eye's TRANSFORM to the end of its COPY; mean; none for Slats", |s| {
         s.eye_latencies_ms.statistics().mean
     }),
-    of_run(
-        "to_light_ms",
-        "from the head's pose to the light of the picture's middle; mean; only with a head.motion",
-        |_, r| Some(r.head.as_ref()?.end_to_end.total_ms),
-    ),
+    of_run("to_light_ms", TO_LIGHT, |_, r| Some(r.head.as_ref()?.end_to_end.total_ms)),
+    of_run("to_light_ms.p50", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p50)),
+    of_run("to_light_ms.p95", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p95)),
+    of_run("to_light_ms.p99", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p99)),
+    of_run("aim_miss_ms.mean", AIM_MISS, |_, r| Some(r.percentiles_ms.aim_miss.mean)),
+    of_run("aim_miss_ms.max", AIM_MISS, |_, r| Some(r.percentiles_ms.aim_miss.max)),
     of_run(
         "tracking_and_rendering_ms",
         "the sum of two means, as in figure 19: from the pose to the arrival of its report, and from the start of an eye's TRANSFORM to the swap; only with a head.motion",
@@ -131,6 +140,7 @@ pub static QUANTITIES: [Quantity; 57] = [
     of_run("error_px.mean", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.mean)),
     of_run("error_px.p50", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p50)),
     of_run("error_px.p90", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p90)),
+    of_run("error_px.p95", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p95)),
     of_run("error_px.p99", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p99)),
     of_run("error_px.max", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.max)),
     of_run("error_deg.mean", "error_px as an angle", |_, r| Some(r.head.as_ref()?.error.degrees.mean)),
@@ -204,10 +214,12 @@ impl Measure {
         find_named("quantity", name, QUANTITIES.iter().map(|quantity| (quantity.name, Self(quantity))))
     }
 
-    /// Returns the quantities measured by default: latencies, update rate and missed retraces.
+    /// Returns the quantities measured by default, which all levels have: latencies, update rate and missed retraces.
     pub fn usual() -> Vec<Self> {
         let names = ["latency_fields.", "latency_ms.", "updates_hz", "missed_retraces"];
-        QUANTITIES.iter().filter(|q| names.iter().any(|name| q.name.starts_with(name))).map(Self).collect()
+        let is_usual =
+            |q: &&Quantity| matches!(q.value, Value::OfSummary(_)) && names.iter().any(|name| q.name.starts_with(name));
+        QUANTITIES.iter().filter(is_usual).map(Self).collect()
     }
 
     /// Returns the counts that every row of results needs: pictures due, pictures not shown, and evaluated pixels.

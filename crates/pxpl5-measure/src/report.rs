@@ -6,7 +6,9 @@ use crate::errors::PixelErrors;
 use crate::eye_report::EyeReport;
 use crate::faces_report::FacesReport;
 use crate::head_results::{errors_and_eye, missing_results_warning};
-use crate::latency::{LatencyPartStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
+use crate::latency::{
+    LatencyPartStatistics, LatencyPercentiles, SurfaceStatistics, latency_by_surface, latency_part_statistics,
+};
 use crate::program;
 use crate::too_heavy::TooHeavy;
 use crate::utilisation::Utilisation;
@@ -73,6 +75,8 @@ pub struct Report {
     pub latency_fields: DefinedStatistics,
     /// Latency of the pictures in milliseconds of simulated time.
     pub latency_ms: DefinedStatistics,
+    /// Percentiles of the latency, of the time from head to light, and of the error of the prediction interval.
+    pub percentiles_ms: LatencyPercentiles,
     /// Parts of the latency in milliseconds. The parts add up to the time from the sample of the pose until the picture
     /// is lit.
     pub latency_parts_ms: Vec<LatencyPartStatistics>,
@@ -244,6 +248,7 @@ impl Report {
             pictures: tally.complete as usize,
             latency_fields: outcome.latency_fields().defined(pipeline.latency_definition()),
             latency_ms: outcome.latency_ms().defined(pipeline.latency_definition()),
+            percentiles_ms: LatencyPercentiles::of(outcome),
             latency_parts_ms: latency_part_statistics(outcome),
             latency_by_eye_ms: latency_by_surface(outcome),
             // Results over the whole run.

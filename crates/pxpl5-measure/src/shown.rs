@@ -140,17 +140,24 @@ impl Shown {
     }
 
     /// Replaces the poses of the views `of` by the poses that the run would have had without the cause of error
-    /// `without`. Views that are not in `of` show nothing afterwards.
-    pub(crate) fn replace_poses(&mut self, head: &Arc<HeadViews>, of: &BTreeSet<ViewNumber>, without: Cause) {
-        let mut estimator = Estimator::new(head, Some(without));
+    /// `without`, and if all prediction intervals were longer by `later_ps`. Views that are not in `of` show nothing
+    /// afterwards.
+    pub(crate) fn replace_poses(
+        &mut self,
+        head: &Arc<HeadViews>,
+        of: &BTreeSet<ViewNumber>,
+        (without, later_ps): (Option<Cause>, i64),
+    ) {
+        let mut estimator = Estimator::new(head, without);
         let mut sampled: Vec<SampledPose> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
         sampled.sort_by_key(|sampled| sampled.reports_until);
         let moments = sampled.into_iter().map(|sampled| {
-            let pose = estimator.pose(sampled.reports_until, sampled.objects_at);
+            let predicted_for = Time(sampled.objects_at.0.saturating_add_signed(later_ps));
+            let pose = estimator.pose(sampled.reports_until, predicted_for);
             (sampled.number, viewed(&SampledPose { pose, ..sampled }))
         });
         self.moments = moments.collect();
-        self.faces.iter_mut().for_each(|faces| faces.disable_cause(without));
+        self.faces.iter_mut().zip(without).for_each(|(faces, without)| faces.disable_cause(without));
     }
 
     /// Returns the views that a pixel shows when it is lit at `at`.

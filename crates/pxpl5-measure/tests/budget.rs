@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use pxpl5_machine::MachineConfig;
-use pxpl5_measure::{Budget, ErrorCauses, PixelErrors, Showing};
+use pxpl5_measure::{Budget, ErrorCauses, LatencyPercentiles, Percentiles, PixelErrors, Showing};
 use pxpl5_run::{
     Cause, Experiment, Frameless, Head, Jitp, Outcome, Pipeline, Pixels, RenderingControl, Slats, Viewpoint,
 };
@@ -80,6 +80,13 @@ fn stages_from_head_to_light_add_up() {
         let found = Budget::totals_ms(&outcome);
         assert_eq!(found.len(), n);
         found.iter().zip(&totals).for_each(|(found, expected)| assert_near(*found, *expected, name));
+        // The report has their percentiles. Without a change of the load, all pictures are lit when the dry run says.
+        let found = LatencyPercentiles::of(&outcome);
+        let expected = Percentiles::of(totals.into_iter());
+        assert_near(found.head_to_light.p50, expected.p50, name);
+        assert_near(found.head_to_light.p95, expected.p95, name);
+        assert_eq!((found.head_to_light.n, found.latency.n), (n as u64, outcome.latency_ms().n), "{name}");
+        assert!(found.aim_miss.n == 0 || found.aim_miss.max == 0.0, "{name}: {found:?}");
         // The report takes 3.75 ms to the first character, and 47 bytes at 115,200 baud.
         assert!((budget.tracking_ms - 3.75 - 4.08).abs() < 0.01, "{}", budget.tracking_ms);
     }
@@ -117,6 +124,20 @@ fn the_parts_of_an_error_by_cause_add_up_to_the_error() {
     assert!(part(Cause::Latency) > 0.5 * causes.whole_px, "{causes:?}");
     let sum: f64 = causes.parts_px.iter().map(|part| part.px).sum();
     assert_near(causes.interaction_px, causes.whole_px - sum, "interaction");
+}
+
+/// A head slides, and a tracker without noise is predicted exactly by a velocity. Predictions for an instant that is d too
+/// late or too early are wrong by the way of d. The middle of the picture is lit at the right instant, so it has no other
+/// error.
+#[test]
+fn a_wrong_prediction_interval_adds_the_way_of_the_head_in_its_error() {
+    let slats = Arc::new(Slats::split()) as Arc<dyn Pipeline>;
+    let exact = TrackerConfig::ideal().with_latency_ps(40 * PS_PER_MS);
+    let outcome = run(&slats, Some(head(Slide::right_at(1.0), exact, PredictorKind::ConstantVelocity)), 90);
+    let mean_px = |later_ms| PixelErrors::misaimed(&outcome, Showing::Plain, later_ms).centre_px.mean;
+    assert_near(mean_px(0), PixelErrors::of(&outcome).centre_px.mean, "the right interval");
+    let [late, later, early] = [20, 40, -20].map(mean_px);
+    assert!((later / late - 2.0).abs() < 0.02 && (early / late - 1.0).abs() < 0.02, "{late} {later} {early}");
 }
 
 #[test]

@@ -173,7 +173,7 @@ impl Experiment {
     }
 
     /// Returns the effect of 10 % more of each resource of the machine, as dictionaries. The experiment runs again for
-    /// each resource, unless formulas give the times of the pipeline.
+    /// each resource.
     ///
     /// Raises the same exceptions as :meth:`run`.
     fn what_if<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

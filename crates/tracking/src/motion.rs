@@ -116,44 +116,72 @@ pub trait Motion: Debug {
     }
 }
 
+/// Forwards all methods that give poses, rates and times to another motion.
+macro_rules! forward_poses {
+    ($own:ident, $to:expr) => {
+        fn pose(&$own, t_ps: u64) -> Pose {
+            $to.pose(t_ps)
+        }
+        fn ends_ps(&$own) -> Option<u64> {
+            $to.ends_ps()
+        }
+        fn gap_ps(&$own, until_ps: u64) -> Option<(u64, u64)> {
+            $to.gap_ps(until_ps)
+        }
+        fn warnings(&$own) -> Vec<String> {
+            $to.warnings()
+        }
+        fn moves_until_ps(&$own) -> Option<u64> {
+            $to.moves_until_ps()
+        }
+        fn grows(&$own) -> bool {
+            $to.grows()
+        }
+        fn velocity(&$own, t_ps: u64) -> DVec3 {
+            $to.velocity(t_ps)
+        }
+        fn angular_velocity(&$own, t_ps: u64) -> DVec3 {
+            $to.angular_velocity(t_ps)
+        }
+    };
+}
+
 macro_rules! forward {
     ($($pointer:ty),*) => {$(
         impl<M: Motion + ?Sized> Motion for $pointer {
-            fn pose(&self, t_ps: u64) -> Pose {
-                (**self).pose(t_ps)
-            }
+            forward_poses!(self, (**self));
             fn identify(&self, settings: &mut SettingSink) {
                 (**self).identify(settings);
             }
-            fn ends_ps(&self) -> Option<u64> {
-                (**self).ends_ps()
-            }
-            fn gap_ps(&self, until_ps: u64) -> Option<(u64, u64)> {
-                (**self).gap_ps(until_ps)
-            }
-            fn warnings(&self) -> Vec<String> {
-                (**self).warnings()
-            }
-            fn moves_until_ps(&self) -> Option<u64> {
-                (**self).moves_until_ps()
-            }
-            fn grows(&self) -> bool {
-                (**self).grows()
-            }
             fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
                 (**self).sibling()
-            }
-            fn velocity(&self, t_ps: u64) -> DVec3 {
-                (**self).velocity(t_ps)
-            }
-            fn angular_velocity(&self, t_ps: u64) -> DVec3 {
-                (**self).angular_velocity(t_ps)
             }
         }
     )*};
 }
 
 forward!(&M, Box<M>, Arc<M>);
+
+/// A motion whose predictor is tuned on another motion, as the predictor of a real system is tuned on other users.
+#[derive(Clone, Debug)]
+pub struct TrainedOn {
+    /// Motion of the head.
+    pub motion: Arc<dyn Motion + Send + Sync>,
+    /// Motion on which prediction filters are tuned.
+    pub training: Arc<dyn Motion + Send + Sync>,
+}
+
+impl Motion for TrainedOn {
+    forward_poses!(self, self.motion);
+    fn identify(&self, settings: &mut SettingSink) {
+        self.motion.identify(settings);
+        settings("motion.training", &"the settings that follow");
+        self.training.identify(settings);
+    }
+    fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
+        Some(Box::new(Arc::clone(&self.training)))
+    }
+}
 
 /// Tests the velocity and the angular velocity of a motion at `t_ps` against differences between poses.
 #[cfg(test)]

@@ -2,9 +2,10 @@
 //! best filter, and on sine waves they agree with exact formulas.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 use tracking::Pose;
-use tracking::motion::{End, Motion, Pan, Recording, Sinusoid, Still, Synthetic};
+use tracking::motion::{End, Motion, Pan, Recording, Sinusoid, Still, Synthetic, TrainedOn};
 use tracking::predict::{
     PredictionDeviation, PredictorConfig, PredictorKind, gain, prediction_errors, training_seed, tune,
 };
@@ -281,6 +282,22 @@ fn a_filter_tuned_on_one_half_of_a_real_recording_does_not_lose_on_the_other_hal
             }
         }
     }
+}
+
+#[test]
+fn a_motion_trained_on_another_one_moves_as_itself_and_has_the_filter_of_the_other() {
+    let [walks, stands] = [half("vive-tracked", false), half("vive-dev", false)].map(Arc::new);
+    let trained = TrainedOn { motion: walks.clone(), training: stands.clone() };
+    assert_eq!((trained.pose(PS_PER_S), trained.moves_until_ps()), (walks.pose(PS_PER_S), walks.moves_until_ps()));
+    let tracker = model(TrackerConfig::optical_ceiling());
+    let of = |motion: &dyn Motion| tuned(motion, &tracker, PredictorKind::ConstantVelocity, 100 * PS_PER_MS);
+    assert_eq!(of(&trained), of(&stands));
+    let named = |motion: &dyn Motion| {
+        let mut text = String::new();
+        motion.identify(&mut |key, value| text += &format!("{key} {value}\n"));
+        text
+    };
+    assert!(named(&trained) != named(&walks) && named(&trained).starts_with(&named(&walks)));
 }
 
 /// Tests the longest memory of a tuned filter, on a motion without any jerk. The memory T follows from noise, jerk and the

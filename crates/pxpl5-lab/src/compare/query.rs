@@ -1,24 +1,22 @@
 //! Definition and execution of a comparison of pipelines.
 
-use super::compared::{ComparedPipeline, RowChoice};
+use super::contender::{ComparedPipeline, RowChoice};
 use super::interval::CONFIDENCE;
 use super::precision::UntilPrecise;
 use super::predictors::predictor_means;
+use super::progress::Progress;
 use super::row::{ComparisonRow, Sampling, difference};
 use super::store::CompareStore;
 use super::trial::{Trial, common_window_from};
-use crate::Workstation;
+use crate::StopFlag;
 use crate::error::StudyError;
-use crate::estimate::{Estimate, RunWork};
 use crate::experiment_file::{ExperimentFile, Origin, Plan, Settings, plain};
 use crate::limit::{CEILING, LimitQuery};
 use crate::parallel;
-use crate::study::{Study, check};
 use pxpl5_measure::{Showing, program};
 use pxpl5_run::{Experiment, Goal, Head, Pixels, Tunings, WARM_UP_PERIODS};
 use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::parameters::SettingError;
-use pxpl5_sim::{SharedWatcher, Watcher};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -61,9 +59,6 @@ pub struct CompareQuery {
     /// Precision of the mean error, for which seeds are added to rows. `None` runs only the seeds in
     /// [`CompareQuery::seeds`].
     pub until: Option<UntilPrecise>,
-    /// Folder of finished rows, from [`CompareQuery::open_store`]. Rows in the folder are not run, and each finished row
-    /// is stored after its last run.
-    pub store: Option<Arc<CompareStore>>,
 }
 
 /// Result of a comparison: the shared settings, and one row for each method.
@@ -113,110 +108,19 @@ pub struct Comparison {
 struct Common<'a> {
     scene: Arc<Scene>,
     tunings: Arc<Tunings>,
-    /// Counts the runs. Their number grows when seeds are added.
-    watcher: SharedWatcher<'a>,
+    progress: Progress<'a>,
 }
 
 impl Common<'_> {
     /// Returns the experiment for checked settings. All rows share the tuning of predictors. Another thread can stop
     /// the run.
     fn experiment(&self, plan: &Plan) -> Experiment {
-        let experiment =
-            plan.experiment(Arc::clone(&self.scene)).host(Workstation::new()).stopped_by(self.watcher.stop());
-        let head = experiment.head.as_ref().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
+        let experiment = plan.experiment(Arc::clone(&self.scene)).host(self.progress.host());
+        let head = experiment.tracked_head().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
         match head {
             Some(head) => experiment.head(head),
             None => experiment,
         }
-    }
-}
-
-impl Study for CompareQuery {
-    type Report = Comparison;
-
-    fn estimate(&self, threads: usize) -> Estimate {
-        // Seeds may be added up to the maximum, so the estimate covers the maximum.
-        let seeds = self.until.map_or(0, |until| until.max_seeds).max(self.seeds.len());
-        let plans = self.plans().unwrap_or_default();
-        let Some(scene) = plans.first().and_then(|plan| plan.load_scene().ok()) else { return Estimate::NOTHING };
-        let works = plans.iter().map(|plan| RunWork::of(&plan.experiment(Arc::clone(&scene)), true));
-        Estimate::of_all(works.flat_map(|work| std::iter::repeat_n(work.estimate(), seeds)), threads)
-    }
-
-    /// Runs each row with each seed. Runs in progress end soon after a stop, and their rows are neither stored nor in the
-    /// result.
-    ///
-    /// The result has a row for each pipeline. A pipeline may be unable to run on the machine, or show no picture of
-    /// the scene. Its row then holds the reason, and the number of triangles that the pipeline could draw.
-    fn run(&self, watcher: &mut dyn Watcher) -> Result<Comparison, StudyError> {
-        let compared_pipelines = self.compared_pipelines()?;
-        // The first row serves to check the settings that all rows share.
-        let any = self.any_plan(&compared_pipelines)?;
-        let scene = any.load_scene()?;
-        let held =
-            |compared: &ComparedPipeline| self.store.as_deref().and_then(|store| store.row(&compared.name)).cloned();
-        let missing = compared_pipelines.iter().filter(|compared| held(compared).is_none()).count();
-        let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
-        let watcher = SharedWatcher::new(watcher, (missing * runs_of_a_row) as u64);
-        // After a row could not be stored, no further row starts.
-        let is_failed = AtomicBool::new(false);
-        // Rows with the same head and prediction interval share the tuning of the predictor.
-        let common = Common { scene, tunings: Arc::default(), watcher };
-        // Rows and the seeds of each row execute in parallel. So each row is known as soon as its own runs have ended.
-        let pipelines = parallel::map(&compared_pipelines, |compared| {
-            if let Some(row) = held(compared) {
-                return Ok(Some(row));
-            }
-            if is_failed.load(Ordering::Relaxed) {
-                return Ok(None);
-            }
-            let stop = common.watcher.stop();
-            if stop.is_stopped() {
-                return Ok(None);
-            }
-            let row = self.row(compared, &common);
-            // A row whose runs were stopped is not a result.
-            if stop.is_stopped() {
-                return Ok(None);
-            }
-            let row = row?;
-            if self.limits {
-                common.watcher.step();
-            }
-            let row = match &self.store {
-                Some(store) => store.append(row).inspect_err(|_| is_failed.store(true, Ordering::Relaxed))?,
-                None => row,
-            };
-            common.watcher.row("rows", &row);
-            Ok::<_, StudyError>(Some(row))
-        });
-        let sampling = self.sampling(&any)?;
-        let mut comparison = Comparison {
-            schema: "pxpl5-comparison/4",
-            version: program::VERSION,
-            commit: program::commit(),
-            config_hash: any.experiment(Arc::clone(&common.scene)).config_hash().to_string(),
-            settings: self.header()?.settings,
-            warnings: any.warnings(),
-            machine: any.machine.preset.clone(),
-            boards: any.machine.boards(),
-            scene: common.scene.name().to_owned(),
-            triangles: common.scene.triangles().len(),
-            head: any.head.iter().flat_map(|head| head.settings()).map(|(key, value)| (key, plain(&value))).collect(),
-            hmd: *any.hmd.config(),
-            fields: any.fields,
-            seeds: self.seeds.clone(),
-            confidence: self.confidence,
-            until_precision: self.until.map(|until| until.width.to_string()),
-            max_seeds: self.until.map(|until| until.max_seeds),
-            evaluated_from: common_window_from(any.fields),
-            pipelines: pipelines.into_iter().filter_map(Result::transpose).collect::<Result<_, _>>()?,
-        };
-        comparison.compare_with_best(sampling);
-        if comparison.pipelines.is_empty() {
-            check(&common.watcher.stop())?;
-        }
-        Ok(comparison)
     }
 }
 
@@ -234,15 +138,109 @@ impl CompareQuery {
             pictures: false,
             confidence: CONFIDENCE,
             until: None,
-            store: None,
         }
+    }
+
+    /// Runs each row with each seed. After each run, calls `finished` with the number of finished runs and the number
+    /// of all runs.
+    ///
+    /// The result has a row for each pipeline. A pipeline may be unable to run on the machine, or show no picture of
+    /// the scene. Its row then holds the reason, and the number of triangles that the pipeline could draw.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`StudyError`] when a setting is invalid, or when the run is too short to evaluate.
+    pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, StudyError> {
+        self.run_into(None, &StopFlag::default(), finished, |_| {})
+    }
+
+    /// Runs each row that is not yet in `store`, the folder of finished rows, until another thread sets `stop`. Each row
+    /// is stored after its last run. Runs in progress end after at most 60 fields, and their rows are not stored. Calls
+    /// `ended` with each stored row.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`CompareQuery::run`], if a row cannot be stored, and with [`ExperimentError::Stopped`](pxpl5_run::ExperimentError::Stopped).
+    pub fn run_into(
+        &self,
+        store: Option<&CompareStore>,
+        stop: &StopFlag,
+        finished: impl Fn(u64, u64) + Sync,
+        ended: impl Fn(&ComparisonRow) + Sync,
+    ) -> Result<Comparison, StudyError> {
+        let compared_pipelines = self.compared_pipelines()?;
+        // The first row serves to check the settings that all rows share.
+        let any = self.any_plan(&compared_pipelines)?;
+        let scene = any.load_scene()?;
+        let held = |contender: &ComparedPipeline| store.and_then(|store| store.row(&contender.name)).cloned();
+        let missing = compared_pipelines.iter().filter(|contender| held(contender).is_none()).count();
+        let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
+        let progress = Progress::new((missing * runs_of_a_row) as u64, stop, &finished);
+        // After a row could not be stored, no further row starts.
+        let is_failed = AtomicBool::new(false);
+        // Rows with the same head and prediction interval share the tuning of the predictor.
+        let common = Common { scene, tunings: Arc::default(), progress };
+        // Rows and the seeds of each row execute in parallel. So each row is known as soon as its own runs have ended.
+        let pipelines = parallel::map(&compared_pipelines, |contender| {
+            if let Some(row) = held(contender) {
+                return Ok(Some(row));
+            }
+            if is_failed.load(Ordering::Relaxed) {
+                return Ok(None);
+            }
+            common.progress.check_stopped()?;
+            let row = self.row(contender, &common)?;
+            // A row whose runs were stopped is not a result.
+            common.progress.check_stopped()?;
+            if self.limits {
+                common.progress.step();
+            }
+            let row = match store {
+                Some(store) => store.append(row).inspect_err(|_| is_failed.store(true, Ordering::Relaxed))?,
+                None => row,
+            };
+            ended(&row);
+            Ok::<_, StudyError>(Some(row))
+        });
+        let sampling = self.sampling(&any)?;
+        // Settings of the first row alone do not belong to the head of all rows.
+        let shared =
+            ComparedPipeline { settings: &[], ..compared_pipelines[0].clone() }.plan(&self.shared, any.seed)?;
+        let mut comparison = Comparison {
+            schema: "pxpl5-comparison/4",
+            version: program::VERSION,
+            commit: program::commit(),
+            config_hash: any.experiment(Arc::clone(&common.scene)).config_hash().to_string(),
+            settings: self.header()?.settings,
+            warnings: any.warnings(),
+            machine: any.machine.preset.clone(),
+            boards: any.machine.boards(),
+            scene: common.scene.name().to_owned(),
+            triangles: common.scene.triangles().len(),
+            head: shared
+                .head
+                .iter()
+                .flat_map(|head| head.settings())
+                .map(|(key, value)| (key, plain(&value)))
+                .collect(),
+            hmd: *any.hmd.config(),
+            fields: any.fields,
+            seeds: self.seeds.clone(),
+            confidence: self.confidence,
+            until_precision: self.until.map(|until| until.width.to_string()),
+            max_seeds: self.until.map(|until| until.max_seeds),
+            evaluated_from: common_window_from(any.fields),
+            pipelines: pipelines.into_iter().filter_map(Result::transpose).collect::<Result<_, _>>()?,
+        };
+        comparison.compare_with_best(sampling);
+        Ok(comparison)
     }
 
     /// Returns the names of the rows that the query runs.
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Study::run`].
+    /// Fails in the same cases as [`CompareQuery::run`].
     pub fn rows(&self) -> Result<Vec<String>, StudyError> {
         Ok(self.identity()?.1)
     }
@@ -259,18 +257,18 @@ impl CompareQuery {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Study::run`].
+    /// Fails in the same cases as [`CompareQuery::run`].
     pub fn plans(&self) -> Result<Vec<Plan>, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         let seed = self.any_plan(&compared_pipelines)?.seed;
-        Ok(compared_pipelines.iter().filter_map(|compared| compared.plan(&self.shared, seed).ok()).collect())
+        Ok(compared_pipelines.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
     }
 
     /// Returns a warning if the shared settings come from the folder of another comparison, and its results will differ.
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Study::run`].
+    /// Fails in the same cases as [`CompareQuery::run`].
     pub fn changes(&self) -> Result<Option<String>, StudyError> {
         let (plan, _) = self.identity()?;
         Ok(plan.origin.changes(&Origin::of(&plan.experiment(plan.load_scene()?))))
@@ -281,7 +279,7 @@ impl CompareQuery {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Study::run`].
+    /// Fails in the same cases as [`CompareQuery::run`].
     pub fn file_in(&self, folder: &Path) -> Result<String, StudyError> {
         let (plan, rows) = self.identity()?;
         let mut settings = Settings::of(&self.shared);
@@ -371,20 +369,20 @@ impl CompareQuery {
         (1..=more as u64).map(|n| greatest.saturating_add(added + n)).collect()
     }
 
-    fn trials(&self, compared: &ComparedPipeline, seeds: &[u64], common: &Common<'_>) -> Vec<Result<Trial, String>> {
+    fn trials(&self, contender: &ComparedPipeline, seeds: &[u64], common: &Common<'_>) -> Vec<Result<Trial, String>> {
         parallel::map(seeds, |seed| {
-            let trial = self.trial(compared, *seed, common);
-            common.watcher.step();
+            let trial = self.trial(contender, *seed, common);
+            common.progress.step();
             trial
         })
     }
 
-    fn trial(&self, compared: &ComparedPipeline, seed: u64, common: &Common<'_>) -> Result<Trial, String> {
+    fn trial(&self, contender: &ComparedPipeline, seed: u64, common: &Common<'_>) -> Result<Trial, String> {
         // Pixels are needed only for the picture of the first seed.
-        let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !compared.is_reference();
+        let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !contender.is_reference();
         let pixels = if is_seen { Pixels::Lazy } else { Pixels::Off };
-        let plan = compared.plan(&self.shared, seed).map_err(|error| error.to_string())?;
-        compared.trial(common.experiment(&plan).pixels(pixels), self.causes)
+        let plan = contender.plan(&self.shared, seed).map_err(|error| error.to_string())?;
+        contender.trial(common.experiment(&plan).pixels(pixels), self.causes)
     }
 
     fn sampling(&self, plan: &Plan) -> Result<Sampling, StudyError> {
@@ -394,42 +392,52 @@ impl CompareQuery {
     }
 
     /// Runs a row with all seeds. Then adds seeds while the confidence interval of the mean error is too wide.
-    fn row(&self, compared: &ComparedPipeline, common: &Common<'_>) -> Result<ComparisonRow, StudyError> {
-        let plan = compared.plan(&self.shared, self.seeds[0])?;
-        let mut trials = self.trials(compared, &self.seeds, common);
+    fn row(&self, contender: &ComparedPipeline, common: &Common<'_>) -> Result<ComparisonRow, StudyError> {
+        let plan = match contender.plan(&self.shared, self.seeds[0]) {
+            Ok(plan) => plan,
+            // A row whose pictures the device of the settings cannot move states the reason.
+            Err(error) => {
+                let mut plain = self.shared.clone();
+                plain.settings.retain(|key, _| key != "head.raster" && !key.starts_with("head.reprojection."));
+                let Ok(plan) = contender.plan(&plain, self.seeds[0]) else { return Err(error.into()) };
+                let row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &[], self.sampling(&plan)?);
+                return Ok(ComparisonRow { failure: Some(error.to_string()), ..row });
+            }
+        };
+        let mut trials = self.trials(contender, &self.seeds, common);
         let (mut row, shown) = loop {
             // Failed runs are left out, and their first error is reported below.
             let ran: Vec<&Trial> = trials.iter().flatten().collect();
             let sampling = Sampling { seeds: trials.len(), ..self.sampling(&plan)? };
-            let mut row = ComparisonRow::of(compared, plan.pipeline.as_ref(), &ran, sampling);
+            let mut row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &ran, sampling);
             row.is_precise = self.until.map(|until| until.is_reached(&row.error.mean_px));
             // More seeds do not help a row with failed runs or without an evaluation.
             let helps = ran.len() == trials.len() && row.was_evaluated();
             let until = self.until.filter(|_| helps);
-            check(&common.watcher.stop())?;
+            common.progress.check_stopped()?;
             let more = until.map_or(0, |until| until.seeds_to_add(&row.error.mean_px, trials.len()));
             if more == 0 {
                 let shown: usize = ran.iter().map(|trial| trial.shown).sum();
                 break (row, shown);
             }
-            common.watcher.add(more as u64);
+            common.progress.add(more as u64);
             let seeds = self.seeds_after(trials.len(), more);
-            trials.extend(self.trials(compared, &seeds, common));
+            trials.extend(self.trials(contender, &seeds, common));
         };
         if let Some(Ok(first)) = trials.first()
             && self.predictors
-            && !compared.is_reference()
+            && !contender.is_reference()
         {
             let experiment = common.experiment(&plan).with_dry_run(first.dry_run.clone());
             // All predictors are evaluated over the periods of the row.
             let experiment = experiment.results_from(common_window_from(plan.fields));
             // The dry run of the first trial is reused for every predictor.
-            row.predictors = predictor_means(&experiment, compared.showing, first.errors.pixels.mean);
+            row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }
-        if self.limits && !compared.is_reference() {
+        if self.limits && !contender.is_reference() {
             row.triangles_definition = definition(&plan);
-            let query = LimitQuery { looks_above: false, ..LimitQuery::of_plan(&plan) };
-            let triangles = query.run(&mut common.watcher.stop()).ok().map(|limit| limit.triangles);
+            let query = LimitQuery { stop: common.progress.stop_flag(), ..LimitQuery::of_plan(&plan) };
+            let triangles = query.search_triangles().ok();
             row.has_no_limit = triangles == Some(CEILING);
             row.triangles_possible = triangles.filter(|triangles| *triangles < CEILING);
         }
@@ -483,10 +491,11 @@ impl Comparison {
     }
 
     /// Returns the rows with the least mean error: the best row, and all rows that cannot be told apart from it, because
-    /// the interval of the difference contains 0 ([`ComparisonRow::above_best_px`]).
+    /// the interval of the difference contains 0 ([`ComparisonRow::above_best_px`]). Without intervals, the best row alone.
     pub fn least(&self) -> Vec<&ComparisonRow> {
-        let is_least =
-            |row: &&ComparisonRow| row.above_best_px.is_some_and(|above| above.mean <= 0.0 || above.may_be_zero());
+        let is_least = |row: &&ComparisonRow| {
+            row.above_best_px.is_some_and(|above| above.mean <= 0.0 || above.width().is_some() && above.may_be_zero())
+        };
         let mut rows: Vec<&ComparisonRow> = self.pipelines.iter().filter(is_least).collect();
         rows.sort_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean));
         rows

@@ -50,6 +50,16 @@ pub struct PredictorMean {
     pub mean_px: f64,
 }
 
+/// Mean pixel error of a row if all prediction intervals were wrong.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct MisaimedMean {
+    /// Milliseconds by which the intervals are too long, or too short if negative.
+    pub later_ms: i64,
+    /// Mean pixel error over the seeds. NaN if no pixel was evaluated.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub mean_px: f64,
+}
+
 /// Results of one low-latency method in a comparison.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ComparisonRow {
@@ -72,6 +82,9 @@ pub struct ComparisonRow {
     /// All complete pictures of all seeds count. For pipelines that draw cube faces, only the position of the head
     /// counts.
     pub head_to_light_ms: Statistics,
+    /// Percentiles of the same latencies.
+    #[serde(default)]
+    pub head_to_light_percentiles_ms: Percentiles,
     /// Latency from the measured orientation of the head until the display lights the middle of the picture, in
     /// milliseconds. At scan-out, cube faces get the newest orientation. Other pictures show the orientation of the
     /// pose that gave their position.
@@ -115,6 +128,9 @@ pub struct ComparisonRow {
     /// Contributions of all causes to the mean error. The mean error is the sum of all contributions. Empty if the
     /// comparison did not include causes.
     pub causes: Vec<CauseShare>,
+    /// Mean error for wrong prediction intervals. Empty if the comparison did not include causes.
+    #[serde(default)]
+    pub misaimed: Vec<MisaimedMean>,
     /// Mean error of the first seed with each predictor. Empty if the comparison did not include predictors. Also empty
     /// for the row `ideal`, because predictors do not change its pictures.
     pub predictors: Vec<PredictorMean>,
@@ -174,6 +190,9 @@ impl ComparisonRow {
             latency_definition: definition.to_owned(),
             latency_ms: pooled(trials, |trial| &trial.latency_ms),
             head_to_light_ms: pooled(trials, |trial| &trial.head_to_light_ms),
+            head_to_light_percentiles_ms: Percentiles::of(
+                trials.iter().flat_map(|trial| &trial.head_to_light_ms).copied(),
+            ),
             turn_to_light_ms: pooled(trials, |trial| &trial.turn_to_light_ms),
             tracking_and_rendering_ms: over_seeds(&sums_ms),
             end_to_end: Budget::pooled(trials.iter().filter(|_| !is_reference).map(|trial| trial.budget)),
@@ -188,6 +207,7 @@ impl ComparisonRow {
             covered_share: mean_of(trials.iter().filter_map(|trial| trial.errors.covered_share)),
             window: trials.first().and_then(|trial| trial.window),
             causes: causes(trials, sampling),
+            misaimed: misaimed(trials),
             predictors: Vec::new(),
             triangles_possible: None,
             has_no_limit: false,
@@ -263,6 +283,16 @@ fn settings_text(compared: &ComparedPipeline) -> String {
 
 fn pooled(trials: &[&Trial], values: impl Fn(&Trial) -> &Vec<f64>) -> Statistics {
     Statistics::of(trials.iter().flat_map(|trial| values(trial)).copied())
+}
+
+/// Returns the mean errors for wrong prediction intervals, over all seeds.
+fn misaimed(trials: &[&Trial]) -> Vec<MisaimedMean> {
+    let later_ms = trials.first().map(|trial| trial.misaimed.iter().map(|one| one.later_ms)).into_iter().flatten();
+    let mean = |(i, later_ms): (usize, i64)| {
+        let of_seeds = trials.iter().filter_map(|trial| trial.misaimed.get(i)).map(|one: &MisaimedMean| one.mean_px);
+        MisaimedMean { later_ms, mean_px: Statistics::of(of_seeds.filter(|px| px.is_finite())).mean }
+    };
+    later_ms.enumerate().map(mean).collect()
 }
 
 /// Returns the contributions of all causes to the mean error, with the interaction of the causes last.

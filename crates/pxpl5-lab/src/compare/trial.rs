@@ -2,10 +2,11 @@
 
 use super::compared::ComparedPipeline;
 use super::gallery::LastPicture;
+use super::row::MisaimedMean;
 use crate::edges::near_edges;
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing, tracking_and_rendering_ms};
-use pxpl5_run::{Coverage, DryRun, DuePictures, Experiment, Outcome, ResultWindow, WARM_UP_PERIODS};
+use pxpl5_run::{Coverage, DryRun, DuePictures, Experiment, Head, Outcome, ResultWindow, WARM_UP_PERIODS};
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
@@ -22,6 +23,7 @@ pub(super) struct Trial {
     pub(super) budget: Budget,
     pub(super) errors: PixelErrors,
     pub(super) causes: Option<ErrorCauses>,
+    pub(super) misaimed: Vec<MisaimedMean>,
     pub(super) updates_hz: Option<f64>,
     pub(super) due: Option<DuePictures>,
     pub(super) window: Option<ResultWindow>,
@@ -41,6 +43,9 @@ impl ComparedPipeline {
     pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, SettingError> {
         let mut file = shared.clone();
         file.set("pipeline", self.pipeline, "compare")?;
+        // A row with a raster of its own ignores the numbers of another device.
+        let has_raster = self.settings.iter().any(|(key, _)| *key == "head.raster");
+        file.settings.retain(|key, _| !(has_raster && key.starts_with("head.reprojection.")));
         for (key, value) in self.settings {
             file.set(key, *value, "compare")?;
         }
@@ -68,6 +73,7 @@ pub(super) fn common_window_from(fields: u64) -> PeriodNumber {
 impl Trial {
     fn of(outcome: &Outcome, showing: Showing, causes: bool) -> Self {
         let report = outcome.report();
+        let showing = with_raster(showing, outcome.head().map(|views| views.head()));
         // The reference has errors but no times.
         let is_timed = showing != Showing::Ideal;
         let times = |values: Vec<f64>| if is_timed { values } else { Vec::new() };
@@ -80,18 +86,35 @@ impl Trial {
             prediction_interval_ms: times(prediction_intervals_ms(outcome)),
             budget: Budget::of(outcome),
             causes: if causes { ErrorCauses::of(outcome, showing, &errors) } else { None },
+            misaimed: if causes { misaimed(outcome, showing) } else { Vec::new() },
             errors,
             updates_hz: report.updates_hz.filter(|_| is_timed),
             due: report.due.filter(|_| is_timed),
             window: report.window,
             shown: report.pictures,
             late_regions: report.late_regions,
-            near_edges: if is_timed { near_edges(&outcome.summary()) } else { Vec::new() },
+            near_edges: if is_timed { near_edges(outcome) } else { Vec::new() },
             host_seconds: outcome.host_seconds().unwrap_or_default(),
             dry_run: outcome.experiment().dry_run().cloned(),
             picture: LastPicture::of(outcome, report.ends_complete).filter(|_| is_timed),
         }
     }
+}
+
+/// Returns the way in which a row shows its pictures: with the raster of the settings, unless the row has its own way.
+pub(super) fn with_raster(showing: Showing, head: Option<&Head>) -> Showing {
+    head.filter(|_| showing == Showing::Plain).map_or(showing, |head| head.raster().into())
+}
+
+/// Errors of the prediction interval whose effect is evaluated, in milliseconds.
+const MISAIMS_MS: [i64; 4] = [-20, -10, 10, 20];
+
+fn misaimed(outcome: &Outcome, showing: Showing) -> Vec<MisaimedMean> {
+    // The reference has no pictures and so no interval.
+    let later_ms = MISAIMS_MS.into_iter().filter(|_| showing != Showing::Ideal);
+    let mean =
+        |later_ms| MisaimedMean { later_ms, mean_px: PixelErrors::misaimed(outcome, showing, later_ms).pixels.mean };
+    later_ms.map(mean).collect()
 }
 
 fn latencies_ms(outcome: &Outcome) -> Vec<f64> {

@@ -12,7 +12,7 @@ use pxpl5_sim::parameters::Parameter;
 use pxpl5_sim::parameters::SettingError;
 use std::sync::Arc;
 use toml::Value;
-use tracking::motion::{Axes, Columns, End, Jumps, RecordingFormat};
+use tracking::motion::{Axes, Columns, End, Jumps, RecordingFormat, TrainedOn};
 use tracking::predict::PredictorConfig;
 
 /// The tracked head of an experiment, with the names of its motion, tracker and predictor.
@@ -22,6 +22,7 @@ pub struct HeadChoice {
     replay: Replay,
     tracker: String,
     predict: String,
+    train: Option<String>,
     numbers: Vec<Parameter>,
     /// Meaning of the poses of the motion before this scene, if no setting states it.
     usual_place: HeadPlace,
@@ -55,15 +56,21 @@ impl HeadChoice {
         let place = file.choice("head.place", &HeadPlace::ALL)?.unwrap_or(usual);
         // A recording is found relative to the experiment file that names the recording.
         let replay = replay(file)?;
-        let motion_name = match file.get("head.motion") {
-            Some(setting) if is_recorded_file(motion_name) => beside(&setting.folder, motion_name),
-            _ => motion_name.to_owned(),
+        let found = |key: &str, name: &str| match file.get(key) {
+            Some(setting) if is_recorded_file(name) => beside(&setting.folder, name),
+            _ => name.to_owned(),
         };
+        let motion_name = found("head.motion", motion_name);
+        let train = file.text("head.train")?.map(|name| found("head.train", name));
         refuse_recording_keys(file, &motion_name)?;
         let tracker_name = file.text("head.tracker")?.unwrap_or(TRACKER).to_owned();
         let predict = file.text("head.predict")?.unwrap_or(PREDICT).to_owned();
         // Build motion, tracker and predictor with the experiment's numbers.
-        let moving = moving(file, &motion_name, &replay)?;
+        let mut moving = moving(file, &motion_name, &replay)?;
+        if let Some(train) = &train {
+            let training = replayed(train, &replay).map_err(|error| refused(file, "head.train", &error))?;
+            moving = Arc::new(TrainedOn { motion: moving, training });
+        }
         let tables = tracking_numbers::read(file, &tracker_name)?;
         let by_name = tracker_by(&tables, &tracker_name);
         let (of_tracker, own_table) = by_name.map_err(|error| refused(file, "head.tracker", &error))?;
@@ -84,6 +91,7 @@ impl HeadChoice {
             replay,
             tracker: tracker_name,
             predict,
+            train,
             numbers,
             usual_place: usual,
             head: Arc::new(head),
@@ -133,6 +141,7 @@ impl HeadChoice {
         if [self.head.place(), self.usual_place] != [HeadPlace::Scene; 2] {
             all.push(("head.place".to_owned(), Value::from(self.head.place().to_string())));
         }
+        all.extend(self.train.clone().map(|train| ("head.train".to_owned(), Value::from(train))));
         all.extend(reprojection::settings(self.head.raster()));
         all.extend(self.head.evaluate_at_m().map(|metres| ("head.evaluate_at".to_owned(), Value::from(metres))));
         // Only recordings have an end, axes and columns.

@@ -97,7 +97,9 @@ const COMMON: &[Key] = &[
         KeyValues::Names(&const { names(&Jumps::NAMES) }),
     )
     .with_default("keep, with a warning"),
-    Key::new("head.tracker", crate::head_parts::TRACKERS, KeyValues::ANY),
+    Key::new("head.train", "motion on which the predictor is tuned: any head.motion that is not along a path", KeyValues::ANY)
+        .with_default("another synthetic motion; head.motion itself for all others"),
+    Key::new("head.tracker", crate::head_names::TRACKERS, KeyValues::ANY),
     Key::new("head.predict", "none, velocity, acceleration or kalman", KeyValues::ANY),
     Key::new(
         "head.aim",

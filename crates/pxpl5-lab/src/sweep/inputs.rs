@@ -17,9 +17,10 @@ struct FileKey {
     hash_of: fn(&Path) -> Fingerprint,
 }
 
-const KEYS: [FileKey; 2] = [
+const KEYS: [FileKey; 3] = [
     FileKey { key: "scene", names_file: is_file, hash_of: hash_of_model },
     FileKey { key: "head.motion", names_file: is_recorded_file, hash_of: hash_of_file },
+    FileKey { key: "head.train", names_file: is_recorded_file, hash_of: hash_of_file },
 ];
 
 impl Sweep {

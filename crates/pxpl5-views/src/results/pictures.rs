@@ -1,7 +1,7 @@
 //! The table with one row for each picture.
 
 use super::csv_file::csv_table;
-use pxpl5_measure::{LATENCY_PARTS, LatencyParts, Measure, Results, latency_parts};
+use pxpl5_measure::{HeadTimes, LATENCY_PARTS, LatencyParts, Measure, Results, head_times, latency_parts};
 use pxpl5_run::{Outcome, PictureTimes};
 use pxpl5_wire::PictureNumber;
 use std::collections::{BTreeMap, BTreeSet};
@@ -31,7 +31,7 @@ impl Column {
 }
 
 /// Returns the columns in order: first the members of [`PictureTimes`], then the parts of the latency in
-/// [`LATENCY_PARTS`].
+/// [`LATENCY_PARTS`], then the times of the head ([`HeadTimes`]).
 pub fn columns() -> Vec<Column> {
     // Identity, state and times of a picture come first.
     let mut columns = vec![
@@ -63,6 +63,16 @@ pub fn columns() -> Vec<Column> {
             ),
         )
     }));
+    // Columns that were added later stand at the end.
+    columns.extend([
+        Column::optional("measured_at_ps", "when the newest measurement in its pose was made; only with a head.motion"),
+        Column::optional("aimed_at_ps", "the instant for which it was drawn; only with a head.motion"),
+        Column::optional("light_at_ps", "the middle of the light of its middle; only with a head.motion"),
+        Column::optional(
+            "head_to_light_ps",
+            "light_at_ps - measured_at_ps; missing for a picture that was not complete in time",
+        ),
+    ]);
     columns
 }
 
@@ -72,11 +82,15 @@ pub fn rows(outcome: &Outcome) -> Vec<Vec<Option<u64>>> {
     let parts: BTreeMap<PictureNumber, LatencyParts> =
         latency_parts(outcome).into_iter().map(|parts| (parts.picture, parts)).collect();
     let steady: BTreeSet<PictureNumber> = outcome.steady_pictures().iter().map(|times| times.picture).collect();
-    let row_of = |times: &PictureTimes| row(times, steady.contains(&times.picture), parts.get(&times.picture));
+    let heads = head_times(outcome);
+    let row_of = |times: &PictureTimes| {
+        let (parts, head) = (parts.get(&times.picture), heads.get(&times.picture));
+        row(times, steady.contains(&times.picture), parts, head)
+    };
     outcome.pictures().iter().map(row_of).collect()
 }
 
-fn row(times: &PictureTimes, steady: bool, parts: Option<&LatencyParts>) -> Vec<Option<u64>> {
+fn row(times: &PictureTimes, steady: bool, parts: Option<&LatencyParts>, head: Option<&HeadTimes>) -> Vec<Option<u64>> {
     let mut row = vec![
         Some(times.picture.0),
         Some(steady.into()),
@@ -88,6 +102,14 @@ fn row(times: &PictureTimes, steady: bool, parts: Option<&LatencyParts>) -> Vec<
         times.is_shown().then(|| times.shown_at.since(times.transform_at).0),
     ];
     row.extend((0..LATENCY_PARTS.len()).map(|i| parts.map(|parts| parts.spans[i].0)));
+    let measured_at = head.and_then(|head| head.measured_at);
+    let whole = head.zip(measured_at).filter(|_| times.is_shown());
+    row.extend([
+        measured_at.map(|time| time.0),
+        head.map(|head| head.aimed_at.0),
+        head.map(|head| head.light_at.0),
+        whole.map(|(head, measured_at)| head.light_at.since(measured_at).0),
+    ]);
     row
 }
 
