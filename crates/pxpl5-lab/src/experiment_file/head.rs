@@ -22,6 +22,7 @@ pub struct HeadChoice {
     replay: Replay,
     tracker: String,
     predict: String,
+    added_latency_ms: Option<f64>,
     numbers: Vec<Parameter>,
     /// Meaning of the poses of the motion before this scene, if no setting states it.
     usual_place: HeadPlace,
@@ -36,6 +37,7 @@ impl PartialEq for HeadChoice {
     }
 }
 
+const PS_PER_MS: f64 = 1e9;
 const TRACKER: &str = "optical";
 const PREDICT: &str = "kalman";
 
@@ -66,7 +68,11 @@ impl HeadChoice {
         let moving = moving(file, &motion_name, &replay)?;
         let tables = tracking_numbers::read(file, &tracker_name)?;
         let by_name = tracker_by(&tables, &tracker_name);
-        let (of_tracker, own_table) = by_name.map_err(|error| refused(file, "head.tracker", &error))?;
+        let (mut of_tracker, own_table) = by_name.map_err(|error| refused(file, "head.tracker", &error))?;
+        let added_latency_ms = file.number("head.added_latency")?;
+        if let Some(ms) = added_latency_ms {
+            of_tracker = of_tracker.with_added_latency_ps((ms * PS_PER_MS).round() as u64);
+        }
         let of_predictor = predictor(&predict).map_err(|error| refused(file, "head.predict", &error))?;
         let of_predictor = PredictorConfig::for_tracker_by(&tables, of_predictor, &of_tracker);
         let numbers = tracking_numbers::parameters_with(&tables, own_table, &of_tracker);
@@ -84,6 +90,7 @@ impl HeadChoice {
             replay,
             tracker: tracker_name,
             predict,
+            added_latency_ms,
             numbers,
             usual_place: usual,
             head: Arc::new(head),
@@ -133,6 +140,7 @@ impl HeadChoice {
         if [self.head.place(), self.usual_place] != [HeadPlace::Scene; 2] {
             all.push(("head.place".to_owned(), Value::from(self.head.place().to_string())));
         }
+        all.extend(self.added_latency_ms.map(|ms| ("head.added_latency".to_owned(), Value::from(ms))));
         all.extend(reprojection::settings(self.head.raster()));
         all.extend(self.head.evaluate_at_m().map(|metres| ("head.evaluate_at".to_owned(), Value::from(metres))));
         // Only recordings have an end, axes and columns.
