@@ -126,7 +126,7 @@ export default {
   async "a headset shows the machine's pictures, late, and the edges of the world at once"() {
     const { identifier } = await cdp("Page.addScriptToEvaluateOnNewDocument", { source: `${readFileSync(process.env.IWER, "utf8")};
       window.device = new IWER.XRDevice(IWER.metaQuest3, { stereoEnabled: true });
-      device.installRuntime();
+      device.installRuntime({ forceInstall: true });
       device.position.set(0, 1.6, 0);
       // Tests read the projection of the eyes, and play an event of a controller.
       const viewer = XRFrame.prototype.getViewerPose;
