@@ -1082,7 +1082,7 @@ async function toStart() {
   beside = "";
   layOutParts();
   slowDown(1);
-  if (!(await build(new Live(FIRST_SCREEN.path), FIRST_PICTURE))) return;
+  if (!(await build(new Live(FIRST_SCREEN.path), inPs(FIRST_SCREEN.begin)))) return;
   if (still.matches) return go({ to: inPs(900) });
   first();
 }

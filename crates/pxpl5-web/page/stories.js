@@ -203,6 +203,7 @@ export const STORIES = {
 export const FIRST_SCREEN = {
   settings: { pipeline: "rendering-control", scene: "gallery", display: "ntsc", fields: "3600", ...HEAD },
   path: swing(14, 3),
+  begin: 80,
   show: ["wire", "age", "hand"],
 };
 
