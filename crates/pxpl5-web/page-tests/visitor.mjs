@@ -122,6 +122,7 @@ export default {
       await until("the run", "document.getElementById('go').textContent === 'Pause'");
       await later(1500);
       assert.ok((await lit()) > 0, kind);
+      if ((await text("go")) === "Pause") await press("#go");
       await settled();
     }
     writeFileSync(join(pictures, "mine.pdb"), MODELS.pdb);
