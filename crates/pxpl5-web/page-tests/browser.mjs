@@ -77,12 +77,12 @@ export async function until(what, script, ms = 20000) {
 /** Until the worker has answered all that was asked of it. */
 export const settled = (ms) => until("the worker", "document.documentElement.dataset.asked === '0' && document.documentElement.dataset.ready === 'true'", ms);
 
-export async function open(hash = "") {
+export async function open(hash = "", ms = 20000) {
   await ask("POST", `${session}/url`, { url: "about:blank" });
   const begun = Date.now();
   await ask("POST", `${session}/url`, { url: page + hash });
   // A page that runs by itself has an open request at almost any time.
-  await until("the machine", "document.documentElement.dataset.ready === 'true' && (document.documentElement.dataset.asked === '0' || document.getElementById('go').textContent === 'Pause')");
+  await until("the machine", "document.documentElement.dataset.ready === 'true' && (document.documentElement.dataset.asked === '0' || document.getElementById('go').textContent === 'Pause')", ms);
   return Date.now() - begun;
 }
 
