@@ -111,7 +111,9 @@ export default {
       const data = document.querySelector('#eyes .over').getContext('2d').getImageData(0, 0, 640, 480).data;
       const near = (at, [r, g, b]) => data[at + 3] > 200 && Math.abs(data[at] - r) + Math.abs(data[at + 1] - g) + Math.abs(data[at + 2] - b) < 24;
       const count = [0, 0];
-      for (let at = 0; at < data.length; at += 4) [[127, 214, 168], [255, 209, 102]].forEach((colour, n) => near(at, colour) && (count[n] += 1));
+      const stages = ['render', 'copy'].map((stage) => getComputedStyle(document.documentElement).getPropertyValue('--' + stage).trim());
+      const parts = stages.map((colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16)));
+      for (let at = 0; at < data.length; at += 4) parts.forEach((colour, n) => near(at, colour) && (count[n] += 1));
       return count`;
     await open("#story=inside&step=4");
     await until("RENDER", "document.documentElement.dataset.story === 'inside 4 paused'", 60000);

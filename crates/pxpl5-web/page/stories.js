@@ -94,13 +94,13 @@ export const STORIES = {
       },
       {
         title: "3. RENDER",
-        say: "A renderer has a small processor for each of its 16,384 pixels, and all of these processors execute the same command together. A dashed green frame in the picture marks a region that a renderer draws now.",
+        say: "A renderer has a small processor for each of its 16,384 pixels, and all of these processors execute the same command together. A dashed orange frame in the picture marks a region that a renderer draws now.",
         until: "draw", ms: 200, slower: 100, show: ["diagram", "regions", "age"],
         paused: "A renderer with both colours draws a new region while it still copies the pixels of the region before.",
       },
       {
         title: "4. COPY",
-        say: "Finished regions go over the ring into the memory of the picture (the frame buffer), one at a time. A yellow frame marks the region that is copied now, while the renderers already draw other regions.",
+        say: "Finished regions go over the ring into the memory of the picture (the frame buffer), one at a time. A green frame marks the region that is copied now, while the renderers already draw other regions.",
         until: "copy", ms: 200, slower: 100, then: 1.5, thenSlower: 800, show: ["diagram", "regions", "age"],
         paused: "The screen still shows an older picture.",
       },
@@ -141,7 +141,7 @@ export const STORIES = {
         title: "Just in time",
         say: "In this story, each line is drawn from the newest measurement of the head. The pixels of a line arrive in the memory just before the beam lights them.",
         until: "strip", value: 200, ms: 60, slower: 120, show: ["beam", "regions", "diagram", "alone"],
-        paused: "The yellow frame marks the strip that is copied now. The strip is just ahead of the beam.",
+        paused: "The green frame marks the strip that is copied now. The strip is just ahead of the beam.",
       },
       {
         title: "The race",
