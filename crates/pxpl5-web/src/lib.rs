@@ -142,8 +142,8 @@ impl WebMachine {
         state::misregistration(self.0.stepper()).to_string()
     }
 
-    /// Returns the edges of the scene as lines: x, y and z of both ends, in metres, in the axes of the head at time zero
-    /// (x to the right, y up, the view along -z). The result is empty without a tracked head.
+    /// Returns the edges of the scene as lines: x, y and z of both ends in metres. The axes are those of the head at time
+    /// zero: x to the right, y up, and the view along -z. The result is empty without a tracked head.
     pub fn edges(&self) -> Vec<f32> {
         edges::edges(self.0.stepper())
     }
