@@ -5,7 +5,7 @@ use crate::content::{Content, Contents};
 use crate::reproject::direction;
 use crate::shown::{Drawn, FacesSeen, Moment, Seen, Shown};
 use glam::{DVec2, DVec3};
-use pxpl5_run::{FinalResults, HeadViews, Outcome, hmd_on};
+use pxpl5_run::{FinalResults, HeadViews, ObservedRun, Outcome, hmd_on};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
@@ -232,7 +232,16 @@ impl<'a> Registration<'a> {
     /// Prepares the evaluation of a run from the records that remain in memory. Returns `None` for a run without a
     /// head.
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
-        let run = outcome.final_results();
+        Self::of_results(outcome.final_results())
+    }
+
+    /// Prepares the evaluation of a run that goes on, from the records that remain in memory. Returns `None` for a run
+    /// without a head.
+    pub fn so_far(run: &'a ObservedRun<'_>) -> Option<Self> {
+        Self::of_results(run.results())
+    }
+
+    fn of_results(run: FinalResults<'a>) -> Option<Self> {
         let head = run.head?;
         Some(Self { evaluator: Evaluator::new(&run, head), shown: Shown::of_run(&run, head), run })
     }
@@ -245,6 +254,18 @@ impl<'a> Registration<'a> {
         let at = self.run.record.display().lights(0, x, y, field)?;
         let Seen::Complete(drawn) = self.shown.seen(&self.run, [x, y], field, at) else { return None };
         Some(self.evaluator.error(middle(x, y), &drawn, at).error)
+    }
+
+    /// Returns the error in the middle of the first surface, in the last field that ended at or before `now`.
+    ///
+    /// Returns `None` if no field has ended, or if the picture shown was not complete in time.
+    pub fn in_the_middle(&self, now: Time) -> Option<Misregistration> {
+        let display = self.run.record.display();
+        let field = display.period_at(now).before(1)?;
+        let surface = display.surfaces().first()?;
+        // A field of an interlaced display scans one of these two lines.
+        let lines = [surface.height / 2, surface.height / 2 + 1];
+        lines.into_iter().find_map(|line| self.at(surface.width / 2, line, field))
     }
 }
 

@@ -4,6 +4,7 @@ use crate::build::assembled::Assembled;
 use crate::build::preparation::Preparation;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
+use crate::head_views::HeadViews;
 use crate::ideal::ideal_picture;
 use crate::level::Level;
 use crate::observe::window::Window;
@@ -20,6 +21,7 @@ use pxpl5_ring::ChannelSnapshot;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Reason why a step of a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -220,6 +222,11 @@ impl Stepper {
     /// Returns the machine with its boards and all observations so far.
     pub const fn machine(&self) -> &Machine {
         &self.run.machine
+    }
+
+    /// Returns the views of the tracked head, or `None` if no head is tracked.
+    pub const fn head(&self) -> Option<&Arc<HeadViews>> {
+        self.run.head.as_ref()
     }
 
     pub(crate) const fn machine_mut(&mut self) -> &mut Machine {

@@ -111,7 +111,7 @@ export default {
     }
   },
   async "a step back after a long run is short, and the memory is bounded"() {
-    await open("#pipeline=slats&scene=aircraft&fields=1000000&at=120000000000000");
+    await open("#pipeline=slats&scene=aircraft&fields=1000000&at=120000000000000", 240000);
     await until("the run", "document.getElementById('time').dataset.ps === '120000000000000'", 240000);
     await settled();
     const begun = await shownMs();

@@ -1,14 +1,15 @@
 // Tests of the page in a headless Chromium, driven by chromedriver: node run.mjs SITE PICTURES [PART OF A CLAIM].
-// Each test says what it claims; what was measured is printed. Pictures at 390, 1280 and 2560 pixels are to be looked at. With AXE,
-// the path of axe.min.js of the package axe-core, pages are checked by it too.
+// Each test says what it claims; what was measured is printed. Pictures at 390, 1280 and 2560 pixels are to be looked at. AXE is
+// the path of axe.min.js of the package axe-core, and IWER the path of iwer.min.js of the package iwer, which emulates a headset.
 import { ask, driver, only, server, session } from "./browser.mjs";
+import felt from "./felt.mjs";
 import goingBack from "./going-back.mjs";
 import laboratory from "./laboratory.mjs";
 import site from "./site.mjs";
 import stories from "./stories.mjs";
 import visitor from "./visitor.mjs";
 
-const TESTS = { ...stories, ...visitor, ...goingBack, ...laboratory, ...site };
+const TESTS = { ...stories, ...visitor, ...felt, ...goingBack, ...laboratory, ...site };
 
 const started = Date.now();
 let failed = 0;

@@ -1,7 +1,7 @@
 // Tests of the first screen and of the stories.
 import assert from "node:assert/strict";
 import { STORIES } from "../page/stories.js";
-import { accessible, ask, click, emulate, key, later, lit, only, open, page, picture, press, run, session, settled, shownMs, tell, text, until } from "./browser.mjs";
+import { accessible, ask, click, drag, emulate, key, later, lit, only, open, page, picture, press, run, session, settled, shownMs, tell, text, until } from "./browser.mjs";
 
 export default {
   async "the first screen has a moving picture within 2 s, one sentence and four stories"() {
@@ -18,6 +18,10 @@ export default {
     await later(500);
     assert.notEqual(await run("return document.querySelector('#eyes canvas').toDataURL()"), before, "the picture moves");
     assert.ok((await lit()) > 3);
+    // The lag is visible: the wire frame of the world, the age, and the error in pixels.
+    assert.ok((await lit("#eyes .over")) > 0);
+    await until("age and error", "/^\\d+(\\.\\d+)? ms old, \\d+(\\.\\d)? px off$/.test(document.querySelector('.age').textContent)");
+    assert.ok(await run("return document.querySelector('.hand').checkVisibility()"), "a hand says that the picture can be dragged");
     assert.equal(await run("return document.querySelectorAll('#start [data-story]').length"), 4);
     assert.equal(await run("return document.querySelectorAll('form:not([hidden]) select').length > 0 && getComputedStyle(document.getElementById('lab')).display"), "none");
     await accessible("first screen");
@@ -30,7 +34,11 @@ export default {
         if (!only || only.startsWith("each")) await picture(`story-${name}-${n + 1}`, 1280, 900);
         const shown = await run("return [...document.querySelectorAll('#front > section')].filter((part) => part.checkVisibility()).map((part) => part.id)");
         assert.equal(shown.includes("diagram-part"), step.show.includes("diagram"), `${name} ${n + 1}`);
-        if (n === steps.length - 1) await accessible(name);
+        if (n === steps.length - 1) {
+          await accessible(name);
+          assert.match(await text("story-keep"), /^To keep: .*\d/, `${name} ends with a number`);
+          console.log(`   ${await text("story-keep")}`);
+        }
       });
       await settled();
       assert.equal(await run("return document.body.dataset.mode"), "lab");
@@ -45,10 +53,35 @@ export default {
   async "the lag of Slats is smaller than that of Rendering Control, and both are told"() {
     await open("#story=lag&step=3");
     await until("the step", "document.documentElement.dataset.story === 'lag 3 paused'", 60000);
-    const ages = await run("return [...document.querySelectorAll('.age strong')].map((age) => parseFloat(age.textContent))");
-    console.log(`   ages: ${ages.join(" and ")} ms`);
-    assert.equal(ages.length, 2);
-    assert.ok(ages[1] < ages[0]);
+    const told = await run("return [...document.querySelectorAll('.age')].map((age) => [...age.querySelectorAll('strong')].map((number) => parseFloat(number.textContent)))");
+    console.log(`   ages and errors: ${told.map(([ms, px]) => `${ms} ms, ${px} px`).join(" and ")}`);
+    assert.ok(told.length === 2 && told.every((numbers) => numbers.length === 2));
+    assert.ok(told[1][0] < told[0][0] && told[1][1] < told[0][1]);
+  },
+  async "in the first step of Feel the lag, the hand turns the head of both machines"() {
+    await open("#story=lag&step=1");
+    await until("the step", "document.documentElement.dataset.story === 'lag 1 begun' && document.getElementById('go').textContent === 'Pause'");
+    await drag();
+    await later(500);
+    assert.equal(await run("return document.querySelector('.hand').checkVisibility()"), false, "the hand has been understood");
+    await press("#go");
+    await press("#to-lab");
+    const moved = new URLSearchParams((await run("return document.getElementById('link').hash")).slice(1)).get("motion");
+    const width = await run("return document.querySelector('#eyes canvas').clientWidth");
+    assert.ok(width > 0 && moved.length > 4);
+  },
+  async "in the story Turn for free, the step of the head is a step to the right"() {
+    await open("#story=turn&step=4");
+    await until("the step", "document.documentElement.dataset.story === 'turn 4 paused'", 60000);
+    const off = await run("return parseFloat(/([\\d.]+) px/.exec(document.querySelector('.age').textContent)[1])");
+    await click("#to-lab");
+    await settled();
+    await until("the recording", "document.querySelector('#needs a') !== null");
+    const rows = (await run("return fetch(document.querySelector('#needs a').href).then((file) => file.text())")).trim().split("\n");
+    const right = Number(rows.at(-1).split(",")[1]);
+    assert.ok(right > 0.29 && right <= 0.3, `${right} m to the right`);
+    console.log(`   ${off} px off after the step`);
+    assert.ok(off > 1, "which is not free");
   },
   async "a story can be gone back in, and its steps have links"() {
     await open("#story=inside&step=3");
@@ -78,7 +111,9 @@ export default {
       const data = document.querySelector('#eyes .over').getContext('2d').getImageData(0, 0, 640, 480).data;
       const near = (at, [r, g, b]) => data[at + 3] > 200 && Math.abs(data[at] - r) + Math.abs(data[at + 1] - g) + Math.abs(data[at + 2] - b) < 24;
       const count = [0, 0];
-      for (let at = 0; at < data.length; at += 4) [[127, 214, 168], [255, 209, 102]].forEach((colour, n) => near(at, colour) && (count[n] += 1));
+      const stages = ['render', 'copy'].map((stage) => getComputedStyle(document.documentElement).getPropertyValue('--' + stage).trim());
+      const parts = stages.map((colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16)));
+      for (let at = 0; at < data.length; at += 4) parts.forEach((colour, n) => near(at, colour) && (count[n] += 1));
       return count`;
     await open("#story=inside&step=4");
     await until("RENDER", "document.documentElement.dataset.story === 'inside 4 paused'", 60000);

@@ -75,14 +75,14 @@ export class Checkpoints {
   }
 
   /** Removes checkpoints until the limits hold. The checkpoint with the smallest distance to its neighbours, relative to its age, is
-   *  removed first, so recent checkpoints stay close together. Of three checkpoints the oldest is removed, because new machines also
-   *  begin at the start. */
+   *  removed first, so recent checkpoints stay close together. The newest three are never chosen, so a short way back is always short.
+   *  If there are no others, the oldest is removed, because new machines also begin at the start. */
   thin(now) {
     const { bytes, count, every } = this.limits;
     while (this.all.length > 2 && (this.all.length > count || this.bytes > bytes)) {
       const gap = (n) => (this.all[n + 1].at - this.all[n - 1].at) / (now - this.all[n - 1].at + every);
       let closest = 0;
-      if (this.all.length > 3) for (let n = 1; n < this.all.length - 1; n += 1) if (closest === 0 || gap(n) < gap(closest)) closest = n;
+      for (let n = 1; n < this.all.length - 3; n += 1) if (closest === 0 || gap(n) < gap(closest)) closest = n;
       const [gone] = this.all.splice(closest, 1);
       if (closest === 0) continue;
       // The previous checkpoint takes over the pages of the removed checkpoint.

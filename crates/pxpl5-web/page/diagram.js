@@ -145,13 +145,15 @@ export class Diagram {
       const { button, does } = this.boards.get(board.name);
       const sends = onRing.find((message) => message.from === board.name);
       const takes = onRing.some((message) => message.to === board.name);
-      let stage = board.works ? board.stage ?? "note" : "waits";
-      if (board.kind === "display") stage = takes ? "copy" : "waits";
-      if (board.kind === "processor" && sends) stage = cargo(sends);
-      if (stage === "sample") stage = "send";
-      button.className = `block ${board.kind} ${stage}`;
+      let stages = board.works ? board.stages ?? [] : ["waits"];
+      if (board.kind === "display") stages = [takes ? "copy" : "waits"];
+      if (board.kind === "processor" && sends) stages = [cargo(sends)];
+      if (stages.length === 0) stages = ["note"];
+      stages = stages.map((stage) => (stage === "sample" ? "send" : stage));
+      // A renderer can execute commands and copy pixels at the same time.
+      button.className = `block ${board.kind} ${stages.join(" ")}`;
       button.setAttribute("aria-pressed", String(board.name === chosen));
-      const word = stage === "waits" ? "waits" : stage === "note" ? "works" : stage.toUpperCase();
+      const word = stages.map((stage) => (stage === "waits" ? "waits" : stage === "note" ? "works" : stage.toUpperCase())).join(" ");
       if (does.textContent !== word) does.textContent = word;
     }
     // First the messages that are on a channel now, then the messages that have ended since the last drawing.

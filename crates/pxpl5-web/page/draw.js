@@ -25,6 +25,15 @@ export function picture(canvas, bytes) {
   canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(bytes.buffer), canvas.width, canvas.height), 0, 0);
 }
 
+/** A hand that shows that a picture can be dragged. */
+const HAND = '<svg viewBox="0 0 24 24" width="44" height="44"><path d="M8 21 4 14c-.6-1.1.8-2 1.8-1.2L8 14.5V4.5a1.5 1.5 0 0 1 3 0V11 3a1.5 1.5 0 0 1 3 0v8-6a1.5 1.5 0 0 1 3 0v7-4a1.5 1.5 0 0 1 3 0v7c0 4-2 6-3 6z"/></svg><span>drag me</span>';
+
+function screenOf(canvas, ...more) {
+  const screen = make("div", { className: "screen" }, canvas, ...more);
+  screen.style.setProperty("--aspect", canvas.width / canvas.height);
+  return screen;
+}
+
 function canvasOf(width, height, label) {
   const canvas = make("canvas", { width, height });
   canvas.setAttribute("role", "img");
@@ -42,6 +51,16 @@ export function nameOf(pipeline) {
   return NAMES[pipeline] ?? (family ? `${family[1]} (${pipeline})` : pipeline);
 }
 
+/** Shows the age of a picture and its error in pixels. A picture of many measurements has no age of its own. */
+export function drawAge(place, age, offset) {
+  const strong = (textContent) => make("strong", { textContent });
+  const parts = [];
+  if (age) parts.push(strong(inMs(age.age_ms)), " old");
+  if (offset) parts.push(age ? ", " : "", strong(`${offset.pixels.toFixed(offset.pixels < 10 ? 1 : 0)} px`), " off");
+  place.replaceChildren(...parts);
+  place.title = offset ? `In the middle of the picture, the world is ${offset.degrees.toFixed(2)} degrees beside its true place.` : "";
+}
+
 /** Makes a row of pictures for each machine. `record` is called with each canvas on which a visitor can turn the head. */
 export function layOutEyes(place, states, names, record) {
   const machines = states.map((state, n) => {
@@ -52,11 +71,13 @@ export function layOutEyes(place, states, names, record) {
       // This canvas has wire frame, beam and regions, and lies over the picture.
       const over = make("canvas", { width, height, className: "over" });
       over.setAttribute("aria-hidden", "true");
+      const hand = make("div", { className: "hand", innerHTML: HAND });
+      hand.setAttribute("aria-hidden", "true");
       const ideal = canvasOf(width, height, `Ideal picture: ${label}`);
       const heat = canvasOf(width, height, `Error: ${label}`);
       const numbers = make("figcaption");
       const figures = [
-        make("figure", { className: "seen" }, make("div", { className: "screen" }, canvas, over), make("figcaption", { textContent: `${label} eye, as the beam draws it` })),
+        make("figure", { className: "seen" }, screenOf(canvas, over, hand), make("figcaption", { textContent: `${label} eye, as the beam draws it` })),
         make("figure", { hidden: true }, ideal, make("figcaption", { textContent: `${label}: ideal picture now` })),
         make("figure", { hidden: true }, heat, numbers),
       ];
@@ -86,7 +107,7 @@ export function drawOver(over, { wire, regions, line }) {
     // Lines are several pixels wide, so they are visible in a small picture.
     const lines = new OffscreenCanvas(over.width, over.height);
     lines.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(wire.buffer), over.width, over.height), 0, 0);
-    const thick = Math.max(1, Math.round((1.6 * over.width) / Math.max(1, over.clientWidth)));
+    const thick = Math.min(6, Math.max(1, Math.round((1.6 * over.width) / Math.max(1, over.clientWidth))));
     for (let x = 0; x <= thick; x += 1) for (let y = 0; y <= thick; y += 1) context.drawImage(lines, x - thick / 2, y - thick / 2);
   }
   context.lineWidth = Math.max(3, over.width / 160);

@@ -2,7 +2,10 @@
 // the page shows the state between two pieces.
 import { buildAside, endAside } from "./aside.js";
 import { Live, Recorder, csv } from "./recording.js";
-import { drawBoards, drawFaces, drawLatency, drawOver, drawRing, drawTimeline, humane, inMs, layOutEyes, nameOf, picture } from "./draw.js";
+import { Headset, hasHeadset } from "./headset.js";
+import { keepLecture, lecture } from "./lecture.js";
+import { Sensor, sensorRefused } from "./sensor.js";
+import { drawAge, drawBoards, drawFaces, drawLatency, drawOver, drawRing, drawTimeline, humane, inMs, layOutEyes, nameOf, picture } from "./draw.js";
 import { Diagram } from "./diagram.js";
 import { explain } from "./hints.js";
 import { drawHeavy, drawLimits } from "./limits.js";
@@ -14,10 +17,10 @@ const at = (id) => document.getElementById(id);
 const form = at("settings");
 
 /** Settings that the address can have, in the order of the link. */
-const KEYS = ["pipeline", "scene", "triangles", "display", "head.motion", "head.tracker", "head.predict", "level", "fields"];
+const KEYS = ["pipeline", "scene", "triangles", "display", "head.motion", "head.tracker", "head.predict", "head.added_latency", "level", "fields"];
 const FIRST = { pipeline: "slats", scene: "aircraft", display: "ntsc", fields: "3600" };
 /** Other keys that the address can have. */
-const OTHERS = ["beside", "motion", "at", "story", "step"];
+const OTHERS = ["beside", "motion", "at", "story", "step", "lecture"];
 /** Name of a recording of the visitor, in settings and files. */
 const RECORDED = "recorded.csv";
 /** Name of the motion of a head that the visitor moves while the machine runs. */
@@ -38,8 +41,8 @@ let beside = "";
 let motion = "";
 /** The head that the visitor moves while the machine runs; null for another head. */
 let live = null;
-/** The file that was dropped last: name and bytes. */
-let dropped = null;
+/** The files that were dropped last, name and bytes: a `scene`, and a `head.motion`. */
+let dropped = {};
 let machines = [];
 let of = 0;
 let chosen = null;
@@ -142,6 +145,8 @@ function intoForm() {
     if (field.options && ![...field.options].some((option) => option.value === value)) field.add(new Option(value, value));
     field.value = value;
   }
+  at("added").value = settings["head.added_latency"] ?? 0;
+  showAdded();
   mark();
 }
 
@@ -159,6 +164,7 @@ function mark() {
 
 function fromForm() {
   const pairs = KEYS.map((key) => [key, form.elements[key].value.trim()]);
+  if (at("added").value === "0") pairs.find(([key]) => key === at("added").name)[1] = "";
   return Object.fromEntries(pairs.filter(([, value]) => value !== ""));
 }
 
@@ -166,7 +172,7 @@ function fromForm() {
 function settingsOf(pipeline) {
   const all = { ...settings, pipeline };
   if (pipeline.startsWith("arp") !== (all.display === "arp")) all.display = pipeline.startsWith("arp") ? "arp" : "ntsc";
-  if (!all["head.motion"]) ["head.tracker", "head.predict"].forEach((key) => delete all[key]);
+  if (!all["head.motion"]) ["head.tracker", "head.predict", "head.added_latency"].forEach((key) => delete all[key]);
   if (all["head.motion"]?.endsWith(".csv")) all["head.end"] = "hold";
   // The motion of the visitor cannot be predicted.
   if (all["head.motion"] === LIVE) all["head.predict"] = "none";
@@ -193,12 +199,12 @@ async function refused(error) {
 }
 
 /** Builds machines for the settings. If a setting is wrong, the page shows the error, and the previous machines stay. `kept` is a live
- *  head with earlier samples, which the new machines get again. */
-async function build(kept = null) {
+ *  head with earlier samples, which the new machines get again. The new machines run to the instant `begin` before they are shown. */
+async function build(kept = null, begin = 0) {
   pause();
   await piece;
   const files = [];
-  if (dropped) files.push([dropped.name, dropped.bytes]);
+  for (const [key, { name, bytes }] of Object.entries(dropped)) if (settings[key] === name) files.push([name, bytes]);
   if (settings["head.motion"] === RECORDED) {
     const text = csv(motion);
     if (text === null) return say("expected motion=~... or motion=yaw,pitch_yaw,pitch_... (tenths of a degree, at most 1,200 samples) in the address"), false;
@@ -237,7 +243,7 @@ async function build(kept = null) {
   heavy = null;
   machines = [];
   diagram.clear();
-  await go({ to: 0 });
+  await go({ to: begin });
   if (mode === "lab") intoForm();
   return true;
 }
@@ -293,6 +299,8 @@ function wanted(now) {
 /** Returns true if a part is visible. In a story, the step names the visible parts. */
 function shows(part) {
   if (mode !== "lab") return show.has(part);
+  if (part === "added" || part === "age") return Boolean(settings["head.motion"]);
+  if (part === "alone" || part === "hand") return false;
   if (part === "wire") return at("show-wire").checked;
   if (part === "faces") return machines.memories > 0;
   // At full speed, the beam and the regions are too fast for the eye.
@@ -350,10 +358,8 @@ function draw(seen) {
   reached = Math.max(...states.map((one) => one.now_ps));
   if (machines.length === 0) layOut(states);
   machines.forEach(({ eyes, age }, n) => {
-    const { age: found, regions } = seen.machines[n];
-    // A picture without a measurement of its own has no age.
-    if (found) age.replaceChildren(Object.assign(document.createElement("strong"), { textContent: inMs(found.age_ms) }), " old");
-    else if (found === null) age.textContent = "";
+    const { age: found, offset, regions } = seen.machines[n];
+    if (found !== undefined) drawAge(age, found, offset);
     seen.machines[n].surfaces.forEach((surface, number) => {
       const { canvas, over, ideal, heat, numbers } = eyes[number];
       if (surface.seen) picture(canvas, surface.seen);
@@ -474,6 +480,9 @@ function layOutParts() {
   at("start").hidden = mode !== "start";
   at("story").hidden = mode !== "story";
   at("tell").hidden = mode === "lab";
+  at("lag").hidden = !shows("added");
+  document.body.classList.toggle("alone", shows("alone"));
+  document.body.classList.toggle("can-drag", shows("hand"));
   at("latency-part").hidden = !shows("latency");
   at("faces-part").hidden = !shows("faces");
   at("diagram-part").hidden = !shows("diagram");
@@ -498,7 +507,7 @@ function drawLink(state) {
   const shared = live ? { ...settings, "head.motion": RECORDED, "head.predict": "none" } : settings;
   const address = addressOf(shared);
   if (state.now_ps > 0) address.set("at", String(state.now_ps));
-  at("again").hidden = shared["head.motion"] === RECORDED && motion === null;
+  at("again-link").hidden = shared["head.motion"] === RECORDED && motion === null;
   at("link").href = `#${address}`;
   const commands = pipelines().map((name) => {
     const all = live ? { ...settingsOf(name), "head.motion": RECORDED } : settingsOf(name);
@@ -521,17 +530,19 @@ function addressOf(all) {
 /** Names of the files that the command needs, as they were last shown. */
 let needed = "";
 function drawNeeds() {
-  const recorded = (live || settings["head.motion"] === RECORDED) && !running ? motion : "";
-  const model = dropped && Object.values(settings).includes(dropped.name) ? dropped.name : "";
-  if (needed === `${recorded} ${model}`) return;
-  needed = `${recorded} ${model}`;
+  const isRecorded = (live || settings["head.motion"] === RECORDED) && !running;
+  const recorded = isRecorded ? live?.csv() ?? csv(motion) : "";
+  const used = Object.entries(dropped).filter(([key, { name }]) => settings[key] === name);
+  const yours = used.map(([, { name }]) => `file ${name}`).join(" and your ");
+  if (needed === `${recorded} ${yours}`) return;
+  needed = `${recorded} ${yours}`;
   at("needs").replaceChildren();
   if (recorded) {
-    const blob = new Blob([csv(recorded)], { type: "text/csv" });
+    const blob = new Blob([recorded], { type: "text/csv" });
     const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: RECORDED, textContent: RECORDED });
     at("needs").append(", beside the file ", link, ",");
   }
-  if (model) at("needs").append(`, beside your file ${model}, which the link does not contain,`);
+  if (yours) at("needs").append(`, beside your ${yours}, which the link does not contain,`);
 }
 
 // Running.
@@ -545,7 +556,7 @@ function pause() {
 }
 
 const slowness = () => 10 ** Number(at("slower").value);
-const nextFrame = () => new Promise((done) => requestAnimationFrame(done));
+const nextFrame = () => headset?.nextFrame() ?? new Promise((done) => requestAnimationFrame(done));
 
 /** Number of starts and ends of runs. A run whose number differs is not the present run any more. */
 let runs = 0;
@@ -646,8 +657,6 @@ function remember() {
 
 // The visitor's own head and files.
 
-/** Milliseconds for which the motion of a device is recorded. Without a report in this time, the device has no orientation sensor. */
-const TILTED = 5000;
 /** Angle in degrees by which a drag across the whole width of a picture turns the head. */
 const WIDE = 60;
 
@@ -660,13 +669,14 @@ function record(canvas) {
     canvas.setPointerCapture(event.pointerId);
     recorder = new Recorder();
     from = event;
-    before = live?.now;
+    before = live?.angles;
+    takeInHand();
   });
   canvas.addEventListener("pointermove", (event) => {
     if (!recorder) return;
     const degrees = (pixels) => (pixels / canvas.clientWidth) * WIDE;
     const turned = [degrees(event.clientX - from.clientX), degrees(event.clientY - from.clientY)];
-    if (live) return live.turn(...turned.map((angle, n) => before[n] / 10 + angle));
+    if (live) return live.turn(...turned.map((angle, n) => before[n] + angle));
     recorder.turn(...turned);
     at("recorded").textContent = `Recording: ${recorder.angles.length} samples`;
   });
@@ -679,10 +689,19 @@ function record(canvas) {
     if (!turn || !live) return;
     event.preventDefault();
     event.stopPropagation();
-    live.turn(...turn.map((angle, n) => live.now[n] / 10 + angle));
+    takeInHand();
+    live.turn(...turn.map((angle, n) => live.angles[n] + angle));
   });
   canvas.addEventListener("pointerup", end);
   canvas.addEventListener("pointercancel", end);
+}
+
+/** Lets a paused story run again, because the visitor moves the head. */
+function takeInHand() {
+  document.body.classList.add("dragged");
+  if (!live || running || mode === "lab") return;
+  slowDown(1);
+  run();
 }
 
 async function follow(recorder) {
@@ -698,25 +717,120 @@ async function follow(recorder) {
   }
 }
 
-if (window.DeviceOrientationEvent && matchMedia("(pointer: coarse)").matches) at("tilt").hidden = false;
-at("tilt").addEventListener("click", async () => {
-  const allowed = (await DeviceOrientationEvent.requestPermission?.()) ?? "granted";
-  if (allowed !== "granted") return say("The device does not give its orientation to this page.");
-  const head = live ?? new Recorder();
-  let from = null;
-  const turned = ({ alpha, beta }) => {
-    if (alpha === null) return;
-    from ??= [alpha, beta];
-    head.turn(((alpha - from[0] + 540) % 360) - 180, beta - from[1]);
-  };
-  addEventListener("deviceorientation", turned);
-  await new Promise((later) => setTimeout(later, TILTED));
-  if (from === null) say("This device reports no orientation.");
-  // The device turns a live head until another machine is built.
-  else if (head === live) return;
-  removeEventListener("deviceorientation", turned);
-  if (from !== null) follow(head);
+// A phone or tablet that is turned, and a headset.
+
+/** The sensor that moves the head now; null without one. */
+let sensor = null;
+/** The headset that moves the head and shows the pictures now; null without one. */
+let headset = null;
+
+/** Builds the machines with a head that the visitor moves, both eyes, at the speed of the machine. */
+async function becomeLive() {
+  if (mode !== "lab") await toLab();
+  slowDown(1);
+  settings = { ...settings, "head.motion": LIVE, "head.tracker": settings["head.tracker"] || "fastrak" };
+  settings["head.predict"] = "none";
+  return build(null, FIRST_PICTURE);
+}
+
+/** Turns the head with the orientation sensor. In a holder, both eyes fill the screen side by side. */
+async function turnWithDevice(isHeld) {
+  const why = await sensorRefused();
+  if (why) return say(why);
+  sensor?.stop();
+  document.body.classList.add("turned");
+  document.body.classList.toggle("held", isHeld);
+  // The browser allows a full screen only in answer to the press of the button, so it comes first.
+  if (isHeld) await holdScreen();
+  sensor = new Sensor((orientation) => live?.pose([0, 0, 0], orientation), isHeld);
+  const mine = sensor;
+  if (!(live && mode === "lab") && !(await becomeLive())) return leaveDevice();
+  setTimeout(() => sensor === mine && !mine.reported && (leaveDevice(), say("This device reports no orientation.")), 3000);
+  run();
+}
+
+async function holdScreen() {
+  await document.documentElement.requestFullscreen?.().catch(() => {});
+  await screen.orientation?.lock?.("landscape").catch(() => {});
+}
+
+function leaveDevice() {
+  if (!sensor) return;
+  sensor.stop();
+  sensor = null;
+  document.body.classList.remove("turned", "held");
+  if (document.fullscreenElement === document.documentElement) document.exitFullscreen();
+  pause();
+}
+
+if (window.DeviceOrientationEvent && matchMedia("(pointer: coarse)").matches) at("tilt").hidden = at("hold").hidden = false;
+at("tilt").addEventListener("click", () => turnWithDevice(false));
+at("hold").addEventListener("click", () => turnWithDevice(true));
+for (const id of ["centre", "held-centre"]) at(id).addEventListener("click", () => sensor?.centre());
+for (const id of ["off", "held-off"]) at(id).addEventListener("click", leaveDevice);
+document.addEventListener("fullscreenchange", () => document.fullscreenElement || (document.body.classList.contains("held") && leaveDevice()));
+
+hasHeadset().then((isThere) => (at("headset").hidden = !isThere));
+at("headset").addEventListener("click", async () => {
+  if (headset) return headset.leave();
+  try {
+    // The browser allows a session only in answer to the press of the button, so it comes first.
+    const session = await navigator.xr.requestSession("immersive-vr");
+    if (!(await becomeLive())) return session.end();
+    headset = await Headset.enter({
+      session,
+      edges: await ask("edges"),
+      fieldOfView: seenLast.machines[0].state.field_of_view_deg,
+      pictures: () => machines[0].eyes.map(({ canvas }) => canvas),
+      moved: (position, orientation) => live?.pose(position, orientation),
+      ended() {
+        headset = null;
+        at("headset").textContent = "Enter VR";
+        pause();
+      },
+    });
+  } catch (error) {
+    return say(`The headset cannot be used: ${error.message}`);
+  }
+  at("headset").textContent = "Leave VR";
+  run();
 });
+
+// Latency that the visitor adds.
+
+/** Simulated picoseconds after which every pipeline has shown a picture of the small scenes, without added latency. */
+const FIRST_PICTURE = 300e9;
+
+function showAdded() {
+  at("added-says").textContent = `+${at("added").value} ms`;
+  at("added").setAttribute("aria-valuetext", `${at("added").value} milliseconds`);
+  at("added").disabled = !settings["head.motion"];
+}
+
+let addSoon = 0;
+at("added").addEventListener("input", () => {
+  showAdded();
+  clearTimeout(addSoon);
+  addSoon = setTimeout(addLatency, 200);
+});
+
+/** Builds the machines with the added latency. A head that the visitor moves stays where it is, and a run goes on. */
+async function addLatency() {
+  const wasRunning = running || mode === "story";
+  settings = { ...settings, "head.added_latency": at("added").value };
+  if (at("added").value === "0") delete settings["head.added_latency"];
+  turns += 1;
+  let kept = null;
+  if (live) {
+    kept = new Live(live.path);
+    kept.now = live.now;
+  }
+  if (!(await build(kept, FIRST_PICTURE + Number(at("added").value) * 1e9))) return;
+  if (mode === "lab") remember();
+  if (wasRunning) run();
+}
+
+// Files of the visitor.
 
 async function take(file) {
   if (!/\.(ply|obj|stl|pdb|ent|csv|txt|tum)$/i.test(file.name)) {
@@ -725,16 +839,20 @@ async function take(file) {
   if (mode !== "lab") toLab();
   const before = { settings, dropped };
   at("dropped").textContent = `Reading ${file.name}, ${(file.size / 1e6).toFixed(1)} MB ...`;
-  dropped = { name: file.name.replaceAll(/\s+/g, "-"), bytes: new Uint8Array(await file.arrayBuffer()) };
-  const isMotion = /\.(csv|txt|tum)$/i.test(dropped.name);
+  const isMotion = /\.(csv|txt|tum)$/i.test(file.name);
   const key = isMotion ? "head.motion" : "scene";
-  settings = { ...settings, [key]: dropped.name };
+  const name = file.name.replaceAll(/\s+/g, "-");
+  dropped = { ...dropped, [key]: { name, bytes: new Uint8Array(await file.arrayBuffer()) } };
+  settings = { ...settings, [key]: name };
   if (!isMotion) delete settings.triangles;
   if (isMotion) settings["head.tracker"] ??= "optical";
   if (await build()) {
     intoForm();
     remember();
-    at("dropped").textContent = `${dropped.name} is used as ${isMotion ? "the head's motion" : "the scene"}.`;
+    at("dropped").textContent = `${name} is used as ${isMotion ? "the head's motion" : "the scene"}.`;
+    // A machine shows its first picture only after some fields.
+    if (still.matches) await go({ to: FIRST_PICTURE });
+    else run();
   } else {
     ({ settings, dropped } = before);
     at("dropped").textContent = "";
@@ -753,30 +871,26 @@ addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.altKey || event.metaKey || machines.length === 0) return;
   const target = event.target.closest?.("input, select, textarea, button, summary, a, pre, [role=group]");
   const isField = target?.matches("input:not([type=checkbox]), select, textarea, pre, [role=group]");
-  const keys = { ArrowRight: forth, ArrowLeft: () => (mode === "story" ? at("story-back").click() : back()), f: fill, F: fill };
+  const keys = { ArrowRight: forth, ArrowLeft: backwards, PageDown: forth, PageUp: backwards };
+  const jump = mode === "story" && !isField && at("story-dots").children[Number(event.key) - 1];
   // On a button the space key presses that button.
   if (event.key === " " && !target) at("go").click();
+  else if (jump) tell(telling.name, Number(event.key) - 1);
   else if (keys[event.key] && !isField && mode !== "start") keys[event.key]();
   else return;
   event.preventDefault();
 });
+
+function backwards() {
+  if (mode === "story") at("story-back").click();
+  else back();
+}
 
 function forth() {
   if (mode === "story") return at("story-next").click();
   pause();
   go({ step: "field" });
 }
-
-function fill() {
-  if (document.fullscreenElement) document.exitFullscreen();
-  else at("front").requestFullscreen?.();
-}
-at("full").addEventListener("click", fill);
-document.addEventListener("fullscreenchange", () => {
-  const isFull = document.fullscreenElement !== null;
-  at("full").setAttribute("aria-pressed", String(isFull));
-  at("full").textContent = isFull ? "Leave full screen" : "Full screen";
-});
 
 // Files to save.
 
@@ -853,8 +967,8 @@ const slowDown = (times) => {
 /** Moves the head along a path that begins now. The head approaches the path gradually from its present direction. */
 function move(path) {
   if (!live || !path) return;
-  const [from, base] = [live.samples.length / 60, live.now.map((angle) => angle / 10)];
-  live.path = (seconds) => path(seconds - from).map((angle, n) => angle + base[n] * Math.exp(-2 * (seconds - from)));
+  const [from, base] = [live.samples.length / 60, live.angles];
+  live.path = (seconds) => path(seconds - from).map((way, n) => way + (base[n] ?? 0) * Math.exp(-2 * (seconds - from)));
 }
 
 /** Runs a step to its end, at the speed of the step or as fast as possible. */
@@ -882,6 +996,8 @@ async function prepare(tale, number) {
   settings = { ...tale.settings };
   beside = tale.beside ?? "";
   eyesShown = tale.eyes ?? 2;
+  at("added").value = 0;
+  showAdded();
   show = new Set(tale.steps[number].show);
   if (!(await build())) return false;
   if (tale.begin) await go({ to: inPs(tale.begin) });
@@ -911,16 +1027,28 @@ async function tell(name, number, isNext = false) {
   at("story-paused").textContent = "";
   at("story-back").disabled = number === 0;
   at("story-next").textContent = number + 1 < tale.steps.length ? "Next" : "To the laboratory";
-  at("story-dots").replaceChildren(...tale.steps.map((_, n) => Object.assign(document.createElement("li"), { className: n === number ? "here" : "" })));
-  history.replaceState(null, "", `#story=${name}&step=${number + 1}`);
+  at("story-dots").replaceChildren(...tale.steps.map(({ title }, n) => {
+    const link = Object.assign(document.createElement("a"), { href: keepLecture(`#story=${name}&step=${n + 1}`), textContent: n + 1, title });
+    link.setAttribute("aria-label", `Step ${n + 1}: ${title}`);
+    if (n === number) link.setAttribute("aria-current", "step");
+    const item = document.createElement("li");
+    item.append(link);
+    return item;
+  }));
+  at("story-keep").textContent = "";
+  history.replaceState(null, "", keepLecture(`#story=${name}&step=${number + 1}`));
   show = new Set(step.show);
   layOutParts();
-  if (isNext) await piece;
+  // The next step goes on with the same machines, unless the visitor has added latency.
+  if (isNext && !settings["head.added_latency"]) await piece;
   else if (!(await prepare(tale, number))) return;
   if (mine !== turns) return;
+  // A number to keep comes from the run itself, before the head is handed over.
+  if (step.keep && step.hand) at("story-keep").textContent = step.keep(seenLast.machines) ?? "";
   const isThere = await perform(tale, number, still.matches);
   if (!isThere || mine !== turns) return;
   await go({});
+  if (step.keep) at("story-keep").textContent = step.keep(seenLast.machines) ?? "";
   at("story-paused").textContent = step.paused;
   document.documentElement.dataset.story = `${name} ${number + 1} paused`;
 }
@@ -948,14 +1076,13 @@ async function toStart() {
   turns += 1;
   mode = "start";
   telling = null;
-  show = new Set();
+  show = new Set(FIRST_SCREEN.show);
   eyesShown = 1;
   settings = { ...FIRST_SCREEN.settings };
   beside = "";
   layOutParts();
   slowDown(1);
-  if (!(await build())) return;
-  live.path = FIRST_SCREEN.path;
+  if (!(await build(new Live(FIRST_SCREEN.path), inPs(FIRST_SCREEN.begin)))) return;
   if (still.matches) return go({ to: inPs(900) });
   first();
 }
@@ -1022,6 +1149,7 @@ try {
   explain(glossary);
   at("loading").hidden = true;
   document.documentElement.dataset.ready = "true";
+  lecture();
   addEventListener("hashchange", open);
   await open();
 } catch (error) {

@@ -1,4 +1,7 @@
-// A head motion of a visitor: angles sixty times a second. The motion is stored in the address, and as a recording for the command.
+// A head motion of a visitor, sixty times a second. The motion is stored in the address, and as a recording for the command.
+//
+// A sample is a list of yaw and pitch in tenths of a degree, to the left and upwards, and sometimes of a way to the right in millimetres.
+// A headset or a phone gives whole poses instead: `{ position, orientation }` with metres (x, y, z) and a quaternion (w, x, y, z).
 
 /** Samples a second, and the maximum number of samples (20 s). */
 const RATE = 60;
@@ -23,14 +26,20 @@ export class Recorder {
   }
 }
 
-/** Returns samples as rows of a recording for the command. Samples are yaw and pitch in tenths of a degree. `first` is the number of the
- *  first sample. */
+function poseOf(sample) {
+  if (!Array.isArray(sample)) return sample;
+  const [yaw, pitch, right = 0] = sample;
+  const [y, p] = [yaw, pitch].map((tenths) => (tenths * Math.PI) / 3600);
+  // The first rotation is about y, and the second rotation is about the turned x axis.
+  const orientation = [Math.cos(y) * Math.cos(p), Math.cos(y) * Math.sin(p), Math.sin(y) * Math.cos(p), -Math.sin(y) * Math.sin(p)];
+  return { position: [right / 1000, 0, 0], orientation };
+}
+
+/** Returns samples as rows of a recording for the command. `first` is the number of the first sample. */
 function rows(samples, first) {
-  const of = ([yaw, pitch], n) => {
-    const [y, p] = [yaw, pitch].map((tenths) => (tenths * Math.PI) / 3600);
-    // The first rotation is about y, and the second rotation is about the turned x axis.
-    const q = [Math.cos(y) * Math.cos(p), Math.cos(y) * Math.sin(p), Math.sin(y) * Math.cos(p), -Math.sin(y) * Math.sin(p)];
-    return [((first + n) / RATE).toFixed(6), 0, 0, 0, ...q.map((part) => part.toFixed(9))].join(",");
+  const of = (sample, n) => {
+    const { position, orientation } = poseOf(sample);
+    return [((first + n) / RATE).toFixed(6), ...position.map((way) => way && way.toFixed(6)), ...orientation.map((part) => part.toFixed(9))].join(",");
   };
   return `time_s,x,y,z,qw,qx,qy,qz\n${samples.map(of).join("\n")}\n`;
 }
@@ -130,6 +139,17 @@ export class Live {
     this.now = [yaw, pitch].map((angle) => Math.round(angle * 10));
   }
 
+  /** Moves the head to a whole pose, which a headset or a phone has measured. */
+  pose(position, orientation) {
+    this.path = null;
+    this.now = { position, orientation };
+  }
+
+  /** The present angles in degrees, to the left and upwards. They are zero after a whole pose. */
+  get angles() {
+    return Array.isArray(this.now) ? [this.now[0] / 10, this.now[1] / 10] : [0, 0];
+  }
+
   /** Returns the rows that the machines need for a run to an instant in picoseconds, or null if they have all rows. */
   until(ps) {
     const first = this.sent;
@@ -151,8 +171,13 @@ export class Live {
     this.sent = sent;
   }
 
-  /** Returns the motion as text for the address, or null if the motion is too long for the address. */
+  /** Returns the motion so far as a recording for the command. */
+  csv() {
+    return rows(this.samples, 0);
+  }
+
+  /** Returns the motion as text for the address, or null if the motion is too long for the address, or more than turns of the head. */
   text() {
-    return this.samples.length <= MOST ? packed(this.samples) : null;
+    return this.samples.length <= MOST && this.samples.every((sample) => sample.length === 2) ? packed(this.samples) : null;
   }
 }

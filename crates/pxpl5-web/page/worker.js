@@ -75,6 +75,7 @@ const OPERATIONS = {
     }
     return snapshot(want);
   },
+  edges: () => machines[0].edges(),
   /** Returns the number of primitives in a machine's scene, and the number that the machine could show in time. */
   fitting: ({ of }) => JSON.parse(machines[of].fitting()),
   volume() {
@@ -106,7 +107,7 @@ async function load(url) {
 }
 
 const ends = (from, to) => (machine) => JSON.parse(machine.channels()).some((message) => message && from.test(message.from) && to.test(message.to));
-const staged = (stage) => (machine) => JSON.parse(machine.boards()).some((board) => board.kind === "processor" && board.name !== "host" && board.stage === stage && board.works);
+const staged = (stage) => (machine) => JSON.parse(machine.boards()).some((board) => board.kind === "processor" && board.name !== "host" && board.stages.includes(stage) && board.works);
 const GP = /^GP/;
 
 const copies = (machine) => JSON.parse(machine.regions()).some((region) => region.stage === "copy" && region.surface === 0);
@@ -115,10 +116,11 @@ const copies = (machine) => JSON.parse(machine.regions()).some((region) => regio
 const HAPPENINGS = {
   pose: () => ends(/^host/, GP),
   transform: () => staged("transform"),
-  /** Renderers draw at least three regions of the first eye, and execute commands for one of these regions. */
+  /** Renderers draw at least three regions of the first eye, and one renderer executes commands while it copies another region. */
   draw: () => (machine) => {
     const drawn = JSON.parse(machine.regions()).filter((region) => region.stage === "render" && region.surface === 0);
-    return drawn.length >= 3 && drawn.some((region) => region.works);
+    if (drawn.length < 3 || !drawn.some((region) => region.works)) return false;
+    return JSON.parse(machine.boards()).some((board) => board.kind === "renderer" && board.stages.length === 2);
   },
   /** A region of the first eye is copied. */
   copy: () => copies,
@@ -172,7 +174,7 @@ function snapshot(want) {
       heat: want.error ? machine.heat(surface) : null,
       difference: want.error ? JSON.parse(machine.difference(surface)) : null,
     }));
-    return { state, surfaces, age: want.age ? JSON.parse(machine.age()) : undefined, missesAll: want.age ? machine.misses_all() : undefined, regions: want.regions ? JSON.parse(machine.regions()) : null, latencies: want.latencies ? JSON.parse(machine.latencies(want.latencies)) : null, limits: want.limits ? JSON.parse(machine.limits()) : null };
+    return { state, surfaces, age: want.age ? JSON.parse(machine.age()) : undefined, offset: want.age ? JSON.parse(machine.misregistration()) : undefined, missesAll: want.age ? machine.misses_all() : undefined, regions: want.regions ? JSON.parse(machine.regions()) : null, latencies: want.latencies ? JSON.parse(machine.latencies(want.latencies)) : null, limits: want.limits ? JSON.parse(machine.limits()) : null };
   });
   const machine = machines[want.of ?? 0] ?? machines[0];
   const boards = want.boards ? JSON.parse(machine.boards()) : null;
@@ -193,7 +195,7 @@ function snapshot(want) {
 
 /** Returns the buffers that are transferred to the page instead of copied. */
 function buffers(value, found = []) {
-  if (value instanceof Uint8Array) found.push(value.buffer);
+  if (ArrayBuffer.isView(value)) found.push(value.buffer);
   else if (value && typeof value === "object") Object.values(value).forEach((inner) => buffers(inner, found));
   return found;
 }

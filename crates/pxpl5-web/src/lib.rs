@@ -19,6 +19,7 @@
 mod catalog;
 mod code;
 mod diagram;
+mod edges;
 mod files;
 mod glossary;
 mod pictures;
@@ -132,6 +133,19 @@ impl WebMachine {
     /// result is `null` before the first picture.
     pub fn age(&self) -> String {
         diagram::age(self.0.stepper()).to_string()
+    }
+
+    /// Returns the misregistration in the middle of the first eye's picture in the last field as JSON: the distance
+    /// between the shown and the true place of the content, in pixels and in degrees. The result is `null` without a
+    /// tracked head, and without a picture that was complete in time.
+    pub fn misregistration(&self) -> String {
+        state::misregistration(self.0.stepper()).to_string()
+    }
+
+    /// Returns the edges of the scene as lines: x, y and z of both ends in metres. The axes are those of the head at time
+    /// zero: x to the right, y up, and the view along -z. The result is empty without a tracked head.
+    pub fn edges(&self) -> Vec<f32> {
+        edges::edges(self.0.stepper())
     }
 
     /// Returns the outlines in the ideal picture of a surface at the present instant. The ideal picture has no latency.

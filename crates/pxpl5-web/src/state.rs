@@ -4,7 +4,7 @@ use crate::code;
 use crate::diagram;
 use crate::pictures;
 use pxpl5_machine::Board;
-use pxpl5_measure::{CriticalPath, Utilisation};
+use pxpl5_measure::{CriticalPath, Registration, Utilisation};
 use pxpl5_run::{LATENCY_PARTS, PictureTimes, Stepper, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
 use pxpl5_views::timeline::{self, TimelineOptions};
@@ -28,6 +28,7 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
         "trace_hash": record.trace_hash().to_string(),
         "config_hash": stepper.experiment().config_hash().to_string(),
         "surfaces": surfaces.collect::<Vec<_>>(),
+        "field_of_view_deg": stepper.experiment().hmd().config().horizontal_fov_deg,
         "memories": pictures::memories(stepper),
     })
 }
@@ -68,6 +69,12 @@ pub(crate) fn limits(stepper: &Stepper) -> Value {
     json!({"utilisation": Utilisation::so_far(stepper), "path": path})
 }
 
+pub(crate) fn misregistration(stepper: &Stepper) -> Value {
+    let run = stepper.observed_run();
+    let found = Registration::so_far(&run).and_then(|registration| registration.in_the_middle(stepper.now()));
+    found.map_or(Value::Null, |error| json!({"pixels": error.pixels, "degrees": error.degrees}))
+}
+
 pub(crate) fn channels(stepper: &Stepper) -> Value {
     let ports = stepper.record().ports();
     let on = stepper.channels();
@@ -87,24 +94,25 @@ pub(crate) fn boards(stepper: &Stepper) -> Value {
 fn line(stepper: &Stepper, board: Board, says: &str) -> Value {
     let name = board.to_string();
     match board {
-        // A renderer is busy while it executes commands, or while a region is being copied.
+        // A renderer is busy while it executes commands, or while a region is being copied. It can do both at a time.
         Board::Renderer(number) => {
             let snapshot = stepper.renderer(number);
             let fifo = snapshot.and_then(|snapshot| snapshot.fifo_words).unwrap_or_default();
             let copies = snapshot.is_some_and(|snapshot| snapshot.copying.is_some());
             let executes = snapshot.is_some_and(|snapshot| snapshot.works());
-            let stage = if copies { Some("copy") } else { executes.then_some("render") };
-            let works = stage.is_some();
+            let stages = [executes.then_some("render"), copies.then_some("copy")];
+            let stages: Vec<&str> = stages.into_iter().flatten().collect();
+            let works = !stages.is_empty();
             let depth = snapshot.map_or(0, |snapshot| snapshot.fifo_depth_words);
-            json!({"name": name, "kind": "renderer", "does": says, "works": works, "stage": stage, "fifo": fifo, "depth": depth})
+            json!({"name": name, "kind": "renderer", "does": says, "works": works, "stages": stages, "fifo": fifo, "depth": depth})
         }
         Board::Display(_) | Board::Ring => json!({"name": name, "kind": "display", "does": says, "works": true}),
         Board::Host | Board::Gp(_) => {
             let snapshot = stepper.processor(board);
             let works =
                 snapshot.is_some_and(|snapshot| snapshot.programs.iter().any(|program| program.work_left.is_some()));
-            let stage = diagram::stage(stepper, board);
-            json!({"name": name, "kind": "processor", "does": says, "works": works, "stage": stage})
+            let stages: Vec<&str> = diagram::stage(stepper, board).into_iter().collect();
+            json!({"name": name, "kind": "processor", "does": says, "works": works, "stages": stages})
         }
     }
 }
@@ -161,4 +169,33 @@ pub(crate) fn latencies(stepper: &Stepper, most: usize) -> Value {
         "parts": parts.map(|part| json!({"name": part.name, "definition": part.definition})).collect::<Vec<_>>(),
         "pictures": rows.collect::<Vec<_>>(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::Files;
+    use crate::session::Session;
+
+    /// Tests the error in the middle of the picture with a head that turns by 20 degrees a second: 100 ms of added latency
+    /// are 2 degrees more, in every pipeline and at any instant.
+    #[test]
+    fn added_latency_is_seen_as_the_angle_that_the_head_turns_meanwhile() {
+        for pipeline in ["slats", "rendering-control", "jitp-scanline", "arp-full-line"] {
+            let display = if pipeline.starts_with("arp") { "arp" } else { "ntsc" };
+            let degrees = |added_ms: u32| {
+                let settings = format!(
+                    "pipeline={pipeline}\ndisplay={display}\nscene=full-screen:2\nfields=60\nhead.motion=pan:20\n\
+                     head.tracker=ideal\nhead.predict=none\nhead.added_latency={added_ms}\n"
+                );
+                let mut session = Session::new(&settings, &Files::default()).expect("known settings");
+                session.run_to(700_000_000_000);
+                misregistration(session.stepper())["degrees"]
+                    .as_f64()
+                    .unwrap_or_else(|| panic!("{pipeline} shows pictures"))
+            };
+            let [without, with] = [0, 100].map(degrees);
+            assert!((with - without - 2.0).abs() < 0.02, "{pipeline}: {without} and {with} degrees");
+        }
+    }
 }

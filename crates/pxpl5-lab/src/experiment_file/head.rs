@@ -23,6 +23,7 @@ pub struct HeadChoice {
     tracker: String,
     predict: String,
     train: Option<String>,
+    added_latency_ms: Option<f64>,
     numbers: Vec<Parameter>,
     /// Meaning of the poses of the motion before this scene, if no setting states it.
     usual_place: HeadPlace,
@@ -37,6 +38,7 @@ impl PartialEq for HeadChoice {
     }
 }
 
+const PS_PER_MS: f64 = 1e9;
 const TRACKER: &str = "optical";
 const PREDICT: &str = "kalman";
 
@@ -73,7 +75,11 @@ impl HeadChoice {
         }
         let tables = tracking_numbers::read(file, &tracker_name)?;
         let by_name = tracker_by(&tables, &tracker_name);
-        let (of_tracker, own_table) = by_name.map_err(|error| refused(file, "head.tracker", &error))?;
+        let (mut of_tracker, own_table) = by_name.map_err(|error| refused(file, "head.tracker", &error))?;
+        let added_latency_ms = file.number("head.added_latency")?;
+        if let Some(ms) = added_latency_ms {
+            of_tracker = of_tracker.with_added_latency_ps((ms * PS_PER_MS).round() as u64);
+        }
         let of_predictor = predictor(&predict).map_err(|error| refused(file, "head.predict", &error))?;
         let of_predictor = PredictorConfig::for_tracker_by(&tables, of_predictor, &of_tracker);
         let numbers = tracking_numbers::parameters_with(&tables, own_table, &of_tracker);
@@ -92,6 +98,7 @@ impl HeadChoice {
             tracker: tracker_name,
             predict,
             train,
+            added_latency_ms,
             numbers,
             usual_place: usual,
             head: Arc::new(head),
@@ -142,6 +149,7 @@ impl HeadChoice {
             all.push(("head.place".to_owned(), Value::from(self.head.place().to_string())));
         }
         all.extend(self.train.clone().map(|train| ("head.train".to_owned(), Value::from(train))));
+        all.extend(self.added_latency_ms.map(|ms| ("head.added_latency".to_owned(), Value::from(ms))));
         all.extend(reprojection::settings(self.head.raster()));
         all.extend(self.head.evaluate_at_m().map(|metres| ("head.evaluate_at".to_owned(), Value::from(metres))));
         // Only recordings have an end, axes and columns.

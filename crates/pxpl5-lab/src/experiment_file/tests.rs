@@ -104,7 +104,7 @@ fn a_written_file_describes_the_same_experiment() {
     ];
     let registry = crate::registry();
     let named = registry.pipelines().iter().map(|entry| format!("pipeline = \"{}\"\nscene = \"mig\"\n", entry.name));
-    let with_head = "pipeline = \"slats\"\nscene = \"mig\"\n[head]\nmotion = \"pan:-40.5\"\nraster = \"vdrt\"\npredict = \"none\"\n";
+    let with_head = "pipeline = \"slats\"\nscene = \"mig\"\n[head]\nmotion = \"pan:-40.5\"\nraster = \"vdrt\"\npredict = \"none\"\nadded_latency = 12.5\n";
     let sized = ["jitp-field\"\nstrip_rows = 16", "frameless\"\nblock = 32\nbatch = 5\norder_seed = 9"]
         .map(|text| format!("scene = \"mig\"\npipeline = \"{text}"));
     for text in texts.into_iter().chain(named).chain(sized).chain([with_head.to_owned()]) {
@@ -122,6 +122,7 @@ fn the_fingerprint_covers_every_setting_that_changes_the_result() {
     }
     for other in [
         "head.motion = \"still\"",
+        "head.motion = \"still\"\nhead.added_latency = 20",
         "seed = 2",
         "fields = 121",
         "mono = true",

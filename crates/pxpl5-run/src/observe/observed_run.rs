@@ -1,6 +1,8 @@
 //! The part of a run that has been simulated, as input for timelines and tables.
 
 use crate::experiment::Experiment;
+use crate::head_views::HeadViews;
+use crate::observe::observers::FinalResults;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::result::latency::{LatencyParts, parts};
 use crate::result::outcome::Outcome;
@@ -9,12 +11,14 @@ use crate::stepper::Stepper;
 use pxpl5_machine::{Observation, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// A run as observed up to an instant: all of an [`Outcome`], or the simulated part of a [`Stepper`].
 #[derive(Clone, Debug)]
 pub struct ObservedRun<'a> {
     experiment: &'a Experiment,
     record: &'a Record,
+    head: Option<&'a Arc<HeadViews>>,
     pictures: Cow<'a, [PictureTimes]>,
     end: Time,
 }
@@ -23,7 +27,13 @@ impl Outcome {
     /// Returns the observations of the whole run.
     pub fn observed_run(&self) -> ObservedRun<'_> {
         let pictures = Cow::Borrowed(self.pictures());
-        ObservedRun { experiment: self.experiment(), record: self.record(), pictures, end: self.end() }
+        ObservedRun {
+            experiment: self.experiment(),
+            record: self.record(),
+            head: self.head(),
+            pictures,
+            end: self.end(),
+        }
     }
 }
 
@@ -34,6 +44,7 @@ impl Stepper {
         ObservedRun {
             experiment: self.experiment(),
             record: self.record(),
+            head: self.head(),
             pictures: Cow::Owned(pictures),
             end: self.now(),
         }
@@ -54,6 +65,11 @@ impl ObservedRun<'_> {
     /// Returns the pictures that were begun and evaluated, in order.
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.pictures
+    }
+
+    /// Returns the observations in the form for evaluations. The run so far has no result window.
+    pub fn results(&self) -> FinalResults<'_> {
+        FinalResults { pictures: &self.pictures, ..self.experiment.final_results(self.record, self.head) }
     }
 
     /// Returns the pipeline that runs.

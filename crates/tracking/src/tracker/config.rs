@@ -195,6 +195,17 @@ impl TrackerConfig {
         }
     }
 
+    /// Returns the same tracker with reports that arrive `added_ps` later, as if its cable were longer.
+    pub fn with_added_latency_ps(self, added_ps: u64) -> Self {
+        let later = |latency_ps: u64| latency_ps.saturating_add(added_ps);
+        Self {
+            sync_to_output_ps: later(self.sync_to_output_ps),
+            position_latency_ps: later(self.position_latency_ps),
+            orientation_latency_ps: later(self.orientation_latency_ps),
+            ..self
+        }
+    }
+
     /// Returns the same tracker without noise and bias.
     pub fn without_noise(self) -> Self {
         Self {
