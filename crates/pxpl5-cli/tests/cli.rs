@@ -160,14 +160,6 @@ fn result_files_state_their_origin_and_tables_begin_with_column_names() {
 }
 
 #[test]
-fn the_written_experiment_runs_to_the_same_trace() {
-    let folder = Folder::new("again");
-    let first = json(&folder.run(&with(&RC, &["--json", "--out", "r", "--gps", "5", "--seed", "3"])));
-    let second = json(&folder.run(&["run", "r/experiment.toml", "--json"]));
-    assert_eq!((&first["trace_hash"], &first["config_hash"]), (&second["trace_hash"], &second["config_hash"]));
-}
-
-#[test]
 fn run_prints_a_table_to_standard_output_and_with_quiet_prints_nothing() {
     let folder = Folder::new("table");
     let output = folder.run(&SLATS);
@@ -272,17 +264,8 @@ fn an_experiment_file_reaches_every_setting_and_its_errors_name_the_line() {
     assert_eq!((&report["triangles"], &report["fields"]), (&50.into(), &14.into()));
     assert!(report["variant"].as_str().expect("text").contains("copy=whole"));
     assert_eq!(report["overrides"]["gp.triangle_ns"], 20_000);
-    let cases = [
-        ("pipeline = \"slats\"\nsceen = \"mig\"", "line 2", "did you mean `scene`"),
-        ("pipeline = \"slats\"\n[machine]\ngp.triangel_ns = 1", "line 3", "`machine.gp.triangle_ns`"),
-        ("pipeline = \"slats\"\nscene = 3", "line 2", "text in quotes"),
-        ("pipeline = ", "line 1", "not TOML"),
-        ("pipeline = \"slats\"\nscene = \"mig\"\nmono = true", "line 3", "does not apply"),
-    ];
-    for (text, line, says) in cases {
-        let path = folder.file("bad.toml", text);
-        refused(&["run", path.to_str().expect("text")], 2, &["bad.toml", line, says]);
-    }
+    let path = folder.file("bad.toml", "pipeline = \"slats\"\nsceen = \"mig\"");
+    refused(&["run", path.to_str().expect("text")], 2, &["bad.toml", "line 2", "did you mean `scene`"]);
     refused(&["run", "missing.toml"], 2, &["missing.toml", "readable experiment file"]);
 }
 

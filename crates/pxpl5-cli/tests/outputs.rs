@@ -177,16 +177,6 @@ fn a_written_experiment_runs_again_from_any_folder() {
     assert_eq!((&first["trace_hash"], &first["config_hash"]), (&second["trace_hash"], &second["config_hash"]));
 }
 
-#[test]
-fn a_path_that_cannot_be_written_is_reported_before_the_run() {
-    let folder = folder("early");
-    for args in [["levels", "--chart"], ["figures", "--write"]] {
-        let output = folder.run(&[&args[..], &["p.s/below"]].concat());
-        assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{args:?}");
-        assert!(err(&output).contains("p.s/below cannot be written"), "{args:?}: {}", err(&output));
-    }
-}
-
 /// Tests two runs into the same folder. Only the files of the second run must remain.
 #[test]
 fn a_run_replaces_the_previous_run_as_a_whole() {
@@ -284,6 +274,7 @@ fn an_error_names_the_file_and_the_option_that_were_given() {
         (&ASSEMBLE, "-o"),
     ] {
         let output = folder.run(&[args, &["p.s/below"]].concat());
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{args:?}");
         assert!(err(&output).contains("p.s/below cannot be written"), "{args:?}: {}", err(&output));
         assert!(err(&output).contains(&format!("choose another place with {option}")), "{args:?}: {}", err(&output));
     }

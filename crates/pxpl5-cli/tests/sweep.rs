@@ -108,20 +108,6 @@ fn a_sweep_killed_repeatedly_loses_and_repeats_no_finished_point() {
 }
 
 #[test]
-fn a_torn_last_line_is_repaired_and_a_damaged_one_before_it_is_refused() {
-    let folder = folder("torn");
-    succeeds(&sweep(&folder, &["--out", "a"]));
-    let whole = read(&folder, "a/rows.jsonl");
-    fs::write(folder.0.join("a/rows.jsonl"), &whole[..whole.len() - 40]).expect("ours");
-    succeeds(&sweep(&folder, &["--out", "a", "--resume"]));
-    assert!(read(&folder, "a/rows.jsonl") == whole);
-    fs::write(folder.0.join("a/rows.jsonl"), whole.replacen("\"point\":7,", "\"pint\":7,", 1)).expect("ours");
-    let output = sweep(&folder, &["--out", "a", "--resume"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(err(&output).contains("a/rows.jsonl, line 9: expected a row of a sweep"), "{}", err(&output));
-}
-
-#[test]
 fn results_are_neither_overwritten_nor_mixed_with_those_of_another_sweep() {
     let folder = folder("mixed");
     succeeds(&sweep(&folder, &["--out", "a"]));
@@ -254,20 +240,6 @@ fn scenes_are_found_beside_the_sweep_file_and_a_sweep_without_a_finished_point_f
     assert_eq!(output.status.code(), Some(1));
     assert!(err(&output).contains("no point could be simulated"), "{}", err(&output));
     assert_eq!(lines(&folder.0.join("none/rows.jsonl")).len(), 2, "the rows say why");
-}
-
-#[test]
-fn rows_of_an_edited_model_are_not_mixed_with_earlier_rows() {
-    let folder = Folder::new("edited");
-    let model = |x: i32| folder.file("m.obj", format!("v 0 0 0\nv {x} 0 0\nv 0 1 0\nf 1 2 3\n"));
-    folder.file("s.toml", "pipeline = \"slats\"\nscene = \"m.obj\"\nfields = 10\n[sweep]\nseeds = 2\n");
-    model(1);
-    succeeds(&sweep(&folder, &["--out", "a"]));
-    succeeds(&sweep(&folder, &["--out", "a", "--resume"]));
-    model(2);
-    let output = sweep(&folder, &["--out", "a", "--resume"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(err(&output).contains("results of another sweep"), "{}", err(&output));
 }
 
 /// A substitute for `sbatch`. The script records its options, and runs the submitted tasks one by one.
