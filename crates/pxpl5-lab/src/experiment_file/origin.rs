@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use super::scene::is_file;
 use super::{ExperimentFile, Settings};
-use crate::head_names::is_recorded_file;
+use crate::head_parts::is_recorded_file;
 use pxpl5_measure::program;
 use pxpl5_run::{Experiment, Fingerprint};
 use pxpl5_sim::parameters::{Key, KeyValues, SettingError};
