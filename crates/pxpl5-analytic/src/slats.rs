@@ -137,7 +137,7 @@ pub(super) const CLOSED_FORM: ClosedForm =
 fn primitives_in_time(experiment: &Experiment) -> Option<u64> {
     let of_one = |experiment: &Experiment| -> Result<Summary, ExperimentError> {
         let (model, times) = steady_field(experiment)?;
-        Ok(summary(experiment.length(), &model, times))
+        Ok(summary(experiment.fields, &model, times))
     };
     crate::primitives_in_time(experiment, of_one)
 }
@@ -148,7 +148,7 @@ fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     if !times.in_time && pipeline_of::<Slats>(experiment)?.copy == CopySchedule::Backup {
         return Err(no_form("late fields with copy = backup").into());
     }
-    Ok(summary(experiment.length(), &model, times))
+    Ok(summary(experiment.fields, &model, times))
 }
 
 /// Number of fields before the first evaluated picture. In two of these fields, the host's first view is sent and

@@ -99,7 +99,7 @@ const COMMON: &[Key] = &[
     .with_default("keep, with a warning"),
     Key::new("head.train", "motion on which the predictor is tuned: any head.motion that is not along a path", KeyValues::ANY)
         .with_default("another synthetic motion; head.motion itself for all others"),
-    Key::new("head.tracker", crate::head_names::TRACKERS, KeyValues::ANY),
+    Key::new("head.tracker", crate::head_parts::TRACKERS, KeyValues::ANY),
     Key::new("head.predict", "none, velocity, acceleration or kalman", KeyValues::ANY),
     Key::new(
         "head.aim",
