@@ -10,7 +10,7 @@ use pxpl5::lab::motion;
 use pxpl5::tracking::motion::Motion;
 use pxpl5::tracking::time::{PS_PER_MS, PS_PER_S};
 use pxpl5::views::charts::{ChartAxes, Curve, curve_chart};
-use pxpl5::{ExperimentFile, LatencyCurve};
+use pxpl5::{ExperimentFile, LatencyCurve, Study};
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -178,7 +178,7 @@ fn compared([head, train]: [&str; 2], raster: &str, predictor: &str) -> Result<C
     file.set("fields", FIELDS, "real_heads")?;
     let only = RowChoice::Named(ROWS.map(str::to_owned).to_vec());
     let query = CompareQuery { only, seeds: (1..=SEEDS).collect(), ..CompareQuery::new(file) };
-    Ok(query.run(|_, _| {})?)
+    Ok(query.run(&mut ())?)
 }
 
 /// Marks of the page around the tables.

@@ -2,10 +2,10 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::RunWork;
 use crate::numbers::{count_of, whole};
 use crate::one_picture;
 use crate::output::{OutputFolder, png, timeline};
+use crate::progress::Progress;
 use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::simulate::{How, Simulated, simulate};
@@ -18,7 +18,7 @@ use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::views::results::{origin_lines, quantities_csv};
 use pxpl5::{
     ExperimentFile, HeadReport, KeptRecords, Level, Measured, Optimization, Origin, Outcome, PictureTimes, Plan,
-    Report, Results, SurfaceId, WARM_UP_PERIODS, WARM_UP_PICTURES, WhatIf, what_if,
+    Report, Results, SurfaceId, WARM_UP_PERIODS, WARM_UP_PICTURES, WhatIf, WhatIfQuery,
 };
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -79,10 +79,8 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let keep =
         if folder.is_some() || args.picture.is_some() { KeptRecords::Everything } else { KeptRecords::Statistics };
     let (without, budget, quiet) = (&args.without[..], args.budget, args.quiet);
-    if args.what_if {
-        let work = RunWork::of(&plan, &*scenes::load(&plan, true)?, false);
-        budget.admit_all([work; WHAT_IF_RUNS], std::thread::available_parallelism().map_or(1, usize::from))?;
-    }
+    let question = if args.what_if { Some(question(&plan)?) } else { None };
+    question.iter().try_for_each(|question| args.budget.admit_study(question, "simulate fewer fields"))?;
     let how = How { threads: args.threads, without, keep, budget, quiet, ..How::default() };
     let Simulated { outcome, too_short } = simulate(&plan, how)?;
     let results = Results::of_run(outcome);
@@ -94,7 +92,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     // A run without a latency still writes its files and its report, and then ends with an error.
     let picture = args.picture.map(|number| one_picture::find(outcome, number)).transpose()?;
     let written = folder.map(|folder| write(folder, &plan, &results, picture)).transpose()?;
-    let more = if args.what_if { Some(more(&plan)?) } else { None };
+    let more = question.map(|question| Progress::new("resources", true).run(&question)).transpose()?;
     if args.json {
         print(&format!("{}\n", with_more(report, more.as_deref())?))?;
     } else if !args.quiet {
@@ -112,14 +110,10 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// Number of runs of `--what-if`: the experiment, and one for each resource.
-const WHAT_IF_RUNS: usize = 7;
-
-/// Returns the latency and update rate of the experiment with 10 % more of each resource of the machine, one resource
-/// at a time.
-fn more(plan: &Plan) -> Result<Vec<WhatIf>, CliError> {
+/// Returns the question of the effect of 10 % more of each resource of the machine, one resource at a time.
+fn question(plan: &Plan) -> Result<WhatIfQuery, CliError> {
     let experiment = plan.experiment(scenes::load(plan, true)?);
-    what_if(&plan.registry, &experiment).map_err(CliError::from)
+    Ok(WhatIfQuery { registry: plan.registry.clone(), experiment })
 }
 
 fn more_text(more: &[WhatIf]) -> String {
@@ -127,14 +121,9 @@ fn more_text(more: &[WhatIf]) -> String {
     let level = more.first().map_or("", |more| more.level);
     let heads = ["10 % more of", "setting", "latency, ms", "updates, Hz"];
     let _ = writeln!(text, "\n{:<32} {:<42} {:<16} {} ({level} level)", heads[0], heads[1], heads[2], heads[3]);
-    let cell = |[before, after]: [Option<f64>; 2]| match before.zip(after) {
-        Some((before, after)) => format!("{before:.1} to {after:.1}"),
-        None => "-".to_owned(),
-    };
-    for WhatIf { resource, key, from, to, latency_ms, updates_hz, .. } in more {
-        let setting = format!("{key} {from} to {to}");
-        let _ = writeln!(text, "{resource:<32} {setting:<42} {:<16} {}", cell(*latency_ms), cell(*updates_hz));
-    }
+    more.iter().for_each(|more| {
+        let _ = writeln!(text, "{more}");
+    });
     text
 }
 

@@ -1,6 +1,7 @@
 //! A text table of runs, with one column for each run and one row for each quantity.
 
 use crate::numbers::count_of;
+use crate::terminal::laid_out;
 use pxpl5::{DuePictures, Percentiles, Report, Statistics};
 
 #[derive(Clone, Debug)]
@@ -44,7 +45,8 @@ pub(crate) fn table(runs: &[(&Report, Option<&Comparison>)]) -> String {
     if runs.iter().any(|(_, comparison)| comparison.is_some()) {
         rows.extend(comparison_rows(runs));
     }
-    laid_out(&rows)
+    let lines = rows.into_iter().map(|(name, cells)| [vec![name.to_owned()], cells].concat());
+    laid_out(&lines.collect::<Vec<_>>(), usize::MAX)
 }
 
 fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, Vec<String>); 4] {
@@ -111,24 +113,6 @@ pub(crate) fn percentiles(of: &Percentiles, digits: usize) -> String {
         return "-".to_owned();
     }
     format!("{:.digits$}, {:.digits$}, {:.digits$}", of.p50, of.p95, of.p99)
-}
-
-fn laid_out(rows: &[(&str, Vec<String>)]) -> String {
-    let columns = rows.iter().map(|(_, cells)| cells.len()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(|column| width(rows, column)).collect();
-    let mut text = String::new();
-    for (name, cells) in rows {
-        let padded = cells.iter().zip(&widths).map(|(cell, width)| format!("  {cell:<width$}"));
-        let line = format!("{name:<25}{}", padded.collect::<String>());
-        text.push_str(line.trim_end());
-        text.push('\n');
-    }
-    text
-}
-
-/// Returns the length of the longest cell of a column in bytes.
-fn width(rows: &[(&str, Vec<String>)], column: usize) -> usize {
-    rows.iter().filter_map(|(_, cells)| cells.get(column)).map(String::len).max().unwrap_or(0)
 }
 
 fn boards(report: &Report) -> String {

@@ -1,10 +1,15 @@
 //! Computes the effect of 10 % more of each resource of a machine.
 
+use crate::error::StudyError;
+use crate::estimate::{Estimate, RunWork};
 use crate::levels::summarise;
-use crate::parallel;
+use crate::study::Study;
 use pxpl5_machine::MachineConfig;
-use pxpl5_run::{Experiment, ExperimentError, KeptRecords, Pixels, Registry, Summary};
+use pxpl5_run::{Experiment, KeptRecords, Pixels, Registry, Summary};
+use pxpl5_sim::Watcher;
 use serde::Serialize;
+use std::fmt;
+use std::sync::Arc;
 
 /// Effect of one changed resource of the machine on latency and update rate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -65,35 +70,66 @@ impl Knob {
     }
 }
 
-/// Returns the effect of 10 % more of each resource: the experiment runs again for each resource, without pixels and in
-/// parallel. Formulas are used only for an experiment at the analytic level. Near saturation they miss the times of a run
-/// by more than a tenth of a resource changes, so they cannot be mixed with runs.
-///
-/// # Errors
-///
-/// Fails in the same cases as [`Experiment::run`] for the unchanged experiment. A changed experiment that cannot run
-/// has no results.
-pub fn what_if(registry: &Registry, experiment: &Experiment) -> Result<Vec<WhatIf>, ExperimentError> {
-    let tried = experiment.clone().pixels(Pixels::Off).keep(KeptRecords::Statistics);
-    let level = tried.modelling_level().name();
-    // Change one resource at a time. All other settings stay the same.
-    let changed: Vec<_> = KNOBS.iter().filter_map(|knob| Some((knob, knob.more(tried.config())?))).collect();
-    let machines: Vec<&MachineConfig> =
-        std::iter::once(tried.config()).chain(changed.iter().map(|(_, (.., machine))| machine)).collect();
-    let mut summaries =
-        parallel::map(&machines, |machine| summarise(registry, &tried.clone().with_machine((*machine).clone())))
-            .into_iter();
-    let base = summaries.next().ok_or(ExperimentError::Level)??;
-    let of = |summary: Option<&Summary>| {
-        let latency = summary.map(|summary| summary.latency_ms().mean).filter(|mean| mean.is_finite());
-        (latency, summary.and_then(|summary| summary.updates_hz))
-    };
-    let rows = changed.iter().zip(summaries).map(|((knob, (from, to, _)), summary)| {
-        let ((before_ms, before_hz), (after_ms, after_hz)) = (of(Some(&base)), of(summary.as_ref().ok()));
-        let [latency_ms, updates_hz] = [[before_ms, after_ms], [before_hz, after_hz]];
-        WhatIf { resource: knob.resource, key: knob.key, from: *from, to: *to, latency_ms, updates_hz, level }
-    });
-    Ok(rows.collect())
+/// The question of the effect of 10 % more of each resource.
+#[derive(Clone, Debug)]
+pub struct WhatIfQuery {
+    /// Registry that contains the pipeline's closed form.
+    pub registry: Arc<Registry>,
+    /// The experiment on the unchanged machine.
+    pub experiment: Experiment,
+}
+
+impl Study for WhatIfQuery {
+    type Report = Vec<WhatIf>;
+
+    fn estimate(&self, _: usize) -> Estimate {
+        Estimate::of_all([RunWork::of(&self.experiment, false).estimate(); 1 + KNOBS.len()], 1)
+    }
+
+    /// Finds the effects: the experiment runs again for each resource, without pixels. Formulas are used only for an
+    /// experiment at the analytic level, because near saturation they miss the times of a run by more than a tenth of a
+    /// resource changes. A changed experiment that cannot run has no results.
+    fn run(&self, watcher: &mut dyn Watcher) -> Result<Vec<WhatIf>, StudyError> {
+        let (registry, experiment) = (&self.registry, self.experiment.clone().stopped_by(watcher.stop()));
+        let tried = experiment.pixels(Pixels::Off).keep(KeptRecords::Statistics);
+        let base = summarise(registry, &tried)?;
+        let level = tried.level.name();
+        let of = |summary: Option<&Summary>| {
+            let latency = summary.map(|summary| summary.latency_ms().mean).filter(|mean| mean.is_finite());
+            (latency, summary.and_then(|summary| summary.updates_hz))
+        };
+        // Change one resource at a time. All other settings stay the same.
+        let tell = |knob: &Knob| {
+            let (from, to, machine) = knob.more(tried.config())?;
+            let changed = summarise(registry, &tried.clone().with_machine(machine)).ok();
+            let ((before_ms, before_hz), (after_ms, after_hz)) = (of(Some(&base)), of(changed.as_ref()));
+            let [latency_ms, updates_hz] = [[before_ms, after_ms], [before_hz, after_hz]];
+            Some(WhatIf { resource: knob.resource, key: knob.key, from, to, latency_ms, updates_hz, level })
+        };
+        let mut effects = Vec::new();
+        for (done, knob) in (1..).zip(&KNOBS) {
+            let effect = tell(knob);
+            if watcher.stop().is_stopped() {
+                break;
+            }
+            effect.iter().for_each(|effect| watcher.row("resources", effect));
+            effects.extend(effect);
+            watcher.progress(done, KNOBS.len() as u64);
+        }
+        Ok(effects)
+    }
+}
+
+impl fmt::Display for WhatIf {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let cell = |[before, after]: [Option<f64>; 2]| match before.zip(after) {
+            Some((before, after)) => format!("{before:.1} to {after:.1}"),
+            None => "-".to_owned(),
+        };
+        let setting = format!("{} {} to {}", self.key, self.from, self.to);
+        let [latency, updates] = [self.latency_ms, self.updates_hz].map(cell);
+        write!(f, "{:<32} {setting:<42} {latency:<16} {updates}", self.resource)
+    }
 }
 
 #[cfg(test)]

@@ -1,41 +1,50 @@
 //! The table that `pxpl5 compare` prints on the terminal.
 
 use crate::numbers::count_of;
+use crate::terminal::laid_out;
 use pxpl5::Cause;
 use pxpl5::compare::{Comparison, ComparisonRow, IntervalMethod, MeanInterval};
 use std::fmt::Write as _;
 
-/// Name, unit, and width in characters of each column.
-const COLUMNS: [(&str, &str, usize); 19] = [
-    ("to light", "ms", 9),
-    ("sd", "ms", 6),
-    ("95 %", "ms", 7),
-    ("turn", "ms", 7),
-    ("figure 19", "ms", 10),
-    ("predicts", "ms", 9),
-    ("updates", "Hz", 8),
-    ("not shown", "", 12),
-    ("error", "px", 8),
-    ("interval", "px", 14),
-    ("above best", "px", 16),
-    ("50 %", "px", 7),
-    ("95 %", "px", 7),
-    ("error", "deg", 6),
-    ("outside", "%", 7),
-    ("scene", "%", 6),
-    ("n", "", 8),
-    (BEST_WITH, "px", 19),
-    ("triangles", "possible", 10),
+/// Name and unit of a column, and its cell in a row.
+type Column = (&'static str, &'static str, fn(&ComparisonRow) -> String);
+
+const COLUMNS: [Column; 19] = [
+    ("to light", "ms", |row| number(row.head_to_light_ms.mean, 2)),
+    ("sd", "ms", |row| number(row.head_to_light_ms.sd, 2)),
+    ("95 %", "ms", |row| number(row.head_to_light_percentiles_ms.p95, 2)),
+    ("turn", "ms", |row| number(row.turn_to_light_ms.mean, 2)),
+    ("figure 19", "ms", |row| number(row.tracking_and_rendering_ms.mean, 2)),
+    ("predicts", "ms", |row| number(row.prediction_interval_ms.mean, 2)),
+    ("updates", "Hz", |row| number(row.updates_hz.mean, 2)),
+    ("not shown", "", |row| row.not_shown.zip(row.due).map_or_else(dash, |(missed, due)| format!("{missed} of {due}"))),
+    ("error", "px", |row| number(row.error.mean_px.mean, 2)),
+    ("interval", "px", |row| interval(&row.error.mean_px)),
+    ("above best", "px", |row| match row.above_best_px {
+        Some(above) if above.mean == 0.0 => "best".to_owned(),
+        above => above.as_ref().map_or_else(dash, interval),
+    }),
+    ("50 %", "px", |row| number(row.error.pixels.p50, 2)),
+    ("95 %", "px", |row| number(row.error.pixels.p95, 2)),
+    ("error", "deg", |row| number(row.error.mean_deg.mean, 2)),
+    ("outside", "%", |row| share(row.error.outside_share)),
+    ("scene", "%", |row| share(row.covered_share)),
+    ("n", "", |row| row.error.n.to_string()),
+    (BEST_WITH, "px", |row| {
+        row.best_predictor().map_or_else(dash, |best| format!("{} {:.2}", best.kind.name(), best.mean_px))
+    }),
+    ("triangles", "possible", |row| match row.triangles_possible {
+        Some(n) => n.to_string(),
+        None if row.has_no_limit => "no limit".to_owned(),
+        None => dash(),
+    }),
 ];
 
 const BEST_WITH: &str = "best with";
 
-const NAME: usize = 24;
-
 pub(super) fn text(comparison: &Comparison) -> String {
     let mut text = heading(comparison);
-    let _ = writeln!(text, "\n{}", header(comparison));
-    comparison.pipelines.iter().for_each(|row| text.push_str(&line(comparison, row)));
+    text.push_str(&rows(comparison));
     text.push_str(&best(comparison));
     text.push_str(&intervals(comparison));
     text.push_str(&imprecise(comparison));
@@ -113,17 +122,21 @@ fn heading(comparison: &Comparison) -> String {
     )
 }
 
-fn header(comparison: &Comparison) -> String {
-    let shown = || COLUMNS.iter().filter(|(name, ..)| is_shown(comparison, name));
-    let names: String = shown().map(|(name, _, width)| format!(" {name:>width$}")).collect();
-    let units: String = shown().map(|(_, unit, width)| format!(" {unit:>width$}")).collect();
-    format!("{:<NAME$}{names}\n{:<NAME$}{units}", "pipeline", "")
-}
-
-/// Returns true if the table has the column. The column with the best predictor is left out if the comparison ran no
-/// predictors.
-fn is_shown(comparison: &Comparison, column: &str) -> bool {
-    column != BEST_WITH || comparison.pipelines.iter().any(|row| !row.predictors.is_empty())
+/// Returns the table. A failed row shows its reason instead of numbers. The column with the best predictor is left out if
+/// the comparison ran no predictors.
+fn rows(comparison: &Comparison) -> String {
+    let has_predictors = comparison.pipelines.iter().any(|row| !row.predictors.is_empty());
+    let columns = || COLUMNS.iter().filter(|(name, ..)| has_predictors || *name != BEST_WITH);
+    let line = |name: &str, cell: &dyn Fn(&Column) -> String| -> Vec<String> {
+        std::iter::once(name.to_owned()).chain(columns().map(cell)).collect()
+    };
+    let mut lines =
+        vec![line("pipeline", &|(name, ..)| (*name).to_owned()), line("", &|(_, unit, _)| (*unit).to_owned())];
+    let (ran, failed): (Vec<_>, Vec<_>) = comparison.pipelines.iter().partition(|row| row.failure.is_none());
+    lines.extend(ran.into_iter().map(|row| line(&name(comparison, row), &|(_, _, cell)| cell(row))));
+    let failed =
+        failed.into_iter().map(|row| format!("{}: {}\n", row.pipeline, row.failure.as_deref().unwrap_or_default()));
+    format!("\n{}{}", laid_out(&lines, 1), failed.collect::<String>())
 }
 
 /// Returns the name of a row, followed by symbols that refer to the remarks below the table.
@@ -163,74 +176,30 @@ fn best(comparison: &Comparison) -> String {
     )
 }
 
-fn line(comparison: &Comparison, row: &ComparisonRow) -> String {
-    // A failed row shows its reason instead of numbers.
-    if let Some(failure) = &row.failure {
-        return format!("{:<NAME$} {failure}\n", row.pipeline);
-    }
-    let missed =
-        row.not_shown.zip(row.due).map_or_else(|| "-".to_owned(), |(missed, due)| format!("{missed} of {due}"));
-    // The cells follow the order of `COLUMNS`.
-    let values = [
-        number(row.head_to_light_ms.mean, 2),
-        number(row.head_to_light_ms.sd, 2),
-        number(row.head_to_light_percentiles_ms.p95, 2),
-        number(row.turn_to_light_ms.mean, 2),
-        number(row.tracking_and_rendering_ms.mean, 2),
-        number(row.prediction_interval_ms.mean, 2),
-        number(row.updates_hz.mean, 2),
-        missed,
-        number(row.error.mean_px.mean, 2),
-        interval(&row.error.mean_px),
-        row.above_best_px.map_or_else(
-            || "-".to_owned(),
-            |above| if above.mean == 0.0 { "best".to_owned() } else { interval(&above) },
-        ),
-        number(row.error.pixels.p50, 2),
-        number(row.error.pixels.p95, 2),
-        number(row.error.mean_deg.mean, 2),
-        share(row.error.outside_share),
-        share(row.covered_share),
-        row.error.n.to_string(),
-        row.best_predictor().map_or_else(|| "-".to_owned(), |best| format!("{} {:.2}", best.kind.name(), best.mean_px)),
-        match row.triangles_possible {
-            Some(n) => n.to_string(),
-            None if row.has_no_limit => "no limit".to_owned(),
-            None => "-".to_owned(),
-        },
-    ];
-    let shown = COLUMNS.iter().zip(values).filter(|((name, ..), _)| is_shown(comparison, name));
-    let cells: String = shown.map(|((_, _, width), value)| format!(" {value:>width$}")).collect();
-    format!("{:<NAME$}{cells}\n", name(comparison, row))
-}
-
 fn causes(comparison: &Comparison) -> String {
-    let mut text = format!("\n{:<NAME$}", "error by cause, px");
-    for cause in Cause::ALL {
-        let _ = write!(text, " {:>11}", cause.name());
-    }
-    let _ = writeln!(text, " {:>11} {:>11}", "interaction", "all");
+    let heads = Cause::ALL.iter().map(|cause| cause.name()).chain(["interaction", "all"]);
+    let mut lines = vec![std::iter::once("error by cause, px").chain(heads).map(str::to_owned).collect::<Vec<_>>()];
     // Rows without an evaluation have no causes.
     for row in comparison.pipelines.iter().filter(|row| !row.causes.is_empty()) {
-        let _ = write!(text, "{:<NAME$}", row.pipeline);
-        row.causes.iter().for_each(|share| {
-            let _ = write!(text, " {:>11}", number(share.px.mean, 2));
-        });
-        let _ = writeln!(text, " {:>11}", number(row.error.mean_px.mean, 2));
+        let px = row.causes.iter().map(|share| share.px.mean).chain([row.error.mean_px.mean]);
+        lines.push(std::iter::once(row.pipeline.clone()).chain(px.map(|px| number(px, 2))).collect());
     }
+    let mut text = format!("\n{}", laid_out(&lines, 1));
     // A wrong prediction interval is no cause of this error, but shows how exact the interval must be.
     let misaimed = || comparison.pipelines.iter().filter(|row| !row.misaimed.is_empty());
     let Some(first) = misaimed().next() else { return text };
-    let _ = write!(text, "\n{:<NAME$}", "interval wrong by, ms");
-    first.misaimed.iter().for_each(|one| {
-        let _ = write!(text, " {:>+11}", one.later_ms);
-    });
-    text.push('\n');
-    for row in misaimed() {
-        let cells = row.misaimed.iter().map(|one| format!(" {:>11}", number(one.mean_px, 2)));
-        let _ = writeln!(text, "{:<NAME$}{}", row.pipeline, cells.collect::<String>());
-    }
+    let heads = first.misaimed.iter().map(|one| format!("{:+}", one.later_ms));
+    let mut lines = vec![std::iter::once("interval wrong by, ms".to_owned()).chain(heads).collect::<Vec<_>>()];
+    lines.extend(misaimed().map(|row| {
+        let px = row.misaimed.iter().map(|one| number(one.mean_px, 2));
+        std::iter::once(row.pipeline.clone()).chain(px).collect()
+    }));
+    text.push_str(&format!("\n{}", laid_out(&lines, 1)));
     text
+}
+
+fn dash() -> String {
+    "-".to_owned()
 }
 
 fn share(value: Option<f64>) -> String {

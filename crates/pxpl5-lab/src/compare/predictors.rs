@@ -48,7 +48,7 @@ impl Predictors {
 /// experiment's own predictor is tuned, each predictor is tuned for the pipeline's prediction interval and the motion.
 /// Returns `None` for an experiment without a head.
 pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
-    let head = experiment.tracked_head()?;
+    let head = experiment.head.as_ref()?;
     let showing = head.raster().into();
     let each = parallel::map(&PredictorKind::ALL, |kind| with_predictor(experiment, head, showing, *kind));
     let mean = |one: &PredictorResult| one.error.as_ref().map(|error| (one.kind, error.pixels.mean));
@@ -60,7 +60,7 @@ pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
 /// Returns the mean error of an experiment with each predictor. `of_chosen_px` is the mean error with the experiment's
 /// own predictor from an earlier run. The mean is NaN if no pixel was evaluated.
 pub(super) fn predictor_means(experiment: &Experiment, showing: Showing, of_chosen_px: f64) -> Vec<PredictorMean> {
-    let Some(head) = experiment.tracked_head() else { return Vec::new() };
+    let Some(head) = experiment.head.as_ref() else { return Vec::new() };
     let showing = with_raster(showing, Some(head.as_ref()));
     parallel::map(&PredictorKind::ALL, |kind| {
         let mean_px = if *kind == head.predictor_kind() {

@@ -1,22 +1,24 @@
 //! Definition and execution of a comparison of pipelines.
 
-use super::contender::{ComparedPipeline, RowChoice};
+use super::compared::{ComparedPipeline, RowChoice};
 use super::interval::CONFIDENCE;
 use super::precision::UntilPrecise;
 use super::predictors::predictor_means;
-use super::progress::Progress;
 use super::row::{ComparisonRow, Sampling, difference};
 use super::store::CompareStore;
 use super::trial::{Trial, common_window_from};
-use crate::StopFlag;
+use crate::Workstation;
 use crate::error::StudyError;
+use crate::estimate::{Estimate, RunWork};
 use crate::experiment_file::{ExperimentFile, Origin, Plan, Settings, plain};
 use crate::limit::{CEILING, LimitQuery};
 use crate::parallel;
+use crate::study::{Study, check};
 use pxpl5_measure::{Showing, program};
 use pxpl5_run::{Experiment, Goal, Head, Pixels, Tunings, WARM_UP_PERIODS};
 use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::{SharedWatcher, Watcher};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -59,6 +61,9 @@ pub struct CompareQuery {
     /// Precision of the mean error, for which seeds are added to rows. `None` runs only the seeds in
     /// [`CompareQuery::seeds`].
     pub until: Option<UntilPrecise>,
+    /// Folder of finished rows, from [`CompareQuery::open_store`]. Rows in the folder are not run, and each finished row
+    /// is stored after its last run.
+    pub store: Option<Arc<CompareStore>>,
 }
 
 /// Result of a comparison: the shared settings, and one row for each method.
@@ -108,15 +113,17 @@ pub struct Comparison {
 struct Common<'a> {
     scene: Arc<Scene>,
     tunings: Arc<Tunings>,
-    progress: Progress<'a>,
+    /// Counts the runs. Their number grows when seeds are added.
+    watcher: SharedWatcher<'a>,
 }
 
 impl Common<'_> {
     /// Returns the experiment for checked settings. All rows share the tuning of predictors. Another thread can stop
     /// the run.
     fn experiment(&self, plan: &Plan) -> Experiment {
-        let experiment = plan.experiment(Arc::clone(&self.scene)).host(self.progress.host());
-        let head = experiment.tracked_head().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
+        let experiment =
+            plan.experiment(Arc::clone(&self.scene)).host(Workstation::new()).stopped_by(self.watcher.stop());
+        let head = experiment.head.as_ref().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
         match head {
             Some(head) => experiment.head(head),
             None => experiment,
@@ -124,82 +131,63 @@ impl Common<'_> {
     }
 }
 
-impl CompareQuery {
-    /// Creates a comparison of the usual rows with [`MIN_SEEDS`] seeds. All rows share the settings in `shared`.
-    #[must_use]
-    pub fn new(shared: ExperimentFile) -> Self {
-        Self {
-            shared,
-            only: RowChoice::Usual,
-            seeds: (1..=MIN_SEEDS as u64).collect(),
-            limits: false,
-            causes: false,
-            predictors: false,
-            pictures: false,
-            confidence: CONFIDENCE,
-            until: None,
-        }
+impl Study for CompareQuery {
+    type Report = Comparison;
+
+    fn estimate(&self, threads: usize) -> Estimate {
+        // Seeds may be added up to the maximum, so the estimate covers the maximum.
+        let seeds = self.until.map_or(0, |until| until.max_seeds).max(self.seeds.len());
+        let plans = self.plans().unwrap_or_default();
+        let Some(scene) = plans.first().and_then(|plan| plan.load_scene().ok()) else { return Estimate::NOTHING };
+        let works = plans.iter().map(|plan| RunWork::of(&plan.experiment(Arc::clone(&scene)), true));
+        Estimate::of_all(works.flat_map(|work| std::iter::repeat_n(work.estimate(), seeds)), threads)
     }
 
-    /// Runs each row with each seed. After each run, calls `finished` with the number of finished runs and the number
-    /// of all runs.
+    /// Runs each row with each seed. Runs in progress end soon after a stop, and their rows are neither stored nor in the
+    /// result.
     ///
     /// The result has a row for each pipeline. A pipeline may be unable to run on the machine, or show no picture of
     /// the scene. Its row then holds the reason, and the number of triangles that the pipeline could draw.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`StudyError`] when a setting is invalid, or when the run is too short to evaluate.
-    pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, StudyError> {
-        self.run_into(None, &StopFlag::default(), finished, |_| {})
-    }
-
-    /// Runs each row that is not yet in `store`, the folder of finished rows, until another thread sets `stop`. Each row
-    /// is stored after its last run. Runs in progress end after at most 60 fields, and their rows are not stored. Calls
-    /// `ended` with each stored row.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`CompareQuery::run`], if a row cannot be stored, and with [`ExperimentError::Stopped`](pxpl5_run::ExperimentError::Stopped).
-    pub fn run_into(
-        &self,
-        store: Option<&CompareStore>,
-        stop: &StopFlag,
-        finished: impl Fn(u64, u64) + Sync,
-        ended: impl Fn(&ComparisonRow) + Sync,
-    ) -> Result<Comparison, StudyError> {
+    fn run(&self, watcher: &mut dyn Watcher) -> Result<Comparison, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         // The first row serves to check the settings that all rows share.
         let any = self.any_plan(&compared_pipelines)?;
         let scene = any.load_scene()?;
-        let held = |contender: &ComparedPipeline| store.and_then(|store| store.row(&contender.name)).cloned();
-        let missing = compared_pipelines.iter().filter(|contender| held(contender).is_none()).count();
+        let held =
+            |compared: &ComparedPipeline| self.store.as_deref().and_then(|store| store.row(&compared.name)).cloned();
+        let missing = compared_pipelines.iter().filter(|compared| held(compared).is_none()).count();
         let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
-        let progress = Progress::new((missing * runs_of_a_row) as u64, stop, &finished);
+        let watcher = SharedWatcher::new(watcher, (missing * runs_of_a_row) as u64);
         // After a row could not be stored, no further row starts.
         let is_failed = AtomicBool::new(false);
         // Rows with the same head and prediction interval share the tuning of the predictor.
-        let common = Common { scene, tunings: Arc::default(), progress };
+        let common = Common { scene, tunings: Arc::default(), watcher };
         // Rows and the seeds of each row execute in parallel. So each row is known as soon as its own runs have ended.
-        let pipelines = parallel::map(&compared_pipelines, |contender| {
-            if let Some(row) = held(contender) {
+        let pipelines = parallel::map(&compared_pipelines, |compared| {
+            if let Some(row) = held(compared) {
                 return Ok(Some(row));
             }
             if is_failed.load(Ordering::Relaxed) {
                 return Ok(None);
             }
-            common.progress.check_stopped()?;
-            let row = self.row(contender, &common)?;
-            // A row whose runs were stopped is not a result.
-            common.progress.check_stopped()?;
-            if self.limits {
-                common.progress.step();
+            let stop = common.watcher.stop();
+            if stop.is_stopped() {
+                return Ok(None);
             }
-            let row = match store {
+            let row = self.row(compared, &common);
+            // A row whose runs were stopped is not a result.
+            if stop.is_stopped() {
+                return Ok(None);
+            }
+            let row = row?;
+            if self.limits {
+                common.watcher.step();
+            }
+            let row = match &self.store {
                 Some(store) => store.append(row).inspect_err(|_| is_failed.store(true, Ordering::Relaxed))?,
                 None => row,
             };
-            ended(&row);
+            common.watcher.row("rows", &row);
             Ok::<_, StudyError>(Some(row))
         });
         let sampling = self.sampling(&any)?;
@@ -233,14 +221,36 @@ impl CompareQuery {
             pipelines: pipelines.into_iter().filter_map(Result::transpose).collect::<Result<_, _>>()?,
         };
         comparison.compare_with_best(sampling);
+        if comparison.pipelines.is_empty() {
+            check(&common.watcher.stop())?;
+        }
         Ok(comparison)
+    }
+}
+
+impl CompareQuery {
+    /// Creates a comparison of the usual rows with [`MIN_SEEDS`] seeds. All rows share the settings in `shared`.
+    #[must_use]
+    pub fn new(shared: ExperimentFile) -> Self {
+        Self {
+            shared,
+            only: RowChoice::Usual,
+            seeds: (1..=MIN_SEEDS as u64).collect(),
+            limits: false,
+            causes: false,
+            predictors: false,
+            pictures: false,
+            confidence: CONFIDENCE,
+            until: None,
+            store: None,
+        }
     }
 
     /// Returns the names of the rows that the query runs.
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`CompareQuery::run`].
+    /// Fails in the same cases as [`Study::run`].
     pub fn rows(&self) -> Result<Vec<String>, StudyError> {
         Ok(self.identity()?.1)
     }
@@ -257,18 +267,18 @@ impl CompareQuery {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`CompareQuery::run`].
+    /// Fails in the same cases as [`Study::run`].
     pub fn plans(&self) -> Result<Vec<Plan>, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         let seed = self.any_plan(&compared_pipelines)?.seed;
-        Ok(compared_pipelines.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
+        Ok(compared_pipelines.iter().filter_map(|compared| compared.plan(&self.shared, seed).ok()).collect())
     }
 
     /// Returns a warning if the shared settings come from the folder of another comparison, and its results will differ.
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`CompareQuery::run`].
+    /// Fails in the same cases as [`Study::run`].
     pub fn changes(&self) -> Result<Option<String>, StudyError> {
         let (plan, _) = self.identity()?;
         Ok(plan.origin.changes(&Origin::of(&plan.experiment(plan.load_scene()?))))
@@ -279,7 +289,7 @@ impl CompareQuery {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`CompareQuery::run`].
+    /// Fails in the same cases as [`Study::run`].
     pub fn file_in(&self, folder: &Path) -> Result<String, StudyError> {
         let (plan, rows) = self.identity()?;
         let mut settings = Settings::of(&self.shared);
@@ -369,20 +379,20 @@ impl CompareQuery {
         (1..=more as u64).map(|n| greatest.saturating_add(added + n)).collect()
     }
 
-    fn trials(&self, contender: &ComparedPipeline, seeds: &[u64], common: &Common<'_>) -> Vec<Result<Trial, String>> {
+    fn trials(&self, compared: &ComparedPipeline, seeds: &[u64], common: &Common<'_>) -> Vec<Result<Trial, String>> {
         parallel::map(seeds, |seed| {
-            let trial = self.trial(contender, *seed, common);
-            common.progress.step();
+            let trial = self.trial(compared, *seed, common);
+            common.watcher.step();
             trial
         })
     }
 
-    fn trial(&self, contender: &ComparedPipeline, seed: u64, common: &Common<'_>) -> Result<Trial, String> {
+    fn trial(&self, compared: &ComparedPipeline, seed: u64, common: &Common<'_>) -> Result<Trial, String> {
         // Pixels are needed only for the picture of the first seed.
-        let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !contender.is_reference();
+        let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !compared.is_reference();
         let pixels = if is_seen { Pixels::Lazy } else { Pixels::Off };
-        let plan = contender.plan(&self.shared, seed).map_err(|error| error.to_string())?;
-        contender.trial(common.experiment(&plan).pixels(pixels), self.causes)
+        let plan = compared.plan(&self.shared, seed).map_err(|error| error.to_string())?;
+        compared.trial(common.experiment(&plan).pixels(pixels), self.causes)
     }
 
     fn sampling(&self, plan: &Plan) -> Result<Sampling, StudyError> {
@@ -392,52 +402,52 @@ impl CompareQuery {
     }
 
     /// Runs a row with all seeds. Then adds seeds while the confidence interval of the mean error is too wide.
-    fn row(&self, contender: &ComparedPipeline, common: &Common<'_>) -> Result<ComparisonRow, StudyError> {
-        let plan = match contender.plan(&self.shared, self.seeds[0]) {
+    fn row(&self, compared: &ComparedPipeline, common: &Common<'_>) -> Result<ComparisonRow, StudyError> {
+        let plan = match compared.plan(&self.shared, self.seeds[0]) {
             Ok(plan) => plan,
             // A row whose pictures the device of the settings cannot move states the reason.
             Err(error) => {
                 let mut plain = self.shared.clone();
                 plain.settings.retain(|key, _| key != "head.raster" && !key.starts_with("head.reprojection."));
-                let Ok(plan) = contender.plan(&plain, self.seeds[0]) else { return Err(error.into()) };
-                let row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &[], self.sampling(&plan)?);
+                let Ok(plan) = compared.plan(&plain, self.seeds[0]) else { return Err(error.into()) };
+                let row = ComparisonRow::of(compared, plan.pipeline.as_ref(), &[], self.sampling(&plan)?);
                 return Ok(ComparisonRow { failure: Some(error.to_string()), ..row });
             }
         };
-        let mut trials = self.trials(contender, &self.seeds, common);
+        let mut trials = self.trials(compared, &self.seeds, common);
         let (mut row, shown) = loop {
             // Failed runs are left out, and their first error is reported below.
             let ran: Vec<&Trial> = trials.iter().flatten().collect();
             let sampling = Sampling { seeds: trials.len(), ..self.sampling(&plan)? };
-            let mut row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &ran, sampling);
+            let mut row = ComparisonRow::of(compared, plan.pipeline.as_ref(), &ran, sampling);
             row.is_precise = self.until.map(|until| until.is_reached(&row.error.mean_px));
             // More seeds do not help a row with failed runs or without an evaluation.
             let helps = ran.len() == trials.len() && row.was_evaluated();
             let until = self.until.filter(|_| helps);
-            common.progress.check_stopped()?;
+            check(&common.watcher.stop())?;
             let more = until.map_or(0, |until| until.seeds_to_add(&row.error.mean_px, trials.len()));
             if more == 0 {
                 let shown: usize = ran.iter().map(|trial| trial.shown).sum();
                 break (row, shown);
             }
-            common.progress.add(more as u64);
+            common.watcher.add(more as u64);
             let seeds = self.seeds_after(trials.len(), more);
-            trials.extend(self.trials(contender, &seeds, common));
+            trials.extend(self.trials(compared, &seeds, common));
         };
         if let Some(Ok(first)) = trials.first()
             && self.predictors
-            && !contender.is_reference()
+            && !compared.is_reference()
         {
             let experiment = common.experiment(&plan).with_dry_run(first.dry_run.clone());
             // All predictors are evaluated over the periods of the row.
             let experiment = experiment.results_from(common_window_from(plan.fields));
             // The dry run of the first trial is reused for every predictor.
-            row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
+            row.predictors = predictor_means(&experiment, compared.showing, first.errors.pixels.mean);
         }
-        if self.limits && !contender.is_reference() {
+        if self.limits && !compared.is_reference() {
             row.triangles_definition = definition(&plan);
-            let query = LimitQuery { stop: common.progress.stop_flag(), ..LimitQuery::of_plan(&plan) };
-            let triangles = query.search_triangles().ok();
+            let query = LimitQuery { looks_above: false, ..LimitQuery::of_plan(&plan) };
+            let triangles = query.run(&mut common.watcher.stop()).ok().map(|limit| limit.triangles);
             row.has_no_limit = triangles == Some(CEILING);
             row.triangles_possible = triangles.filter(|triangles| *triangles < CEILING);
         }

@@ -380,7 +380,7 @@ impl Plan {
     /// Fails in the same cases as [`Experiment::run`].
     pub fn results_of(&self, experiment: Experiment) -> Result<Results, ExperimentError> {
         let experiment = experiment.pixels(Pixels::Off);
-        match experiment.modelling_level() {
+        match experiment.level {
             Level::Analytic => Ok(Results::of_closed_form(summarise(&self.registry, &experiment)?)),
             Level::Transaction | Level::Cycle => Ok(Results::of_run(experiment.run()?)),
         }

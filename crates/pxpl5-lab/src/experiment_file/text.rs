@@ -1,15 +1,18 @@
 //! Converts the plan of an experiment to the text of a complete experiment file.
 
-use super::hmd;
-use super::origin::names_file;
+use super::origin::Origin;
 use super::plan::Plan;
+use super::scene::is_file;
+use super::{ExperimentFile, hmd};
+use crate::head_parts::is_recorded_file;
 use pxpl5_machine::MachineConfig;
-use pxpl5_run::{Fingerprint, KeyValue};
+use pxpl5_run::{Experiment, Fingerprint, KeyValue};
 use pxpl5_scene::Placement;
 use pxpl5_sim::parameters::Parameter;
 use pxpl5_sim::parameters::Value as Number;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::{Component, Path, PathBuf};
 use toml::Value;
 
 /// The effective settings of an experiment, by path.
@@ -24,6 +27,15 @@ pub struct Settings {
 }
 
 impl Plan {
+    /// Returns the effective value of each setting and the origin of the results, for an experiment file in `folder`. File
+    /// names are relative to the folder where both have a common parent.
+    pub fn settings_in(&self, folder: &Path, experiment: &Experiment) -> Settings {
+        let mut all = self.settings_for_any_folder();
+        all.make_relative(folder);
+        all.originate(&Origin::of(experiment));
+        all
+    }
+
     /// Returns the effective value of each setting, including defaults.
     pub fn settings(&self) -> Settings {
         let mut all = Settings { values: BTreeMap::new(), remarks: BTreeMap::new() };
@@ -121,6 +133,36 @@ impl Plan {
 }
 
 impl Settings {
+    /// Returns the settings of an experiment file, without defaults. Names of files become absolute.
+    #[must_use]
+    pub fn of(file: &ExperimentFile) -> Self {
+        let mut all = Self::default();
+        for (key, setting) in file.settings.iter().filter(|(key, _)| !key.starts_with("origin.")) {
+            all.put(key, setting.value.clone());
+            let named =
+                setting.value.as_str().filter(|name| names_file(key, name)).map(|name| setting.folder.join(name));
+            if let Some(absolute) = named.and_then(|name| std::path::absolute(name).ok()) {
+                all.put(key, absolute.display().to_string());
+            }
+        }
+        all
+    }
+
+    /// Adds the keys of an origin.
+    pub fn originate(&mut self, origin: &Origin) {
+        origin.entries().for_each(|(key, text)| self.put(key, text));
+    }
+
+    /// Replaces absolute names of files by names that are relative to `folder`.
+    pub fn make_relative(&mut self, folder: &Path) {
+        for key in ["scene", "head.motion", "head.train"] {
+            let named = self.values.get(key).and_then(|value| value.as_str()).map(Path::new);
+            if let Some(name) = named.filter(|name| name.is_absolute()).and_then(|name| relative(name, folder)) {
+                self.put(key, name);
+            }
+        }
+    }
+
     pub(super) fn put(&mut self, path: &str, value: impl Into<Value>) {
         self.values.insert(path.to_owned(), value.into());
     }
@@ -163,6 +205,28 @@ impl Settings {
     }
 }
 
+fn names_file(key: &str, name: &str) -> bool {
+    match key {
+        "scene" => is_file(name),
+        "head.motion" | "head.train" => is_recorded_file(name),
+        _ => false,
+    }
+}
+
+/// Returns the way from a folder to a file, or `None` if they have only the root in common.
+fn relative(file: &Path, folder: &Path) -> Option<String> {
+    let folder = std::path::absolute(folder).ok()?;
+    let is_plain = |path: &Path| path.components().all(|part| part != Component::ParentDir);
+    let common = file.components().zip(folder.components()).take_while(|(one, other)| one == other).count();
+    // The root is the first component.
+    if common < 2 || !is_plain(file) || !is_plain(&folder) {
+        return None;
+    }
+    let up = folder.components().skip(common).map(|_| Component::ParentDir);
+    let way: PathBuf = up.chain(file.components().skip(common)).collect();
+    Some(way.display().to_string())
+}
+
 fn toml_number(value: Number) -> Value {
     match value {
         Number::Whole(number) => Value::from(i64::try_from(number).unwrap_or(i64::MAX)),
@@ -180,5 +244,19 @@ impl fmt::Display for Settings {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_from_a_folder_to_a_file_leads_through_their_common_parent() {
+        let way = |file: &str, folder: &str| relative(Path::new(file), Path::new(folder));
+        assert_eq!(way("/home/a/models/x.obj", "/home/a/out/one").as_deref(), Some("../../models/x.obj"));
+        assert_eq!(way("/home/a/x.obj", "/home/a").as_deref(), Some("x.obj"));
+        assert_eq!(way("/data/x.obj", "/home/a"), None);
+        assert_eq!(way("/home/b/../x.obj", "/home/a"), None);
     }
 }

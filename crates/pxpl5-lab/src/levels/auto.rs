@@ -70,7 +70,7 @@ struct Forms {
 
 impl Forms {
     fn of(registry: &Registry, experiment: &Experiment) -> std::result::Result<Self, String> {
-        if experiment.tracked_head().is_some() {
+        if experiment.head.is_some() {
             return Err("a tracked head has no closed form".to_owned());
         }
         let summary = |factor| -> std::result::Result<Summary, ExperimentError> {
