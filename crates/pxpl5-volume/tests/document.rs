@@ -8,7 +8,7 @@ use std::sync::{Arc, LazyLock};
 
 static FIGURES: LazyLock<VolumeFigures> = LazyLock::new(|| {
     let scenes = ["mig", "head", "molecules"].map(|name| Arc::new(builtin(name).expect("built in")));
-    all(&scenes, &Threads::all(), |_, _| {}).expect("valid scenes")
+    all(&scenes, &Threads::all(), &mut ()).expect("valid scenes")
 });
 
 #[test]
