@@ -10,7 +10,7 @@ use crate::terminal::{print, print_error, warn};
 use clap::Args;
 use pxpl5::limit::{CEILING, Limit, LimitQuery, Model, OverLimit, OverQuery};
 use pxpl5::tracking::time::PS_PER_S;
-use pxpl5::{ExperimentFile, Goal, LimitCriterion, Plan, TestScene};
+use pxpl5::{ExperimentFile, Goal, Level, LimitCriterion, Plan, TestScene};
 use pxpl5_sim::Time;
 use serde_json::json;
 
