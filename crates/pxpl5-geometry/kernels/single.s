@@ -330,16 +330,18 @@ other:  adds    P_TIE_OUT, r0, r14
 owner:  fld.l   P_BAND(r20), f8
         pfgt.ss f26, f8, f0
         bnc     finite
+        fmov.dd f12, f28                    // `inverse` changes f12
         inverse f26, f11
+        fmov.dd f28, f12
         fmul.ss f11, f8, f8
         fmov.sd f8, f10
         fmul.dd f22, f10, f22
         fmul.dd f24, f10, f24
         fld.l   P_BAND(r20), f8
-        pfle.ss f27, f8, f0
-        bc      through                     // corner r10 is inside the band
-        pfle.ss f31, f8, f0
-        bnc     outside
+        pfgt.ss f27, f8, f0
+        bnc     through                     // corner r10 is inside the band
+        pfgt.ss f31, f8, f0
+        bc      outside
         fmov.dd f16, f12                    // corner r11 is
         fmov.dd f18, f14
 through: fld.d  P_ROUND(r20), f28           // the edge passes the corner exactly
