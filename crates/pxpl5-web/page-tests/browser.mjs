@@ -77,7 +77,7 @@ export async function until(what, script, ms = 20000) {
 /** Until the worker has answered all that was asked of it. */
 export const settled = (ms) => until("the worker", "document.documentElement.dataset.asked === '0' && document.documentElement.dataset.ready === 'true'", ms);
 
-export async function open(hash = "", ms = 20000) {
+export async function open(hash = "", ms = 60000) {
   await ask("POST", `${session}/url`, { url: "about:blank" });
   const begun = Date.now();
   await ask("POST", `${session}/url`, { url: page + hash });

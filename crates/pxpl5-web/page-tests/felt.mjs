@@ -40,7 +40,7 @@ const apart = (a, b) => a.flatMap((colour, n) => colour.map((part, k) => Math.ab
 
 export default {
   async "the slider adds latency to every pipeline, in milliseconds and in pixels, and the command adds the same"() {
-    const settings = "beside=rendering-control&scene=gallery&fields=600&head.motion=pan:20&head.tracker=ideal&head.predict=none";
+    const settings = "beside=rendering-control&scene=gallery&triangles=100&fields=600&head.motion=pan:20&head.tracker=ideal&head.predict=none";
     const found = [];
     for (const added of [0, 100]) {
       await open(`#pipeline=slats&${settings}${added ? `&head.added_latency=${added}` : ""}&at=500000000000`);

@@ -82,8 +82,8 @@ pub(crate) fn regions(stepper: &Stepper) -> Value {
     drawn.chain(copied).collect()
 }
 
-/// Returns the age of the shown picture in milliseconds: the time since its head pose was sampled. The result is `null`
-/// before the first picture. The result is also `null` for a pipeline whose picture combines several samples.
+/// Returns the age of the shown picture in milliseconds: the time since the tracker measured the head for it, or without a
+/// tracker, since the pose was sampled. The result is `null` before the first picture. The result is also `null` for a pipeline whose picture combines several samples.
 ///
 /// The field that the beam draws now is not yet evaluated. A picture in this field counts as shown if it is complete.
 /// An incomplete picture counts as shown only if the previous picture was shown, and if the missing regions can still
@@ -101,7 +101,12 @@ pub(crate) fn age(stepper: &Stepper) -> Value {
     };
     let Some(times) = shown else { return Value::Null };
     let Some(sampled) = times.sampled_at.filter(|at| *at <= now) else { return Value::Null };
-    json!({"picture": times.picture.0, "age_ms": now.since(sampled).as_ms(), "shown_ms": times.shown_at.since(sampled).as_ms()})
+    // The host samples the newest report, which the tracker has measured some time before.
+    let report = stepper.head().and_then(|head| {
+        head.sampled().into_iter().min_by_key(|pose| pose.reports_until.0.abs_diff(sampled.0))?.measured_at
+    });
+    let begun = report.unwrap_or(sampled);
+    json!({"picture": times.picture.0, "age_ms": now.since(begun).as_ms(), "shown_ms": times.shown_at.since(begun).as_ms()})
 }
 
 #[cfg(test)]

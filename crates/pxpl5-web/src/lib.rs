@@ -129,8 +129,8 @@ impl WebMachine {
         diagram::regions(self.0.stepper()).to_string()
     }
 
-    /// Returns the age of the shown picture as JSON: the time since its head pose was sampled, in milliseconds. The
-    /// result is `null` before the first picture.
+    /// Returns the age of the shown picture as JSON: the time since the tracker measured the head for it, in milliseconds.
+    /// The result is `null` before the first picture.
     pub fn age(&self) -> String {
         diagram::age(self.0.stepper()).to_string()
     }

@@ -178,24 +178,25 @@ mod tests {
     use crate::session::Session;
 
     /// Tests the error in the middle of the picture with a head that turns by 20 degrees a second: 100 ms of added latency
-    /// are 2 degrees more, in every pipeline and at any instant.
+    /// are 2 degrees more, in every pipeline and at any instant. The picture is 100 ms older.
     #[test]
     fn added_latency_is_seen_as_the_angle_that_the_head_turns_meanwhile() {
         for pipeline in ["slats", "rendering-control", "jitp-scanline", "arp-full-line"] {
             let display = if pipeline.starts_with("arp") { "arp" } else { "ntsc" };
-            let degrees = |added_ms: u32| {
+            let shown = |added_ms: u32| {
                 let settings = format!(
                     "pipeline={pipeline}\ndisplay={display}\nscene=full-screen:2\nfields=60\nhead.motion=pan:20\n\
                      head.tracker=ideal\nhead.predict=none\nhead.added_latency={added_ms}\n"
                 );
                 let mut session = Session::new(&settings, &Files::default()).expect("known settings");
                 session.run_to(700_000_000_000);
-                misregistration(session.stepper())["degrees"]
-                    .as_f64()
-                    .unwrap_or_else(|| panic!("{pipeline} shows pictures"))
+                let [error, age] = [misregistration(session.stepper()), diagram::age(session.stepper())];
+                [&error["degrees"], &age["age_ms"]]
+                    .map(|number| number.as_f64().unwrap_or_else(|| panic!("{pipeline}")))
             };
-            let [without, with] = [0, 100].map(degrees);
-            assert!((with - without - 2.0).abs() < 0.02, "{pipeline}: {without} and {with} degrees");
+            let [[angle, age], [more, older]] = [0, 100].map(shown);
+            assert!((more - angle - 2.0).abs() < 0.02, "{pipeline}: {angle} and {more} degrees");
+            assert!((older - age - 100.0).abs() < 1e-3, "{pipeline}: {age} and {older} ms");
         }
     }
 }
