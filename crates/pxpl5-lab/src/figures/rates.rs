@@ -17,7 +17,7 @@ pub(super) const TITLE: &str = "Peak rates";
 
 pub(super) const ABOUT: &str = "The scene `typical:N` is drawn for one eye: right-angled triangles of 18 pixels, spread evenly, that touch about \
 1.3 regions each. J. Leech of the Pixel-Planes 5 team stated the rates on 3 April 1991 in the newsgroup sci.virtual-worlds and \
-expected more from optimized code, but named neither the size of the machine nor that of the triangles.";
+expected more from optimized code. He named neither the size of the machine nor that of the triangles.";
 
 /// Parameters that limit the machine's triangle rate with Gouraud shading.
 const OF_GOURAUD: Varied = Varied::ByEvents(&[
