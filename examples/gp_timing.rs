@@ -15,7 +15,7 @@ use glam::Mat4;
 use i860::timing::{DramTiming, FREEZES, Freeze};
 use i860::{AddressProfile, Config, Profile, linear};
 use kernel::{Bench, Strip, frame, strips, triangles};
-use pxpl5::limit::{LimitQuery, test_scene};
+use pxpl5::limit::LimitQuery;
 use pxpl5::{CodeVersion, Experiment, Level, MachineConfig, PictureNumber, Pixels, Slats, Study, TestScene};
 use pxpl5_geometry::kernel::{Kernel, KernelList, KernelPicture, KernelSurface, Schedule};
 use pxpl5_geometry::sphere_kernel::SphereKernel;
@@ -377,7 +377,7 @@ fn lower_bounds() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Returns the mean time of TRANSFORM for a field of Slats, in microseconds.
 fn transform_us(preset: &str, level: Level, triangles: u32) -> Result<f64, Box<dyn std::error::Error>> {
-    let small = test_scene(TestScene::Typical, triangles);
+    let small = TestScene::Typical.with_triangles(triangles);
     let experiment = Experiment::new(MachineConfig::preset(preset)?, Slats::split(), small).fields(12).level(level);
     let stages = experiment.pixels(Pixels::Off).run()?.stages();
     let steady = stages.iter().filter(|span| span.stage == Stage::Transform && span.picture > PictureNumber(4));

@@ -2,7 +2,6 @@
 //!
 //! Prints tables of growth in Markdown: `cargo run --release --example scaling`.
 
-use pxpl5::limit::test_scene;
 use pxpl5::{
     Experiment, ExperimentError, MachineConfig, Measured, Pixels, RenderingControl, Statistics, TestScene, Workstation,
     in_parallel, scene::builtin,
@@ -70,7 +69,7 @@ fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, E
     config.gp.memory_bytes = MEMORY_BYTES;
     config.gp.bin_bytes = MEMORY_BYTES;
     let fields = fields(&config, u64::from(triangles))?;
-    let scene = test_scene(TestScene::Typical, triangles);
+    let scene = TestScene::Typical.with_triangles(triangles);
     let experiment = Experiment::new(config, RenderingControl::stereo(), scene).fields(fields).pixels(Pixels::Off);
     let run = experiment.host(Workstation::new()).run();
     let primitives = triangles as usize;

@@ -3,7 +3,6 @@
 use crate::support;
 use jitp::JitpTiming;
 use pxpl5::SlatsLighting;
-use pxpl5::limit::test_scene;
 use pxpl5::run::{FacePipeline, FacePolicy};
 use pxpl5::{
     CodeVersion, Experiment, ExperimentError, Frameless, Interpolation, Jitp, Level, MachineConfig, Measured, Outcome,
@@ -27,7 +26,7 @@ fn slats(machine: &str) -> Experiment {
 
 /// Returns Slats with a clump of triangles inside the guard band, so that no triangle is clipped.
 fn slats_on(machine: MachineConfig, slats: Slats, triangles: u32) -> Experiment {
-    let small = test_scene(TestScene::Typical, triangles);
+    let small = TestScene::Typical.with_triangles(triangles);
     Experiment::new(machine, slats, small).fields(12).pixels(Pixels::Off).level(Level::Cycle)
 }
 

@@ -1,6 +1,5 @@
 //! Copies of regions to the frame buffers. A frame-buffer port receives one region at a time, in order of arrival.
 
-use super::model::SlatsModel;
 use super::renderer::{Array, Times, later};
 
 /// Computes an array with one value for each machine. The compiler turns the loop into vector instructions.
@@ -105,9 +104,11 @@ pub(super) fn make<const N: usize>(
 /// renderers have asked for all of theirs. The ports serve both in order of arrival.
 ///
 /// `queues` are the copies of the bottom and of the top regions. `ready` is the time at which a renderer asks for its
-/// first top region if it has copied its bottom regions at `ends`.
+/// first top region if it has copied its bottom regions at `ends`. A copy command follows the previous one after `order_ns`,
+/// and a copy takes `region_ns`.
 pub(super) fn overtaking(
-    model: &SlatsModel,
+    count: usize,
+    [order_ns, region_ns]: [f64; 2],
     [bottom, top]: [[Queue; MAX_RENDERERS]; 2],
     ready: [f64; MAX_RENDERERS],
     ends: [f64; MAX_RENDERERS],
@@ -115,9 +116,9 @@ pub(super) fn overtaking(
     // Copies that a renderer has left of one half, the time at which it asks for the next one, and true for the top half.
     let of_renderer = |r: usize| match bottom[r].0 {
         0 => (top[r], ready[r], true),
-        _ => (bottom[r], (r + 1) as f64 * model.copy_order_ns(), false),
+        _ => (bottom[r], (r + 1) as f64 * order_ns, false),
     };
-    let mut renderers: Vec<(Queue, f64, bool)> = (0..model.renderers).map(of_renderer).collect();
+    let mut renderers: Vec<(Queue, f64, bool)> = (0..count).map(of_renderer).collect();
     let mut free = [f64::MIN; 2];
     let mut times = CopyTimes { begin_ns: f64::INFINITY, end_ns: f64::MIN };
     loop {
@@ -127,7 +128,7 @@ pub(super) fn overtaking(
         let (left, next, is_top) = &mut renderers[r];
         let port = &mut free[usize::from(left.0 & Queue::RIGHT != 0)];
         let begin = later(*port, at);
-        *port = begin + model.region_ns;
+        *port = begin + region_ns;
         if *is_top {
             times = CopyTimes { begin_ns: times.begin_ns.min(begin), end_ns: later(times.end_ns, *port) };
         }

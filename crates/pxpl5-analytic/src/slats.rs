@@ -121,7 +121,8 @@ fn end<const N: usize>(
         let (ready, ends) = (lane(&ready), lane(&ends));
         let last = ends.into_iter().fold(f64::MIN, f64::max) - models[i].region_ns;
         if is_split && ready.into_iter().fold(f64::MAX, f64::min) < last {
-            top[i] = copies::overtaking(&models[i], [of_previous(&models[i]), of_top], ready, ends);
+            let (model, ns) = (&models[i], [models[i].copy_order_ns(), models[i].region_ns]);
+            top[i] = copies::overtaking(model.renderers, ns, [of_previous(model), of_top], ready, ends);
         }
     }
     // No closure here: a closure that is not inlined would lack the vector instructions.

@@ -29,7 +29,7 @@ use pxpl5_run::{
     Coverage, Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry,
     Summary, TestScene,
 };
-use pxpl5_scene::{Decimation, Scene, builtin};
+use pxpl5_scene::{Decimation, Scene};
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{StopFlag, Watcher};
 use std::sync::Arc;
@@ -122,7 +122,7 @@ impl Study for LimitQuery {
         if self.level == Level::Analytic {
             return Estimate::NOTHING;
         }
-        let scene = || Arc::new(test_scene(self.criterion.scene, 1));
+        let scene = || Arc::new(self.criterion.scene.with_triangles(1));
         let scene = self.model.as_ref().map_or_else(scene, |model| Arc::clone(&model.whole));
         let one = RunWork::of(&self.experiment_of(scene), false).estimate();
         Estimate::of_all([one; USUAL_SIZES as usize], 1)
@@ -257,7 +257,7 @@ impl LimitQuery {
     fn scene(&self, triangles: u32) -> Result<Arc<Scene>, ExperimentError> {
         match &self.model {
             Some(model) => model.with_triangles(triangles).map_err(|error| ExperimentError::Scene(error.to_string())),
-            None => Ok(Arc::new(test_scene(self.criterion.scene, triangles))),
+            None => Ok(Arc::new(self.criterion.scene.with_triangles(triangles))),
         }
     }
 
@@ -345,13 +345,4 @@ fn is_reached(goal: Goal, summary: &Summary) -> bool {
         Goal::RateHz(least) => summary.updates_hz.is_some_and(|hz| hz >= least * NTSC),
         Goal::LatencyFields(most) => summary.latency_fields().mean <= most,
     }
-}
-
-/// Returns a test scene with `triangles` triangles, but at least one triangle.
-///
-/// # Panics
-///
-/// Panics above the scene generator's maximum number of triangles.
-pub fn test_scene(kind: TestScene, triangles: u32) -> Scene {
-    builtin(&format!("{}:{}", kind.name(), triangles.max(1))).expect("in range")
 }

@@ -6,7 +6,7 @@
 use pxpl5_lab::ExperimentFile;
 use pxpl5_lab::Study;
 use pxpl5_lab::levels::summarise;
-use pxpl5_lab::limit::{LimitQuery, test_scene};
+use pxpl5_lab::limit::LimitQuery;
 use pxpl5_run::{Experiment, Level, TestScene};
 use pxpl5_sim::SplitMix64;
 use rayon::prelude::*;
@@ -54,7 +54,7 @@ const BOUND_MS: f64 = 0.167;
 
 /// Returns the time in milliseconds from the retrace to the first copy of a field, at the analytic level.
 fn copies_begin_ms(query: &LimitQuery, triangles: u32) -> f64 {
-    let scene = test_scene(query.criterion.scene, triangles);
+    let scene = query.criterion.scene.with_triangles(triangles);
     let experiment = Experiment::with(query.config.clone(), Arc::clone(&query.pipeline), Arc::new(scene));
     let summary = summarise(&query.registry, &experiment.fields(query.criterion.fields).level(Level::Analytic));
     summary.expect("a closed form").copy_begins_ms

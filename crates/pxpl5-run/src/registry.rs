@@ -7,6 +7,7 @@ use crate::keys::PipelineSettings;
 use crate::pipeline::Pipeline;
 use crate::result::summary::Summary;
 use pxpl5_machine::{MachineConfig, NamedTable};
+use pxpl5_scene::{Scene, builtin};
 use pxpl5_sim::parameters::Key;
 use pxpl5_sim::parameters::{SettingError, find_named};
 use pxpl5_wire::display::DisplayConfig;
@@ -50,6 +51,16 @@ impl TestScene {
             Self::FullScreen => "full-screen",
             Self::Typical => "typical",
         }
+    }
+
+    /// Returns the test scene with `triangles` triangles, but at least one triangle.
+    ///
+    /// # Panics
+    ///
+    /// Panics above the scene generator's maximum number of triangles.
+    #[must_use]
+    pub fn with_triangles(self, triangles: u32) -> Scene {
+        builtin(&format!("{}:{}", self.name(), triangles.max(1))).expect("in range")
     }
 }
 

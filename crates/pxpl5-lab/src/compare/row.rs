@@ -287,9 +287,9 @@ fn pooled(trials: &[&Trial], values: impl Fn(&Trial) -> &Vec<f64>) -> Statistics
 
 /// Returns the mean errors for wrong prediction intervals, over all seeds.
 fn misaimed(trials: &[&Trial]) -> Vec<MisaimedMean> {
-    let later_ms = trials.first().map(|trial| trial.misaimed.iter().map(|one| one.later_ms)).into_iter().flatten();
+    let later_ms = trials.first().map(|trial| trial.misaimed.iter().map(|one| one.0)).into_iter().flatten();
     let mean = |(i, later_ms): (usize, i64)| {
-        let of_seeds = trials.iter().filter_map(|trial| trial.misaimed.get(i)).map(|one: &MisaimedMean| one.mean_px);
+        let of_seeds = trials.iter().filter_map(|trial| trial.misaimed.get(i)).map(|one| one.1);
         MisaimedMean { later_ms, mean_px: Statistics::of(of_seeds.filter(|px| px.is_finite())).mean }
     };
     later_ms.enumerate().map(mean).collect()

@@ -2,7 +2,6 @@
 
 use super::compared::ComparedPipeline;
 use super::gallery::LastPicture;
-use super::row::MisaimedMean;
 use crate::edges::near_edges;
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing, tracking_and_rendering_ms};
@@ -23,7 +22,8 @@ pub(super) struct Trial {
     pub(super) budget: Budget,
     pub(super) errors: PixelErrors,
     pub(super) causes: Option<ErrorCauses>,
-    pub(super) misaimed: Vec<MisaimedMean>,
+    /// Wrong prediction intervals: milliseconds later, and mean error in pixels.
+    pub(super) misaimed: Vec<(i64, f64)>,
     pub(super) updates_hz: Option<f64>,
     pub(super) due: Option<DuePictures>,
     pub(super) window: Option<ResultWindow>,
@@ -109,12 +109,10 @@ pub(super) fn with_raster(showing: Showing, head: Option<&Head>) -> Showing {
 /// Errors of the prediction interval whose effect is evaluated, in milliseconds.
 const MISAIMS_MS: [i64; 4] = [-20, -10, 10, 20];
 
-fn misaimed(outcome: &Outcome, showing: Showing) -> Vec<MisaimedMean> {
+fn misaimed(outcome: &Outcome, showing: Showing) -> Vec<(i64, f64)> {
     // The reference has no pictures and so no interval.
     let later_ms = MISAIMS_MS.into_iter().filter(|_| showing != Showing::Ideal);
-    let mean =
-        |later_ms| MisaimedMean { later_ms, mean_px: PixelErrors::misaimed(outcome, showing, later_ms).pixels.mean };
-    later_ms.map(mean).collect()
+    later_ms.map(|later_ms| (later_ms, PixelErrors::misaimed(outcome, showing, later_ms).pixels.mean)).collect()
 }
 
 fn latencies_ms(outcome: &Outcome) -> Vec<f64> {

@@ -4,7 +4,6 @@
 //! small enough for the cycle level. Parameters lie anywhere in the ranges of their sources. The number of an
 //! experiment determines all of its settings.
 
-use crate::limit::test_scene;
 use pphigs::RegionBinning;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Pixels, RenderingControl, Slats, Summary, TestScene};
@@ -34,8 +33,8 @@ fn stereo(random: &mut SplitMix64) -> Result<Experiment, ExperimentError> {
     // One of three kinds of scenes: the aircraft, screen-filling triangles, small triangles.
     let scene = match random.between(0, 2) {
         0 => builtin("mig")?.decimated(random.between(100, 417) as usize)?,
-        1 => test_scene(TestScene::FullScreen, random.between(1, 30) as u32),
-        _ => test_scene(TestScene::Typical, random.between(20, 600) as u32),
+        1 => TestScene::FullScreen.with_triangles(random.between(1, 30) as u32),
+        _ => TestScene::Typical.with_triangles(random.between(20, 600) as u32),
     };
     let seed = random.between(1, 99);
     Ok(Experiment::new(machine, RenderingControl::stereo(), scene).fields(FIELDS.0).seed(seed))
@@ -48,7 +47,7 @@ fn slats(random: &mut SplitMix64) -> Result<Experiment, ExperimentError> {
     let program = Slats { binning, ..random.element(&[Slats::whole(), Slats::split()]) };
     // Larger machines get larger scenes.
     let triangles = random.between(5, 50 + 10 * machine.n_gps as u64) as u32;
-    let scene: Scene = test_scene(TestScene::Typical, triangles);
+    let scene: Scene = TestScene::Typical.with_triangles(triangles);
     Ok(Experiment::new(machine, program, Arc::new(scene)).fields(FIELDS.1))
 }
 

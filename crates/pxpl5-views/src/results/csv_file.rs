@@ -25,7 +25,7 @@ where
 }
 
 /// Returns rows as CSV. The columns are all plain values of the rows by their path in JSON ([`flat`]), and a missing value
-/// is an empty cell.
+/// is an empty cell. Times of the host are left out, so that equal results give equal files.
 pub fn csv_of<R: Serialize>(rows: &[R]) -> String {
     let rows: Vec<_> = rows.iter().map(|row| flat(serde_json::to_value(row).unwrap_or_default())).collect();
     let mut columns: Vec<&str> = Vec::new();
@@ -34,6 +34,11 @@ pub fn csv_of<R: Serialize>(rows: &[R]) -> String {
             columns.push(name);
         }
     }
+    // A missing object is an empty cell in each of its columns, and no column of its own.
+    let has_parts =
+        |name: &str| columns.iter().any(|other| other.strip_prefix(name).is_some_and(|rest| rest.starts_with('.')));
+    let columns: Vec<&str> =
+        columns.iter().copied().filter(|name| *name != "host_seconds" && !has_parts(name)).collect();
     let cell = |value: &Value| match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),
@@ -100,8 +105,10 @@ mod tests {
     #[test]
     fn columns_are_the_paths_of_plain_values_and_missing_values_are_empty() {
         let causes = json!([{"cause": "latency", "px": 2.5}, {"cause": null, "px": 0.5}]);
-        let rows =
-            [json!({"name": "a, b", "error": {"mean": null}, "list": [1, 2]}), json!({"name": "c", "causes": causes})];
+        let rows = [
+            json!({"name": "a, b", "error": {"mean": null}, "list": [1, 2], "host_seconds": 0.5}),
+            json!({"name": "c", "error": null, "causes": causes}),
+        ];
         let expected = "name,error.mean,causes.latency.px,causes.interaction.px\n\"a, b\",,,\nc,,2.5,0.5\n";
         assert_eq!(csv_of(&rows), expected);
     }

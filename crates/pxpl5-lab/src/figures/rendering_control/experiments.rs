@@ -266,7 +266,6 @@ pub(super) fn spread_ms(statistics: Statistics) -> FigureValue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limit::test_scene;
     use pxpl5_run::TestScene;
     use pxpl5_scene::config::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
 
@@ -286,7 +285,7 @@ mod tests {
         let columns = 4.0 * (TYPICAL_LEG_PX - 1.0) / width;
         let rows = 3.0 * (TYPICAL_LEG_PX - 1.0) / height;
         let boxes = (1.0 + columns) * (1.0 + rows);
-        let scene = Arc::new(test_scene(TestScene::Typical, 4_000));
+        let scene = Arc::new(TestScene::Typical.with_triangles(4_000));
         for (binning, expected) in
             [(RegionBinning::Touched, boxes - columns * rows / 2.0), (RegionBinning::Boxes, boxes)]
         {
