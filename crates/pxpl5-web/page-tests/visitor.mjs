@@ -29,7 +29,8 @@ export default {
     assert.ok((await shownMs()) < stands + 0.001);
     await run("document.querySelector('#eyes canvas').focus()");
     for (let n = 0; n < 4; n += 1) await key(LEFT);
-    await press('[data-step="field"]');
+    // The machine already has the poses of the next two fields if it went back to a checkpoint of this instant.
+    for (let n = 0; n < 3; n += 1) await press('[data-step="field"]');
     const motion = new URLSearchParams((await run("return document.getElementById('link').hash")).slice(1)).get("motion");
     assert.deepEqual(samplesOf(motion).at(-1), [80, 0], "4 times 2 degrees to the left");
   },
