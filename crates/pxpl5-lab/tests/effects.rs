@@ -135,7 +135,7 @@ fn every_number_moves_a_reported_quantity_in_its_direction() {
     for row in &rows {
         assert!(applied.iter().any(|(_, applied)| applied[0] == row[0]), "{}: there is no such number", row[0]);
     }
-    let by_day = |n: &usize| std::env::var_os("PXPL5_ALL_CASES").is_some() || n % 4 == 0;
+    let by_day = |n: &usize| std::env::var_os("PXPL5_ALL_CASES").is_some() || n.is_multiple_of(4);
     let all: Vec<_> = applied.into_iter().enumerate().filter(|(n, _)| by_day(n)).map(|(_, one)| one).collect();
     // Many rows change the same experiment.
     let of = |(parameter, row): &(&Parameter, &Vec<&'static str>)| {

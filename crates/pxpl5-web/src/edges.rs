@@ -1,6 +1,6 @@
 //! The edges of a scene as lines in space, for a headset that draws the world without the machine's delay.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use pxpl5_run::Stepper;
 use pxpl5_scene::{Frame, Scene};
 use pxpl5_sim::Time;
@@ -17,12 +17,12 @@ pub(crate) fn edges(stepper: &Stepper) -> Vec<f32> {
     let Some(head) = stepper.head() else { return Vec::new() };
     let start = head.truth(Time::ZERO);
     let points = of(head.scene()).into_iter().flatten();
-    points.flat_map(|point| start.view_of(DVec3::from(point.as_dvec3())).as_vec3().to_array()).collect()
+    points.flat_map(|point| start.view_of(point.as_dvec3()).as_vec3().to_array()).collect()
 }
 
 fn of(scene: &Scene) -> Vec<[Vec3; 2]> {
     let key = |point: Vec3| point.to_array().map(|number| (number + 0.0).to_bits());
-    let mut found: HashMap<[[u32; 3]; 2], ([Vec3; 2], Vec<Vec3>)> = HashMap::new();
+    let mut found = HashMap::<_, ([Vec3; 2], Vec<Vec3>)>::new();
     let of_world = scene.structures().iter().filter(|structure| structure.frame == Frame::World);
     for corners in of_world.flat_map(|structure| &scene.triangles()[structure.triangles.clone()]) {
         let [a, b, c] = corners.map(|corner| scene.vertices()[corner as usize].position);

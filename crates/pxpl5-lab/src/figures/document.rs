@@ -289,7 +289,7 @@ const BEST: usize = 6;
 fn ranked(ranking: &Interpretations) -> String {
     let cells = |fit: &Fit| fit.figures.iter().map(|figure| cell(fit, figure)).collect::<Vec<_>>();
     let mut shown: Vec<(String, &Fit, Vec<String>)> = Vec::new();
-    for (place, fit) in ranking.ranked().into_iter().enumerate() {
+    for (place, fit) in ranking.ranked().iter().enumerate() {
         let values = cells(fit);
         let is_usual = fit.interpretation == Interpretation::USUAL;
         if is_usual || shown.len() < BEST && shown.iter().all(|(_, _, other)| *other != values) {
