@@ -290,7 +290,7 @@ impl LimitQuery {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`search`](Self::search).
+    /// Fails in the same cases as the run of the query.
     pub fn level_choice(&self, triangles: u32) -> Result<Option<LevelChoice>, ExperimentError> {
         Ok(self.chosen(triangles)?.1)
     }

@@ -17,7 +17,7 @@ use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::{SharedWatcher, Watcher};
 use serde::Serialize;
 
-/// Published figures under other assumptions than in [`Figures`].
+/// Published figures under other assumptions than in [`Figures`](super::Figures).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Alternatives {
     /// Rows of Rendering Control, Slats and the head, with the times of executed i860 code.

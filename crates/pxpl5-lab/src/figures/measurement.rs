@@ -119,7 +119,7 @@ impl Measurement {
     ///
     /// # Errors
     ///
-    /// Returns [`ExperimentError`] if the experiment fails, and [`ExperimentError::Stopped`] if another thread sets the
+    /// Returns [`ExperimentError`](pxpl5_run::ExperimentError) if the experiment fails, and [`Stopped`](pxpl5_run::ExperimentError::Stopped) if another thread sets the
     /// flag of `settings`.
     pub fn value(&self, settings: &FigureSettings) -> Result<FigureValue> {
         check(&settings.stop)?;
