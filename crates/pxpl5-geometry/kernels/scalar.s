@@ -187,9 +187,11 @@ nearer\@: fld.d   P_DEPTH_BIAS(r20), f14
         fadd.dd f12, f14, f12
         .endm
 
-// Sides of the triangle with its first corner at r7: sets r8 and r9 to the others in clockwise order, and f20 to twice
-// the area. Jumps to `done` if there is nothing to draw. f8 and f9 are the position of the first corner.
-        .macro  orientation done
+// ---- one triangle: writes the command's words at r18, advances r18 and makes bin entries. Jumps to `done` if there is
+// nothing to draw.
+        .macro  set_up done
+        // orientation
+        firstcorner r7
         fld.d   C_X(r7), f8
         secondcorner r8
         fld.d   C_X(r8), f10
@@ -221,54 +223,23 @@ oriented\@: fst.l f16, DX1(r2)
         fst.l   f17, DY1(r2)
         fst.l   f18, DX2(r2)
         fst.l   f19, DY2(r2)
-        .endm
-
-// Calls a function for each edge of the corners r7, r8 and r9.
-        .macro  edges function
-        mov     r7, r10
-        mov     r8, r11
-        call    \function
-        adds    8, r18, r12
-        mov     r8, r10
-        mov     r9, r11
-        call    \function
-        adds    24, r18, r12
-        mov     r9, r10
-        mov     r7, r11
-        call    \function
-        adds    40, r18, r12
-        .endm
-
-// Stores the instruction heads of a command at r18.
-        .macro  heads
-        ld.l    P_HEADS(r20), r10
-        ld.l    P_HEADS+4(r20), r11
-        st.l    r10, 0(r18)
-        ld.l    P_HEADS+8(r20), r10
-        st.l    r11, 4(r18)
-        st.l    r11, 20(r18)
-        st.l    r11, 36(r18)
-        ld.l    P_HEADS+12(r20), r11
-        st.l    r10, 52(r18)
-        ld.l    P_HEADS+16(r20), r10
-        st.l    r11, 68(r18)
-        ld.l    P_HEADS+20(r20), r11
-        st.l    r10, 72(r18)
-        ld.l    P_HEADS+24(r20), r10
-        st.l    r11, 88(r18)
-        st.l    r10, 104(r18)
-        .endm
-
-// ---- one triangle: writes the command's words at r18, advances r18 and makes bin entries. Jumps to `done` if there is
-// nothing to draw.
-        .macro  set_up done
-        firstcorner r7
-        orientation \done
         fst.d   f20, PERPIX(r2)
         st.l    r7, FIRST(r2)
         st.l    r8, SECOND(r2)
         st.l    r9, THIRD(r2)
-        edges   edge
+        // edges
+        mov     r7, r10
+        mov     r8, r11
+        call    edge
+        adds    8, r18, r12
+        mov     r8, r10
+        mov     r9, r11
+        call    edge
+        adds    24, r18, r12
+        mov     r9, r10
+        mov     r7, r11
+        call    edge
+        adds    40, r18, r12
         // box
         fld.d   C_X(r7), f8
         fld.d   C_X(r8), f10
@@ -302,7 +273,23 @@ oriented\@: fst.l f16, DX1(r2)
         surfaceof 2
         call    plane
         adds    108, r18, r11
-        heads
+        // Store the instruction heads.
+        ld.l    P_HEADS(r20), r10
+        ld.l    P_HEADS+4(r20), r11
+        st.l    r10, 0(r18)
+        ld.l    P_HEADS+8(r20), r10
+        st.l    r11, 4(r18)
+        st.l    r11, 20(r18)
+        st.l    r11, 36(r18)
+        ld.l    P_HEADS+12(r20), r11
+        st.l    r10, 52(r18)
+        ld.l    P_HEADS+16(r20), r10
+        st.l    r11, 68(r18)
+        ld.l    P_HEADS+20(r20), r11
+        st.l    r10, 72(r18)
+        ld.l    P_HEADS+24(r20), r10
+        st.l    r11, 88(r18)
+        st.l    r10, 104(r18)
         finish
         restate
         adds    COMMAND_BYTES, r18, r18

@@ -17,10 +17,6 @@ PLACES  = 384     // address of an eye's corners
 SURFACES = 388    // offset of the surfaces, which both eyes share, from these corners
 PERROW  = 60      // twice the slope per pixel of scalar.s, because a row has two lines
 
-        .macro  secondcorner to
-        adds    C_BYTES, r7, \to
-        .endm
-
 // Exchanges the commands and the parameter blocks of the eyes.
         .macro  othereye
         mov     r18, r7
@@ -81,7 +77,38 @@ eye:    ld.l    LEFT_OUT(r2), r10
         ld.l    PLACES(r2), r7
         and     r3, r10, r10
         btne    r0, r10, clip
-        orientation done
+        // orientation
+        fld.d   C_X(r7), f8
+        adds    C_BYTES, r7, r8
+        fld.d   C_X(r8), f10
+        adds    C_BYTES, r8, r9
+        fld.d   C_X(r9), f12
+        fsub.ss f10, f8, f16                // dx, dy to corner 1, to corner 2
+        fsub.ss f11, f9, f17
+        fsub.ss f12, f8, f18
+        fsub.ss f13, f9, f19
+        fmul.sd f16, f19, f20
+        fmul.sd f17, f18, f22
+        fsub.dd f20, f22, f20
+        pfeq.dd f20, f0, f0
+        bc      done                        // nothing to draw
+        facing_float f21, done
+        pfgt.dd f0, f20, f0
+        bnc     oriented
+        fmov.ss f16, f24                    // change to clockwise order
+        fmov.ss f18, f16
+        fmov.ss f24, f18
+        fmov.ss f17, f24
+        fmov.ss f19, f17
+        fmov.ss f24, f19
+        fsub.dd f0, f20, f20
+        mov     r8, r10
+        mov     r9, r8
+        mov     r10, r9
+oriented: fst.l f16, DX1(r2)
+        fst.l   f17, DY1(r2)
+        fst.l   f18, DX2(r2)
+        fst.l   f19, DY2(r2)
         // Values that all planes share: slopes per unit of a cross product, and the way to the middle of pixel (0, 0).
         fmov.ds f20, f23
         inverse f23, f11
@@ -106,7 +133,18 @@ eye:    ld.l    LEFT_OUT(r2), r10
         nop
         and     r3, r10, r10
         btne    r0, r10, beyondband
-        edges   edge
+        mov     r7, r10
+        mov     r8, r11
+        call    edge
+        adds    8, r18, r12
+        mov     r8, r10
+        mov     r9, r11
+        call    edge
+        adds    24, r18, r12
+        mov     r9, r10
+        mov     r7, r11
+        call    edge
+        adds    40, r18, r12
 edged:  adds    C_DEPTH, r0, r10
         call    plane
         adds    56, r18, r11
@@ -121,7 +159,23 @@ edged:  adds    C_DEPTH, r0, r10
         adds    108, r18, r11
         call    plane
         adds    8, r10, r10
-        heads
+        // Store the instruction heads.
+        ld.l    P_HEADS(r20), r10
+        ld.l    P_HEADS+4(r20), r11
+        st.l    r10, 0(r18)
+        ld.l    P_HEADS+8(r20), r10
+        st.l    r11, 4(r18)
+        st.l    r11, 20(r18)
+        st.l    r11, 36(r18)
+        ld.l    P_HEADS+12(r20), r11
+        st.l    r10, 52(r18)
+        ld.l    P_HEADS+16(r20), r10
+        st.l    r11, 68(r18)
+        ld.l    P_HEADS+20(r20), r11
+        st.l    r10, 72(r18)
+        ld.l    P_HEADS+24(r20), r10
+        st.l    r11, 88(r18)
+        st.l    r10, 104(r18)
         adds    COMMAND_BYTES, r18, r18
 done:   othereye
         ld.l    PLACES(r2), r7
@@ -134,8 +188,18 @@ done:   othereye
         adds    -1, r17, r17
         adds    LIST_STEP, r16, r16
         nextorclip
-beyondband:
-        edges   limitededge
+beyondband: mov r7, r10
+        mov     r8, r11
+        call    limitededge
+        adds    8, r18, r12
+        mov     r8, r10
+        mov     r9, r11
+        call    limitededge
+        adds    24, r18, r12
+        mov     r9, r10
+        mov     r7, r11
+        call    limitededge
+        adds    40, r18, r12
         br      edged
         nop
 
@@ -290,8 +354,7 @@ lower\@:
         .endm
 
 // ---- edge like `edge`, but its corners can be beyond the guard band. If their greatest coordinate is beyond it, the
-// coefficients are multiplied by the guard band divided by this coordinate, and the constant follows from the rounded
-// slopes at the corner inside the band, if there is one.
+// coefficients are multiplied by the guard band divided by this coordinate.
 limitededge: fld.d C_X(r10), f8
         fld.d   C_X(r11), f10
         orh     0x4020, r0, r13             // 8.0, double
@@ -313,12 +376,8 @@ limitededge: fld.d C_X(r10), f8
         fmov.ss f0, f26
         greatest f8
         greatest f9
-        fmov.ss f26, f27                    // of corner r10, of corner r11, of both
-        fmov.ss f0, f26
         greatest f10
         greatest f11
-        fmov.ss f26, f31
-        greatest f27
         adds    P_TIE_IN, r0, r14           // a top or a left edge?
         pfgt.dd f0, f24, f0
         bc      owner
@@ -330,31 +389,12 @@ other:  adds    P_TIE_OUT, r0, r14
 owner:  fld.l   P_BAND(r20), f8
         pfgt.ss f26, f8, f0
         bnc     finite
-        fmov.dd f12, f28                    // `inverse` changes f12
         inverse f26, f11
-        fmov.dd f28, f12
         fmul.ss f11, f8, f8
         fmov.sd f8, f10
+        fmul.dd f20, f10, f20
         fmul.dd f22, f10, f22
         fmul.dd f24, f10, f24
-        fld.l   P_BAND(r20), f8
-        pfgt.ss f27, f8, f0
-        bnc     through                     // corner r10 is inside the band
-        pfgt.ss f31, f8, f0
-        bc      outside
-        fmov.dd f16, f12                    // corner r11 is
-        fmov.dd f18, f14
-through: fld.d  P_ROUND(r20), f28           // the edge passes the corner exactly
-        fadd.dd f22, f28, f22
-        fsub.dd f22, f28, f22
-        fadd.dd f24, f28, f24
-        fsub.dd f24, f28, f24
-        fmul.dd f24, f12, f20
-        fmul.dd f22, f14, f10
-        fsub.dd f20, f10, f20
-        br      finite
-        nop
-outside: fmul.dd f20, f10, f20
         orh     0x4210, r0, r13             // the constant is at most 2^34, which becomes 2^30
         ixfr    r0, f8
         ixfr    r13, f9

@@ -22,7 +22,7 @@ pub(crate) const BAND: f32 = 65_536.0;
 /// Greatest coordinate of a corner that is not left to the clipper, in subpixels.
 const FARTHEST: f32 = (1_u64 << 40) as f32;
 
-/// Greatest constant of an edge between two corners beyond the guard band, in 1/256 square px. It becomes 2^30 in the
+/// Greatest constant of an edge between corners beyond the guard band, in 1/256 square px. It becomes 2^30 in the
 /// expression. The other two terms are below 2^28 at every pixel, so they cannot change the sign.
 const MOST: f64 = (1_u64 << 34) as f64;
 
@@ -164,12 +164,8 @@ fn edge(from: &Corner, to: &Corner, step: i32) -> Linear {
     let reach = from.reach().max(to.reach());
     if reach > BAND {
         let factor = f64::from(newton::reciprocal(reach) * BAND);
-        [dx, dy] = [dx * factor, dy * factor].map(|way| plane::rounded(way).into());
-        // All edges of a corner inside the band pass it exactly, whatever their factors.
-        constant = match [(from, x, y), (to, to_x, to_y)].iter().find(|(corner, ..)| corner.reach() <= BAND) {
-            Some((_, x, y)) => dy * x - dx * y,
-            None => newton::whole((constant * factor).clamp(-MOST, MOST)) as f64,
-        };
+        [dx, dy] = [dx * factor, dy * factor];
+        constant = newton::whole((constant * factor).clamp(-MOST, MOST)) as f64;
     }
     let [a, b] = [-dy, dx].map(plane::rounded);
     let k = constant as i64 - i64::from(!owns);

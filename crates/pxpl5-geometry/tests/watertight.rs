@@ -76,13 +76,17 @@ proptest! {
 
     /// Corners beyond the guard band are limited by the program of Slats, and clipped by the other code.
     ///
-    /// An edge to such a corner is multiplied by a factor, and its slopes are rounded (kernels/slats_rules.md, rule 5).
-    /// Both triangles of the edge use opposite numbers, and all edges pass the hub exactly. Its pixel belongs to one
-    /// triangle, too: the hub is at a multiple of half a pixel, so it is the centre of every fourth one.
+    /// An edge to such a corner is multiplied by a factor, and its coefficients are rounded (kernels/slats_rules.md,
+    /// rule 5). Both triangles of the edge use opposite numbers, but edges with different factors no longer meet at the
+    /// exact corner. At a pixel, in units of 1/16 px, an edge's expression has an error of at most
+    /// (10,240 + 7,680) / 2 + 1.5 = 8,962, and its gradient is at least 65,536 - 10,240. So an edge misses the hub by at
+    /// most 0.162 / 16 px. The hub is at a multiple of half a pixel, and the spokes are more than 2.4 degrees apart. So
+    /// only the pixel whose centre is the hub can be near two spokes: it may be drawn any number of times.
     #[test]
     fn a_fan_with_corners_beyond_the_guard_band_covers_the_screen_exactly_once(
         hub in on_screen(), turn in 0.0..1.0_f32, bands in prop_oneof![0.5..4.0_f32, 4.0..1e5_f32], count in 5..12_usize,
     ) {
+        let is_hub = |n: usize| hub == [n as i32 % WIDTH, n as i32 / WIDTH].map(|pixel| 2 * pixel + 1);
         let corner = at_pixel(hub[0] as f32 * 0.5, hub[1] as f32 * 0.5, 1.0);
         let rim: Vec<Vec3> = (0..count).map(|n| {
             let (sine, cosine) = ((n as f32 + turn) / count as f32 * std::f32::consts::TAU).sin_cos();
@@ -91,7 +95,7 @@ proptest! {
             at_pixel(320.0 + reach * 4096.0 * cosine, 240.0 + reach * 4096.0 * sine, 1.0)
         }).collect();
         let (counts, stats) = draw_singly(&pixel_view(1.0, 16_384.0), &fan(corner, &rim));
-        let wrong = counts.iter().filter(|times| **times != 1).count();
+        let wrong = counts.iter().enumerate().filter(|(n, times)| **times != 1 && !is_hub(*n)).count();
         prop_assert!(stats.clipped == 0 && wrong == 0, "{wrong} pixels: {stats:?}");
     }
 
