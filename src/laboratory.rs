@@ -97,7 +97,8 @@ pub use pxpl5_lab::StopFlag;
 /// assert_eq!(scenes.0, limit.tried as u64);
 /// # Ok::<(), StudyError>(())
 /// ```
-pub use pxpl5_lab::{Study, Watcher};
+pub use pxpl5_lab::Study;
+pub use pxpl5_lab::Watcher;
 
 /// Returns the reason why a machine cannot run a pipeline, for each pipeline.
 ///

@@ -94,7 +94,7 @@ pub use pxpl5_measure::Measure;
 ///
 /// ```
 /// use pxpl5::prelude::*;
-/// use pxpl5::{CriticalPath, PathPart, Resource, Utilisation};
+/// use pxpl5::{CriticalPath, LatencyPercentiles, PathPart, Resource, Utilisation};
 ///
 /// let scene = scene::builtin("full-screen:12")?;
 /// let report = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60).run()?.report();
@@ -104,6 +104,9 @@ pub use pxpl5_measure::Measure;
 /// assert!(path.share(Resource::Ports) > 0.0);
 /// let largest: &PathPart = &path.parts[0];
 /// assert!(path.parts.iter().all(|part| part.share <= largest.share));
+/// // Percentiles of the latency: a still scene has the same latency in each picture.
+/// let LatencyPercentiles { latency, .. } = report.percentiles_ms;
+/// assert!(latency.p95 - latency.p50 < 1.0);
 /// let busy: Utilisation = report.utilisation.ok_or("the machine ran")?;
 /// assert!(busy.renderers.executing.max <= 1.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -259,10 +262,9 @@ pub use pxpl5_run::StreamingObserver;
 pub use pxpl5_measure::reproject_with_depth;
 
 pub use pxpl5_measure::{
-    Budget, DepthPicture, ErrorPart, EyeReport, FieldMisregistration, HeadTimes, LatencyPartStatistics,
-    LatencyPercentiles, PathPart, Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration,
-    ReprojectionReport, Resource, Results, Showing, SurfaceStatistics, TooHeavy, Utilisation, head_times, picture,
-    reproject, side_by_side,
+    Budget, DepthPicture, ErrorPart, EyeReport, FieldMisregistration, LatencyPartStatistics, LatencyPercentiles,
+    PathPart, Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, ReprojectionReport,
+    Resource, Results, Showing, SurfaceStatistics, TooHeavy, Utilisation, head_times, picture, reproject, side_by_side,
 };
 pub use pxpl5_run::{
     DefinedStatistics, DuePictures, FinalResults, LATENCY_PARTS, LatencyParts, ObserverFactory, PartDefinition,

@@ -19,7 +19,7 @@ pub(crate) struct Progress<'a> {
     on_row: Option<OnRow<'a>>,
     /// Finished rows, for an interruption.
     rows: Vec<String>,
-    /// What an interruption keeps, and how to continue.
+    /// Text about what an interruption keeps, and how to continue.
     kept: Option<String>,
 }
 

@@ -93,17 +93,6 @@ fn the_window_begins_at_the_later_of_ninth_period_and_fifth_picture() {
     }
 }
 
-/// Four pictures are the warm-up, and none of them has a latency. They are not counted as shown, but a picture that was
-/// due and not shown is counted.
-#[test]
-fn pictures_of_the_warm_up_are_counted_only_if_they_were_not_shown() {
-    assert_eq!(counted(&regular(8, 3, 19, Shown), 3, 19), None);
-    let due = count(&regular(8, 3, 18, Shown), 3, 24);
-    assert_eq!((due.due, due.shown, due.missed, due.pictures), (1, 0, 1, 0));
-    let due = count(&regular(8, 3, 21, Shown), 3, 21);
-    assert_eq!((due.due, due.shown, due.pictures), (1, 1, 1), "the fifth picture");
-}
-
 /// If a pipeline begins a picture every seventh period, and no picture is in time, then the pictures count as late from
 /// the ninth period on.
 #[test]

@@ -49,7 +49,7 @@ fn errors_name_the_line_and_the_expected_value() {
         ("pipeline = \"slats\"\nscene = \"mig\"\nseed = 1.5", "line 3: seed: expected a whole number"),
         (
             "pipeline = \"slats\"\nscene = \"mig\"\nlevel = \"cycles\"",
-            "line 3: level: there is no level `cycles`; did you mean `cycle`? (expected one of analytic, transaction, cycle)",
+            "line 3: level: there is no level `cycles`; did you mean `cycle`? (expected one of analytic, transaction, cycle, auto)",
         ),
         (
             "pipeline = \"slats\"\nscene = \"mig\"\nmeasure = [\"latency_ms.maen\"]",
@@ -296,7 +296,7 @@ fn every_key_has_one_description_with_its_values() {
         "{}",
         about("strip_rows")
     );
-    assert!(about("level").contains("transaction or cycle; default transaction"), "{}", about("level"));
+    assert!(about("level").contains("bound); default transaction"), "{}", about("level"));
     let mut paths: Vec<&str> = keys.iter().map(|key| key.path.as_str()).collect();
     paths.sort_unstable();
     assert!(paths.windows(2).all(|pair| pair[0] != pair[1]), "a path appears twice: {paths:?}");

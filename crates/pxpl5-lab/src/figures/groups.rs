@@ -73,8 +73,9 @@ impl Study for FigureQuery {
             |topic: &'static Topic| topic.figures.iter().filter(is_chosen).map(move |figure| (topic, figure));
         let tasks: Vec<(&Topic, &Measurement)> = TOPICS.iter().flat_map(of_topic).collect();
         let is_whole = self.only.is_empty();
+        let has_intervals = self.intervals && is_whole;
         // The group of address recalculation and all intervals are a part each.
-        let watcher = SharedWatcher::new(watcher, tasks.len() as u64 + 2 * u64::from(is_whole));
+        let watcher = SharedWatcher::new(watcher, tasks.len() as u64 + u64::from(is_whole) + u64::from(has_intervals));
         let settings = FigureSettings { stop: watcher.stop(), ..self.settings.clone() };
         let mut has_failed = false;
         let rows = || {
@@ -86,7 +87,7 @@ impl Study for FigureQuery {
         };
         // The other system takes long and comes last, so its measurement starts first.
         let other = || is_whole.then(|| watcher.part(|| family::address_recalculation(&settings)));
-        let vary = || if self.intervals && is_whole { watcher.part(|| intervals(&settings)) } else { Vec::new() };
+        let vary = || if has_intervals { watcher.part(|| intervals(&settings)) } else { Vec::new() };
         let ((rows, other), intervals) = parallel::both(|| parallel::both(rows, other), vary);
         let mut groups: Vec<FigureGroup> = Vec::new();
         for ((topic, _), row) in tasks.iter().zip(rows) {

@@ -28,8 +28,7 @@ pub struct DuePictures {
     pub last_period: PeriodNumber,
     /// Number of display periods from one due picture to the next.
     pub periods_a_picture: u64,
-    /// Number of pictures due: the periods of the result window divided by `periods_a_picture`, without pictures of the
-    /// warm-up that were shown.
+    /// Number of pictures due: the periods of the result window divided by `periods_a_picture`.
     pub due: u64,
     /// Number of due pictures that were complete and in time.
     pub shown: u64,
@@ -60,39 +59,20 @@ impl DuePictures {
         let mut ends = PictureResults::default();
         pictures.filter(|(period, _)| *period < reached).for_each(|(period, end)| ends.note(period, end));
         let window = ResultWindow::of(&ends, Some(periods_a_picture), reached, reached)?;
-        Self::of_ends(&ends, periods_a_picture, &window)
+        Some(Self::of_ends(&ends, periods_a_picture, &window))
     }
 
-    pub(crate) fn of_ends(ends: &PictureResults, periods_a_picture: u64, window: &ResultWindow) -> Option<Self> {
+    pub(crate) fn of_ends(ends: &PictureResults, periods_a_picture: u64, window: &ResultWindow) -> Self {
         let every = periods_a_picture.max(1);
         let ResultWindow { first_period, last_period, .. } = *window;
-        let steady = ends.steady_from().map_or(last_period.next(), |steady| steady.max(first_period));
         // Each due picture may be shown in any of the periods since the last due picture.
         let due = (first_period.0 + every - 1..=last_period.0).step_by(every as usize);
         let mut counts = [0; 4];
-        for period in due {
-            let end = ends.best(period, every);
-            // Pictures of the warm-up that were shown have no results, and are not counted.
-            let after_warm_up = every.min((period + 1).saturating_sub(steady.0));
-            if end != Some(PictureResult::Shown) || ends.best(period, after_warm_up) == end {
-                counts[end.map_or(3, |end| end as usize)] += 1;
-            }
-        }
+        due.for_each(|period| counts[ends.best(period, every).map_or(3, |end| end as usize)] += 1);
         let [shown, late, incomplete, missed] = counts;
         let due = counts.iter().sum();
-        let pictures = ends.periods_shown([steady, last_period]);
-        let periods_a_picture = every;
-        (due > 0).then_some(Self {
-            first_period,
-            last_period,
-            periods_a_picture,
-            due,
-            shown,
-            late,
-            incomplete,
-            missed,
-            pictures,
-        })
+        let pictures = ends.periods_shown([first_period, last_period]);
+        Self { first_period, last_period, periods_a_picture: every, due, shown, late, incomplete, missed, pictures }
     }
 
     /// Returns the number of due pictures that were not shown: late, incomplete and missed pictures.
