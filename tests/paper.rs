@@ -17,7 +17,7 @@ const NAMES: [&str; 11] = [
     "Figure 2",
     "Ramulator2",
     "Slats of 1994",
-    "its code of 1995",
+    "Slats of 1995",
 ];
 
 fn read(name: &str) -> String {
