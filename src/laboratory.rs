@@ -27,7 +27,8 @@ pub use pxpl5_lab::ExperimentFile;
 ///
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
-/// for WhatIf { resource, latency_ms: [before, after], .. } in WhatIfQuery { registry: registry(), experiment }.run(&mut ())? {
+/// let query = WhatIfQuery { registry: registry(), experiment };
+/// for WhatIf { resource, latency_ms: [before, after], .. } in query.run(&mut ())? {
 ///     println!("10 % more {resource}: {before:?} ms, then {after:?} ms");
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
