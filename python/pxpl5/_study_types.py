@@ -179,7 +179,7 @@ class ComparedData(TypedDict):
     has_no_limit: bool
     triangles_definition: str
     failure: str | None
-    host_seconds: float
+    host_seconds: float | None
 
 
 class ComparisonData(TypedDict):

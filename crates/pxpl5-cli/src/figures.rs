@@ -8,6 +8,7 @@ mod volumetric;
 pub(crate) use args::FiguresArgs;
 
 use crate::error::CliError;
+use crate::numbers::count_of;
 use crate::output::OutputFile;
 use crate::progress::Progress;
 use crate::terminal::print;
@@ -15,7 +16,7 @@ use args::{ADDRESS_RECALCULATION, VOLUMETRIC};
 use pxpl5::Level;
 use pxpl5::figures::{
     AlternativeQuery, Alternatives, Basis, Documents, FigureQuery, FigureRow, FigureSettings, Figures, Headline,
-    TOPICS, all, documents,
+    Measurement, TOPICS, all, documents,
 };
 use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 use serde_json::json;
@@ -34,7 +35,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
         None => {}
     }
     if !args.only.is_empty() {
-        return chosen(&args.only);
+        return chosen(&args);
     }
     let is_document = args.json || args.write.is_some() || args.check.is_some();
     // The plain table leaves out the intervals, because a reader waits for it.
@@ -42,7 +43,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     let settings = FigureSettings::new(Level::Transaction);
     let query = FigureQuery { settings: settings.clone(), intervals, only: Vec::new() };
     // Open the output first, so that a bad path fails before the simulations.
-    args.budget.admit_study(&query, "measure some of them with --only")?;
+    admit(&query, &args)?;
     let file = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let chart_file = args.chart.as_deref().map(|path| OutputFile::open(path, "--chart")).transpose()?;
     // Rows are printed as they come, unless the output needs their intervals or is JSON.
@@ -78,6 +79,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
 /// Measures figures. Prints each row as soon as it is measured, unless `is_silent`.
 fn measured(query: &FigureQuery, is_silent: bool, is_quiet: bool) -> Result<Figures, CliError> {
     let mut table = "";
+    let mut printed = Ok(());
     let progress = Progress::new("figures", is_quiet);
     if is_silent {
         return progress.run(query);
@@ -86,9 +88,29 @@ fn measured(query: &FigureQuery, is_silent: bool, is_quiet: bool) -> Result<Figu
         let before = std::mem::replace(&mut table, title);
         let gap = if before.is_empty() { "" } else { "\n" };
         let head = if before == title { String::new() } else { format!("{gap}{title}\n{}\n", FigureRow::HEADER) };
-        let _ = bar.above(|| print(&format!("{head}{row}\n")));
+        if printed.is_ok() {
+            printed = bar.above(|| print(&format!("{head}{row}\n")));
+        }
     });
-    progress.run(query)
+    let figures = progress.run(query)?;
+    printed.map(|()| figures)
+}
+
+fn admit(query: &FigureQuery, args: &FiguresArgs) -> Result<(), CliError> {
+    args.budget.admit_study(query, "measure some of them with --only")
+}
+
+/// Measures and prints figures without their intervals, and counts the misses.
+fn some(only: Vec<&'static Measurement>, args: &FiguresArgs) -> Result<(), CliError> {
+    let query = FigureQuery { settings: FigureSettings::new(Level::Transaction), intervals: false, only };
+    admit(&query, args)?;
+    let figures = measured(&query, args.json || args.quiet, args.quiet)?;
+    let rows: Vec<&FigureRow> = figures.rows().collect();
+    if args.json {
+        return print(&format!("{:#}\n", json!({ "schema": SCHEMA, "figures": rows })));
+    }
+    let missed = rows.iter().filter(|row| !row.is_met).count();
+    if args.quiet { Ok(()) } else { print(&format!("\n{}, {missed} missed\n", count_of(rows.len(), "row"))) }
 }
 
 const WITHOUT_INTERVALS: &str =
@@ -118,27 +140,18 @@ fn of_group(name: &str, args: &FiguresArgs) -> Result<(), CliError> {
     if args.write.is_some() || args.check.is_some() || args.out.is_some() {
         return Err(CliError::usage(format!("--group {name} has no document and no pictures of its own")));
     }
-    let only = topic.figures.iter().collect();
-    let query = FigureQuery { settings: FigureSettings::new(Level::Transaction), intervals: false, only };
-    let figures = measured(&query, args.json, args.json || args.quiet)?;
-    if args.json {
-        let rows: Vec<&FigureRow> = figures.rows().collect();
-        return print(&format!("{:#}\n", json!({ "schema": SCHEMA, "figures": rows })));
-    }
-    Ok(())
+    some(topic.figures.iter().collect(), args)
 }
 
 /// Measures and prints the figures with these numbers.
-fn chosen(numbers: &[String]) -> Result<(), CliError> {
+fn chosen(args: &FiguresArgs) -> Result<(), CliError> {
     let find = |number: &String| {
         let known = || all().map(|figure| figure.id).collect::<Vec<_>>().join(", ");
         let figure = all().find(|figure| figure.id == number.as_str());
         figure.ok_or_else(|| CliError::usage(format!("--only: expected numbers among {}, found {number}", known())))
     };
     // All numbers are checked before the first experiment runs.
-    let only = numbers.iter().map(find).collect::<Result<_, _>>()?;
-    let query = FigureQuery { settings: FigureSettings::new(Level::Transaction), intervals: false, only };
-    measured(&query, false, false).map(drop)
+    some(args.only.iter().map(find).collect::<Result<_, _>>()?, args)
 }
 
 const SCHEMA: &str = "pxpl5-figures/3";

@@ -138,7 +138,7 @@ fn text(record: &LevelRecord) -> String {
     let host = record.host.as_deref().unwrap_or("an unknown machine");
     let _ = write!(
         text,
-        "\npixels: simulated seconds per second; published: mean error of the free checks. Against the cycle level: {} random experiments with Rendering Control (latency)\n\
+        "\npixels: simulated seconds per second; published: mean error of the free and interpretation rows. Against the cycle level: {} random experiments with Rendering Control (latency)\n\
          and Slats (time to the first copy). Computing pixels changes no simulated time. Measured {when} on {host}.\n",
         record.experiments
     );

@@ -5,6 +5,7 @@ use crate::error::CliError;
 use crate::numbers::{count_of, were, whole};
 use crate::options::{PipelineOptions, option_of, registry};
 use crate::progress::Progress;
+use crate::scenes;
 use crate::settings::set_within;
 use crate::terminal::{print, print_error, warn};
 use clap::Args;
@@ -98,6 +99,7 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
         return Err(CliError::usage("--from and --to: expected a key with --over that is not triangles"));
     }
     let query = args.query()?;
+    query.model.iter().for_each(|model| scenes::print_warnings(&model.whole, args.quiet));
     let limit = Progress::new("sizes", args.quiet).run_within(args.budget, FEWER, &query)?;
     if limit.has_limit() && limit.triangles > 1 {
         warn(query.near_edge(limit.triangles)?.as_slice(), args.quiet);
@@ -126,7 +128,7 @@ impl LimitArgs {
         let plan = self.file()?.resolve()?;
         self.check_rate(&plan)?;
         // An option replaces one part of the pipeline's own criterion.
-        warn(&plan.warnings(), false);
+        warn(&plan.warnings(), self.quiet);
         let query = LimitQuery::of_plan(&plan);
         let fields = self.fields.unwrap_or(query.criterion.fields);
         if fields < MIN_FIELDS {

@@ -29,6 +29,8 @@ pub(crate) struct Bar {
     what: &'static str,
     is_quiet: bool,
     begun: Instant,
+    /// Numbers of finished parts and of all parts. A cleared bar does not keep them.
+    done: [u64; 2],
     /// Number of parts that were finished at the first report.
     found: Option<u64>,
     /// Number of tenths that lines have reported.
@@ -50,7 +52,7 @@ impl Bar {
         let bar = ProgressBar::with_draw_target(Some(0), target).with_message(what);
         let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         interrupt::follow(true);
-        Self { bar, what, is_quiet, begun: Instant::now(), found: None, told: 0 }
+        Self { bar, what, is_quiet, begun: Instant::now(), done: [0; 2], found: None, told: 0 }
     }
 
     pub(crate) fn advance(&mut self, done: u64, of: u64) {
@@ -58,6 +60,7 @@ impl Bar {
             self.found = Some(done);
             self.bar.reset_eta();
         }
+        self.done = [done, of];
         self.bar.set_length(of);
         self.bar.set_position(done);
         let tenth = 10 * done / of.max(1);
@@ -70,7 +73,7 @@ impl Bar {
     /// Returns the estimated time left as text. The estimate assumes that the remaining parts take as long as the
     /// finished parts.
     pub(crate) fn left(&self) -> String {
-        let [done, of] = [self.bar.position(), self.bar.length().unwrap_or_default()];
+        let [done, of] = self.done;
         let made = done.saturating_sub(self.found.unwrap_or_default()).max(1);
         let left = self.begun.elapsed().as_secs_f64() / made as f64 * of.saturating_sub(done) as f64;
         format!("about {left:.0} s to go")
@@ -98,7 +101,7 @@ impl Bar {
         if !interrupt::flag().is_stopped() {
             return Ok(());
         }
-        let (done, of) = (self.bar.position(), self.bar.length().unwrap_or_default());
+        let [done, of] = self.done;
         Err(CliError::interrupted(format!("interrupted after {done} of {of} {}; {kept}", self.what)))
     }
 }
@@ -137,7 +140,7 @@ impl<'a> Progress<'a> {
                 Err(CliError::interrupted(format!("{}{rows}", stopped.message())))
             }
             report => {
-                if let Err(stopped) = ended("the result is that of the finished part") {
+                if let Err(stopped) = ended("the result is that of the finished part, and no file was written") {
                     print_error(&format!("\npxpl5: {}\n", stopped.message()));
                 }
                 Ok(report?)

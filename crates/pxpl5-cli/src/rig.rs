@@ -63,7 +63,7 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     let mut rig = Rig { seed: plan.seed, passes: args.passes as usize, ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = args.line.unwrap_or(rig.rig.photodiode_line);
     let study = RigQuery { rig, machine: plan.machine.clone(), pipeline: plan.pipeline.clone() };
-    let report = Progress::new("measurements", false).run_within(args.budget, "measure fewer --passes", &study)?;
+    let report = Progress::new("fields", false).run_within(args.budget, "measure fewer --passes", &study)?;
     let measured = &report.measured;
     // The result is printed even if both sides disagree.
     print(&if args.json { json_text(&report)? } else { text(&report) })?;

@@ -57,7 +57,7 @@ pub(crate) struct RunArgs {
     #[arg(long)]
     what_if: bool,
     /// Also explain one picture: its times and waits, beside those of other pictures. The timeline shows it.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", conflicts_with = "json")]
     picture: Option<u64>,
     /// Also print the definitions of latency and of a picture that is due.
     #[arg(long)]
@@ -90,9 +90,11 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     warn(out_of_view(report).as_slice(), args.quiet);
     warn(&near_edges(outcome), args.quiet);
     // A run without a latency still writes its files and its report, and then ends with an error.
-    let picture = args.picture.map(|number| one_picture::find(outcome, number)).transpose()?;
-    let written = folder.map(|folder| write(folder, &plan, &results, picture)).transpose()?;
-    let more = question.map(|question| Progress::new("resources", true).run(&question)).transpose()?;
+    let picture = args.picture.map(|number| one_picture::find(outcome, number));
+    let drawn = picture.as_ref().and_then(|found| found.as_ref().ok().copied());
+    let written = folder.map(|folder| write(folder, &plan, &results, drawn)).transpose()?;
+    let picture = picture.transpose()?;
+    let more = question.map(|question| Progress::new("resources", args.quiet).run(&question)).transpose()?;
     if args.json {
         print(&format!("{}\n", with_more(report, more.as_deref())?))?;
     } else if !args.quiet {

@@ -199,7 +199,7 @@ fn finished_rows_of_an_unfinished_comparison_can_be_drawn() {
         let error = json!({"mean_px": {"mean": px, "low": px - 1.0, "high": px + 1.0, "n": 5}, "n": 100});
         json!({"row": {"pipeline": name, "due": 9, "not_shown": missed, "error": error}, "by_field": [], "picture": null})
     };
-    let header = json!({"schema": "pxpl5-comparison-rows/1", "rows": ["slats", "vdrt", "ideal"]});
+    let header = json!({"schema": "pxpl5-comparison-rows/2", "rows": ["slats", "vdrt", "ideal"]});
     std::fs::create_dir(folder.0.join("rows")).expect("made");
     folder.file("rows/rows.jsonl", format!("{header}\n{}\n{}\n{{\"row\": ", row("slats", 8.0, 0), row("vdrt", 7.0, 2)));
     let run = folder.run(&["plot", ".", "--x", "pipeline", "--y", "error.mean_px.mean", "--out", "fig.svg"]);

@@ -124,7 +124,9 @@ impl Study for LimitQuery {
         }
         let scene = || Arc::new(self.criterion.scene.with_triangles(1));
         let scene = self.model.as_ref().map_or_else(scene, |model| Arc::clone(&model.whole));
-        let one = RunWork::of(&self.experiment_of(scene), false).estimate();
+        // A level that is chosen for each size may be the slowest.
+        let level = if self.within_percent.is_some() { Level::Cycle } else { self.level };
+        let one = RunWork::of(&self.experiment_of(scene).level(level), false).estimate();
         Estimate::of_all([one; USUAL_SIZES as usize], 1)
     }
 
@@ -292,7 +294,7 @@ impl LimitQuery {
     ///
     /// Fails in the same cases as the run of the query.
     pub fn level_choice(&self, triangles: u32) -> Result<Option<LevelChoice>, ExperimentError> {
-        Ok(self.chosen(triangles)?.1)
+        if self.within_percent.is_none() { Ok(None) } else { Ok(self.chosen(triangles)?.1) }
     }
 
     /// Returns true if the pipeline reaches the goal with this number of triangles.

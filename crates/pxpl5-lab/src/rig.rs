@@ -23,7 +23,7 @@ use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_run::{Coverage, Experiment, ExperimentError, Head, Outcome, PictureTimes, Pipeline, Pixels};
 use pxpl5_scene::{HeadMotion, Lighting, Scene, SceneParts, Vertex};
 use pxpl5_sim::parameters::{SettingError, Value};
-use pxpl5_sim::{StopFlag, Time, Watcher};
+use pxpl5_sim::{Time, Watcher};
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use serde::Serialize;
@@ -117,8 +117,7 @@ impl Study for RigQuery {
     /// Measures the latency. Fails if the pipeline does not show the requested frames.
     fn run(&self, watcher: &mut dyn Watcher) -> Result<RigReport, StudyError> {
         let line = self.rig.rig.photodiode_line;
-        let ([measured], _) =
-            self.rig.measure_lines(&self.machine, Arc::clone(&self.pipeline), [line], &watcher.stop())?;
+        let ([measured], _) = self.rig.measure_lines(&self.machine, Arc::clone(&self.pipeline), [line], watcher)?;
         Ok(RigReport {
             schema: "pxpl5-rig/1",
             pipeline: self.pipeline.name(),
@@ -155,16 +154,16 @@ impl Rig {
         machine: &MachineConfig,
         pipeline: Arc<dyn Pipeline>,
         lines: [u32; N],
-        stop: &StopFlag,
+        watcher: &mut dyn Watcher,
     ) -> Result<([Measurement; N], Outcome), StudyError> {
         let tracker = TrackerModel::new(self.tracker.clone())?;
         check_frames(machine, pipeline.as_ref())?;
         // The pendulum determines when frames start.
         let sightings = self.rig.sightings(&tracker, self.seed, self.passes.max(2))?;
-        let experiment = self.experiment(machine, pipeline, &sightings)?.stopped_by(stop.clone());
+        let experiment = self.experiment(machine, pipeline, &sightings)?.stopped_by(watcher.stop());
         // Observe the screen during the run, then read the pipeline's records for the inside measurement.
         let mut photodiodes = lines.map(Photodiode::new);
-        let outcome = observe(&mut photodiodes, &experiment)?;
+        let outcome = observe(&mut photodiodes, &experiment, watcher)?;
         let measured = photodiodes.map(|photodiode| self.compared(&tracker, &outcome, &sightings, photodiode));
         // Report the error of the first line that has one.
         let mut errors = Vec::new();
@@ -328,11 +327,16 @@ fn brightness(colour: [u8; 3]) -> u32 {
 }
 
 /// Runs an experiment and samples the photodiodes. A run that is too short to fill the pipeline is not an error.
-fn observe(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outcome, StudyError> {
+fn observe(
+    photodiodes: &mut [Photodiode],
+    experiment: &Experiment,
+    watcher: &mut dyn Watcher,
+) -> Result<Outcome, StudyError> {
     let machine = experiment.build()?;
     photodiodes.iter().try_for_each(|photodiode| photodiode.check(machine.record().display()))?;
     let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.fields)).collect();
     let result = experiment.run_stopping(&every, |period, machine| {
+        watcher.progress(period.0, experiment.fields);
         // The stop comes before the retrace that ends the previous period.
         if let Some(over) = period.before(2) {
             photodiodes.iter_mut().for_each(|photodiode| photodiode.sample(over, machine.record()));
@@ -394,15 +398,14 @@ mod tests {
         let rig = Rig { passes: 4, ..Rig::assumed(TrackerConfig::optical_ceiling()) };
         let (machine, pipeline) = (MachineConfig::small_hmd(), Arc::new(RenderingControl::stereo()));
         let lines = [0, 100, 239];
-        let (together, _) =
-            rig.measure_lines(&machine, pipeline.clone(), lines, &StopFlag::default()).expect("it shows frames");
+        let (together, _) = rig.measure_lines(&machine, pipeline.clone(), lines, &mut ()).expect("it shows frames");
         for (line, together) in lines.into_iter().zip(together) {
             let rig = Rig { rig: PendulumRig { photodiode_line: line, ..rig.rig }, ..rig.clone() };
             let query = RigQuery { rig, machine: machine.clone(), pipeline: pipeline.clone() };
             let alone = query.run(&mut ()).expect("it shows frames").measured;
             assert_eq!(format!("{alone:?}"), format!("{together:?}"), "line {line}");
         }
-        let refused = rig.measure_lines(&machine, pipeline, [0, 240], &StopFlag::default());
+        let refused = rig.measure_lines(&machine, pipeline, [0, 240], &mut ());
         let refused = refused.expect_err("there are 240 lines").to_string();
         assert_eq!(refused, "line of the photodiode: expected a line from 0 to 239, found 240");
     }

@@ -1,7 +1,7 @@
 //! Colours of the stages, the same in every drawing: one hue for each stage, in three tints.
 //!
-//! The hues can be distinguished with common kinds of colour blindness, and in grey their lightness differs. The live
-//! page repeats the middle tints in its style sheet, which a test compares.
+//! The fills of the stages can be distinguished with common kinds of colour blindness. The live page repeats them in its
+//! style sheet, which a test compares.
 
 use pxpl5_gp::Stage;
 
@@ -65,7 +65,7 @@ mod tests {
         })
     }
 
-    /// Matrices of protanopia and deuteranopia (Machado, Oliveira and Fernandes 2009, severity 1), and normal vision.
+    /// Matrices of normal vision, protanopia and deuteranopia (Machado, Oliveira and Fernandes 2009, severity 1).
     const VISIONS: [[[f64; 3]; 3]; 3] = [
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         [[0.152_286, 1.052_583, -0.204_868], [0.114_503, 0.786_281, 0.099_216], [-0.003_882, -0.048_116, 1.051_998]],
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn stages_can_be_distinguished_with_common_kinds_of_colour_blindness() {
+    fn fills_of_stages_can_be_distinguished_with_common_kinds_of_colour_blindness() {
         for vision in VISIONS {
             let seen = |colour: &str| {
                 let rgb = linear(colour);

@@ -4,6 +4,7 @@
 use super::run::widths;
 use super::settings::{FEWER_FRAMES, WalkArgs};
 use crate::error::CliError;
+use crate::interrupt;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
 use crate::progress::Progress;
@@ -41,7 +42,8 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let study = WalkComparisonQuery(WalkQuery { scene, plan, has_pictures: false });
     let comparison = Progress::new("walks", args.walk.quiet).run_within(args.walk.budget, FEWER_FRAMES, &study)?;
     let json = json_text(&comparison)?;
-    if let Some(mut folder) = folder {
+    // A part of the walks does not replace the files of a whole comparison.
+    if let Some(mut folder) = folder.filter(|_| !interrupt::flag().is_stopped()) {
         folder.put("comparison.json", json.as_bytes())?;
         folder.put("rows.csv", csv_of(&comparison.rows).as_bytes())?;
         folder.commit()?;

@@ -2,6 +2,7 @@
 
 use super::settings::{FEWER_FRAMES, WalkArgs, put};
 use crate::error::CliError;
+use crate::interrupt;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
 use crate::progress::Progress;
@@ -47,7 +48,8 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     let study = WalkQuery { scene, plan, has_pictures: args.out.is_some() };
     let outcome = Progress::new("frames", args.walk.quiet).run_within(args.walk.budget, FEWER_FRAMES, &study)?;
     let json = json_text(&outcome)?;
-    if let Some(mut folder) = folder {
+    // A part of the walk does not replace the files of a whole one.
+    if let Some(mut folder) = folder.filter(|_| !interrupt::flag().is_stopped()) {
         folder.put("report.json", json.as_bytes())?;
         folder.put("experiment.toml", experiment(&outcome, &study.scene).as_bytes())?;
         folder.put("frames.csv", frames_csv(&outcome).as_bytes())?;

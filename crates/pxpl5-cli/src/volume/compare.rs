@@ -3,6 +3,7 @@
 
 use super::settings::{SMALLER, VolumeSettingArgs};
 use crate::error::CliError;
+use crate::interrupt;
 use crate::numbers::{count_of, whole};
 use crate::output::OutputFolder;
 use crate::progress::Progress;
@@ -48,6 +49,8 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let study = VolumeComparisonQuery { volume: args.volume.query(&settings)?, viewpoint };
     let comparison = Progress::new("volumes", options.quiet).run_within(options.budget, SMALLER, &study)?;
     let json = json_text(&comparison)?;
+    // A part of the variants does not replace the files of a whole comparison.
+    folder = folder.filter(|_| !interrupt::flag().is_stopped());
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;
         folder.put("rows.csv", rows_csv(&comparison).as_bytes())?;

@@ -200,7 +200,12 @@ impl Study for CompareQuery {
             commit: program::commit(),
             config_hash: any.experiment(Arc::clone(&common.scene)).config_hash().to_string(),
             settings: self.header()?.settings,
-            warnings: any.warnings(),
+            // What the importer changed belongs to all rows, too.
+            warnings: any
+                .warnings()
+                .into_iter()
+                .chain(common.scene.warnings().iter().map(ToString::to_string))
+                .collect(),
             machine: any.machine.preset.clone(),
             boards: any.machine.boards(),
             scene: common.scene.name().to_owned(),
@@ -410,7 +415,8 @@ impl CompareQuery {
                 let mut plain = self.shared.clone();
                 plain.settings.retain(|key, _| key != "head.raster" && !key.starts_with("head.reprojection."));
                 let Ok(plan) = compared.plan(&plain, self.seeds[0]) else { return Err(error.into()) };
-                let row = ComparisonRow::of(compared, plan.pipeline.as_ref(), &[], self.sampling(&plan)?);
+                let none = Sampling { seeds: 0, ..self.sampling(&plan)? };
+                let row = ComparisonRow::of(compared, plan.pipeline.as_ref(), &[], none);
                 return Ok(ComparisonRow { failure: Some(error.to_string()), ..row });
             }
         };

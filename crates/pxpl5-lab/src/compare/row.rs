@@ -83,7 +83,6 @@ pub struct ComparisonRow {
     /// counts.
     pub head_to_light_ms: Statistics,
     /// Percentiles of the same latencies.
-    #[serde(default)]
     pub head_to_light_percentiles_ms: Percentiles,
     /// Latency from the measured orientation of the head until the display lights the middle of the picture, in
     /// milliseconds. At scan-out, cube faces get the newest orientation. Other pictures show the orientation of the
@@ -117,7 +116,6 @@ pub struct ComparisonRow {
     pub seed_px: Vec<f64>,
     /// Mean error minus the mean error of the best row, in pixels. Both rows have the same motions, so the interval is
     /// narrower than those of the two means. `None` if the comparison has no best row, and for rows that are not ranked.
-    #[serde(default)]
     pub above_best_px: Option<MeanInterval>,
     /// Share of the picture, 0 to 1, that the scene covers, as a mean over the seeds. `None` if errors are evaluated at a
     /// fixed distance, or if the whole scene moves with the head.
@@ -144,8 +142,8 @@ pub struct ComparisonRow {
     /// Reason for missing results, with the number of triangles that the pipeline could draw. `None` if no result is
     /// missing.
     pub failure: Option<String>,
-    /// Seconds that the runs took on this computer.
-    pub host_seconds: f64,
+    /// Seconds that the runs took on this computer. `None` without a clock.
+    pub host_seconds: Option<f64>,
     /// Warnings about times of the first seed that a small change moves by a whole field. Empty for resumed rows.
     #[serde(skip)]
     pub near_edges: Vec<String>,

@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Name and version of the JSON layout of the rows.
-pub const ROWS_SCHEMA: &str = "pxpl5-comparison-rows/1";
+pub const ROWS_SCHEMA: &str = "pxpl5-comparison-rows/2";
 
 /// Name of the folder with the finished rows, inside the folder of a comparison.
 pub const ROWS_FOLDER: &str = "rows";

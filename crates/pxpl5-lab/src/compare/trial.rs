@@ -32,7 +32,7 @@ pub(super) struct Trial {
     pub(super) late_regions: usize,
     /// Warnings about results near an edge ([`near_edges`]).
     pub(super) near_edges: Vec<String>,
-    pub(super) host_seconds: f64,
+    pub(super) host_seconds: Option<f64>,
     pub(super) dry_run: Option<Arc<DryRun>>,
     /// Last picture of the run. `None` if the run computed no pixels or showed no picture.
     pub(super) picture: Option<LastPicture>,
@@ -94,7 +94,7 @@ impl Trial {
             shown: report.pictures,
             late_regions: report.late_regions,
             near_edges: if is_timed { near_edges(outcome) } else { Vec::new() },
-            host_seconds: outcome.host_seconds().unwrap_or_default(),
+            host_seconds: outcome.host_seconds(),
             dry_run: outcome.experiment().dry_run().cloned(),
             picture: LastPicture::of(outcome, report.ends_complete).filter(|_| is_timed),
         }

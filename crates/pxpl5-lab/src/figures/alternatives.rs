@@ -11,7 +11,7 @@ use crate::error::StudyError;
 use crate::estimate::Estimate;
 use crate::interpretations::{InterpretationQuery, Interpretations};
 use crate::parallel;
-use crate::study::Study;
+use crate::study::{Study, check};
 use pxpl5_run::{FinishedRegions, Level};
 use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::{SharedWatcher, Watcher};
@@ -112,6 +112,8 @@ impl Study for AlternativeQuery {
         let ((other_rule, of_code), ((fifo, host), (interpretations, times))) = parallel::both(both, || {
             parallel::both(|| parallel::both(fifo, host), || parallel::both(interpretations, of_application))
         });
+        // After a stop, the ranking is unfinished.
+        check(&watcher.stop())?;
         Ok(Alternatives {
             of_code: of_code?,
             other_rule: other_rule?,

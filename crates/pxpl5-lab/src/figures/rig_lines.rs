@@ -82,7 +82,8 @@ fn under_lines<const N: usize>(
     lines: [u32; N],
 ) -> Result<([RigMeasurement; N], bool)> {
     let rig = Rig::assumed(TrackerConfig::optical_ceiling());
-    let (measured, outcome) = rig.measure_lines(machine, Arc::new(interpretation.pipeline()), lines, stop)?;
+    let (measured, outcome) =
+        rig.measure_lines(machine, Arc::new(interpretation.pipeline()), lines, &mut stop.clone())?;
     Ok((measured, outcome.record().met_full_store()))
 }
 

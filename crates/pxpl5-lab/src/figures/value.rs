@@ -67,5 +67,5 @@ pub(super) fn scene_named(name: &str) -> Result<Arc<Scene>> {
 
 /// Returns the number of complete pictures per second, or 0 if no picture was shown.
 pub(super) fn rate_hz(summary: &Summary) -> f64 {
-    summary.updates_hz.unwrap_or_default()
+    summary.updates_hz.unwrap_or(f64::NAN)
 }

@@ -13,7 +13,7 @@
 use super::{compared_ms, deviation_percent, summarise};
 use crate::edges::to_other_retraces;
 use pphigs::RegionBinning;
-use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Slats, Summary};
+use pxpl5_run::{Experiment, ExperimentError, Level, Registry, RenderingControl, Slats, Summary};
 use std::any::Any;
 use std::fmt::{Display, Formatter, Result};
 
@@ -22,8 +22,6 @@ use std::fmt::{Display, Formatter, Result};
 pub struct LevelChoice {
     /// Chosen level.
     pub level: Level,
-    /// Estimate of the deviation from the cycle level, in percent. It is meant to be too large.
-    pub expected_percent: f64,
     /// Reason, for a reader.
     pub reason: String,
 }
@@ -111,14 +109,19 @@ pub fn choose_level(
     needs_events: bool,
 ) -> (LevelChoice, Experiment) {
     let cycle = |reason: String| {
-        let choice = LevelChoice { level: Level::Cycle, expected_percent: 0.0, reason };
+        let choice = LevelChoice { level: Level::Cycle, reason };
         (choice, experiment.clone().level(Level::Cycle))
     };
     let forms = match Forms::of(registry, experiment) {
         Ok(forms) => forms,
         Err(reason) => return cycle(reason),
     };
-    let slats: Option<&Slats> = (experiment.pipeline().as_ref() as &dyn Any).downcast_ref();
+    let pipeline = experiment.pipeline().as_ref() as &dyn Any;
+    let slats: Option<&Slats> = pipeline.downcast_ref();
+    // Other closed forms were never compared with the cycle level.
+    if slats.is_none() && !pipeline.is::<RenderingControl>() {
+        return cycle(format!("the deviation of the closed form of {} is not known", experiment.pipeline().name()));
+    }
     let form_ms = FORM_MS[slats.map_or(2, |slats| usize::from(slats.binning != RegionBinning::All))];
     let is_loaded = slats.is_none() && forms.spread_percent > LOADED_PERCENT;
     let expected = |fixed_ms: f64| forms.spread_percent + 100.0 * fixed_ms / forms.value_ms;
@@ -135,11 +138,8 @@ pub fn choose_level(
         _ if needs_events => "events are wanted".to_owned(),
         _ if is_loaded => "the closed form is not exact under this load".to_owned(),
         percent if percent <= within_percent => {
-            let choice = LevelChoice {
-                level: Level::Analytic,
-                expected_percent: percent,
-                reason: format!("it may be off by {percent:.1} %, and no retrace is near"),
-            };
+            let reason = format!("it may be off by {percent:.1} %, and no retrace is near");
+            let choice = LevelChoice { level: Level::Analytic, reason };
             return (choice, with_times(experiment, Level::Analytic, 1.0));
         }
         percent => format!("the closed form may be off by {percent:.1} %"),
@@ -149,6 +149,6 @@ pub fn choose_level(
         return cycle(format!("mean times may be off by {percent:.1} %, {:.2} ms being compared", forms.value_ms));
     }
     let reason = format!("it may be off by {percent:.1} %; {why_not}");
-    let choice = LevelChoice { level: Level::Transaction, expected_percent: percent, reason };
+    let choice = LevelChoice { level: Level::Transaction, reason };
     (choice, with_times(experiment, Level::Transaction, 1.0))
 }

@@ -96,7 +96,7 @@ impl LevelRecord {
 
     /// Returns the table of README.md in Markdown: errors of each level, and its speed without pixels.
     pub fn table(&self) -> String {
-        let percent = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1} %"));
+        let percent = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2} %"));
         let row = |level: &LevelReport| {
             let spread = level.from_cycle_percent;
             let off = level.speeds.iter().find(|speed| speed.pixels == Pixels::Off);

@@ -6,6 +6,7 @@
 use super::Sweep;
 use crate::Plan;
 use crate::estimate::{Estimate, RunWork};
+use pxpl5_measure::Measure;
 use pxpl5_run::{Experiment, Level};
 use std::collections::BTreeMap;
 
@@ -41,10 +42,11 @@ impl Sweep {
         let nothing = Estimate { bytes: NO_RUN_BYTES, seconds: POINT };
         let Ok(plan) = self.plan(point) else { return nothing };
         let Ok(scene) = self.scene(&plan) else { return nothing };
-        if plan.level == Level::Analytic {
+        let needs_events = plan.measure.iter().any(Measure::needs_events);
+        let (experiment, _) = plan.with_chosen_level(scene, needs_events);
+        if experiment.level == Level::Analytic {
             return nothing;
         }
-        let experiment = plan.experiment(scene);
         let mut work = RunWork::of(&experiment, true);
         if let Some(pictures_a_field) = pictures_from_closed_form(&plan, experiment) {
             work = RunWork { pictures_a_field, uses_closed_form: true, ..work };

@@ -10,7 +10,7 @@ pub struct SpeedAndError {
     pub name: String,
     /// Number of simulated display fields per second of computing time.
     pub fields_per_host_second: f64,
-    /// Mean absolute error over the published figures that were not used to fit parameters (free checks), in per cent.
+    /// Mean absolute error over the free and interpretation rows of the published figures, in per cent.
     pub mean_error_percent: f64,
 }
 
@@ -23,7 +23,7 @@ pub fn level_chart(levels: &[SpeedAndError]) -> String {
     let axes = ChartAxes {
         title: "Speed against error at each level".to_owned(),
         across: "simulated fields per host second".to_owned(),
-        up: "mean error of the free checks, %".to_owned(),
+        up: "mean error of free and interpretation rows, %".to_owned(),
     };
     let series = levels.iter().map(series_of).chain(front(levels)).collect();
     Chart { axes, across: AxisScale::Decades, up: AxisScale::FromZero, series, size: ChartSize::Screen }.svg()

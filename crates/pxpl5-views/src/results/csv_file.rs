@@ -53,8 +53,11 @@ pub fn csv_of<R: Serialize>(rows: &[R]) -> String {
     csv_table(&columns, rows.iter().map(line))
 }
 
+/// Lists with an entry for each field or pixel.
+const GROWING: [&str; 2] = ["by_field", "picture"];
+
 /// Returns all plain values within a JSON value by their path. In a path, an object in a list appears by the value of its
-/// member `cause` or `kind`. Lists of plain values are left out.
+/// member `cause` or `kind`, and other entries by their number. Lists that grow with the run are left out.
 pub fn flat(value: Value) -> Vec<(String, Value)> {
     let mut row = Vec::new();
     flatten("", value, &mut row);
@@ -64,15 +67,17 @@ pub fn flat(value: Value) -> Vec<(String, Value)> {
 fn flatten(path: &str, value: Value, row: &mut Vec<(String, Value)>) {
     match value {
         Value::Object(inner) => {
-            for (key, value) in inner {
+            for (key, value) in inner.into_iter().filter(|(key, _)| !GROWING.contains(&key.as_str())) {
                 let path = if path.is_empty() { key } else { format!("{path}.{key}") };
                 flatten(&path, value, row);
             }
         }
         Value::Array(list) => {
-            for mut value in list {
-                let Some((name, object)) = name_of(&value).zip(value.as_object_mut()) else { continue };
-                object.retain(|key, _| key != "cause" && key != "kind");
+            for (number, mut value) in list.into_iter().enumerate() {
+                let name = name_of(&value).unwrap_or_else(|| number.to_string());
+                if let Some(object) = value.as_object_mut() {
+                    object.retain(|key, _| key != "cause" && key != "kind");
+                }
                 flatten(&format!("{path}.{name}"), value, row);
             }
         }
@@ -106,10 +111,10 @@ mod tests {
     fn columns_are_the_paths_of_plain_values_and_missing_values_are_empty() {
         let causes = json!([{"cause": "latency", "px": 2.5}, {"cause": null, "px": 0.5}]);
         let rows = [
-            json!({"name": "a, b", "error": {"mean": null}, "list": [1, 2], "host_seconds": 0.5}),
+            json!({"name": "a, b", "error": {"mean": null}, "rates_hz": [60, 15.5], "by_field": [1], "host_seconds": 0.5}),
             json!({"name": "c", "error": null, "causes": causes}),
         ];
-        let expected = "name,error.mean,causes.latency.px,causes.interaction.px\n\"a, b\",,,\nc,,2.5,0.5\n";
+        let expected = "name,error.mean,rates_hz.0,rates_hz.1,causes.latency.px,causes.interaction.px\n\"a, b\",,60,15.5,,\nc,,,,2.5,0.5\n";
         assert_eq!(csv_of(&rows), expected);
     }
 
