@@ -74,7 +74,6 @@ pub struct AddressUnit {
 }
 
 impl AddressUnit {
-    #[must_use]
     pub const fn new(timing: &ArpTiming) -> Self {
         let geometry = FaceGeometry { texels: timing.face_texels as u32, guard: timing.guard_texels as u32 };
         Self { geometry, quotient_bits: timing.quotient_bits, weight_bits: timing.weight_bits }

@@ -73,7 +73,6 @@ impl CubeFace {
     }
 
     /// Returns the face on an axis (0 to 2), on the negative or positive side of the eye.
-    #[must_use]
     pub(crate) const fn on(axis: usize, is_negative: bool) -> Self {
         Self::ALL[2 * axis + is_negative as usize]
     }

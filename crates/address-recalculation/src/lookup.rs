@@ -132,7 +132,6 @@ impl<'a> Lookup<'a> {
     /// # Panics
     ///
     /// Panics if faces do not have the size of the configuration.
-    #[must_use]
     pub fn new(
         config: &ArpConfig,
         table: &'a LensTable,

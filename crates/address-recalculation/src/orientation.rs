@@ -111,7 +111,6 @@ pub struct OrientationLatch {
 
 impl OrientationLatch {
     /// Creates a register that contains the initial orientation. Each component of a matrix has `matrix_bits` bits.
-    #[must_use]
     pub fn new(matrix_bits: u64) -> Self {
         let first = (Time::ZERO, Orientation::IDENTITY.words(matrix_bits));
         Self { matrix_bits, loaded: vec![first], loads: 0, refused: 0 }

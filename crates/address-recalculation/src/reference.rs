@@ -66,7 +66,6 @@ pub struct ReferencePipeline {
 }
 
 impl ReferencePipeline {
-    #[must_use]
     pub fn new(config: &ArpConfig, table: LensTable) -> Self {
         let timing = &config.timing;
         let first = [Stage::Table, Stage::Multiply, Stage::AddFirst, Stage::AddSecond, Stage::Face];

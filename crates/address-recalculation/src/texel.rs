@@ -16,7 +16,6 @@ pub struct TexelFormat {
 }
 
 impl TexelFormat {
-    #[must_use]
     pub const fn new(timing: &ArpTiming) -> Self {
         Self { colour_bits: timing.colour_bits as u32, depth_bits: timing.depth_bits as u32 }
     }
@@ -67,7 +66,6 @@ pub struct FaceSet {
 
 impl FaceSet {
     /// Creates six empty faces with `texels` texels along an edge.
-    #[must_use]
     pub fn new(texels: u32, format: TexelFormat) -> Self {
         Self { texels, format, words: vec![0; 6 * (texels * texels) as usize] }
     }

@@ -34,13 +34,11 @@ impl TransformCost {
     pub const PASS: Self = Self { passes: 1, ..Self::NOTHING };
 
     /// Returns the work for primitives, without the start of the pass and without bin entries.
-    #[must_use]
     pub const fn primitives(counts: PrimitiveCounts) -> Self {
         Self { triangles: counts.triangles as u64, spheres: counts.spheres as u64, ..Self::NOTHING }
     }
 
     /// Returns the work before the first primitive of a pass over `structures`, for one eye.
-    #[must_use]
     pub fn beginning<'a>(structures: impl IntoIterator<Item = &'a DisplayStructure>) -> Self {
         structures.into_iter().fold(Self::PASS, |cost, structure| Self {
             structures: cost.structures + 1,
@@ -51,7 +49,6 @@ impl TransformCost {
 
     /// Returns the work of a whole pass over a display list for one eye, without bin entries. `counts` are the numbers
     /// of primitives of the graphics processor.
-    #[must_use]
     pub fn pass_over(list: &DisplayList, counts: PrimitiveCounts) -> Self {
         let begin = Self::beginning(&list.structures);
         Self { triangles: counts.triangles.into(), spheres: counts.spheres.into(), ..begin }

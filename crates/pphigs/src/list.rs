@@ -161,7 +161,6 @@ impl Share {
     /// # Panics
     ///
     /// Panics if `of` is zero. A valid configuration has at least one graphics processor.
-    #[must_use]
     pub fn new(list: Arc<DisplayList>, index: usize, of: usize) -> Self {
         assert!(of > 0, "primitives need a graphics processor");
         let triangles = 0..dealt(list.triangles.len(), index, of);

@@ -74,7 +74,6 @@ pub(crate) struct ViewKey {
 
 impl RecentViews {
     /// Creates an empty cache for `views` views, at least one.
-    #[must_use]
     pub fn keeping(views: usize) -> Self {
         Self { views: Mutex::default(), kept: views.max(1), named: OnceLock::new() }
     }

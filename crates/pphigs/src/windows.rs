@@ -46,7 +46,6 @@ impl MemoryPart {
     pub const WHOLE: Self = Self { number: 0, of: 1 };
 
     /// Returns part `number` (modulo `of`) of `of` equal parts. `of` is limited to 1 to 16.
-    #[must_use]
     pub const fn of(number: usize, of: u8) -> Self {
         let of = if of == 0 { 1 } else { of };
         let of = if of as u32 > MAX_KEPT { MAX_KEPT as u8 } else { of };

@@ -27,7 +27,6 @@ pub struct Load {
 
 impl Load {
     /// Returns the work for one structure whose triangles touch every region and are never clipped.
-    #[must_use]
     pub fn full_screen(triangles: u32, regions: usize) -> Self {
         let triangles = f64::from(triangles);
         Self { triangles, structures: 1.0, bins: vec![[triangles, 0.0]; regions], ..Self::default() }

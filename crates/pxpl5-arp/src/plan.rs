@@ -109,7 +109,6 @@ impl PathSettings for WalkPlan {
 impl WalkPlan {
     /// Returns the default plan: objects cut at the borders of cells and warped, an ideal renderer, half a minute at 1
     /// m/s.
-    #[must_use]
     pub fn usual() -> Self {
         Self {
             walk: WalkNumbers::PAPERS,

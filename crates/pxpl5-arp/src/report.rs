@@ -124,7 +124,6 @@ pub struct WalkLatency {
 
 impl ArpReport {
     /// Creates the report of a viewer's walk, without the counts of a view ([`Self::with_view`]).
-    #[must_use]
     pub fn of(world: &World, settings: &WalkSettings, tally: &WalkTally) -> Self {
         let timing = &settings.display.timing;
         let percentiles = |angles: &[f64]| TearWidths::of(angles, settings.texel_deg());

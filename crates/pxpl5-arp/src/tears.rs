@@ -31,7 +31,6 @@ fn holders(world: &World, shown: &[Option<Content>]) -> Vec<Option<usize>> {
 }
 
 impl Tears {
-    #[must_use]
     pub fn of(world: &World, shown: &[Option<Content>]) -> Self {
         let holders = holders(world, shown);
         let mut tears = Self::default();

@@ -1,9 +1,8 @@
 //! The command `pxpl5 figures`, which compares every published figure with a simulation.
 
-mod address_recalculation;
 mod args;
+mod documented;
 mod table;
-mod volumetric;
 
 pub(crate) use args::FiguresArgs;
 
@@ -26,8 +25,7 @@ use table::{fresh, titled};
 
 pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     match args.group.as_deref() {
-        Some(ADDRESS_RECALCULATION) => return address_recalculation::run(&args),
-        Some(VOLUMETRIC) => return volumetric::run(&args),
+        Some(name @ (ADDRESS_RECALCULATION | VOLUMETRIC)) => return documented::run(name, &args),
         Some(name) => return of_group(name, &args),
         None if args.out.is_some() => {
             return Err(CliError::usage(format!("--out: expected --group {ADDRESS_RECALCULATION} or {VOLUMETRIC}")));
@@ -71,7 +69,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     if intervals {
         figures.groups.iter().try_for_each(|group| print(&titled(group.title, &group.rows)))?;
     }
-    volumetric::print_table()?;
+    documented::print_volumes()?;
     print(&format!("\n{}\n", figures.headline()))?;
     if intervals { Ok(()) } else { print(WITHOUT_INTERVALS) }
 }

@@ -2,6 +2,7 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::numbers::dash;
 use crate::output::OutputFile;
 use crate::progress::Progress;
 use crate::terminal::{json_text, laid_out, print};
@@ -112,19 +113,18 @@ const fn pixels(pixels: pxpl5::Pixels) -> &'static str {
 }
 
 fn text(record: &LevelRecord) -> String {
-    let unknown = || "-".to_owned();
     let heads = ["level", "published", "against the cycle level: median (5 to 95 %)", "pixels off", "lazy", "all"];
     let mut lines = vec![heads.map(str::to_owned).to_vec()];
     // One line for each level: errors, then the speed for each choice of pixels.
     for report in &record.levels {
-        let published = report.published_error_percent.map_or_else(unknown, |error| format!("{error:.1} %"));
-        let from_cycle = report.from_cycle_percent.map_or_else(unknown, |spread| {
+        let published = report.published_error_percent.map_or_else(dash, |error| format!("{error:.1} %"));
+        let from_cycle = report.from_cycle_percent.map_or_else(dash, |spread| {
             format!("{:.2} % ({:.2} to {:.2})", spread.median, spread.low_5, spread.high_95)
         });
         let speeds = [pxpl5::Pixels::Off, pxpl5::Pixels::Lazy, pxpl5::Pixels::All].map(|choice| {
             let speed = report.speeds.iter().find(|speed| speed.pixels == choice);
             let speed = speed.and_then(|speed| speed.simulated_seconds_per_second);
-            speed.map_or_else(unknown, |speed| format!("{speed:.1}"))
+            speed.map_or_else(dash, |speed| format!("{speed:.1}"))
         });
         lines.push([vec![report.name().to_owned(), published, from_cycle], speeds.to_vec()].concat());
     }

@@ -29,6 +29,16 @@ pub(crate) fn were(count: u64, name: &str) -> String {
     format!("{} {}", count_of(count, name), if count == 1 { "was" } else { "were" })
 }
 
+/// Text for a missing value.
+pub(crate) fn dash() -> String {
+    "-".to_owned()
+}
+
+/// Formats a number, or [`dash`] if it is not finite.
+pub(crate) fn number(value: f64, digits: usize) -> String {
+    if value.is_finite() { format!("{value:.digits$}") } else { dash() }
+}
+
 pub(crate) fn confidence(text: &str) -> Result<f64, String> {
     let found = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share < 1.0);
     found.ok_or_else(|| format!("expected a number between 0 and 1, such as 0.95, found {text}"))

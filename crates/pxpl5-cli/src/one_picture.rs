@@ -1,6 +1,7 @@
 //! The option `--picture`: one picture of a run, and why it took its time.
 
 use crate::error::CliError;
+use crate::numbers::dash;
 use pxpl5::run::in_ms as ms;
 use pxpl5::{CriticalPath, Outcome, PictureNumber, PictureResult, PictureTimes, Report, Time};
 use std::fmt::Write;
@@ -40,7 +41,7 @@ pub(crate) fn text(outcome: &Outcome, report: &Report, times: &PictureTimes) -> 
         (if times.is_shown() { &field } else { "due" }, Some(times.shown_at)),
     ];
     for (what, at) in instants {
-        let _ = writeln!(text, "  {what:<28} {}", at.map_or_else(|| "-".to_owned(), ms));
+        let _ = writeln!(text, "  {what:<28} {}", at.map_or_else(dash, ms));
     }
     let Some(path) = CriticalPath::of_picture(outcome, times) else { return text };
     let usual = report.critical_path.as_ref();
@@ -48,7 +49,7 @@ pub(crate) fn text(outcome: &Outcome, report: &Report, times: &PictureTimes) -> 
     let _ = writeln!(text, "  {:<50} {:>14} {:>14}", heads[0], heads[1], heads[2]);
     for part in &path.parts {
         let of_usual = usual.and_then(|usual| usual.parts.iter().find(|other| other.resource == part.resource));
-        let of_usual = of_usual.map_or_else(|| "-".to_owned(), |other| format!("{:.3} ms", other.ms));
+        let of_usual = of_usual.map_or_else(dash, |other| format!("{:.3} ms", other.ms));
         let _ = writeln!(text, "  {:<50} {:>11.3} ms {of_usual:>14}", part.resource.about(), part.ms);
     }
     let _ = writeln!(text, "  back from the screen: {}", path.chain.join("; "));

@@ -2,7 +2,7 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::numbers::{count_of, whole};
+use crate::numbers::{count_of, number, whole};
 use crate::one_picture;
 use crate::output::{OutputFolder, png, timeline};
 use crate::progress::Progress;
@@ -195,7 +195,7 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
         let _ = writeln!(
             text,
             "Head to light: {} ms, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}); 50, 95, 99 %: {} ms.",
-            number_or_dash(end_to_end.total_ms, 2),
+            number(end_to_end.total_ms, 2),
             end_to_end.n,
             percentiles(&report.percentiles_ms.head_to_light, 2),
         );
@@ -209,10 +209,10 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
         let _ = writeln!(
             text,
             "Pixel error (display {display}): mean {} px, median {} px, 95 % {} px, mean {} degrees, n {}, {:.1} % of it outside of the view{covered}.",
-            number_or_dash(error.pixels.mean, 2),
-            number_or_dash(error.pixels.p50, 2),
-            number_or_dash(error.pixels.p95, 2),
-            number_or_dash(error.degrees.mean, 3),
+            number(error.pixels.mean, 2),
+            number(error.pixels.p50, 2),
+            number(error.pixels.p95, 2),
+            number(error.degrees.mean, 3),
             error.pixels.n,
             error.outside as f64 / error.evaluated.max(1) as f64 * 100.0
         );
@@ -247,11 +247,6 @@ fn out_of_view(report: &Report) -> Option<String> {
         "the scene covers only {:.1} % of the picture, so the error is that of the background; --place content turns the head towards it",
         share * 100.0
     ))
-}
-
-/// Formats a number. The result for NaN is "-".
-fn number_or_dash(value: f64, digits: usize) -> String {
-    if value.is_nan() { "-".to_owned() } else { format!("{value:.digits$}") }
 }
 
 /// Returns the plan of an experiment file. Fails for sweeps and for the analytic level.

@@ -17,7 +17,8 @@ use crate::error::{BUSY, CliError};
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
 use crate::version::LONG_VERSION;
-use pxpl5::sweep::{PointSample, Sweep, TaskResources};
+use pxpl5::sweep::{Sweep, TaskResources};
+use pxpl5_sim::figures::filled;
 use std::path::{Path, PathBuf};
 
 /// A sweep's inputs, outputs and division into tasks of Slurm.
@@ -50,104 +51,50 @@ impl Written {
     }
 }
 
+/// The scripts with marks, which are replaced by values.
+const SCRIPTS: [(&str, &str); 3] = [
+    ("array.sh", include_str!("slurm/array.sh.in")),
+    ("merge.sh", include_str!("slurm/merge.sh.in")),
+    ("submit.sh", include_str!("slurm/submit.sh.in")),
+];
+
+/// Writes the scripts, all or none. Their paths are absolute, because Slurm chooses the working directory of a task.
 pub(crate) fn write(sweep: &Sweep, jobs: &Jobs, folder: &Path) -> Result<Written, CliError> {
     let sample = sweep.sample();
     let resources = TaskResources::of(sample, jobs.tasks, jobs.threads);
-    let scripts = Scripts::of(jobs, sample, resources)?;
+    let absolute = |path: &Path| {
+        let found = std::path::absolute(path);
+        let found = found.map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
+        Ok::<_, CliError>(quoted(&found.display().to_string()))
+    };
+    let command = std::env::current_exe();
+    let command = command.map_err(|error| CliError::failure(format!("the path of this command: {error}")))?;
+    let marks = [
+        ("made", format!("# Written by pxpl5 {LONG_VERSION} (pxpl5 sweep --slurm).")),
+        ("points", sample.points.to_string()),
+        ("mean_s", format!("{:.3}", sample.mean_s)),
+        ("most_s", format!("{:.3}", sample.most_s)),
+        ("most_mb", format!("{:.0}", sample.most_bytes / 1e6)),
+        ("tasks", resources.tasks.to_string()),
+        ("threads", resources.threads.to_string()),
+        ("minutes", resources.minutes.to_string()),
+        ("megabytes", resources.megabytes.to_string()),
+        ("merge_minutes", resources.merge_minutes.to_string()),
+        ("merge_megabytes", resources.merge_megabytes.to_string()),
+        ("busy", BUSY.to_string()),
+        // Paths and settings come last, because they may hold marks of their own.
+        ("command", absolute(&command)?),
+        ("here", absolute(Path::new("."))?),
+        ("out", absolute(jobs.out)?),
+        ("file", absolute(jobs.file)?),
+        ("sets", jobs.sets.iter().map(|set| format!(" --set {}", quoted(set))).collect()),
+    ];
     let mut output = OutputFolder::open(folder, "--slurm")?;
-    // All three scripts appear together, or none.
-    for (name, text) in [("array.sh", &scripts.array), ("merge.sh", &scripts.merge), ("submit.sh", &scripts.submit)] {
-        output.put(name, text.as_bytes())?;
+    for (name, text) in SCRIPTS {
+        output.put(name, filled(text, &marks).as_bytes())?;
     }
     output.commit()?;
     Ok(Written { resources, submit: folder.join("submit.sh") })
-}
-
-struct Scripts {
-    array: String,
-    merge: String,
-    submit: String,
-}
-
-impl Scripts {
-    /// Builds the scripts with absolute paths, because Slurm chooses the working directory of a task.
-    fn of(jobs: &Jobs, sample: PointSample, resources: TaskResources) -> Result<Self, CliError> {
-        // Relative paths would depend on the folder in which Slurm starts a task.
-        let absolute = |path: &Path| {
-            let found = std::path::absolute(path);
-            let found = found.map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
-            Ok::<_, CliError>(quoted(&found.display().to_string()))
-        };
-        let command = std::env::current_exe();
-        let command = command.map_err(|error| CliError::failure(format!("the path of this command: {error}")))?;
-        let (command, file, out) = (absolute(&command)?, absolute(jobs.file)?, absolute(jobs.out)?);
-        let here = absolute(Path::new("."))?;
-        let sets: String = jobs.sets.iter().map(|set| format!(" --set {}", quoted(set))).collect();
-        // The command is the executable of this process; PXPL5 in the environment of a job overrides the path.
-        let TaskResources { tasks, threads, minutes, megabytes, merge_minutes, merge_megabytes } = resources;
-        let PointSample { points, mean_s, most_s, most_bytes } = sample;
-        let made = format!("# Written by pxpl5 {LONG_VERSION} (pxpl5 sweep --slurm).");
-        // Each task runs one shard, and retries while a lost copy of itself still holds the folder.
-        let array = format!(
-            "#!/bin/bash
-{made}
-# {points} points, estimated: {mean_s:.3} s each, {most_s:.3} s and {:.0} MB at most.
-#SBATCH --job-name=pxpl5-sweep
-#SBATCH --array=1-{tasks}
-#SBATCH --cpus-per-task={threads}
-#SBATCH --time={minutes}
-#SBATCH --mem={megabytes}M
-#SBATCH --requeue
-#SBATCH --open-mode=append
-#SBATCH --output=array-%a.log
-set -u
-pxpl5=${{PXPL5:-{command}}}
-out={out}
-# Paths in --set count from the folder in which the sweep was prepared.
-cd {here} || exit
-# Exit code {BUSY}: another process writes into the shard. It is an earlier start of this task, on a node that was lost but still runs.
-while :; do
-    \"$pxpl5\" sweep {file}{sets} --out \"$out/shard-$SLURM_ARRAY_TASK_ID\" --shard \"$SLURM_ARRAY_TASK_ID/{tasks}\" \\
-        --threads {threads} --resume --quiet
-    status=$?
-    [ \"$status\" -eq {BUSY} ] || exit \"$status\"
-    sleep 5
-done
-",
-            most_bytes / 1e6
-        );
-        // The merge job reads the shards of all tasks.
-        let merge = format!(
-            "#!/bin/bash
-{made}
-#SBATCH --job-name=pxpl5-merge
-#SBATCH --time={merge_minutes}
-#SBATCH --mem={merge_megabytes}M
-#SBATCH --requeue
-#SBATCH --open-mode=append
-#SBATCH --output=merge.log
-set -eu
-pxpl5=${{PXPL5:-{command}}}
-out={out}
-\"$pxpl5\" merge \"$out\"/shard-* --out \"$out\"
-"
-        );
-        // The user calls this script; it submits both jobs with a dependency.
-        let submit = format!(
-            "#!/bin/bash
-{made}
-# Submits the array, and the merging for when all its tasks have ended; options are handed on to sbatch (--partition, --account).
-# May be called again: finished points are kept.
-set -eu
-cd \"$(dirname \"$0\")\"
-array=$(sbatch --parsable \"$@\" array.sh)
-array=${{array%%;*}}
-merge=$(sbatch --parsable --dependency=\"afterany:$array\" \"$@\" merge.sh)
-echo \"array $array, merging ${{merge%%;*}}\"
-"
-        );
-        Ok(Self { array, merge, submit })
-    }
 }
 
 /// Quotes a word so that a shell reads it as one argument.

@@ -1,6 +1,6 @@
 //! A text table of runs, with one column for each run and one row for each quantity.
 
-use crate::numbers::count_of;
+use crate::numbers::{count_of, dash};
 use crate::terminal::laid_out;
 use pxpl5::{DuePictures, Percentiles, Report, Statistics};
 
@@ -32,7 +32,7 @@ const ROWS: [TableRow; 14] = [
     ("latency, ms: mean", |r| mean_and_sd(&r.latency_ms.statistics, 1)),
     ("  min to max", |r| range(&r.latency_ms.statistics, 1)),
     ("  50, 95, 99 %", |r| percentiles(&r.percentiles_ms.latency, 1)),
-    ("updates per second", |r| r.updates_hz.map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}"))),
+    ("updates per second", |r| r.updates_hz.map_or_else(dash, |hz| format!("{hz:.2}"))),
     ("not shown in time", not_shown),
     ("  late, incompl., missed", ends),
     ("all over periods", window),
@@ -73,13 +73,13 @@ fn ends(report: &Report) -> String {
 }
 
 fn window(report: &Report) -> String {
-    report.window.map_or_else(|| "-".to_owned(), |window| format!("{} to {}", window.first_period, window.last_period))
+    report.window.map_or_else(dash, |window| format!("{} to {}", window.first_period, window.last_period))
 }
 
 /// Formats the cell about due pictures. A picture is due at the retrace at which the pipeline must show the picture.
 /// The cell is "-" if the pipeline's pictures have no deadlines.
 fn of_due(report: &Report, cell: impl Fn(&DuePictures) -> String) -> String {
-    report.due.as_ref().map_or_else(|| "-".to_owned(), cell)
+    report.due.as_ref().map_or_else(dash, cell)
 }
 
 fn primitives(report: &Report) -> String {

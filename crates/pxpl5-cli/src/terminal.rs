@@ -54,6 +54,20 @@ pub(crate) fn warn(warnings: &[String], quiet: bool) {
     }
 }
 
+/// Heading of a column, and the cell of a row.
+pub(crate) type Column<R> = (&'static str, fn(&R) -> String);
+
+/// Lays out rows under the headings of their columns, as [`laid_out`].
+pub(crate) fn columns_text<'a, R: 'a>(
+    columns: &[Column<R>],
+    rows: impl IntoIterator<Item = &'a R>,
+    left: usize,
+) -> String {
+    let heads = columns.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let rows = rows.into_iter().map(|row| columns.iter().map(|(_, cell)| cell(row)).collect());
+    laid_out(&std::iter::once(heads).chain(rows).collect::<Vec<_>>(), left)
+}
+
 /// Lays out lines of cells in columns that are as wide as their widest cell. The first `left` columns are aligned to the
 /// left, and all others to the right.
 pub(crate) fn laid_out(lines: &[Vec<String>], left: usize) -> String {

@@ -12,7 +12,6 @@ impl RegionMask {
     pub const EMPTY: Self = Self(0);
 
     /// Returns the set that contains one region. The set is empty if the region's index is [`Self::CAPACITY`] or more.
-    #[must_use]
     pub const fn only(region: RegionId) -> Self {
         if region.0 as u32 >= Self::CAPACITY {
             return Self::EMPTY;

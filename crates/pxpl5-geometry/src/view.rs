@@ -46,7 +46,6 @@ impl Viewport {
 
     /// Returns one NTSC field: 640 x 240 in 10 regions (TR94). Row r of the even field is line 2r of the video frame,
     /// and row r of the odd field is line 2r + 1.
-    #[must_use]
     pub const fn field(parity: pxpl5_wire::FieldParity) -> Self {
         Self { grid: RegionGrid::FIELD, lines: Lines::Field(parity) }
     }

@@ -15,7 +15,6 @@ pub struct BoardBench {
 
 impl BoardBench {
     /// Makes a test bench, in which the programs of `board` start at time zero.
-    #[must_use]
     pub fn new(board: GpBoard) -> Self {
         let mut bench = TestBench::new();
         bench.feed(Time::ZERO, Phase::Work, GpEvent::Poll);

@@ -97,7 +97,6 @@ impl fmt::Debug for GpBoard {
 impl GpBoard {
     /// Makes a board without programs at the ring port `node`. `cycle` is the time from an event to the resulting
     /// output at the ring port.
-    #[must_use]
     pub fn new(node: NodeId, timing: GpTiming, cycle: Span) -> Self {
         let shared = Shared {
             node,

@@ -78,7 +78,6 @@ pub struct Memory {
 
 impl Memory {
     /// Makes a memory of `capacity` bytes, of which the two sets of bins (contexts) together can use at most `bins`.
-    #[must_use]
     pub const fn new(gp: NodeId, capacity: u64, bins: u64) -> Self {
         Self { gp, capacity, bins, used: [0; Account::SLOTS], peak: 0 }
     }

@@ -172,7 +172,6 @@ impl Processor {
 
     /// Makes an i860 in the state after reset. All bytes of its memory are zero. `core` configures the timing of
     /// instructions and memory.
-    #[must_use]
     pub fn new(gp: NodeId, memory_bytes: u64, version: CodeVersion, core: i860::Config) -> Self {
         let memory = Memory(Ram::new(0, memory_bytes as usize));
         Self {

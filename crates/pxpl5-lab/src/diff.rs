@@ -1,7 +1,6 @@
 //! Comparison of two reports, value by value.
 
 use crate::error::StudyError;
-use crate::estimate::Estimate;
 use crate::study::Study;
 use pxpl5_sim::Watcher;
 use serde::Serialize;
@@ -24,7 +23,6 @@ pub struct Changed {
 
 impl Changed {
     /// Creates the difference of two values.
-    #[must_use]
     pub fn new(key: &str, a: Option<&Value>, b: Option<&Value>) -> Self {
         let numbers = a.and_then(Value::as_f64).zip(b.and_then(Value::as_f64)).filter(|(a, _)| *a != 0.0);
         let percent = numbers.map(|(a, b)| (b / a - 1.0) * 100.0);
@@ -78,10 +76,6 @@ pub struct DiffQuery {
 
 impl Study for DiffQuery {
     type Report = Differences;
-
-    fn estimate(&self, _: usize) -> Estimate {
-        Estimate::NOTHING
-    }
 
     fn run(&self, _: &mut dyn Watcher) -> Result<Differences, StudyError> {
         let [a, b] = &self.reports;

@@ -136,7 +136,6 @@ impl Estimate {
 
     /// Combines the estimates of many runs that are divided among `threads` threads. The time is the sum of all times
     /// divided by `threads`. The memory is the largest memory of a run times `threads`.
-    #[must_use]
     pub fn of_all(all: impl IntoIterator<Item = Self>, threads: usize) -> Self {
         let threads = threads.max(1) as f64;
         let (bytes, seconds) = all
@@ -149,7 +148,6 @@ impl Estimate {
 impl RunWork {
     /// Returns the quantities that determine the cost of an experiment. Each field has one picture, or less if the
     /// processors need longer than a field to transform all primitives.
-    #[must_use]
     pub fn of(experiment: &Experiment, keeps_everything: bool) -> Self {
         let pipeline = experiment.pipeline();
         let settings = pipeline.settings();

@@ -97,13 +97,11 @@ pub struct ExperimentFile {
 
 impl ExperimentFile {
     /// Creates an experiment file without settings, for the built-in pipelines and displays.
-    #[must_use]
     pub fn new() -> Self {
         Self::with(crate::registry())
     }
 
     /// Creates an experiment file without settings, for the pipelines and displays of `registry`.
-    #[must_use]
     pub fn with(registry: Arc<Registry>) -> Self {
         Self {
             registry,

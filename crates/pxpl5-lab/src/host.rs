@@ -20,13 +20,11 @@ impl Workstation {
     pub const WAITING_REGIONS: usize = 256;
 
     /// Creates a host with one worker thread for each core of the computer.
-    #[must_use]
     pub fn new() -> Self {
         Self::with_threads(std::thread::available_parallelism().map_or(1, usize::from))
     }
 
     /// Creates a host with `threads` worker threads. With 0 threads, the simulating thread computes the pixels.
-    #[must_use]
     pub const fn with_threads(threads: usize) -> Self {
         Self { threads }
     }

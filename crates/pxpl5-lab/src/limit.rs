@@ -83,7 +83,6 @@ impl Model {
     }
 
     /// Creates the model of a loaded scene. The number of triangles in `choice` is ignored.
-    #[must_use]
     pub fn new(choice: SceneChoice, whole: Arc<Scene>) -> Self {
         let decimation = Arc::new(Decimation::new(Arc::clone(&whole)));
         Self { choice: SceneChoice { triangles: None, ..choice }, whole, decimation }
@@ -151,7 +150,6 @@ impl Study for LimitQuery {
 
 impl LimitQuery {
     /// Creates a query from the machine, pipeline and level of an experiment, with the pipeline's own criterion.
-    #[must_use]
     pub fn of_plan(plan: &Plan) -> Self {
         Self {
             registry: Arc::clone(&plan.registry),

@@ -58,7 +58,6 @@ impl Manifest {
     pub const SWEEP: &'static str = "sweep";
 
     /// Creates an empty manifest for a command.
-    #[must_use]
     pub fn new(command: &str) -> Self {
         Self {
             schema: Self::SCHEMA.to_owned(),

@@ -142,7 +142,6 @@ impl Study for RigQuery {
 impl Rig {
     /// Creates a rig with `tracker` on the pendulum, and with the assumed settings of pendulum, detection and
     /// photodiodes.
-    #[must_use]
     pub fn assumed(tracker: TrackerConfig) -> Self {
         Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES }
     }

@@ -20,8 +20,11 @@ pub trait Study {
     /// The answer.
     type Report: Serialize;
 
-    /// Estimates the memory and time of the study on `threads` threads.
-    fn estimate(&self, threads: usize) -> Estimate;
+    /// Estimates the memory and time of the study on `threads` threads. The default is a study of a few seconds.
+    fn estimate(&self, threads: usize) -> Estimate {
+        let _ = threads;
+        Estimate::NOTHING
+    }
 
     /// Answers the question. The watcher gets the progress and the finished rows. After it has stopped the study, the
     /// report has the rows that were finished.

@@ -92,10 +92,6 @@ pub struct VolumeFigureQuery {
 impl Study for VolumeFigureQuery {
     type Report = VolumeFigures;
 
-    fn estimate(&self, _: usize) -> Estimate {
-        Estimate::NOTHING
-    }
-
     fn run(&self, watcher: &mut dyn Watcher) -> Result<VolumeFigures, StudyError> {
         let stop = watcher.stop();
         let figures = all(&self.scenes, &Threads::all(), watcher)?;

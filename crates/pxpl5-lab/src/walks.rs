@@ -71,10 +71,6 @@ pub struct WalkInterpretationQuery;
 impl Study for WalkInterpretationQuery {
     type Report = Interpretations;
 
-    fn estimate(&self, _: usize) -> Estimate {
-        Estimate::NOTHING
-    }
-
     fn run(&self, watcher: &mut dyn Watcher) -> Result<Interpretations, StudyError> {
         Ok(Interpretations::run(watcher)?)
     }

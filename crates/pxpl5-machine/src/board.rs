@@ -31,7 +31,6 @@ pub struct EventDescription {
 
 impl Board {
     /// Returns the board at a ring port: the host for port 0, otherwise graphics processor `port - 1`.
-    #[must_use]
     pub const fn of_processor(port: usize) -> Self {
         match port {
             0 => Self::Host,

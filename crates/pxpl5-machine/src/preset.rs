@@ -136,13 +136,11 @@ impl MachineConfig {
     }
 
     /// Returns the machine of the Rendering Control measurements: 13 graphics processors and 5 renderers (TR94).
-    #[must_use]
     pub fn small_hmd() -> Self {
         Self::from_preset(&PRESETS[0])
     }
 
     /// Returns the machine of the Slats prototype: 1 graphics processor and 5 renderers (TR94).
-    #[must_use]
     pub fn slats() -> Self {
         Self::from_preset(&PRESETS[1])
     }

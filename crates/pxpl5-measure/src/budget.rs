@@ -56,7 +56,6 @@ impl Default for Budget {
 
 impl Budget {
     /// Returns the mean stage times over the pictures of several runs, each run weighted by its number of pictures.
-    #[must_use]
     pub fn pooled(budgets: impl Iterator<Item = Self>) -> Self {
         let with_pictures: Vec<Self> = budgets.filter(|budget| budget.n > 0).collect();
         if with_pictures.is_empty() {

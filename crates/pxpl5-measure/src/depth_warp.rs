@@ -27,7 +27,6 @@ pub struct DepthPicture {
 impl DepthPicture {
     /// Creates the depths of a picture. `depth` returns the depth of the pixel (x, y), in metres along the axis of the
     /// view.
-    #[must_use]
     pub fn from_fn(width: u32, height: u32, depth: impl Fn(u32, u32) -> f32) -> Self {
         let depth = &depth;
         let depths: Vec<f32> = (0..height).flat_map(|y| (0..width).map(move |x| depth(x, y))).collect();

@@ -32,7 +32,6 @@ const MISSING_RESULTS: &str = "latencies from the head to light and errors in pi
 impl PixelErrors {
     /// Returns the errors that the pictures of a run have if a display shows the pictures as drawn, without any
     /// correction. The result is empty for a run without a head.
-    #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         Self::shown(outcome, Showing::Plain)
     }
@@ -42,7 +41,6 @@ impl PixelErrors {
     /// A run that discarded its records ([`Outcome::has_discarded_records`]) covers all periods only if
     /// [`HeadSum`](crate::HeadSum) observed the run and `showing` is the head's own display mode. Otherwise the result
     /// covers only the last periods.
-    #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
         let results = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster().into());
@@ -52,7 +50,6 @@ impl PixelErrors {
     /// Returns the errors that the run would have without one cause of error. All times stay the same.
     ///
     /// For a run that discarded its records, the result covers only the last periods.
-    #[must_use]
     pub fn without(outcome: &Outcome, showing: Showing, cause: Cause) -> Self {
         evaluated(outcome, showing, Some(cause), 0).0
     }
@@ -62,7 +59,6 @@ impl PixelErrors {
     /// pictures.
     ///
     /// For a run that discarded its records, the result covers only the last periods.
-    #[must_use]
     pub fn misaimed(outcome: &Outcome, showing: Showing, later_ms: i64) -> Self {
         evaluated(outcome, showing, None, later_ms * PS_PER_MS as i64).0
     }
@@ -104,7 +100,6 @@ pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
 impl Budget {
     /// Returns the mean time of each stage of the latency. The mean covers the pictures in the result window that are
     /// complete and have a measured pose.
-    #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         HeadResults::from_observer(outcome).map_or_else(|| budget_sum(outcome).result(), |results| results.end_to_end)
     }
@@ -126,7 +121,6 @@ fn budget_sum(outcome: &Outcome) -> BudgetSum {
 
 impl LatencyPercentiles {
     /// Returns the percentiles of a run. Those that concern the head are empty without a head.
-    #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         let of_head = HeadResults::from_observer(outcome).map(|results| results.percentiles);
         let [head_to_light, aim_miss] = of_head.unwrap_or_else(|| budget_sum(outcome).percentiles());

@@ -18,7 +18,6 @@ impl LatencyCurve {
     /// - `latency_ms`.
     ///
     /// The error is the displacement on the screen of a point `distance_m` metres ahead of the head.
-    #[must_use]
     pub fn of(motion: &dyn Motion, latency_ms: u64, seconds: u64, distance_m: f64) -> Self {
         let view = Hmd::unc();
         let latency_ps = latency_ms * PS_PER_MS;

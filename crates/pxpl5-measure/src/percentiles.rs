@@ -39,7 +39,6 @@ impl Default for Percentiles {
 
 impl Percentiles {
     /// Computes the statistics of `values`. No value must be NaN.
-    #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.collect();
         values.sort_by(f64::total_cmp);

@@ -301,14 +301,12 @@ pub struct Results {
 
 impl Results {
     /// Returns the results of a simulated run.
-    #[must_use]
     pub fn of_run(outcome: Outcome) -> Self {
         let report = Report::of(&outcome);
         Self { summary: outcome.summary(), run: Some((outcome, report)) }
     }
 
     /// Returns the results of a closed form, without a simulated run.
-    #[must_use]
     pub const fn of_closed_form(summary: Summary) -> Self {
         Self { summary, run: None }
     }

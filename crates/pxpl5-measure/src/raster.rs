@@ -35,7 +35,6 @@ impl std::fmt::Debug for Vdrt<'_> {
 
 impl<'a> Vdrt<'a> {
     /// Creates a raster that `display` shifts. The raster offsets come from head poses that `estimator` predicts.
-    #[must_use]
     pub const fn new(estimator: Estimator, display: &'a dyn Display) -> Self {
         Self { estimator, display }
     }

@@ -206,7 +206,6 @@ impl Report {
     pub const SCHEMA: &'static str = "pxpl5-report/2";
 
     /// Computes the report of an outcome.
-    #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         let experiment = outcome.experiment();
         let config = experiment.config();

@@ -46,14 +46,12 @@ pub struct BitSerial {
 impl BitSerial {
     /// Creates an array whose memory is all zero. Only [`PixelArray::read_colour`] uses `layout`, to find the bit field
     /// of the colour.
-    #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
     }
 
     /// Creates an array whose memory is all zero. The array computes with the vector instructions `vectors`, or with
     /// portable code if the computer lacks these instructions.
-    #[must_use]
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
             layout: *layout,

@@ -147,7 +147,6 @@ impl Renderer {
     ///
     /// `word` is the time that a channel needs for one word. `cycle` is the time that a signal takes to leave the
     /// board.
-    #[must_use]
     pub fn new(node: NodeId, timing: RendererTiming, word: Span, cycle: Span, pool: Arc<ArrayPool>) -> Self {
         let fifo = InputFifo::new(timing.fifo_words as u32, word);
         let logs = std::array::from_fn(|_| ContextLog::default());

@@ -52,14 +52,12 @@ pub struct Lanes {
 impl Lanes {
     /// Creates an array in which all bits are zero. The array recognizes the commands of `layout`, and executes them
     /// faster than single instructions.
-    #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
     }
 
     /// Creates an array whose memory is all zero. The array computes with the vector instructions `vectors`, or with
     /// portable code if the computer lacks these instructions.
-    #[must_use]
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
             layout: *layout,

@@ -68,7 +68,6 @@ impl Layout {
     /// Returns the layout of Rendering Control with Phong shading, which has one region.
     ///
     /// The 208 bits are 24 bits of colour, 24 bits of Z, 36 bits of normal and 124 bits of scratch memory.
-    #[must_use]
     pub const fn rendering_control_phong() -> Self {
         Self(RENDERING_CONTROL_PHONG)
     }
@@ -79,14 +78,12 @@ impl Layout {
     /// TR94 publishes four contexts (regions) in 208 bits, but four equal parts of 52 bits leave no room for the
     /// scratch memory that a sphere needs (30 bits). It is needed only while a command runs, so all contexts can share
     /// it. To make room for it, Z has 4 bits less (assumed).
-    #[must_use]
     pub const fn slats() -> Self {
         Self(SLATS)
     }
 
     /// Returns the layout of Slats with four equal parts of 52 bits: 24 bits of colour, 24 bits of Z and 4 unused bits.
     /// The layout supports triangles, but no spheres.
-    #[must_use]
     pub const fn slats_quarters() -> Self {
         Self(SLATS_QUARTERS)
     }

@@ -46,7 +46,6 @@ impl Vectors {
     }
 
     /// Returns the fastest vector unit that the running computer has, up to the limit of [`Vectors::at_most`].
-    #[must_use]
     pub fn best() -> Self {
         let most = MOST.load(Ordering::Relaxed) as usize;
         Self::ALL[..=most].iter().rev().copied().find(|vectors| vectors.present()).unwrap_or(Self::Portable)

@@ -9,7 +9,6 @@ const USUAL: [&str; 7] =
 impl Registry {
     /// Returns a registry with the pipelines and displays of the papers. The crate pxpl5-analytic adds the closed
     /// forms.
-    #[must_use]
     pub fn of_papers() -> Self {
         Self::with(pipelines::entries(), displays())
     }

@@ -79,7 +79,6 @@ impl fmt::Debug for Estimator {
 impl Estimator {
     /// Creates an estimator that gives the same poses as the run's host, but without one cause of error. The cause
     /// [`Cause::ScanOut`] does not affect poses, so the poses do not change.
-    #[must_use]
     pub fn new(views: &Arc<HeadViews>, without: Option<Cause>) -> Self {
         let head = views.head();
         // Each cause is removed from the tracker or from the predictor, and the rest stays as in the run.

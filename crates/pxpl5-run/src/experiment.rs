@@ -106,13 +106,11 @@ pub struct Estimates {
 impl Experiment {
     /// Creates an experiment with a pipeline, a machine and a scene. The defaults are 120 fields, [`Pixels::Lazy`] and
     /// seed 1.
-    #[must_use]
     pub fn new(config: MachineConfig, pipeline: impl Pipeline + 'static, scene: impl Into<Arc<Scene>>) -> Self {
         Self::with(config, Arc::new(pipeline), scene.into())
     }
 
     /// Creates an experiment like [`Experiment::new`], with a pipeline that was chosen at run time.
-    #[must_use]
     pub fn with(config: MachineConfig, pipeline: Arc<dyn Pipeline>, scene: Arc<Scene>) -> Self {
         Self {
             config,

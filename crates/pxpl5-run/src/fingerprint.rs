@@ -23,7 +23,6 @@ impl Default for Fingerprint {
 
 impl Fingerprint {
     /// Returns the 128-bit FNV-1a hash of `bytes`.
-    #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         let mut fingerprint = Self::default();
         fingerprint.add(bytes);
@@ -38,7 +37,6 @@ impl Fingerprint {
     ///
     /// Numbers are hashed with the least significant byte first. A list is hashed as its length (64 bits), then its
     /// entries. The value of an enum is hashed as a byte, counted from 0 in the order of declaration.
-    #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
         let mut all = Self::default();
         // The order of these lines defines the hash, so it must not change.

@@ -159,7 +159,6 @@ pub struct Registry {
 
 impl Registry {
     /// Creates a registry with the entries `pipelines` and `displays`. More entries can be added later.
-    #[must_use]
     pub const fn with(pipelines: Vec<PipelineEntry>, displays: Vec<DisplayEntry>) -> Self {
         Self { pipelines, displays }
     }

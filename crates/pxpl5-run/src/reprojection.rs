@@ -76,7 +76,6 @@ impl Reprojection {
     pub const LATENCY_US: (u64, u64) = (0, 100_000);
 
     /// Creates a device with the default latency.
-    #[must_use]
     pub const fn new(by: Warp, every: Every) -> Self {
         Self { by, every, latency_us: every.usual_latency_us() }
     }

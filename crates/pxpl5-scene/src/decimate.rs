@@ -49,7 +49,6 @@ pub struct Decimation {
 
 impl Decimation {
     /// Prepares the decimation of a scene.
-    #[must_use]
     pub const fn new(scene: Arc<Scene>) -> Self {
         Self { scene, passed: Mutex::new(Vec::new()) }
     }

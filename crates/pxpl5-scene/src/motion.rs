@@ -126,7 +126,6 @@ impl HeadMotion {
     ///
     /// The distance from `centre` is [`crate::config::FIT_DISTANCE_RADII`] times `radius` (metres). A model within
     /// `radius` of `centre` then roughly fills the default view.
-    #[must_use]
     pub fn looking_at(centre: Vec3, radius: f64) -> Self {
         let path = HeadPath::Look { target: centre, distance: radius * FIT_DISTANCE_RADII };
         Self { path, sway: Sway { seed: 1, scale: 1.0 } }
@@ -134,7 +133,6 @@ impl HeadMotion {
 
     /// Creates the motion of a head that looks at a model. The distance is so large that both eyes always see the whole
     /// model, with any seed. The distance is [`crate::config::WHOLE_DISTANCE_RADII`] times `radius` (metres).
-    #[must_use]
     pub fn always_visible(centre: Vec3, radius: f64) -> Self {
         let path = HeadPath::Look { target: centre, distance: radius * WHOLE_DISTANCE_RADII };
         Self { path, sway: Sway { seed: 1, scale: 1.0 } }

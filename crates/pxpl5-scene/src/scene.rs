@@ -86,7 +86,6 @@ pub struct Lighting {
 impl Lighting {
     /// Returns a light from above and behind the viewer's right shoulder. Its direction is (2, 3, 6) / 7. The direction
     /// is assumed, and any direction would be plausible.
-    #[must_use]
     pub fn over_the_shoulder() -> Self {
         Self {
             towards_light: Vec3::new(2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0),
@@ -337,7 +336,6 @@ fn structure_of_all(parts: &SceneParts) -> Structure {
 impl SceneParts {
     /// Creates the contents of a scene with one structure. The lighting is [`Lighting::over_the_shoulder`], and the head
     /// stands still at the origin and looks along -z.
-    #[must_use]
     pub fn of(name: &str, vertices: Vec<Vertex>, triangles: Vec<[u32; 3]>) -> Self {
         Self {
             name: name.to_owned(),

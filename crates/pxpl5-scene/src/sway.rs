@@ -57,7 +57,6 @@ pub(crate) struct Swing {
 
 impl Sway {
     /// Returns a sway whose amplitudes are 0, so that the head stays exactly on its path.
-    #[must_use]
     pub const fn none() -> Self {
         Self { seed: 0, scale: 0.0 }
     }

@@ -102,7 +102,6 @@ impl<E, O> Default for TestBench<E, O> {
 
 impl<E, O> TestBench<E, O> {
     /// Makes a test bench without events at time zero.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }

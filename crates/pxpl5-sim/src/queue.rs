@@ -82,7 +82,6 @@ impl<E> Default for EventQueue<E> {
 
 impl<E> EventQueue<E> {
     /// Makes an empty queue. The current time is zero.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }

@@ -12,7 +12,6 @@ pub struct SplitMix64 {
 impl SplitMix64 {
     /// Makes the generator with a seed. All seeds give the same cyclic sequence of numbers, but each seed starts at a
     /// different position of this sequence.
-    #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { state: seed }
     }

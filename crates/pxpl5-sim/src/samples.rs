@@ -33,7 +33,6 @@ impl Default for Samples {
 
 impl Samples {
     /// Creates an empty collection that keeps at most `limit` numbers.
-    #[must_use]
     pub const fn keeping(limit: usize) -> Self {
         Self { kept: Vec::new(), limit, moments: None }
     }

@@ -64,7 +64,6 @@ impl Statistics {
     }
 
     /// Computes the statistics of numbers in any order. The numbers must not be NaN.
-    #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.collect();
         if values.is_empty() {

@@ -31,13 +31,11 @@ impl Time {
 impl Span {
     pub const ZERO: Self = Self(0);
 
-    #[must_use]
     #[inline]
     pub const fn from_ns(ns: u64) -> Self {
         Self(ns.saturating_mul(1_000))
     }
 
-    #[must_use]
     #[inline]
     pub const fn from_us(us: u64) -> Self {
         Self(us.saturating_mul(1_000_000))

@@ -38,7 +38,6 @@ pub const FILM_PERIODS: (u64, u64) = (1, 250_000);
 
 impl Film {
     /// Creates a film of an experiment that begins at the display period `first_period`.
-    #[must_use]
     pub const fn new(experiment: Experiment, first_period: PeriodNumber, periods: u64, of: FilmSurfaces) -> Self {
         Self { experiment, first_period, periods, of }
     }

@@ -33,7 +33,6 @@ pub struct EyeView {
 
 impl EyeView {
     /// Creates the view of an eye four radii away, with a picture of `side` x `side` pixels.
-    #[must_use]
     pub fn around(settings: &VolumeSettings, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Self {
         let camera = Camera::around(settings.radius(), azimuth_deg, elevation_deg, side);
         let phase_deg = settings.sweep.phase_deg;

@@ -61,7 +61,6 @@ pub struct VolumeSettings {
 
 impl VolumeSettings {
     /// Returns the settings of the SpatialGL paper: its display, the hyperbolic clip and the jittered projection.
-    #[must_use]
     pub const fn paper() -> Self {
         Self {
             display: PerspectaConfig::PAPERS,

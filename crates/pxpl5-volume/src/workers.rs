@@ -12,7 +12,6 @@ pub struct Counted<'a> {
 
 impl<'a> Counted<'a> {
     /// Wraps these workers.
-    #[must_use]
     pub fn new(inner: &'a dyn Workers, watcher: &'a mut dyn Watcher) -> Self {
         Self { inner, watcher: Mutex::new(watcher) }
     }

@@ -13,7 +13,6 @@ pub struct Files(pub(crate) BTreeMap<String, Arc<[u8]>>);
 impl Files {
     /// Creates an empty set of files.
     #[wasm_bindgen(constructor)]
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }

@@ -50,7 +50,6 @@ pub struct CommandContent {
 impl CommandContent {
     /// Makes the content of one message. The source `words` computes the words of several messages, and `part` is the
     /// number of this message, counted from 0.
-    #[must_use]
     pub const fn new(words: Arc<dyn CommandWords>, part: u32) -> Self {
         Self { words, part, frame_buffer: None }
     }
@@ -262,7 +261,6 @@ pub enum FieldParity {
 
 impl FieldParity {
     /// Returns the parity of a field of NTSC video. Fields with even numbers scan even lines.
-    #[must_use]
     pub const fn of_field(field: PeriodNumber) -> Self {
         if field.0.is_multiple_of(2) { Self::Even } else { Self::Odd }
     }

@@ -14,7 +14,6 @@ pub struct Linear {
 }
 
 impl Linear {
-    #[must_use]
     pub const fn constant(c: i32) -> Self {
         Self { a: 0, b: 0, c }
     }

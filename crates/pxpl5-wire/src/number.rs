@@ -67,7 +67,6 @@ macro_rules! count_from_zero {
             }
 
             /// Makes a number from its low word and its high word.
-            #[must_use]
             pub const fn from_words(low: Word, high: Word) -> Self {
                 Self(low as u64 | (high as u64) << 32)
             }
@@ -113,7 +112,6 @@ count_from_zero! {
 impl PictureNumber {
     /// Returns the number of the picture that is drawn for a period. The result is valid only in pipelines that draw
     /// one picture for every period: Slats and just-in-time pixels. The picture and the period have equal numbers.
-    #[must_use]
     pub const fn drawn_for(period: PeriodNumber) -> Self {
         Self(period.0)
     }
@@ -128,7 +126,6 @@ impl PictureNumber {
 impl ViewNumber {
     /// Returns the number of the view that a picture shows. The result is valid only in pipelines that request one view
     /// for every picture: Rendering Control and frameless rendering. The view and the picture have equal numbers.
-    #[must_use]
     pub const fn taken_for(picture: PictureNumber) -> Self {
         Self(picture.0)
     }

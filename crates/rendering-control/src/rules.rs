@@ -11,7 +11,6 @@ pub struct Drawing(pub u64);
 
 impl Drawing {
     /// Returns the first drawing of a frame, if each frame has `eyes` drawings.
-    #[must_use]
     pub const fn first_of(frame: PictureNumber, eyes: u64) -> Self {
         Self(frame.0 * eyes)
     }
@@ -63,7 +62,6 @@ pub struct Completed {
 
 impl Completed {
     /// Returns the progress at power-on, when nothing has passed any stage.
-    #[must_use]
     pub const fn none(eyes: u64) -> Self {
         Self { eyes, sent: 0, edited: 0, transformed: 0, rendered: 0, copied: 0, swapped: 0 }
     }

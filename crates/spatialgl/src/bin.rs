@@ -73,14 +73,12 @@ pxpl5_sim::parameters::named!(BinTolerance, "tolerance of bins", BinTolerance::A
 
 impl BinLayout {
     /// Returns a layout with a single bin, which contains all primitives.
-    #[must_use]
     pub fn one() -> Self {
         Self { planes: Vec::new(), regions: vec![BinRegion { signs: 0, bounds: 0, group: 0 }], tolerance: 0.0 }
     }
 
     /// Returns a layout of eight sectors of 45 degrees around y. The planes z, x, x - z and x + z are bits 0 to 3.
     /// Opposite sectors form one double wedge, which one group of slices draws.
-    #[must_use]
     pub fn double_wedges(tolerance: f64) -> Self {
         let planes = vec![[0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, -1.0, 0.0], [1.0, 0.0, 1.0, 0.0]];
         let sectors = SECTOR_SIGNS.iter().zip(SECTOR_BOUNDS).zip(0..);

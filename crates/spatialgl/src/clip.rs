@@ -56,7 +56,6 @@ pub struct HalfWedge {
 
 impl HalfWedge {
     /// Returns half of the wedge of one slice, for a display with `slices` per turn and this radius in pixels.
-    #[must_use]
     pub fn new(slices: u32, radius: f64) -> Self {
         let (sin, cos) = crate::angle::sin_cos_of_turn(1, 2 * slices);
         Self { sin, cos, tan: sin / cos, radius }

@@ -19,7 +19,6 @@ pub struct ColouredVertex {
 
 impl ColouredVertex {
     /// Creates a vertex without a normal.
-    #[must_use]
     pub const fn new(position: DVec3, colour: [u8; 3]) -> Self {
         Self { position, normal: DVec3::ZERO, colour }
     }

@@ -15,7 +15,6 @@ pub struct BitPlanes {
 
 impl BitPlanes {
     /// Creates slices of this size in which no pixel is lit.
-    #[must_use]
     pub fn dark(size: Size, slices: u32) -> Self {
         Self { size, slices, words: vec![0; slices as usize * words_of_slice(size)] }
     }

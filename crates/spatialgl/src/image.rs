@@ -17,7 +17,6 @@ pub struct SliceImage {
 
 impl SliceImage {
     /// Creates a dark image. The width must be a multiple of 8, and every display has such a width.
-    #[must_use]
     pub fn new(size: Size) -> Self {
         let pixels = size[0] as usize * size[1] as usize;
         Self { size, channels: [0, 1, 2].map(|_| vec![0; pixels]), stencil: vec![0; pixels / 8], depth: Vec::new() }

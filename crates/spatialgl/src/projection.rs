@@ -47,7 +47,6 @@ pub struct Jitter {
 impl Jitter {
     /// Returns the assumed limits with this seed. The eye is four display radii away, within a disc of half a radius.
     /// The shear shifts points at the slice's near and far planes by at most half a pixel.
-    #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { seed, eye_distance: 4.0, eye_radius: 0.5, shear_px: 0.5 }
     }

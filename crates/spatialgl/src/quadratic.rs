@@ -30,7 +30,6 @@ pub struct ClipQuadratic {
 impl ClipQuadratic {
     /// Returns the quadratic for the plane s = a u + c v + offset and a bias of `bias` square pixels. `slope` is (a,
     /// c).
-    #[must_use]
     pub fn of_plane(slope: [f64; 2], offset: f64, wedge: HalfWedge, bias: f64) -> Self {
         let [a, c] = slope;
         let sine = wedge.sin * wedge.sin;

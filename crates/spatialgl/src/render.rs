@@ -54,7 +54,6 @@ impl VolumeConfig {
     ///
     /// # Panics
     /// Never panics, because the matrix has a valid size.
-    #[must_use]
     pub fn paper() -> Self {
         Self {
             binning: Binning::AllPlanes,
@@ -69,7 +68,6 @@ impl VolumeConfig {
 
     /// Returns settings that draw the same picture without optimizations: every slice draws everything, and every pixel
     /// is packed and sent.
-    #[must_use]
     pub fn plain() -> Self {
         Self { binning: Binning::Off, tiling: Tiling::OFF, ..Self::paper() }
     }

@@ -11,7 +11,6 @@ pub struct Threads(pub NonZero<usize>);
 
 impl Threads {
     /// Returns the number of threads that this computer can execute in parallel.
-    #[must_use]
     pub fn all() -> Self {
         Self(thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN))
     }

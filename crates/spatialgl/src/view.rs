@@ -33,7 +33,6 @@ pub struct SliceView {
 
 impl SliceView {
     /// Creates the view of a slice with an image of this size. The slice draws the primitives of bin 0.
-    #[must_use]
     pub fn new(view: DMat4, projection: DMat4, volume: SliceVolume, size: Size) -> Self {
         let window = window_of(&projection, size);
         Self { view, projection, volume, bins: 1, hides: false, window, reach: None, magnification: 1.0 }

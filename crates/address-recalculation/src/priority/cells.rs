@@ -20,7 +20,6 @@ pub struct Cell {
 impl Cell {
     /// Returns the cell that contains a position, for cells of side `side_m`. A position on a border belongs to the
     /// cell with the larger coordinates.
-    #[must_use]
     pub fn of(x: f64, z: f64, side_m: f64) -> Self {
         Self { x: column(x, side_m), z: column(z, side_m) }
     }
@@ -135,7 +134,6 @@ impl Cells {
     ///
     /// With `has_cascade`, an update of a memory makes all memories that are drawn more often due for an update as
     /// well. Warping requires such a cascade.
-    #[must_use]
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;
         // The first frame will assign the cells around the viewer's own cell.

@@ -18,7 +18,6 @@ pub struct Objects {
 }
 
 impl Objects {
-    #[must_use]
     pub fn new(timing: &PriorityTiming, objects: usize) -> Self {
         let memories = timing.memories as usize;
         Self { frame_s: timing.frame_s(), memories, objects: vec![None; objects], moved: 0, draws: 0 }

@@ -84,7 +84,6 @@ impl ValidityPeriod {
 impl Threshold {
     /// Returns the threshold for an angular error of `theta_deg` degrees, with the default rules: chord, disc and
     /// nearest point. These rules are the closest to the papers on priority rendering.
-    #[must_use]
     pub fn of_degrees(theta_deg: f64) -> Self {
         let distance = Distance::Nearest;
         Self { angle: theta_deg.to_radians(), translation: Translation::Chord, size: SizeRule::Disc, distance }

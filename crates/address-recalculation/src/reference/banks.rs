@@ -21,7 +21,6 @@ pub struct BankedMemory {
 
 impl BankedMemory {
     /// Copies the texels of six faces into banks, one by one.
-    #[must_use]
     pub fn of(faces: &FaceSet) -> Self {
         let texels = faces.texels();
         let format = faces.format();

@@ -29,7 +29,6 @@ pub struct Tie<'a> {
 
 impl IdealPicture {
     /// Returns the frame whose even lines are those of the first field, and whose odd lines are those of the second.
-    #[must_use]
     pub fn interlaced(fields: &[Self; 2]) -> Self {
         let (width, height) = fields[0].image.dimensions();
         let image = RgbImage::from_fn(width, 2 * height, |x, y| *fields[y as usize % 2].image.get_pixel(x, y / 2));

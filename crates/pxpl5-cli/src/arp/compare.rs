@@ -8,7 +8,7 @@ use crate::interrupt;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
 use crate::progress::Progress;
-use crate::terminal::{answer, json_text, laid_out, print_error};
+use crate::terminal::{Column, answer, columns_text, json_text, print_error};
 use clap::Args;
 use pxpl5::arp::{ArpComparison, ComparedRow, variant_count};
 use pxpl5::lab::walks::{WalkComparisonQuery, WalkQuery};
@@ -59,9 +59,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     }
 }
 
-type Column = (&'static str, fn(&ComparedRow) -> String);
-
-const COLUMNS: [Column; 10] = [
+const COLUMNS: [Column<ComparedRow>; 10] = [
     ("variant", |row| row.variant.to_owned()),
     ("rates, Hz", |row| row.rates_hz.iter().map(|rate| format!("{rate:.1}")).collect::<Vec<_>>().join(" ")),
     ("draws/s", |row| format!("{:.0}", row.draws_per_s)),
@@ -77,9 +75,7 @@ const COLUMNS: [Column; 10] = [
 fn text(comparison: &ArpComparison) -> String {
     let mut text =
         format!("{}: {} at {} m/s\n\n", comparison.scene, count_of(comparison.frames, "frame"), comparison.m_per_s);
-    let heads = COLUMNS.map(|(name, _)| name.to_owned()).to_vec();
-    let rows = comparison.rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)).to_vec());
-    text.push_str(&laid_out(&std::iter::once(heads).chain(rows).collect::<Vec<_>>(), usize::MAX));
+    text.push_str(&columns_text(&COLUMNS, &comparison.rows, usize::MAX));
     text.push_str(
         "\ntears: angles between the two directions in which two memories draw a shared vertex (median, 95 %, widest), in texels (90 degrees\n\
          divided by the texels of a face's edge); stretch: angles by which warping moves vertices; eye age: mean distance from the position\n\

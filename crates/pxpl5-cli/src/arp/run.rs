@@ -3,7 +3,7 @@
 use super::settings::{FEWER_FRAMES, WalkArgs, put};
 use crate::error::CliError;
 use crate::interrupt;
-use crate::numbers::count_of;
+use crate::numbers::{count_of, dash};
 use crate::output::OutputFolder;
 use crate::progress::Progress;
 use crate::terminal::{answer, json_text};
@@ -131,13 +131,13 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
     let rows = [
         ("segments drawn per second", format!("{:.0} ({:.1} % saved)", priority.draws_per_s, priority.saved_percent)),
         ("triangles drawn per second", format!("{:.0}", outcome.triangles_per_s())),
-        ("new assignments of cells", or_none(priority.redeals.map(|n| n.to_string()))),
-        ("objects that changed memory", or_none(priority.moved_objects.map(|n| n.to_string()))),
+        ("new assignments of cells", priority.redeals.map_or_else(dash, |n| n.to_string())),
+        ("objects that changed memory", priority.moved_objects.map_or_else(dash, |n| n.to_string())),
         ("tears without warping, texels", widths(report.tears_texels.before)),
         ("tears as displayed, texels", widths(report.tears_texels.after)),
         ("moved by warping, texels", widths(report.tears_texels.stretch)),
         ("pipeline", format!("{} ns, before each {}", report.pipeline_ns, report.latch)),
-        ("from latch to light", or_none(report.rotation_latency_ms.total.map(|ms| format!("{ms:.3} ms, mean")))),
+        ("from latch to light", report.rotation_latency_ms.total.map_or_else(dash, |ms| format!("{ms:.3} ms, mean"))),
         ("from eye position to light", steps(report)),
         ("bytes per memory", report.memories.first().map_or(0, |memory| memory.bytes).to_string()),
     ];
@@ -155,26 +155,22 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
 /// the picture of the memory is lit.
 fn steps(report: &ArpReport) -> String {
     let totals = report.memories.iter().map(|memory| memory.translation_latency_ms.total);
-    let totals: Vec<String> = totals.map(|total| or_none(total.map(|ms| format!("{ms:.1}")))).collect();
+    let totals: Vec<String> = totals.map(|total| total.map_or_else(dash, |ms| format!("{ms:.1}"))).collect();
     format!("{} ms", totals.join(", "))
 }
 
 fn line(text: &mut String, number: usize, memory: &WalkMemoryReport) {
     let WalkMemoryReport { updates_hz, segments, missed, eye_age_mm, .. } = memory;
-    let triangles = or_none(memory.triangles.map(|triangles| format!("{triangles:.0}")));
+    let triangles = memory.triangles.map_or_else(dash, |triangles| format!("{triangles:.0}"));
     let _ = writeln!(
         text,
         "{number:>6} {updates_hz:>10.2} {segments:>10.1} {triangles:>10} {missed:>8} {eye_age_mm:>12.2}"
     );
 }
 
-fn or_none(text: Option<String>) -> String {
-    text.unwrap_or_else(|| "-".to_owned())
-}
-
 /// Formats the median, the 95th percentile and the maximum of the widths of tears. Widths below 1e-6 are rounding
 /// errors and appear as 0.
 pub(super) fn widths(widths: Option<TearWidths>) -> String {
     let number = |width: f64| if width < 1e-6 { "0".to_owned() } else { format!("{width:.2}") };
-    or_none(widths.map(|TearWidths { p50, p95, max }| [p50, p95, max].map(number).join(", ")))
+    widths.map_or_else(dash, |TearWidths { p50, p95, max }| [p50, p95, max].map(number).join(", "))
 }

@@ -1,6 +1,6 @@
 //! The table that `pxpl5 compare` prints on the terminal.
 
-use crate::numbers::count_of;
+use crate::numbers::{count_of, dash, number};
 use crate::terminal::laid_out;
 use pxpl5::Cause;
 use pxpl5::compare::{Comparison, ComparisonRow, IntervalMethod, MeanInterval};
@@ -198,16 +198,8 @@ fn causes(comparison: &Comparison) -> String {
     text
 }
 
-fn dash() -> String {
-    "-".to_owned()
-}
-
 fn share(value: Option<f64>) -> String {
     number(value.map_or(f64::NAN, |share| share * 100.0), 1)
-}
-
-fn number(value: f64, digits: usize) -> String {
-    if value.is_finite() { format!("{value:.digits$}") } else { "-".to_owned() }
 }
 
 fn interval(mean: &MeanInterval) -> String {

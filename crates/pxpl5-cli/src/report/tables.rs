@@ -2,6 +2,7 @@
 
 use super::files::Files;
 use crate::error::CliError;
+use crate::numbers::dash;
 use crate::rows::{self, ResultRows, Row, RowsKind};
 use pxpl5::sweep::ROWS_FILE;
 use pxpl5::views::page::{PagePicture, PageTable};
@@ -66,7 +67,7 @@ fn tabular(name: &str, about: Vec<String>, rows: &[Vec<(String, String)>]) -> Pa
 }
 
 fn cell(row: &[(String, String)], column: &str) -> String {
-    row.iter().find(|(key, _)| key == column).map_or_else(|| "-".to_owned(), |(_, text)| text.clone())
+    row.iter().find(|(key, _)| key == column).map_or_else(dash, |(_, text)| text.clone())
 }
 
 /// Formats a value as a cell: "-" for null, and floating-point numbers with at most four decimals.

@@ -4,10 +4,10 @@
 use super::settings::{SMALLER, VolumeSettingArgs};
 use crate::error::CliError;
 use crate::interrupt;
-use crate::numbers::{count_of, whole};
+use crate::numbers::{count_of, dash, whole};
 use crate::output::OutputFolder;
 use crate::progress::Progress;
-use crate::terminal::{answer, json_text, laid_out};
+use crate::terminal::{Column, answer, columns_text, json_text};
 use clap::Args;
 use pxpl5::lab::volumes::VolumeComparisonQuery;
 use pxpl5::views::charts::{ChartAxes, Curve, curve_chart};
@@ -74,9 +74,7 @@ fn pictures(folder: &mut OutputFolder, comparison: &VolumeComparison) -> Result<
     Ok(())
 }
 
-type Column = (&'static str, fn(&VariantRow) -> String);
-
-const COLUMNS: [Column; 16] = [
+const COLUMNS: [Column<VariantRow>; 16] = [
     ("clip", |row| row.clip.clone()),
     ("projection", |row| row.projection.to_owned()),
     ("samples", |row| row.samples.to_string()),
@@ -87,7 +85,7 @@ const COLUMNS: [Column; 16] = [
     ("draws_percent", |row| format!("{:.2}", row.draws_percent)),
     ("tiles_percent", |row| format!("{:.2}", row.tile_occupancy_percent)),
     ("connected_percent", |row| format!("{:.2}", row.connected_percent)),
-    ("dead_zone_px", |row| row.dead_zone_radius_px.map_or_else(|| "-".to_owned(), |radius| radius.to_string())),
+    ("dead_zone_px", |row| row.dead_zone_radius_px.map_or_else(dash, |radius| radius.to_string())),
     ("lit_voxels", |row| row.lit_voxels.to_string()),
     ("over_exact_near", |row| over_exact(row, 1..4)),
     ("over_exact_far", |row| over_exact(row, 32..43)),
@@ -111,9 +109,7 @@ fn rows_csv(comparison: &VolumeComparison) -> String {
 fn text(comparison: &VolumeComparison) -> String {
     let mut text =
         format!("{} ({}), seed {}\n\n", comparison.scene, count_of(comparison.triangles, "primitive"), comparison.seed);
-    let heads = COLUMNS.map(|(name, _)| name.to_owned()).to_vec();
-    let rows = comparison.variants.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)).to_vec());
-    text.push_str(&laid_out(&std::iter::once(heads).chain(rows).collect::<Vec<_>>(), 2));
+    text.push_str(&columns_text(&COLUMNS, &comparison.variants, 2));
     text.push_str(
         "\nover_exact: lit pixels divided by those of the exact clip with the same projection, at 8 to 32 px and at 256 to 344 px from the axis;\n\
          connected_percent: share of the mesh's intersections with the slices that is shown; volumes/s: rate of the model, with its parts one after\n\

@@ -4,10 +4,11 @@ use super::settings::{VolumeSettingArgs, png};
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
-use crate::terminal::{answer, json_text};
+use crate::terminal::{Column, answer, columns_text, json_text};
 use clap::Args;
 use pxpl5::views::results::csv_table;
 use pxpl5::volume::pictures::{EyeView, before_and_after, sheet, tile_map};
+use pxpl5::volume::pixel_planes::{BoundRow, SimulatedRow};
 use pxpl5::volume::{PixelPlanesReport, Volume, VolumeReport};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -55,63 +56,41 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     answer(args.json, args.volume.settings.quiet, &json, || text(&report, args.out.as_deref()))
 }
 
+/// Closed-form bounds for several sizes of the machine.
+const BOUNDS: [Column<BoundRow>; 8] = [
+    ("renderers", |row| row.renderers.to_string()),
+    ("processors", |row| row.processors.to_string()),
+    ("renderers, ms", |row| format!("{:.1}", row.ms[0])),
+    ("ring, ms", |row| format!("{:.1}", row.ms[1])),
+    ("port, ms", |row| format!("{:.1}", row.ms[2])),
+    ("processors, ms", |row| format!("{:.1}", row.ms[3])),
+    ("volumes/s", |row| format!("{:.2}", row.volumes_hz)),
+    ("limited by", |row| row.limited_by.to_string()),
+];
+
+/// The simulation of all events, which shows how close the machine comes to the bounds, because they ignore waiting.
+const SIMULATED: [Column<SimulatedRow>; 8] = [
+    ("renderers", |row| row.renderers.to_string()),
+    ("processors", |row| row.processors.to_string()),
+    ("ms", |row| format!("{:.1}", row.ms)),
+    ("over bound", |row| format!("{:.1} %", row.over_bound_percent)),
+    ("volumes/s", |row| format!("{:.2}", row.volumes_hz)),
+    ("renderers busy", |row| format!("{:.1} %", row.renderers_busy_percent)),
+    ("processors busy", |row| format!("{:.1} %", row.processors_busy_percent)),
+    ("channels busy", |row| format!("{:.1} %", row.channels_busy_percent)),
+];
+
 /// Describes the work of the renderers, and the part of the machine that limits the number of volumes per second.
 fn bounds(planes: &PixelPlanesReport) -> String {
     let work = &planes.counts.work;
     let mut text = format!(
-        "\nPixel-Planes 5: {} slice triangles, {} commands in {} regions, {} left out, {} clocks\n{:>10} {:>11} {:>13} {:>9} {:>9} {:>14} \
-         {:>11}  limited by\n",
-        work.triangles,
-        work.commands,
-        work.regions,
-        work.left_out,
-        work.clocks,
-        "renderers",
-        "processors",
-        "renderers, ms",
-        "ring, ms",
-        "port, ms",
-        "processors, ms",
-        "volumes/s"
+        "\nPixel-Planes 5: {} slice triangles, {} commands in {} regions, {} left out, {} clocks\n",
+        work.triangles, work.commands, work.regions, work.left_out, work.clocks
     );
-    // Closed-form bounds for several sizes of the machine.
-    for row in &planes.bounds {
-        let [renderers, ring, port, processors] = row.ms;
-        let _ = writeln!(
-            text,
-            "{:>10} {:>11} {renderers:>13.1} {ring:>9.1} {port:>9.1} {processors:>14.1} {:>11.2}  {}",
-            row.renderers, row.processors, row.volumes_hz, row.limited_by
-        );
-    }
-    if planes.simulated.is_empty() {
-        return text;
-    }
-    // The bounds ignore waiting. The simulation of all events shows how close the machine comes to the bounds.
-    let _ = writeln!(
-        text,
-        "\nOne volume event by event\n{:>10} {:>11} {:>13} {:>12} {:>11} {:>16} {:>17} {:>16}",
-        "renderers",
-        "processors",
-        "ms",
-        "over bound",
-        "volumes/s",
-        "renderers busy",
-        "processors busy",
-        "channels busy"
-    );
-    for row in &planes.simulated {
-        let _ = writeln!(
-            text,
-            "{:>10} {:>11} {:>13.1} {:>10.1} % {:>11.2} {:>14.1} % {:>15.1} % {:>14.1} %",
-            row.renderers,
-            row.processors,
-            row.ms,
-            row.over_bound_percent,
-            row.volumes_hz,
-            row.renderers_busy_percent,
-            row.processors_busy_percent,
-            row.channels_busy_percent
-        );
+    text.push_str(&columns_text(&BOUNDS, &planes.bounds, 0));
+    if !planes.simulated.is_empty() {
+        text.push_str("\nOne volume event by event\n");
+        text.push_str(&columns_text(&SIMULATED, &planes.simulated, 0));
     }
     text
 }

@@ -44,7 +44,6 @@ impl PanelNumbers {
     ///
     /// A missing parameter has its default. The scan is then rolling, runs from the top, shows every line and fills the
     /// period. A pixel has 24 bits and shines for an instant, and a board has one port.
-    #[must_use]
     pub fn of(table: &dyn ParameterTable) -> Self {
         let number = |name: &str, default: u64| match table.get(name) {
             Ok(Value::Whole(value)) => value,

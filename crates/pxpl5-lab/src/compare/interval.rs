@@ -70,7 +70,6 @@ impl MeanInterval {
     /// interval reaches from `mean / f` to `mean * f` with `f = exp(t sd / (sqrt(n) mean))`. If a number is 0, the
     /// result is the symmetric interval of [`MeanInterval::of_signed`], cut at 0. If a number is negative, the
     /// symmetric interval is not cut.
-    #[must_use]
     pub fn of(values: &[f64], confidence: f64) -> Self {
         let symmetric = Self::of_signed(values, confidence);
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -86,7 +85,6 @@ impl MeanInterval {
     }
 
     /// Computes the mean and its symmetric interval from one number for each seed. The numbers can be negative.
-    #[must_use]
     pub fn of_signed(values: &[f64], confidence: f64) -> Self {
         let statistics = Statistics::of(values.iter().copied());
         let n = values.len();

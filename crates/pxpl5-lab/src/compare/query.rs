@@ -235,7 +235,6 @@ impl Study for CompareQuery {
 
 impl CompareQuery {
     /// Creates a comparison of the usual rows with [`MIN_SEEDS`] seeds. All rows share the settings in `shared`.
-    #[must_use]
     pub fn new(shared: ExperimentFile) -> Self {
         Self {
             shared,

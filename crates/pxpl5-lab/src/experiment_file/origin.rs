@@ -22,7 +22,6 @@ pub struct Origin {
 
 impl Origin {
     /// Returns the origin of the results of an experiment.
-    #[must_use]
     pub fn of(experiment: &Experiment) -> Self {
         let motion = experiment.head.as_ref().map(|head| {
             let mut hash = Fingerprint::default();

@@ -134,7 +134,6 @@ impl Plan {
 
 impl Settings {
     /// Returns the settings of an experiment file, without defaults. Names of files become absolute.
-    #[must_use]
     pub fn of(file: &ExperimentFile) -> Self {
         let mut all = Self::default();
         for (key, setting) in file.settings.iter().filter(|(key, _)| !key.starts_with("origin.")) {

@@ -28,7 +28,6 @@ pub struct Headline {
 
 impl Headline {
     /// Counts the rows of a list by provenance.
-    #[must_use]
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a FigureRow>) -> Self {
         let (mut free, mut interpretation) = (Vec::new(), Vec::new());
         for row in rows {

@@ -40,7 +40,6 @@ const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_
 
 impl FigureSettings {
     /// Returns settings with unchanged presets. The fly-through of the scene "mig" has 10 seeds of 150 frames.
-    #[must_use]
     pub fn new(level: Level) -> Self {
         Self {
             level,

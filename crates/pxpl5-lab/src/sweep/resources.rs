@@ -93,7 +93,6 @@ impl TaskResources {
     /// - memory of a task: `MEMORY_MARGIN threads most_bytes`
     /// - time of the merging job: `START_S + MERGE_ROW_S points`
     /// - memory of the merging job: `MERGE_BYTES + MERGE_ROW_BYTES points + MERGE_TASK_BYTES tasks`
-    #[must_use]
     pub fn of(sample: PointSample, tasks: Option<u64>, threads: u64) -> Self {
         let PointSample { points, mean_s, most_s, most_bytes } = sample;
         let work_s = mean_s * points as f64 / threads as f64;

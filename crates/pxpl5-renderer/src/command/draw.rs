@@ -108,7 +108,6 @@ pub struct TriangleEncoder([Word; TRIANGLE_WORDS]);
 pub struct PhongTriangleEncoder([Word; PHONG_WORDS]);
 
 impl TriangleEncoder {
-    #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self(blank(&TriangleCommand::default().program(layout)))
     }

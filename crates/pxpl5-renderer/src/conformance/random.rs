@@ -13,7 +13,6 @@ use pxpl5_wire::{Linear, Quadratic, Word};
 pub struct Random(SplitMix64);
 
 impl Random {
-    #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self(SplitMix64::new(seed.wrapping_mul(0xd129_0d3b_3f4b_7ec5)))
     }

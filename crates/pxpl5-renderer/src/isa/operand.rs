@@ -21,13 +21,11 @@ const RELATIVE: u32 = 1 << 14;
 impl Operand {
     /// Returns an unsigned bit field whose address counts from the first bit of the selected context (the part of pixel
     /// memory that holds one region).
-    #[must_use]
     pub const fn context(address: u8, width: u8) -> Self {
         Self { address, width, relative: true, signed: false }
     }
 
     /// Returns an unsigned bit field of pixel memory at an absolute address, 0 to 207.
-    #[must_use]
     pub const fn absolute(address: u8, width: u8) -> Self {
         Self { address, width, relative: false, signed: false }
     }
@@ -50,7 +48,6 @@ impl Operand {
         flags | ((self.width as u32 - 1) & 63) << 8 | self.address as u32
     }
 
-    #[must_use]
     pub const fn from_bits(bits: u32) -> Self {
         Self {
             address: bits as u8,

@@ -36,7 +36,6 @@ pub struct Frameless {
 impl Frameless {
     /// Creates a pipeline with blocks of 16 x 16 pixels. The message of such a block has 16 words of overhead and 256
     /// words of pixels.
-    #[must_use]
     pub const fn new() -> Self {
         Self { block: 16, batch: 0, seed: 1 }
     }

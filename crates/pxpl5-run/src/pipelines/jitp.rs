@@ -35,7 +35,6 @@ pub struct Jitp {
 impl Jitp {
     /// Creates a pipeline with strips of one line. If a whole field shows one instant ([`Viewpoint::Field`]), strips
     /// have eight lines, because strips of fewer lines would not reduce the error.
-    #[must_use]
     pub const fn new(viewpoint: Viewpoint, racing: bool) -> Self {
         let strip_rows = if matches!(viewpoint, Viewpoint::Field) { 8 } else { 1 };
         Self { viewpoint, racing, strip_rows }

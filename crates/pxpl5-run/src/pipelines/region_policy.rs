@@ -110,7 +110,6 @@ pub struct PolicyPipeline {
 
 impl PolicyPipeline {
     /// Creates a pipeline with a policy and a method of shading.
-    #[must_use]
     pub const fn new(policy: Arc<dyn RegionPolicy>, shading: Shading) -> Self {
         Self { policy, shading }
     }

@@ -64,13 +64,11 @@ pxpl5_sim::parameters::named!(FinishedRegions, "action", FinishedRegions::ALL.ma
 
 impl RenderingControl {
     /// Creates a stereo pipeline with Phong shading, as measured in TR94.
-    #[must_use]
     pub const fn stereo() -> Self {
         Self { mono: false, shading: Shading::Phong, finished: FinishedRegions::Store }
     }
 
     /// Creates a pipeline for one eye, with Phong shading.
-    #[must_use]
     pub const fn mono() -> Self {
         Self { mono: true, ..Self::stereo() }
     }

@@ -90,7 +90,6 @@ pub struct Slats {
 impl Slats {
     /// Creates the prototype with the split copy of TR94. The lower half of a picture is copied while the display
     /// already scans the upper half.
-    #[must_use]
     pub const fn split() -> Self {
         Self {
             copy: CopySchedule::Split,
@@ -101,14 +100,12 @@ impl Slats {
     }
 
     /// Creates the prototype without the split copy: both halves are copied before the retrace (TR94).
-    #[must_use]
     pub const fn whole() -> Self {
         Self { copy: CopySchedule::Whole, ..Self::split() }
     }
 
     /// Creates a variant of [`Slats::split`] that copies into the hidden buffer. If a field is late, the display
     /// repeats the last complete field.
-    #[must_use]
     pub const fn backup() -> Self {
         Self { copy: CopySchedule::Backup, ..Self::split() }
     }

@@ -19,7 +19,6 @@ pub enum PictureResult {
 impl PictureResult {
     /// Returns the result of a picture. `is_whole` is true if the picture was complete when its display period ended.
     /// `is_in_time` is true if every part arrived before its deadline.
-    #[must_use]
     pub const fn of(is_whole: bool, is_in_time: bool) -> Self {
         match (is_whole, is_in_time) {
             (true, true) => Self::Shown,

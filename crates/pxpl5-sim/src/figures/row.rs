@@ -147,7 +147,6 @@ impl FigureRow {
 
     /// Creates a row from the published and the simulated number. The row counts as met if the simulated number is
     /// within `accepted`. All optional facts about the figure are missing.
-    #[must_use]
     pub fn new(
         id: &'static str,
         statement: impl Into<Cow<'static, str>>,

@@ -55,25 +55,21 @@ impl SettingError {
     }
 
     /// Creates the error for a wrong value of the setting `name`. The message is `name: expected ..., found ...`.
-    #[must_use]
     pub fn value(name: &str, expected: impl Display, found: impl Display) -> Self {
         Self::new(SettingErrorKind::Value, name, expected, found)
     }
 
     /// Creates the error of a text that has the wrong form as a whole. The message is `expected ..., found "..."`.
-    #[must_use]
     pub fn text(expected: impl Display, text: &str) -> Self {
         Self::value("", expected, format_args!("{text:?}"))
     }
 
     /// Creates the error of a number outside its limits. The message is `name must be LOW to HIGH, found ...`.
-    #[must_use]
     pub fn limits<N: Display>(name: &str, (low, high): (N, N), found: impl Display) -> Self {
         Self::new(SettingErrorKind::Limits, name, format_args!("{low} to {high}"), found)
     }
 
     /// Creates the error of a number with a fraction or a sign, for a setting that must be a whole number.
-    #[must_use]
     pub fn not_whole(name: &str, found: impl Display) -> Self {
         Self::new(SettingErrorKind::Limits, name, "a whole number", found)
     }
@@ -108,26 +104,22 @@ impl SettingError {
 
     /// Creates the error of an attempt to change a parameter that is a fixed property of a chip. `origin` is the source
     /// of the fixed value.
-    #[must_use]
     pub fn read_only(path: &str, value: Value, origin: &str) -> Self {
         Self::new(SettingErrorKind::ReadOnly, path, origin, value)
     }
 
     /// Creates the error of a missing setting. `how` describes the setting with an example of a value.
-    #[must_use]
     pub fn missing(name: &str, how: impl Display) -> Self {
         Self::new(SettingErrorKind::Missing, name, how, "")
     }
 
     /// Creates the error of settings that exclude each other, or of a setting that does not apply. `reason` is a
     /// sentence with the expected and the found values.
-    #[must_use]
     pub fn combination(reason: impl Display) -> Self {
         Self::new(SettingErrorKind::Combination, "", "", reason)
     }
 
     /// Creates the error of a scene that its reader cannot use. `part` is the name of the scene and the wrong part.
-    #[must_use]
     pub fn scene(part: &str, expected: impl Display, found: impl Display) -> Self {
         Self::new(SettingErrorKind::Scene, part, expected, found)
     }

@@ -62,20 +62,17 @@ pub enum FileErrorKind {
 impl FileError {
     /// Creates an error about the content of a file. [`FileError::at`] adds the position in the file, and
     /// [`FileError::in_file`] adds the name of the file.
-    #[must_use]
     pub fn new(kind: FileErrorKind, expected: impl Display, found: impl Display) -> Self {
         let [expected, found] = [expected.to_string().into(), found.to_string().into()];
         Self { kind, file: "".into(), place: "".into(), expected, found }
     }
 
     /// Creates the error of a file that the operating system cannot read.
-    #[must_use]
     pub fn unreadable(file: impl Display, expected: &str, error: impl Display) -> Self {
         Self::new(FileErrorKind::Unreadable, expected, error).in_file(file)
     }
 
     /// Creates an error whose message is only the sentence `reason`.
-    #[must_use]
     pub fn because(kind: FileErrorKind, reason: impl Display) -> Self {
         Self::new(kind, "", reason)
     }

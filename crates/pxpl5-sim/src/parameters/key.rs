@@ -91,7 +91,6 @@ pub struct Key {
 
 impl Key {
     /// Creates a key that states no unit and no default.
-    #[must_use]
     pub const fn new(name: &'static str, about: &'static str, values: KeyValues) -> Self {
         Self { name, about, values, unit: "", default: "", sets: &[] }
     }

@@ -18,13 +18,11 @@ const MIN_FIELDS: u64 = 4;
 
 impl Timeline {
     /// Returns a timeline of the part of a run that the options select.
-    #[must_use]
     pub fn of(outcome: &Outcome, options: &TimelineOptions) -> Self {
         Self::so_far(&outcome.observed_run(), options)
     }
 
     /// Returns a timeline of the selected part of a run that has ended or is in progress.
-    #[must_use]
     pub fn so_far(run: &ObservedRun<'_>, options: &TimelineOptions) -> Self {
         let record = run.record();
         let display = record.display();

@@ -15,7 +15,6 @@ use std::collections::BTreeMap;
 
 impl Trace {
     /// Collects the tracks of a run.
-    #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         let mut trace = Self { origin: origin(&Report::of(outcome)), groups: Vec::new(), tracks: Vec::new() };
         let traffic = outcome.observation().traffic.as_deref();

@@ -56,7 +56,6 @@ pub struct BoundRow {
 impl SliceBounds {
     /// Computes the counts of a volume that the renderers have drawn. A tile that is occupied in one slice is sent for
     /// every slice of its batch. `traffic` is `None` if the tiles cannot be sent, and then no region is copied.
-    #[must_use]
     pub fn of(work: RendererWork, frame: &VolumeFrame, tiling: Tiling, traffic: Option<&SliceTraffic>) -> Self {
         let tile_words = tiling.grid(frame.planes.size()).words(0);
         let packed = frame.stats.pixels_packed / 8 / tile_words.max(1);

@@ -56,7 +56,6 @@ pub enum BufferReceipt {
 
 impl DoubleBuffer {
     /// Makes two empty buffers for a surface of `width` x `height` pixels. Buffer 0 is shown.
-    #[must_use]
     pub const fn new(width: u32, height: u32) -> Self {
         Self {
             width,

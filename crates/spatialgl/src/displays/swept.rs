@@ -48,7 +48,6 @@ pub struct SweptConfig {
 impl SweptConfig {
     /// Returns the display of the SpatialGL paper with this clip and projection: 396 slices (published) of 768 x 768
     /// pixels (assumed).
-    #[must_use]
     pub const fn perspecta(clip: SliceClip, projection: Projection) -> Self {
         Self {
             slices: 396,

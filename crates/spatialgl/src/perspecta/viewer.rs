@@ -29,7 +29,6 @@ pub struct Camera {
 
 impl Camera {
     /// Creates an eye four radii away from a display of this radius, with a picture about as wide as the display.
-    #[must_use]
     pub fn around(radius: f64, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Self {
         let focal = f64::from(side) * 1.9;
         Self { azimuth_deg, elevation_deg, distance: 4.0 * radius, focal, size: [side, side] }

@@ -88,7 +88,6 @@ impl Bin {
     /// # Panics
     ///
     /// Panics if the command buffer has no such primitive.
-    #[must_use]
     pub fn new(commands: &CommandBuffer, primitives: Vec<u32>) -> Self {
         let balls = primitives.chunks(CLUSTER).map(|cluster| ball(commands, cluster)).collect();
         let each = primitives.chunks(CLUSTER).map(|cluster| balls_of_each(commands, cluster)).collect();

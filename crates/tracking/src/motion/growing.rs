@@ -17,7 +17,6 @@ pub struct GrowingRecording(Arc<RwLock<Recording>>);
 
 impl GrowingRecording {
     /// Creates a growing motion that starts with the samples of `begin`.
-    #[must_use]
     pub fn new(begin: Recording) -> Self {
         Self(Arc::new(RwLock::new(begin.ending(End::Hold))))
     }

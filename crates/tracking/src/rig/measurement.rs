@@ -183,7 +183,6 @@ pub struct Oscilloscope {
 impl Oscilloscope {
     /// Creates an oscilloscope whose first channel has a pulse for every pass of the pendulum up to the last step of
     /// the host's D/A output. A pulse lasts as long as the pendulum takes to cross the light beam.
-    #[must_use]
     pub fn of(rig: &PendulumRig, dac: ScopeTrace, screen: ScopeTrace) -> Self {
         let last_ps = dac.edges().last().map_or(0, |edge| edge.t_ps);
         let low_points = (0..).map(|n| rig.pendulum.low_point_ps(n)).take_while(|t_ps| *t_ps <= last_ps);

@@ -18,7 +18,6 @@ pub struct ScopeTrace {
 impl ScopeTrace {
     /// Creates a trace from pairs of an instant (ps) and a level, in order of time. Each level lasts until the next
     /// instant.
-    #[must_use]
     pub fn sampled(name: &'static str, samples: impl IntoIterator<Item = (u64, bool)>) -> Self {
         let mut edges: Vec<ScopeEdge> = Vec::new();
         for (t_ps, high) in samples {
@@ -30,7 +29,6 @@ impl ScopeTrace {
     }
 
     /// Creates a trace that changes its level at each of the instants `instants` (ps).
-    #[must_use]
     pub fn toggling(name: &'static str, mut instants: Vec<u64>) -> Self {
         instants.sort_unstable();
         let edges = instants.into_iter().enumerate().map(|(i, t_ps)| ScopeEdge { t_ps, high: i % 2 == 0 });

@@ -43,7 +43,6 @@ impl HmdConfig {
     /// Returns the display of the low-latency experiments of 1993 to 1995, with the numbers of [`HeadMountedView`]. The
     /// axes are parallel and there is no lens. Both are assumed: the papers print no angle between the axes, and the
     /// papers' pictures are not distorted before display.
-    #[must_use]
     pub const fn unc() -> Self {
         let HeadMountedView { eye_separation_m, horizontal_fov_deg, width_px, height_px, near_m, far_m } =
             HeadMountedView::PAPERS;
@@ -124,7 +123,6 @@ impl Hmd {
     }
 
     /// Returns the display with the numbers of [`HmdConfig::unc`].
-    #[must_use]
     pub fn unc() -> Self {
         Self::new(HmdConfig::unc()).expect("the table's values are in range")
     }

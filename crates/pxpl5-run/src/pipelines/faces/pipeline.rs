@@ -115,7 +115,6 @@ impl FaceLens {
 
 impl FacePipeline {
     /// Creates a pipeline that runs on the machine. The display latches one orientation per field, as in the papers.
-    #[must_use]
     pub const fn new(policy: FacePolicy) -> Self {
         let source = FaceSource::PixelPlanes;
         Self {
