@@ -85,7 +85,3 @@ pub const MEAN_HEAD_SPEED_DEG_PER_S: f64 = 40.0;
 /// Largest angular speed of the head under [`crate::Sway`] of scale 1, degrees per second. Published: the 99.9th
 /// percentile of the speed in recorded traces of headset use.
 pub const MAX_HEAD_SPEED_DEG_PER_S: f64 = 283.0;
-
-/// Upper end of the frequency band of head motion, hertz. Published: practically all energy of recorded yaw lies below
-/// this frequency.
-pub const HEAD_BAND_HZ: f64 = 2.0;

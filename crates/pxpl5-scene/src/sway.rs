@@ -6,8 +6,8 @@ use tracking::random;
 
 use crate::trig;
 
-/// Random head movement that is added to a path. The movement is a sum of sines of fixed frequencies below
-/// [`crate::config::HEAD_BAND_HZ`], with phases drawn from the seed.
+/// Random head movement that is added to a path. The movement is a sum of sines of fixed frequencies, with phases drawn
+/// from the seed. All are below 2 Hz, where recorded yaw has practically all of its energy (published).
 ///
 /// At scale 1 on [`crate::HeadPath::Look`], three statistics agree with recorded traces of headset use. The mean
 /// angular speed is about [`crate::config::MEAN_HEAD_SPEED_DEG_PER_S`]. The speed never exceeds

@@ -6,7 +6,6 @@
 //! | [`level_chart`] | speed against error of the levels of modelling |
 //! | [`curve_chart`], [`decade_chart`], [`point_chart`] | any value over another, such as the errors of a comparison over time |
 //! | [`histogram`] | distribution of the latencies of a run |
-//! | [`part_bar`] | parts of the latency of a run |
 //!
 //! The crate `plotters` draws all charts except the last two, whose bars have tooltips.
 
@@ -22,8 +21,7 @@ pub use chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyl
 pub use histogram::histogram;
 pub(crate) use histogram::histogram_element;
 pub use levels::{SpeedAndError, level_chart};
-pub(crate) use parts::part_bar_element;
-pub use parts::{MeanPart, part_bar};
+pub(crate) use parts::{MeanPart, part_bar_element};
 pub use plane::{Curve, MarkedPoint, curve_chart, decade_chart, point_chart};
 pub use scale::AxisScale;
 

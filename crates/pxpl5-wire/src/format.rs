@@ -27,6 +27,3 @@ pub const NORMAL_BITS: u32 = 12;
 pub const NORMAL_ONE_BITS: u32 = 10;
 
 pub const NORMAL_FRACTION_BITS: u32 = 10;
-
-/// Number of fraction bits of a sphere's quadratic expression. The unit of the expression is the square pixel.
-pub const QUADRATIC_FRACTION_BITS: u32 = 16;

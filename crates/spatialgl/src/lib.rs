@@ -87,9 +87,7 @@ pub use image::SliceImage;
 pub use measure::{
     Connected, brightness_by_radius, connected, dead_zone_radius, gap_correlation, innermost_lit_radius,
 };
-pub use pack::{
-    BitOrder, DENSE_PIXELS, PIXELS_PER_WORD, in_bit_order, pack_dense, packed_word, pixel_of_word, unpack_dense,
-};
+pub use pack::{DENSE_PIXELS, PIXELS_PER_WORD, pack_dense, packed_word, pixel_of_word};
 pub use projection::{Jitter, Projection, Size, SliceEye};
 pub use quadratic::ClipQuadratic;
 pub use raster::{Bin, Coverage, HostRenderer, ReferenceRenderer, SliceRenderer, SliceStats, SliceWork, Supersampled};

@@ -6,7 +6,6 @@ mod config;
 mod evaluate;
 mod exact;
 mod extrapolation;
-pub mod gain;
 mod gate;
 mod orientation_kalman;
 mod position_kalman;

@@ -1,5 +1,6 @@
 //! Tests of motion, trackers, and predictors.
 
+mod gain;
 mod pendulum_rig;
 mod prediction;
 mod synthetic_motion;

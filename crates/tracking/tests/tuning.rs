@@ -1,14 +1,13 @@
 //! Tuned prediction filters. On a still head they are no worse than no prediction, on a moving head they are near the
 //! best filter, and on sine waves they agree with exact formulas.
 
+use crate::gain;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use tracking::Pose;
 use tracking::motion::{End, Motion, Pan, Recording, Sinusoid, Still, Synthetic, TrainedOn};
-use tracking::predict::{
-    PredictionDeviation, PredictorConfig, PredictorKind, gain, prediction_errors, training_seed, tune,
-};
+use tracking::predict::{PredictionDeviation, PredictorConfig, PredictorKind, prediction_errors, training_seed, tune};
 use tracking::time::{PS_PER_MS, PS_PER_S};
 use tracking::tracker::{TrackerConfig, TrackerModel};
 

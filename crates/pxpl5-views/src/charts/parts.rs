@@ -8,23 +8,17 @@ const MARGIN: f64 = 4.0;
 
 /// Mean of one part of the latency of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MeanPart {
-    /// Name of the part, as in [`LATENCY_PARTS`](pxpl5_measure::LATENCY_PARTS).
-    pub name: String,
+pub(crate) struct MeanPart {
+    /// Name of the part, as in `pxpl5_measure::LATENCY_PARTS`.
+    pub(crate) name: String,
     /// Mean duration of the part over all pictures, in milliseconds.
-    pub mean_ms: f64,
+    pub(crate) mean_ms: f64,
     /// True if the latency stated in the papers includes this part.
-    pub published: bool,
+    pub(crate) published: bool,
 }
 
-/// Returns a single bar with the mean parts of the latency, as SVG for a page.
-///
-/// An outline marks the parts that the papers count as latency. The SVG text is empty if the sum of the parts is not
-/// positive.
-pub fn part_bar(parts: &[MeanPart]) -> String {
-    part_bar_element(parts).map_or_else(String::new, |svg| svg.to_string())
-}
-
+/// Returns a single bar with the mean parts of the latency, as SVG for a page. An outline marks the parts that the papers
+/// count as latency. Without a positive sum there is no bar.
 pub(crate) fn part_bar_element(parts: &[MeanPart]) -> Option<Element> {
     let all_ms: f64 = parts.iter().map(|part| part.mean_ms).sum();
     if !(all_ms.is_finite() && all_ms > 0.0) {
@@ -87,13 +81,14 @@ mod tests {
 
     #[test]
     fn a_chart_without_parts_is_empty() {
-        assert_eq!(part_bar(&[]), "");
-        assert_eq!(part_bar(&[part("send", f64::NAN, false)]), "");
+        assert!(part_bar_element(&[]).is_none());
+        assert!(part_bar_element(&[part("send", f64::NAN, false)]).is_none());
     }
 
     #[test]
     fn in_the_chart_of_parts_the_frame_surrounds_the_published_values() {
-        let svg = part_bar(&[part("send", 1.0, false), part("copy", 2.0, true), part("scan", 1.0, false)]);
+        let parts = [part("send", 1.0, false), part("copy", 2.0, true), part("scan", 1.0, false)];
+        let svg = part_bar_element(&parts).expect("a bar").to_string();
         // 4 ms take 632 units, and the frame begins at unit 4.
         assert!(svg.contains(r#"<rect x="162.0" y="11" width="316.0""#), "{svg}");
     }
