@@ -3,9 +3,6 @@
 use super::words::{board, number};
 use pxpl5::{Board, PictureNumber, Stepper};
 
-/// Largest number of stages that begin or end in one event: a board begins or ends one stage for each of its surfaces.
-const MARKS: usize = 16;
-
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Condition {
     /// A surface or a display memory has swapped its buffers since the last stop of the run.
@@ -104,7 +101,10 @@ impl Condition {
             Self::Swap => observation.swaps.len() > before.swaps,
             Self::Region => observation.arrivals.len() > before.arrivals,
             Self::Picture(picture) => {
-                observation.marks.iter().skip(before.marks).rev().take(MARKS).any(|mark| mark.picture == *picture)
+                // Earlier events of this run were checked already. All marks of an event have its time.
+                let new = observation.marks.iter().skip(before.marks).rev();
+                let newest = new.clone().next().map(|mark| mark.time);
+                new.take_while(|mark| Some(mark.time) == newest).any(|mark| mark.picture == *picture)
             }
             Self::Fifo(renderer, comparison) => {
                 let words = stepper.renderer(*renderer).and_then(|snapshot| snapshot.fifo_words);

@@ -117,10 +117,16 @@ fn head() -> Result<Head> {
     Ok(Head::new(Arc::new(Pan::at(PAN)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1)?)
 }
 
-fn run(machine: MachineConfig, viewpoint: Viewpoint, aim: Aim, fields: u64) -> Result<Outcome> {
+fn run(
+    settings: &FigureSettings,
+    machine: MachineConfig,
+    viewpoint: Viewpoint,
+    aim: Aim,
+    fields: u64,
+) -> Result<Outcome> {
     let jitp = Jitp { strip_rows: 1, ..Jitp::new(viewpoint, true) };
     let experiment = Experiment::new(machine, jitp, edge_scene(0.0)).head(head()?.with_aim(aim));
-    Ok(experiment.fields(fields).pixels(Pixels::Off).run()?)
+    Ok(experiment.fields(fields).pixels(Pixels::Off).stopped_by(settings.stop.clone()).run()?)
 }
 
 /// Returns the pixel error at one pixel of the evaluated field, in degrees.
@@ -144,7 +150,7 @@ fn in_pixels(angle: FigureValue) -> Result<FigureValue> {
 /// Measures row J1 of ACCURACY.md: the head's rotation while the beam draws a field. The rotation is measured from the
 /// first pixel to the last line, and scaled to the time between two retraces.
 fn error_of_field(settings: &FigureSettings) -> Result<FigureValue> {
-    let outcome = run(settings.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
+    let outcome = run(settings, settings.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     let surface = &outcome.record().display().surfaces()[0];
     let [width, height] = [surface.width, surface.height].map(f64::from);
     let focal_px = width / 2.0 / 30_f64.to_radians().tan();
@@ -162,7 +168,7 @@ fn error_of_field(settings: &FigureSettings) -> Result<FigureValue> {
 /// Measures row J2 of ACCURACY.md: the head's rotation while the beam draws a line. The rotation is measured between
 /// the first and the last pixel, and scaled to the duration of the whole line.
 fn error_of_line(settings: &FigureSettings) -> Result<FigureValue> {
-    let outcome = run(settings.machine("small-hmd")?, Viewpoint::Strip, Aim::Middle, FIELD.0 + 2)?;
+    let outcome = run(settings, settings.machine("small-hmd")?, Viewpoint::Strip, Aim::Middle, FIELD.0 + 2)?;
     let last = outcome.record().display().surfaces()[0].width - 1;
     // The line is drawn for its middle, so the errors of both ends add up.
     let ends_deg = degrees(&outcome, 0, MIDDLE_LINE)? + degrees(&outcome, last, MIDDLE_LINE)?;
@@ -173,7 +179,7 @@ fn error_of_line(settings: &FigureSettings) -> Result<FigureValue> {
 
 /// Measures row J3 of ACCURACY.md: the time between two successive lines of a field.
 fn time_of_line(settings: &FigureSettings) -> Result<FigureValue> {
-    let outcome = run(settings.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
+    let outcome = run(settings, settings.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     Ok((beam_s(&outcome, (0, 0), (0, 2)) * 1e6).into())
 }
 
@@ -205,7 +211,7 @@ fn slant(picture: &RgbImage) -> f64 {
 /// transforms before these fields are counted in a run without these fields, and then subtracted.
 fn transforms(settings: &FigureSettings) -> Result<FigureValue> {
     let counted = |viewpoint, fields| -> Result<u64> {
-        Ok(run(free_slave(settings)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
+        Ok(run(settings, free_slave(settings)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
     };
     // The difference of two runs removes the start.
     let a_field = |viewpoint| -> Result<f64> {

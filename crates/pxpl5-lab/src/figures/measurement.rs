@@ -119,8 +119,8 @@ impl Measurement {
     ///
     /// # Errors
     ///
-    /// Returns [`ExperimentError`](pxpl5_run::ExperimentError) if the experiment fails, and [`Stopped`](pxpl5_run::ExperimentError::Stopped) if another thread sets the
-    /// flag of `settings`.
+    /// Returns a [`StudyError`](crate::StudyError) if the experiment fails, or if another thread sets the flag of
+    /// `settings`.
     pub fn value(&self, settings: &FigureSettings) -> Result<FigureValue> {
         check(&settings.stop)?;
         (self.measure)(settings)

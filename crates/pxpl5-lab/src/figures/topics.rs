@@ -44,8 +44,8 @@ impl FigureSettings {
     ///
     /// # Errors
     ///
-    /// Returns [`ExperimentError`] if the experiment fails, [`ExperimentError::Scene`] for an unknown figure, and
-    /// [`ExperimentError::Stopped`] if another thread sets the flag.
+    /// Returns a [`StudyError`](crate::StudyError) for an unknown figure, if the experiment fails, or if another thread sets
+    /// the flag.
     pub fn measure(&self, id: &str) -> Result<FigureValue> {
         let figure = all().find(|figure| figure.id == id);
         figure.ok_or_else(|| ExperimentError::Scene(format!("there is no figure {id}")))?.value(self)

@@ -93,7 +93,7 @@ fn pose_to_transform_ms(settings: &FigureSettings, tracker: TrackerConfig) -> Re
     let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1)?;
     let machine = settings.interpreted("small-hmd")?;
     let experiment = Experiment::new(machine, settings.interpretation.pipeline(), scene_named("full-screen:12")?);
-    let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?;
+    let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).stopped_by(settings.stop.clone()).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, .. } = Budget::of(&outcome);
     Ok(tracking_ms + waiting_ms + sending_ms)
 }

@@ -63,8 +63,8 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Computes the median and percentiles of values, with interpolation between neighbours. NaN values are left out.
-    /// Returns `None` if no values remain.
+    /// Computes the median and percentiles of values, with interpolation between neighbours. No value must be NaN. Returns
+    /// `None` without values.
     pub fn of(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         let last = values.len().checked_sub(1)?;
