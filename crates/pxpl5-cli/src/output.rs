@@ -4,13 +4,13 @@ mod target;
 
 use crate::error::CliError;
 use image::RgbImage;
-use pxpl5::lab::manifest::{MANIFEST_FILE, Manifest};
+use pxpl5::lab::manifest::{MANIFEST_FILE, Manifest, temporary_file};
 use pxpl5::sweep::ROWS_FILE;
 use pxpl5::views::png_bytes;
 use pxpl5::views::results::{origin, origin_lines};
 use pxpl5::views::timeline::TimelineOptions;
 use pxpl5::{Outcome, PictureNumber, Report};
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use target::{Place, Target};
@@ -61,7 +61,7 @@ impl OutputFolder {
     fn begin(path: &Path, place: Place, listing: Listing) -> Result<Self, CliError> {
         let missing = path.ancestors().take_while(|part| !part.as_os_str().is_empty() && !part.exists());
         let missing: Vec<&Path> = missing.collect();
-        let tried = fs::create_dir_all(path).and_then(|()| temporary(path)).map(drop);
+        let tried = fs::create_dir_all(path).and_then(|()| temporary_file(path)).map(drop);
         for folder in missing {
             let _ = fs::remove_dir(folder);
         }
@@ -135,14 +135,9 @@ impl OutputFolder {
     }
 }
 
-/// Creates a file with the permissions of new files, which is deleted unless it is renamed.
-fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
-    tempfile::Builder::new().prefix(".pxpl5-").suffix(".tmp").make_in(folder, |path| File::create_new(path))
-}
-
 /// Writes a temporary file beside `name`, with the permissions of the file that it will replace.
 fn written(name: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
-    let mut file = temporary(folder_of(name))?;
+    let mut file = temporary_file(folder_of(name))?;
     file.write_all(bytes)?;
     match name.symlink_metadata() {
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}

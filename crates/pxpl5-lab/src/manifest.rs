@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
 
 /// Name of the manifest file in its folder.
 pub const MANIFEST_FILE: &str = "manifest.json";
@@ -181,6 +182,24 @@ impl Manifest {
         // Serialization of text and lists of text cannot fail.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
+}
+
+/// Beginning and end of the names of temporary files.
+const TEMPORARY: [&str; 2] = [".pxpl5-", ".tmp"];
+
+/// Creates a file with the permissions of new files, which is deleted unless it is renamed.
+///
+/// # Errors
+///
+/// Returns the error of the file system.
+pub fn temporary_file(folder: &Path) -> io::Result<NamedTempFile> {
+    let [prefix, suffix] = TEMPORARY;
+    tempfile::Builder::new().prefix(prefix).suffix(suffix).make_in(folder, |path| fs::File::create_new(path))
+}
+
+/// Returns true for the name of a temporary file, which a process that was killed has left behind.
+pub(crate) fn is_temporary(name: &str) -> bool {
+    name.starts_with(TEMPORARY[0]) && name.ends_with(TEMPORARY[1])
 }
 
 /// Returns true for a plain file name without a folder, except for the manifest's own name.

@@ -7,7 +7,7 @@ use super::rows::{Points, ROWS_FILE};
 use super::shard::Shard;
 use super::table::Table;
 use super::{Header, SweepRow};
-use crate::manifest::{MANIFEST_FILE, Manifest};
+use crate::manifest::{MANIFEST_FILE, Manifest, is_temporary};
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use serde::Serialize;
 use std::fs::{self, File, OpenOptions};
@@ -211,15 +211,7 @@ pub(super) fn write_all(
 /// Removes temporary files of processes that have ended. The folder is locked, so no other process uses these files.
 fn remove_leftover_files(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        // Temporary names end with a process number and `.tmp`.
-        let is_temporary = |file: &str| {
-            let stem = file.split('.').next().unwrap_or_default();
-            let number =
-                name.to_str().and_then(|name| name.strip_prefix(stem)?.strip_prefix('.')?.strip_suffix(".tmp"));
-            number.is_some_and(|number| !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()))
-        };
-        if [ROWS_FILE, TIMES_FILE, RESULTS_FILE, MANIFEST_FILE].into_iter().any(is_temporary) {
+        if entry.file_name().to_str().is_some_and(is_temporary) {
             let _ = fs::remove_file(entry.path());
         }
     }

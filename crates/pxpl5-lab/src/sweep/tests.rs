@@ -264,13 +264,13 @@ fn only_temporary_files_of_a_killed_process_are_removed() {
     let sweep = sweep("[sweep]\nseeds = 1\n");
     let path = folder("left-over");
     std::fs::create_dir_all(&path).expect("writable");
-    for name in ["rows.123.tmp", "results.9.tmp", "rows.old.tmp", "mine.1.tmp", "rows..tmp"] {
+    for name in [".pxpl5-a1B2c3.tmp", "mine.tmp", ".pxpl5-mine"] {
         std::fs::write(path.join(name), "x").expect("writable");
     }
     drop(Store::open(&path, sweep.header().expect("valid"), false).expect("writable"));
     let entries = std::fs::read_dir(&path).expect("there").map(|entry| entry.expect("entry").file_name());
     let names: BTreeSet<_> = entries.map(|name| name.to_string_lossy().into_owned()).collect();
-    let expected = [".lock", "manifest.json", "mine.1.tmp", "rows..tmp", "rows.jsonl", "rows.old.tmp", "times.jsonl"];
+    let expected = [".lock", ".pxpl5-mine", "manifest.json", "mine.tmp", "rows.jsonl", "times.jsonl"];
     assert_eq!(names, expected.map(str::to_owned).into());
     let _ = std::fs::remove_dir_all(path);
 }
