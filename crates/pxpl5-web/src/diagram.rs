@@ -103,7 +103,8 @@ pub(crate) fn age(stepper: &Stepper) -> Value {
     let Some(sampled) = times.sampled_at.filter(|at| *at <= now) else { return Value::Null };
     // The host samples the newest report, which the tracker has measured some time before.
     let report = stepper.head().and_then(|head| {
-        head.sampled().into_iter().min_by_key(|pose| pose.reports_until.0.abs_diff(sampled.0))?.measured_at
+        let of_view = head.sampled().into_iter().rfind(|pose| pose.number == times.view);
+        of_view?.measured_at
     });
     let begun = report.unwrap_or(sampled);
     json!({"picture": times.picture.0, "age_ms": now.since(begun).as_ms(), "shown_ms": times.shown_at.since(begun).as_ms()})
@@ -209,19 +210,22 @@ mod tests {
     }
 
     /// Tests the age of the shown picture under Slats: one field at the retrace (TR94), and two fields before the next
-    /// retrace.
+    /// retrace. Behind a tracker that measures every millisecond without delay, the age begins at a whole millisecond.
     #[test]
     fn under_slats_a_picture_is_one_field_old_when_it_is_shown() {
-        let mut session = session("slats");
-        assert_eq!(age(session.stepper()), Value::Null);
         // A field of NTSC takes 1001/60000 s.
         let field_ms = 1001.0 / 60.0;
-        for step in 0..40 {
-            let at_ms = 12.0 * field_ms + 1.0 + f64::from(step);
-            session.run_to((at_ms * 1e9) as u64);
-            let since_retrace = at_ms % field_ms;
-            let found = age(session.stepper())["age_ms"].as_f64().expect("a picture is shown");
-            assert!((found - field_ms - since_retrace).abs() < 1e-3, "{found} ms at {since_retrace} ms of a field");
+        for (tracker, step_ms) in [("", 0.0), ("head.motion=still\nhead.tracker=ideal\nhead.predict=none\n", 1.0)] {
+            let mut session = session(&format!("slats\n{tracker}"));
+            assert_eq!(age(session.stepper()), Value::Null);
+            for step in 0..40 {
+                let at_ms = 12.0 * field_ms + 1.0 + f64::from(step);
+                session.run_to((at_ms * 1e9) as u64);
+                let sampled_ms = ((at_ms / field_ms).floor() - 1.0) * field_ms;
+                let measured_ms = sampled_ms - sampled_ms % f64::max(step_ms, 1e-9);
+                let found = age(session.stepper())["age_ms"].as_f64().expect("a picture is shown");
+                assert!((found - (at_ms - measured_ms)).abs() < 1e-3, "{found} ms at {at_ms} ms, {tracker}");
+            }
         }
     }
 }
