@@ -24,7 +24,7 @@ const PREDICTORS: [&str; 3] = ["none", "velocity", "kalman"];
 
 const RASTERS: [&str; 3] = ["plain", "rotation", "depth"];
 
-/// Rows, at least one of each family. In `room`, the others differ from one of these by at most 0.1 px behind a rotation.
+/// Rows, at least one of each family.
 const ROWS: [&str; 10] = [
     "rendering-control",
     "slats",

@@ -17,7 +17,7 @@ use std::path::Path;
 
 /// Layers of the workspace. A crate may depend on crates of the listed layers, and on crates of its own layer only if
 /// its own layer is listed too.
-const FLOORS: [(&str, &[&str], &[&str]); 12] = [
+const FLOORS: [(&str, &[&str], &[&str]); 13] = [
     ("ground", &["pxpl5-sim", "pxpl5-wire", "i860"], &["ground"]),
     (
         "boards",
@@ -30,23 +30,24 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ("firmware", &["rendering-control", "slats", "jitp"], &["ground", "boards", "geometry"]),
     ("machine", &["pxpl5-machine"], &["ground", "boards"]),
     ("run", &["pxpl5-run"], &["ground", "boards", "geometry", "firmware", "world", "machine"]),
+    ("slices", &["pxpl5-volume"], &["ground", "boards", "world", "volume"]),
     (
         "measure",
-        &["pxpl5-measure", "pxpl5-analytic", "pxpl5-arp", "pxpl5-volume"],
-        &["ground", "boards", "geometry", "firmware", "world", "volume", "machine", "run"],
+        &["pxpl5-measure", "pxpl5-analytic", "pxpl5-arp"],
+        &["ground", "boards", "geometry", "firmware", "world", "machine", "run"],
     ),
     (
         "lab",
         &["pxpl5-lab"],
-        &["ground", "boards", "geometry", "firmware", "world", "volume", "machine", "run", "measure"],
+        &["ground", "boards", "geometry", "firmware", "world", "machine", "run", "slices", "measure"],
     ),
     ("views", &["pxpl5-views"], &["ground", "boards", "world", "machine", "run", "measure"]),
     (
         "front",
         &["pxpl5", "pxpl5-cli", "pxpl5-py", "pxpl5-web"],
         &[
-            "ground", "boards", "geometry", "firmware", "world", "volume", "machine", "run", "measure", "lab", "views",
-            "front",
+            "ground", "boards", "geometry", "firmware", "world", "volume", "machine", "run", "slices", "measure",
+            "lab", "views", "front",
         ],
     ),
 ];

@@ -13,8 +13,7 @@
 //!
 //! - **Validity** ([`Threshold::period`]): an image is wrong when the direction of a point is off by more than the
 //!   threshold angle. There are four causes: the eye has moved (chord or sine), the object appears larger (disc or
-//!   sphere), is animated, or rotates. A rotation of the head never makes an image wrong. A face that is out of sight
-//!   can be drawn later ([`time_until_visible_s`]).
+//!   sphere), is animated, or rotates. A rotation of the head never makes an image wrong.
 //! - **Objects** ([`Objects`]): each object is in the least often drawn memory in which its image stays correct. Memory
 //!   k is drawn every 2^k frames. An object changes its memory only in a frame that draws and shows both.
 //! - **Cells** ([`Cells`]): the floor is divided into square cells. The home cell is the one that contained the eye
@@ -51,7 +50,6 @@ mod objects;
 mod segment;
 mod update;
 mod validity;
-mod visibility;
 mod warp;
 
 pub use account::{draws_per_s, saved_percent};
@@ -61,5 +59,4 @@ pub use objects::Objects;
 pub use segment::{CutVertex, Segmentation};
 pub use update::Update;
 pub use validity::{Distance, ObjectView, SizeRule, Threshold, Translation, ValidityPeriod, level};
-pub use visibility::{angle_to_face, mean_faces_touched, time_until_visible_s};
 pub use warp::{Falloff, RegionWarp};

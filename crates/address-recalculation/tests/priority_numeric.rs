@@ -2,9 +2,9 @@
 
 use address_recalculation::priority::{
     Cell, CellAssignment, Distance, Falloff, ObjectView, PriorityTiming, RegionWarp, SizeRule, Threshold, Translation,
-    Update, angle_to_face, draws_per_s, level, mean_faces_touched, saved_percent, time_until_visible_s,
+    Update, draws_per_s, level, saved_percent,
 };
-use glam::{DVec3, Vec3Swizzles};
+use glam::DVec3;
 
 fn threshold() -> Threshold {
     Threshold::of_degrees(90.0 / 512.0)
@@ -79,59 +79,6 @@ fn case_20_a_rotating_object_has_the_computed_period() {
     assert_eq!(threshold().turn_s(652.0, 1.0, turn), f64::INFINITY);
     assert!(threshold().turn_s(651.8, 1.0, turn).is_finite());
     assert_eq!(threshold().turn_s(5.0, 1.0, 0.0), f64::INFINITY);
-}
-
-#[test]
-fn case_21_a_face_becomes_visible_after_the_computed_time() {
-    let half_diagonal = (400.0_f64 / (320.0 / 30_f64.to_radians().tan())).atan();
-    // The peak turn of a head (JITP, LIST83).
-    let turn = 370_f64.to_radians();
-    let wait = |face| 1e3 * time_until_visible_s(DVec3::NEG_Z, face, half_diagonal, turn);
-    near(wait(DVec3::Z), 241.748, 5e-4);
-    near(wait(DVec3::X), 24.8175, 5e-5);
-    near(wait(DVec3::NEG_Z), 0.0, 0.0);
-    near(angle_to_face(DVec3::new(0.3, 0.2, -1.0), DVec3::NEG_Z), 0.0, 0.0);
-}
-
-/// Finds the direction of a face that is nearest to a viewing direction, by trying many directions.
-#[test]
-fn the_angle_to_a_face_is_the_least_of_all_its_directions() {
-    for view in [DVec3::new(0.3, 0.9, -0.5), DVec3::new(-1.0, 0.1, 0.2), DVec3::new(1.0, 1.0, 1.0)] {
-        for face in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z] {
-            let sides = [face.zxy(), face.yzx()];
-            let steps = (-200..=200).map(|n| f64::from(n) / 200.0);
-            let places = steps.clone().flat_map(|u| steps.clone().map(move |v| face + sides[0] * u + sides[1] * v));
-            let least = places.map(|place| view.angle_between(place)).fold(f64::INFINITY, f64::min);
-            near(angle_to_face(view, face), least, 0.01);
-        }
-    }
-}
-
-/// Returns the corners of the cube, the middles of its edges and the middles of its faces, as positions.
-fn places_of_the_cube() -> impl Iterator<Item = DVec3> {
-    let steps = [-1.0, 0.0, 1.0];
-    let all = steps.into_iter().flat_map(move |x| steps.map(|y| steps.map(|z| DVec3::new(x, y, z))).concat());
-    all.filter(|place| *place != DVec3::ZERO)
-}
-
-/// Checks angles that follow from the symmetry of the cube.
-///
-/// If the viewer looks towards a corner, the middle of an edge or the middle of a face, the nearest direction of any
-/// face is again such a direction. From an edge's middle, the opposite faces are 90 degrees away.
-#[test]
-fn angles_to_faces_agree_with_the_symmetry_of_the_cube() {
-    for view in places_of_the_cube() {
-        for face in places_of_the_cube().filter(|place| place.length() == 1.0) {
-            let of_face = places_of_the_cube().filter(|place| place.dot(face) == 1.0);
-            let cosine = of_face.map(|place| view.normalize().dot(place.normalize())).fold(-1.0, f64::max);
-            let found = angle_to_face(view, face);
-            near(found, cosine.min(1.0).acos(), 5e-8);
-            assert_eq!(found == 0.0, view.dot(face) > 0.0, "{view} {face}: {found}");
-        }
-    }
-    let opposite = angle_to_face(DVec3::new(1.0, 0.0, 1.0), DVec3::NEG_Z);
-    near(opposite.to_degrees(), 90.0, 1e-9);
-    near(angle_to_face(DVec3::ONE, DVec3::NEG_X), (1.0_f64 / 3.0).acos(), 1e-12);
 }
 
 fn assignment() -> CellAssignment {
@@ -231,14 +178,6 @@ fn case_28_the_printed_tables_give_the_computed_draws_per_second() {
     near(saved_percent(7_335.0, draws_per_s(&rates, &without)), 31.300, 5e-4);
     near(saved_percent(7_335.0, all(with)), 33.197, 5e-4);
     near(saved_percent(draws_per_s(&rates, &without), all(without)), 16.456, 5e-4);
-}
-
-#[test]
-fn case_29_an_object_touches_the_computed_mean_number_of_faces() {
-    for (degrees, faces) in [(1.0_f64, 1.041335), (5.0, 1.212510), (10.0, 1.438624), (30.0, 2.443429)] {
-        near(mean_faces_touched(degrees.to_radians()), faces, 5e-7);
-    }
-    near(mean_faces_touched(0.0), 1.0, 0.0);
 }
 
 #[test]

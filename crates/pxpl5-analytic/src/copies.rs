@@ -265,3 +265,27 @@ fn select<const N: usize>(mask: Mask<N>, yes: [u64; N], no: [u64; N]) -> [u64; N
 fn select_times<const N: usize>(mask: Mask<N>, yes: [f64; N], no: [f64; N]) -> [f64; N] {
     lanes!(i => f64::from_bits(mask[i] & yes[i].to_bits() | !mask[i] & no[i].to_bits()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tests copies of 100 ns and commands 10 ns apart. Renderer 0 copies its top region from 5 ns on, before renderer 1
+    /// asks at 20 ns. Both want the left port, so the three bottom regions of renderer 1 go from 105 to 405 ns, 85 ns
+    /// later than alone. Renderer 1 therefore asks for its top region at 485 instead of 400 ns.
+    #[test]
+    fn a_top_region_that_overtakes_delays_bottom_regions_and_the_top_region_after_them() {
+        let queue = |copies: &[bool]| {
+            let mut queue = Queue::default();
+            copies.iter().for_each(|to_right| queue.push(*to_right));
+            queue
+        };
+        let [mut bottom, mut top] = [[Queue::default(); MAX_RENDERERS]; 2];
+        bottom[1] = queue(&[false; 3]);
+        (top[0], top[1]) = (queue(&[false]), queue(&[true]));
+        let [mut ready, mut ends] = [[0.0; MAX_RENDERERS]; 2];
+        (ready[0], ready[1], ends[1]) = (5.0, 400.0, 320.0);
+        let found = overtaking(2, [10.0, 100.0], [bottom, top], ready, ends);
+        assert_eq!(found, CopyTimes { begin_ns: 5.0, end_ns: 585.0 });
+    }
+}

@@ -32,9 +32,9 @@ fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up
         assert!(names.contains(&name), "{name} is not among {names:?}");
     }
     for row in rows(&json) {
-        let mean_px = row["error"]["mean_px"]["mean"].as_f64().expect("every pipeline can draw two triangles");
-        assert!(row["error"]["mean_px"]["low"].as_f64() <= Some(mean_px), "{row}");
-        assert!(row["error"]["pixels"]["p50"].as_f64() <= row["error"]["pixels"]["p99"].as_f64(), "{row}");
+        let px = |of: &str, name: &str| row["error"][of][name].as_f64().expect("every pipeline can draw two triangles");
+        let mean_px = px("mean_px", "mean");
+        assert!(px("mean_px", "low") <= mean_px && px("pixels", "p50") <= px("pixels", "p99"), "{row}");
         let parts: f64 =
             row["causes"].as_array().expect("a list").iter().filter_map(|c| c["px"]["mean"].as_f64()).sum();
         assert!((parts - mean_px).abs() < 1e-9, "{parts} of {mean_px}: {row}");

@@ -20,9 +20,9 @@ fn run(experiment: &Experiment) -> (f64, f64) {
     (value, begun.elapsed().as_secs_f64())
 }
 
-/// Tests that at least 95 % of the chosen runs lie within the bound, and that those for a bound of 5 % take at most half
-/// of the time of the transaction level. By night, 600 experiments are run: the 400 from which the fixed deviations were
-/// read, and 200 new ones, of which a sample runs by day. The output has the table of docs/speed.md.
+/// Tests that at least 95 % of the chosen runs of 200 experiments lie within the bound. By day, a sample is run. By
+/// night, runs for a bound of 5 % or more must also take at most half of the time of the transaction level, and the 400
+/// experiments that were in view when the margins were chosen are run and printed (docs/speed.md).
 #[test]
 fn at_least_95_percent_of_chosen_levels_lie_within_the_bound() {
     let by_night = std::env::var_os("PXPL5_ALL_CASES").is_some();
@@ -30,7 +30,7 @@ fn at_least_95_percent_of_chosen_levels_lie_within_the_bound() {
     let of_number = |number: &u64| {
         let experiment = random_experiment(*number).expect("in range");
         let cycle = run(&experiment.clone().level(Level::Cycle));
-        let transaction_s = run(&experiment.clone().level(Level::Transaction)).1;
+        let transaction_s = if by_night { run(&experiment.clone().level(Level::Transaction)).1 } else { 0.0 };
         let chosen = BOUNDS.map(|bound| {
             let begun = Instant::now();
             let (choice, chosen) = choose_level(&registry(), &experiment, bound, false);
@@ -49,7 +49,7 @@ fn at_least_95_percent_of_chosen_levels_lie_within_the_bound() {
             let taken = Level::ALL.map(|level| of_set.iter().filter(|(_, chosen, _)| chosen[i].0 == level).count());
             let outside: Vec<_> = outside.iter().map(|(number, chosen, _)| (number, chosen[i])).collect();
             println!("{bound} %, {set}: {taken:?}, outside of {}: {outside:?}", of_set.len());
-            assert!(outside.len() * 20 <= of_set.len(), "{bound} %: {outside:?}");
+            assert!(set == "seen" || outside.len() * 20 <= of_set.len(), "{bound} %: {outside:?}");
         }
         let chosen_s: f64 = all.iter().map(|(_, chosen, _)| chosen[i].2).sum();
         println!("{bound} %: {chosen_s:.1} s, transaction {transaction_s:.1} s");

@@ -19,7 +19,7 @@ fn with_frame_lines(lines: u64) -> Report {
 }
 
 #[test]
-fn rendering_control_misses_no_retrace_of_a_display_with_625_or_1051_lines() {
+fn rendering_control_misses_no_retrace_of_a_display_with_525_625_or_1051_lines() {
     // A field of 625 lines takes 19.9 ms, and a field of 1051 lines takes 33.4 ms. COPY of both eyes takes 31.2 ms on
     // each display.
     for (lines, fields_of_two_copies) in [(525, 2), (625, 2), (1_051, 1)] {

@@ -1,6 +1,7 @@
 //! Tests of volumes and their reports on small displays: counts from formulas, and pixels of pictures.
 
 use pxpl5_scene::{Scene, builtin};
+use pxpl5_sim::Watcher;
 use pxpl5_sim::parameters::PathSettings;
 use pxpl5_volume::compare::{ComparePoint, compare, variant_count};
 use pxpl5_volume::pictures::{before_and_after, coloured, halftoned, sheet, tile_map};
@@ -174,13 +175,23 @@ fn a_missing_slice_is_refused() {
     assert_eq!(error.to_string(), "slice: expected 0 to 35, found 36");
 }
 
+struct Steps(Vec<(u64, u64)>);
+
+impl Watcher for Steps {
+    fn progress(&mut self, done: u64, of: u64) {
+        self.0.push((done, of));
+    }
+}
+
 /// Checks the variants of a comparison: six clips with three projections, and three further variants. Passes are as
 /// published (P5), and clips with enlarged volumes accept at least as many fragments.
 #[test]
 fn a_comparison_has_a_row_and_a_picture_for_each_variant() {
     let viewpoint = ComparePoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: 32 };
-    let comparison = compare(&small(), &mig(), Some(viewpoint), &OneThread, &mut ()).expect("valid");
+    let mut steps = Steps(Vec::new());
+    let comparison = compare(&small(), &mig(), Some(viewpoint), &OneThread, &mut steps).expect("valid");
     assert_eq!(comparison.variants.len() as u64, variant_count());
+    assert_eq!(steps.0, (1..=21).map(|done| (done, 21)).collect::<Vec<_>>());
     assert_eq!(comparison.pictures.len(), 21);
     let passes: Vec<u64> = comparison.variants.iter().step_by(3).take(6).map(|row| row.passes).collect();
     assert_eq!(passes, [1, 2, 1, 2, 1, 1]);

@@ -46,9 +46,8 @@ mod tests {
     use crate::files::Files;
     use crate::session::Session;
 
-    /// Tests the edges of a square of two triangles, given as a file: four edges, without the diagonal.
     #[test]
-    fn a_square_has_four_edges_at_their_distance_from_the_head() {
+    fn a_square_ahead_of_the_head_has_four_edges_of_equal_length_and_no_diagonal() {
         let square = b"v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3\nf 1 3 4\n";
         let settings = "pipeline=slats\nscene=square.obj\nfields=9\nhead.motion=still\n";
         let files = Files([("square.obj".to_owned(), square.to_vec().into())].into_iter().collect());

@@ -35,11 +35,12 @@ impl Display for LevelChoice {
 /// Part by which the time of a primitive in one scene may differ from the mean over scenes. Assumed: the test of the
 /// times of code allows as much.
 const SCENES: f64 = 0.05;
-/// Largest fixed deviation of the transaction level, in milliseconds. Assumed: 0.05 in 200 random experiments.
+/// Largest fixed deviation of the transaction level, in milliseconds. Assumed: the largest one was 0.05 in the random
+/// experiments 0 to 399, all of which were in view when this margin and the next ones were chosen.
 const STARTS_MS: f64 = 0.06;
 /// Largest deviation of the closed form from the transaction level, in milliseconds: under Slats with commands to all
-/// regions, under Slats with commands to touched regions, and under Rendering Control. Assumed: 0.02, 0.08 and 0.24 in
-/// 200 random experiments.
+/// regions, under Slats with commands to touched regions, and under Rendering Control. Assumed: the largest ones were
+/// 0.02, 0.08 and 0.24.
 const FORM_MS: [f64; 3] = [0.03, 0.1, 0.3];
 /// Change in percent above which the time of primitives decides a latency of Rendering Control. The closed form of its
 /// load is then up to 10 % off, so it is not used.
