@@ -92,20 +92,6 @@ fn without_a_swap_the_stages_belong_to_the_strip_that_meets_the_beam() {
     }
 }
 
-#[test]
-fn the_mean_parts_in_the_report_add_up_to_the_mean_latency() {
-    for outcome in all() {
-        let report = outcome.report();
-        let published = report.latency_parts_ms.iter().filter(|part| part.in_published_latency);
-        let sum: f64 = published.map(|part| part.statistics.statistics.mean).sum();
-        let latency = report.latency_ms.statistics.mean;
-        assert!(
-            report.latency_ms.statistics.n == 0 || (sum - latency).abs() < 1e-9 * latency,
-            "{sum} instead of {latency}"
-        );
-    }
-}
-
 /// Returns the time at which the last board ended a stage of a picture.
 fn end_of(outcome: &Outcome, stage: Stage, surface: Option<SurfaceId>, picture: PictureNumber) -> Time {
     let marks = outcome.observation().marks.iter();

@@ -95,17 +95,3 @@ fn events_have_their_boards_and_are_in_order_of_time() {
         assert!(fits, "{event}");
     }
 }
-
-/// A scene that is far too heavy shows nothing, so the latency is missing and has no substitute number.
-#[test]
-fn a_run_that_shows_nothing_has_no_latency() {
-    let scene = scene::builtin("mig").expect("built in");
-    let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(30).pixels(Pixels::Off);
-    let outcome = match experiment.run() {
-        Ok(outcome) => outcome,
-        Err(ExperimentError::TooShort { partial, .. } | ExperimentError::Run { partial, .. }) => *partial,
-        Err(error) => panic!("{error}"),
-    };
-    assert_eq!(outcome.latency().map(|statistics| statistics.n), None);
-    assert!(outcome.report().critical_path.is_none());
-}

@@ -282,7 +282,7 @@ fn check_prints_an_equivalent_file() {
 
 #[cfg(unix)]
 #[test]
-fn a_closed_pipe_is_no_error_and_a_full_disk_is_an_error() {
+fn a_closed_pipe_is_no_error() {
     for args in [&["machines"][..], &["scenes"], &["--help"], &["completions", "bash"]] {
         let mut child =
             command(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
@@ -291,10 +291,6 @@ fn a_closed_pipe_is_no_error_and_a_full_disk_is_an_error() {
         assert!(output.status.success(), "{args:?}: {}", err(&output));
         assert_eq!(err(&output), "");
     }
-    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has it");
-    let output = command(&["machines"]).stdout(full).output().expect("the command starts");
-    assert_eq!(output.status.code(), Some(1));
-    assert!(err(&output).contains("standard output cannot be written"), "{}", err(&output));
 }
 
 #[test]

@@ -347,28 +347,3 @@ fn settings_of_impossible_screens_are_refused_and_unusual_settings_run_without_a
     let output = folder.run(&["limit", "--pipeline", "slats", "--fields", "9"]);
     assert!(output.status.code() == Some(2) && err(&output).contains("at least 10"), "{}", err(&output));
 }
-
-/// Tests that a picture has no latency if it is requested long after its field was scanned. A latency of a billion
-/// fields would be wrong.
-#[test]
-fn no_latency_is_longer_than_the_run() {
-    let folder = Folder::new("latency");
-    for pipeline in [
-        "jitp-field",
-        "jitp-field-racing",
-        "jitp-scanline",
-        "jitp-dual-screen",
-        "frameless",
-        "slats",
-        "rendering-control",
-    ] {
-        let args =
-            ["run", "--pipeline", pipeline, "--scene", "full-screen:4", "--fields", "60", "--pixels", "off", "--json"];
-        let output = folder.run(&[&args[..], &["--set", "gp.pass_ns=100000000"]].concat());
-        let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
-        for part in ["mean", "min", "max"] {
-            let fields = report["latency_fields"][part].as_f64();
-            assert!(fields.is_none_or(|fields| (0.0..=60.0).contains(&fields)), "{pipeline}: {fields:?}");
-        }
-    }
-}

@@ -42,17 +42,6 @@ fn a_folder_without_a_report_is_refused_with_what_was_expected() {
 }
 
 #[test]
-fn a_trace_is_written_as_json() {
-    let folder = Folder::new("trace");
-    let run = ["trace", "--pipeline", "slats", "--scene", "mig", "--triangles", "30", "--fields", "12", "--out"];
-    let output = folder.run(&[&run[..], &["a.json"]].concat());
-    assert!(output.status.success(), "{}", err(&output));
-    let json = std::fs::read(folder.0.join("a.json")).expect("written");
-    let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
-    assert!(json["traceEvents"].as_array().is_some_and(|events| events.len() > 100));
-}
-
-#[test]
 fn the_waveform_and_the_explanation_of_one_picture_agree() {
     let folder = Folder::new("picture");
     let run = ["--pipeline", "rendering-control", "--scene", "mig", "--triangles", "30", "--fields", "40"];
@@ -81,17 +70,6 @@ fn a_film_has_the_requested_fields() {
     let file = std::fs::File::open(folder.0.join("f.png")).expect("written");
     let reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("PNG");
     assert_eq!(reader.info().animation_control().map(|control| control.num_frames), Some(3));
-}
-
-#[test]
-fn if_a_file_cannot_be_written_nothing_is_written() {
-    let folder = Folder::new("trace-nowhere");
-    folder.file("file", "");
-    let output = folder.run(&["trace", "--pipeline", "slats", "--scene", "mig", "--out", "file/a.json"]);
-    assert_eq!(output.status.code(), Some(1));
-    let output = folder.run(&["film", "--pipeline", "slats", "--scene", "mig", "--out", "/"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert_eq!(folder.names(), ["file"]);
 }
 
 #[test]

@@ -98,19 +98,6 @@ fn the_rotation_latency_does_not_depend_on_the_number_of_triangles() {
     outcomes.iter().for_each(|outcome| assert_no_faults(outcome.record()));
 }
 
-/// Second half of experiment E1: under Rendering Control, the latency of rotation grows with the drawing time.
-#[test]
-fn under_rendering_control_the_rotation_latency_grows_with_the_number_of_triangles() {
-    let latency = |n: usize| {
-        let scene = builtin(&format!("sphere:{n}")).expect("even");
-        let fields = if n > 10_000 { 240 } else { 60 };
-        let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::mono(), scene).fields(fields);
-        experiment.pixels(Pixels::Off).head(head(Pan::at(200.0))).run().expect("it runs").latency_ms().mean
-    };
-    let latencies = [10, 1_000, 100_000].map(latency);
-    assert!(latencies[2] > latencies[0] + 100.0 && latencies[2] > latencies[1] + 100.0, "{latencies:?}");
-}
-
 /// Returns the times of COPY of every update whose 6 (N/128)^2 regions all have primitives.
 fn copies(texels: u64, packed: bool) -> (Vec<Span>, u64) {
     let bits = if packed { 16 } else { 24 };
