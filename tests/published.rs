@@ -1,8 +1,9 @@
-//! Tests of the published figures. Free checks must agree within the printed digits, and misses have the recorded size
+//! Tests of the published figures. The rows have the published sizes, and misses have the recorded ones
 //! (FIXME(accuracy)). ACCURACY.md, which explains the causes, must contain the results of these runs.
 //!
-//! Intervals and other interpretations take minutes. By day they are read from ACCURACY.md, which .ci/run compares with
-//! new measurements; by night (PXPL5_ALL_CASES) the tests measure them.
+//! Intervals and other interpretations take minutes, so no test measures them by day. Intervals are then read from
+//! ACCURACY.md, which .ci/run compares with new measurements. By night (PXPL5_ALL_CASES), the tests measure them too, and
+//! compare all documents.
 
 use crate::support::runs_all_cases;
 use pxpl5::figures::{
@@ -142,7 +143,7 @@ fn rows_that_follow_from_choices_inputs_or_other_rows_are_not_free() {
 
 #[test]
 fn a_region_is_copied_in_780_us() {
-    within("1", 779.9, 780.1);
+    within("1", 779.999, 780.001);
 }
 
 #[test]
@@ -158,8 +159,8 @@ fn with_copy_as_the_only_limit_the_latency_is_the_three_fields_of_the_theory() {
 #[test]
 fn a_trivial_stereo_scene_takes_6_percent_more_than_measured() {
     // FIXME(accuracy): the published value is 56.5. By TR94's rules, TRANSFORM begins while two eyes wait for COPY.
-    within("4", 56.5 * 1.03, 56.5 * 1.08);
-    within("4b", 29.9, 30.0);
+    within("4", 56.5 * 1.052, 56.5 * 1.062);
+    within("4b", 29.969, 29.971);
 }
 
 #[test]
@@ -208,13 +209,14 @@ fn slats_always_has_a_latency_of_one_field() {
     for name in ["least", "greatest"] {
         assert!((detail("9", name) - 1.0).abs() < 1e-6, "{name}");
     }
-    within("9b", 59.9, 60.0);
+    within("9b", 59.939, 59.941);
 }
 
 #[test]
 fn twenty_field_regions_take_eleven_region_times_and_ten_field_regions_take_five() {
-    within("10", 10.99, 11.01);
-    within("11", 3.85, 3.95);
+    // At each end of twenty copies, one board idles for a region. The changes between renderers take less than 2 us.
+    within("10", 11.0, 11.0026);
+    within("11", 3.8985, 3.9015);
 }
 
 #[test]
@@ -293,6 +295,8 @@ fn simulated_values_are_within_the_interval_or_3_percent_of_it() {
             continue;
         };
         // The interval of a formula was computed at another level, so agreement is not trivial.
+        let is_formula = figure.varied == Varied::ByFormula;
+        assert_eq!(row(figure.id).analytic.is_some(), is_formula && runs_all_cases(), "figure {}", figure.id);
         let [low, high] =
             [low, high.trim_end_matches(", **out of reach**")].map(|end| end.parse::<f64>().expect("a number"));
         within(figure.id, 0.97 * low, 1.03 * high);

@@ -78,23 +78,11 @@ const PICTURES: [Viewport; 3] =
     [Viewport::FRAME, Viewport::field(FieldParity::Even), Viewport::field(FieldParity::Odd)];
 
 #[test]
-fn the_straight_kernel_writes_the_native_words_and_bins() {
-    for surface in SURFACES {
-        PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Straight, surface, picture));
-    }
-}
-
-#[test]
-fn the_compiled_kernel_writes_the_native_words_and_bins() {
-    for surface in SURFACES {
-        PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Compiled, surface, picture));
-    }
-}
-
-#[test]
-fn the_dual_kernel_writes_the_native_words_and_bins() {
-    for surface in SURFACES {
-        PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Dual, surface, picture));
+fn the_kernel_of_every_schedule_writes_the_native_words_and_bins() {
+    for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
+        for surface in SURFACES {
+            PICTURES.into_iter().for_each(|picture| assert_same_words(schedule, surface, picture));
+        }
     }
 }
 

@@ -82,11 +82,6 @@ fn a_run_that_shows_nothing_fails_with_a_message() {
     assert!(err(&output).contains("no complete picture was shown in 60 fields"), "{}", err(&output));
     let report = json_of(&output);
     assert_eq!((&report["shown"], &report["updates_hz"]), (&0.into(), &serde_json::Value::Null));
-    assert_eq!((&report["pictures"], &report["latency_fields"]["mean"]), (&0.into(), &serde_json::Value::Null));
-    // The first 8 of 60 fields are the warm-up.
-    let due = &report["due"];
-    assert_eq!((&due["due"], &due["shown"], &report["missed_retraces"]), (&52.into(), &0.into(), &52.into()));
-    assert_eq!((&due["first_period"], &due["last_period"]), (&8.into(), &59.into()));
     assert!(report["too_heavy"]["primitives_in_time"].as_u64() > Some(100));
 }
 

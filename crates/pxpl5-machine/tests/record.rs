@@ -112,27 +112,6 @@ fn copying_is_a_stage_from_the_first_message_on() {
     assert_eq!(machine.record().observation().marks.iter().filter(|mark| mark.edge == StageEdge::Begin).count(), 0);
 }
 
-#[test]
-fn records_before_an_instant_can_be_discarded() {
-    let (mut machine, [left, right]) = run_script(&[
-        arrived(150, 0, 1),
-        arrived(160, 0, 1),
-        arrived(250, 0, 2),
-        swapped(160, 0, 2),
-        swapped(260, 0, 3),
-        swapped(360, 1, 4),
-        swapped(460, 0, 5),
-    ]);
-    machine.discard_before(us(350));
-    let observation = machine.record().observation();
-    assert!(observation.arrivals.is_empty());
-    let ticks = |port| observation.swaps.iter().filter(move |swap| swap.port == port).map(|swap| swap.tick.0);
-    assert!(ticks(left).eq([3, 5]), "the last before says what is shown");
-    assert!(ticks(right).eq([4]));
-    assert_eq!(observation.most_regions_of_a_picture(), 2);
-    assert_eq!(observation.discarded.before, us(350));
-}
-
 fn with_traffic() -> Record {
     let mut machine = machine();
     machine.record_traffic();

@@ -216,20 +216,6 @@ fn ball() -> Experiment {
 }
 
 #[test]
-fn a_hundred_shuffles_of_simultaneous_events_change_nothing() {
-    let others = [OBJECTS, cells::CELLS, cells::WARPED]
-        .map(|pipeline| Experiment::new(machine("small-hmd", pipeline, &[]), pipeline, balls()).fields(16));
-    for experiment in others.into_iter().chain([ball().fields(16)]) {
-        let hash =
-            |experiment: &Experiment| after(&experiment.clone().pixels(Pixels::Off), 16).into_record().trace_hash();
-        let unshuffled = hash(&experiment);
-        for seed in 0..100 {
-            assert_eq!(hash(&experiment.clone().shuffle_ties(seed)), unshuffled, "{seed}");
-        }
-    }
-}
-
-#[test]
 fn optimizations_and_pixels_change_no_time_and_no_texel() {
     let lazy = after(&ball(), 16);
     let faces = memory(lazy.record(), 0).shown_faces();

@@ -8,8 +8,8 @@ use pxpl5_gp::{Account, Fault, OutOfMemory, Stage};
 use pxpl5_machine::{MachineConfig, PRESETS, Preset, RunError};
 use pxpl5_renderer::Layout;
 use pxpl5_run::{
-    Experiment, ExperimentError, FinishedRegions, KeyValue, Outcome, Pipeline, PipelineSettings, Pixels, Registry,
-    RenderingControl, Slats, display_list, views,
+    Experiment, ExperimentError, FinishedRegions, Outcome, Pipeline, Pixels, RenderingControl, Slats, display_list,
+    views,
 };
 use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Scene, builtin};
 use pxpl5_sim::Time;
@@ -265,20 +265,4 @@ fn the_bins_of_a_slave_hold_642_triangles_that_cover_the_screen_and_a_643rd_tria
     let OutOfMemory { account, region, needed_bytes, available_bytes, .. } = fault;
     assert_eq!((account, region), (Account::Bins(0), Some(RegionId(19))));
     assert_eq!((needed_bytes, available_bytes), (643 * 20 * 4, 642 * 20 * 4));
-}
-
-#[test]
-fn just_in_time_pixels_show_the_ideal_picture() {
-    let registry = Registry::of_papers();
-    let scene = still("sphere:10");
-    for name in ["jitp-field", "jitp-field-racing", "jitp-scanline", "jitp-dual-screen", "jitp-dual-view-racing"] {
-        let entry = registry.pipeline(name).expect("listed");
-        let mut settings = PipelineSettings::default();
-        settings.set("strip_rows", KeyValue::Whole(8));
-        for (n_gps, n_renderers) in [(3, 5), (6, 20)] {
-            let pipeline = (entry.build)(&settings);
-            let outcome = run(pipeline, machine(entry.preset, n_gps, n_renderers), &scene, 10);
-            assert_ideal(&outcome, &format!("{name} with {n_gps} and {n_renderers}"));
-        }
-    }
 }

@@ -591,32 +591,8 @@ fn small_files_that_ask_for_much_memory_are_refused() {
     assert!(too_much(&writer.binary(&document)), "many copies");
 }
 
-/// Places in a file at which bytes are changed, and the new bytes.
-fn damages() -> impl Strategy<Value = Vec<(prop::sample::Index, Vec<u8>)>> {
-    let number = prop_oneof!["[0-9]{1,20}", "-1|1e999|null|\\[\\]|\\{\\}|\"\""].prop_map(String::into_bytes);
-    let bytes = prop::collection::vec(any::<u8>(), 1..5);
-    prop::collection::vec((any::<prop::sample::Index>(), prop_oneof![number, bytes]), 1..6)
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn no_damaged_file_causes_a_panic(is_binary: bool, damages in damages(), end: prop::sample::Index, cut: bool) {
-        let (writer, document) = square();
-        let mut file = if is_binary { writer.binary(&document) } else { writer.text(document) };
-        for (place, bytes) in damages {
-            let at = place.index(file.len());
-            let end = (at + bytes.len()).min(file.len());
-            file.splice(at..end, bytes);
-        }
-        if cut {
-            file.truncate(end.index(file.len()));
-        }
-        if let Ok(scene) = read(&file) {
-            Scene::new(scene.into_parts()).expect("a reader's scene is sound");
-        }
-    }
 
     /// Replaces each number of the document by other numbers. Random damage of bytes seldom changes these numbers.
     #[test]

@@ -9,7 +9,6 @@ mod scenes;
 
 // Files.
 mod foreign;
-mod fuzz;
 mod gltf;
 mod import;
 mod stl;

@@ -1,7 +1,6 @@
 //! STL files made by writers of this test, ASCII and binary. Expected values are the numbers that were written.
 
 use glam::Vec3;
-use proptest::prelude::*;
 use pxpl5_scene::config::DEFAULT_COLOUR;
 use pxpl5_scene::{Format, Placement, Scene, placed_from_bytes};
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
@@ -141,24 +140,4 @@ fn errors_state_the_position_and_the_expected_value() {
     let mut huge = whole;
     huge[80..84].fill(255);
     assert!(matches!(read(huge), Err(ref error) if error.kind == FileErrorKind::Truncated));
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn no_damaged_file_causes_a_panic(
-        is_text: bool,
-        damages in prop::collection::vec((any::<prop::sample::Index>(), prop::collection::vec(any::<u8>(), 0..4)), 1..5),
-    ) {
-        let mut file = if is_text { text(&TWO, "\n").into_bytes() } else { binary("x", &TWO) };
-        for (place, bytes) in damages {
-            let at = place.index(file.len());
-            let end = (at + 2).min(file.len());
-            file.splice(at..end, bytes);
-        }
-        if let Ok(scene) = read(&file) {
-            Scene::new(scene.into_parts()).expect("a reader's scene is sound");
-        }
-    }
 }

@@ -6,7 +6,7 @@ use pxpl5_sim::parameters::PathSettings;
 use pxpl5_volume::compare::{ComparePoint, compare, variant_count};
 use pxpl5_volume::pictures::{before_and_after, coloured, halftoned, sheet, tile_map};
 use pxpl5_volume::spatialgl::{OneThread, Strobes, Threads};
-use pxpl5_volume::{ClipKind, ProjectionKind, Volume, VolumeSettings};
+use pxpl5_volume::{ProjectionKind, Volume, VolumeSettings};
 use serde_json::Value;
 
 /// Returns settings for 36 slices of 128 x 96 pixels.
@@ -215,13 +215,4 @@ fn a_comparison_has_a_row_and_a_picture_for_each_variant() {
     let json: Value = serde_json::to_value(&comparison).expect("JSON");
     assert_eq!(json["schema"], "pxpl5-volume-comparison/1");
     assert_eq!(json["variants"][20]["beyond_paper"][0], "connected coverage");
-}
-
-#[test]
-fn user_planes_and_shader_planes_light_the_same_voxels() {
-    let hash = |clip| {
-        let settings = VolumeSettings { clip, projection: ProjectionKind::Orthographic, ..small() };
-        drawn(&settings).report().volume_hash
-    };
-    assert_eq!(hash(ClipKind::UserPlanes), hash(ClipKind::Exact));
 }
