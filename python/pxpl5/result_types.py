@@ -54,7 +54,6 @@ from ._rows import (
     WhatIfRow,
 )
 from ._study_types import (
-    BootstrapData,
     BrightnessData,
     CauseData,
     ComparedData,
@@ -121,7 +120,6 @@ from ._types import (
 __all__ = [
     "BoardRow",
     "BoardState",
-    "BootstrapData",
     "BrightnessData",
     "BudgetData",
     "CauseData",
