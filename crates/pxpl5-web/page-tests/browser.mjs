@@ -74,6 +74,12 @@ export async function until(what, script, ms = 20000) {
   throw new Error(`waited ${ms} ms for ${what}`);
 }
 
+/** Until the simulated time is some milliseconds later than now, however fast this computer is. */
+export async function advanced(ms) {
+  const from = await shownMs();
+  return until(`${ms} ms more`, `Number(document.getElementById('time').dataset.ps) / 1e9 >= ${from + ms}`, 120000);
+}
+
 /** Until the worker has answered all that was asked of it. */
 export const settled = (ms) => until("the worker", "document.documentElement.dataset.asked === '0' && document.documentElement.dataset.ready === 'true'", ms);
 
@@ -96,13 +102,14 @@ export async function press(selector) {
 }
 export const set = (id, value) => run(`const s = document.getElementById('${id}'); s.value = ${value}; s.dispatchEvent(new Event('input')); s.dispatchEvent(new Event('change'))`);
 /** Colours other than black in a canvas. */
-export const lit = (selector = "#eyes canvas") => run(`
-  const canvas = document.querySelector('${selector}');
+export const COLOURS = `(canvas) => {
   const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
   const colours = new Set();
   for (let i = 0; i < data.length; i += 4) colours.add(data[i] << 16 | data[i + 1] << 8 | data[i + 2]);
   colours.delete(0);
-  return colours.size;`);
+  return colours.size;
+}`;
+export const lit = (selector = "#eyes canvas") => run(`return (${COLOURS})(document.querySelector('${selector}'))`);
 
 /** A file as if somebody had dropped it onto the page. */
 export const drop = (name, contents) => run(`
@@ -149,9 +156,10 @@ export const RIGHT = "\uE014";
 /** What axe-core finds against WCAG 2.1 A and AA on the present page. */
 async function axe() {
   await run(readFileSync(process.env.AXE, "utf8"));
-  const { violations } = await ask("POST", `${session}/execute/async`, {
+  const { violations, passes } = await ask("POST", `${session}/execute/async`, {
     script: "const done = arguments[0]; axe.run({ runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa'] }).then(done)", args: [],
   });
+  assert.ok(passes.length > 5, `${passes.length} rules looked at something`);
   return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(" ")).slice(0, 4).join(", ")}`);
 }
 
@@ -210,16 +218,38 @@ export async function sameHash(folder) {
   });
 }
 
-/** Simulated by real time over some seconds of running. */
+/** Runs for some seconds of the browser's clock, and returns simulated by real time. */
 export async function speed(seconds) {
-  await run("document.getElementById('slower').value = 0");
-  await click("#go");
-  await later(500);
-  const [from, begun] = [await shownMs(), Date.now()];
+  const begun = await run("document.getElementById('go').click(); return [Number(document.getElementById('time').dataset.ps) / 1e9, performance.now()]");
   await later(seconds * 1000);
-  const [to, ended] = [await shownMs(), Date.now()];
-  await press("#go");
-  return (to - from) / (ended - begun);
+  const ended = await run("const end = performance.now(); document.getElementById('go').click(); return end");
+  await settled();
+  return ((await shownMs()) - begun[0]) / (ended - begun[1]);
+}
+
+/** Milliseconds in which a worker without a page loads the machine, builds a run, and simulates it to an instant. The page is left, because
+ *  its machine is compiled already, and the browser would not compile it again. */
+export async function alone(settings, recording, to) {
+  await ask("POST", `${session}/url`, { url: `${page}recording.js` });
+  return ask("POST", `${session}/execute/async`, { args: [settings, recording, to], script: `
+  const [settings, recording, to, done] = arguments;
+  const files = [['live.csv', new TextEncoder().encode(recording)]];
+  const asks = [['open'], ['build', { runs: [settings], files }], ['go', { to, want: { of: 0, surfaces: 1 } }]];
+  const worker = new Worker('worker.js', { type: 'module' });
+  const ms = [];
+  let begun;
+  const next = () => {
+    begun = performance.now();
+    worker.postMessage({ operation: asks[ms.length][0], given: asks[ms.length][1] });
+  };
+  worker.onmessage = ({ data }) => {
+    if (data.loaded !== undefined) return;
+    ms.push(performance.now() - begun);
+    if (!data.error && ms.length < 3) return next();
+    worker.terminate();
+    done(data.error ?? ms);
+  };
+  next();` });
 }
 
 /** Seconds of CPU that each process of the browser has taken, by its number. */

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { orientationOf } from "../page/sensor.js";
-import { accessible, ask, cdp, click, key, later, open, pictures, press, run, sameHash, session, set, settled, shownMs, text, until } from "./browser.mjs";
+import { accessible, advanced, ask, cdp, click, key, later, open, pictures, press, run, sameHash, session, set, settled, shownMs, text, until } from "./browser.mjs";
 
 /** Ages in milliseconds and errors in pixels, as they are shown beside the machines. */
 const shown = () => run(`return [...document.querySelectorAll('.age')].map((age) => [...age.querySelectorAll('strong')].map((number) => parseFloat(number.textContent)))`);
@@ -118,6 +118,9 @@ export default {
     await open("#story=inside&step=4");
     await until("the step", "document.documentElement.dataset.story === 'inside 4 paused'", 60000);
     assert.ok((await run("return document.getElementById('diagram').getBoundingClientRect().bottom")) <= 900, "the ring is on the screen");
+    const covered = await run(`const all = [...document.querySelectorAll('#diagram .block')].map((block) => block.getBoundingClientRect());
+      return all.filter((one, n) => all.some((other, k) => k > n && one.left < other.right && other.left < one.right && one.top < other.bottom && other.top < one.bottom)).length`);
+    assert.equal(covered, 0, "no board covers another");
     // In this step, renderers execute commands and copy pixels at the same time.
     assert.ok((await run("return document.querySelectorAll('#diagram .block.renderer.render.copy').length")) > 0);
     assert.match(await run("return document.querySelector('#diagram .block.render.copy .does').textContent"), /^RENDER COPY$/);
@@ -139,12 +142,13 @@ export default {
     assert.ok(await run("return !document.getElementById('headset').hidden"));
     await click("#headset");
     await until("the session", "document.getElementById('headset').textContent === 'Leave VR' && document.getElementById('go').textContent === 'Pause'");
-    await later(1500);
+    await advanced(300);
     const wire = () => run("window.xrSession.dispatchEvent(new Event('select'))");
     const eye = () => run(`return (${GRID})(document.querySelector('#eyes canvas'))`);
     /** The grid of the picture in the left half of the window, where the projection of the eye puts a picture of 60 by 46.8 degrees. */
     const inHeadset = async (name) => {
-      await later(200);
+      // The second frame shows all that was set before, and then the window shows it.
+      await ask("POST", `${session}/execute/async`, { args: [], script: "const [done] = arguments; const { xrSession: one } = window; one.requestAnimationFrame(() => one.requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done))))" });
       const shot = await snapshot(name);
       return ask("POST", `${session}/execute/async`, { args: [shot], script: `const [shot, done] = arguments;
         const image = new Image();
@@ -184,7 +188,7 @@ export default {
     assert.ok(turning.yellow.filter((at) => stayed.has(at)).length < turning.yellow.length / 2, "the edges have moved");
     // The machine goes on, and its picture follows.
     await click("#go");
-    await later(1500);
+    await advanced(500);
     await press("#go");
     const after = await eye();
     await wire();
@@ -241,14 +245,14 @@ export default {
     await click("#hold");
     await until("the run", "document.body.classList.contains('held') && document.getElementById('go').textContent === 'Pause'");
     await turn(41, 0, -90);
-    await later(700);
+    await advanced(300);
     const screens = await run("return [...document.querySelectorAll('#eyes .screen')].map((one) => { const b = one.getBoundingClientRect(); return [b.left, b.right, b.top, b.bottom] })");
     console.log(`   eyes at ${JSON.stringify(screens)} of 844 x 390`);
     assert.ok(screens.length === 2 && screens[0][1] <= 422.5 && screens[1][0] >= 421.5 && screens.every(([left, right, top, bottom]) => right - left > 400 && top >= 0 && bottom <= 390));
     await snapshot("holder");
     for (const alpha of [43, 46, 49]) {
       await turn(alpha, 0, -90);
-      await later(200);
+      await advanced(100);
     }
     await click("#held-off");
     await settled();
@@ -263,12 +267,12 @@ export default {
     await click("#hold");
     await until("the run", "document.body.classList.contains('held') && document.getElementById('go').textContent === 'Pause'");
     await turn(80, 0, -80);
-    await later(300);
+    await advanced(100);
     await click("#held-centre");
     await turn(90, 0, -80);
-    await later(100);
+    await advanced(100);
     await turn(100, 0, -80);
-    await later(400);
+    await advanced(100);
     await click("#held-off");
     await settled();
     const level = (await recorded()).at(-1);

@@ -72,6 +72,7 @@ export default {
 function brokenLinks(folder) {
   const files = readdirSync(folder, { recursive: true }).filter((name) => name.endsWith(".html") && !name.startsWith("api"));
   const places = (text) => new Set([...text.matchAll(/ id="([^"]*)"/g)].map((match) => match[1]));
+  assert.ok(files.length > 20, `${files.length} pages`);
   const wrong = [];
   for (const name of files) {
     const text = readFileSync(join(folder, name), "utf8");

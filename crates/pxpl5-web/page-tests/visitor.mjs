@@ -4,14 +4,14 @@ import { writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { packed, samplesOf } from "../page/recording.js";
-import { LEFT, MODELS, RIGHT, answer, ask, click, drag, drop, key, later, lit, open, page, pictures, press, recordedAgain, run, sameHash, session, settled, shownMs, site, text, until } from "./browser.mjs";
+import { LEFT, MODELS, RIGHT, advanced, answer, ask, click, drag, drop, key, lit, open, page, pictures, press, recordedAgain, run, sameHash, session, settled, shownMs, site, text, until } from "./browser.mjs";
 
 export default {
   async "keys run, pause, step, go back and turn the head; the pictures' words follow"() {
     await open("#head.motion=live.csv&fields=600");
     await run("document.activeElement.blur()");
     await key(" ");
-    await later(600);
+    await advanced(200);
     assert.equal(await text("go"), "Pause");
     await key(" ");
     await settled();
@@ -48,8 +48,8 @@ export default {
     answer("slow");
     await ask("POST", `${session}/url`, { url: "about:blank" });
     await ask("POST", `${session}/url`, { url: page });
-    await later(700);
-    assert.match(await text("loading-says"), /Loading the machine: \d\.\d MB of \d\.\d MB/);
+    await until("a share", "/^Loading the machine: \\d\\.\\d MB of \\d\\.\\d MB$/.test(document.getElementById('loading-says').textContent)");
+    assert.ok(await run("return document.getElementById('loading').checkVisibility() && document.documentElement.dataset.ready !== 'true'"));
     await until("the machine", "document.documentElement.dataset.ready === 'true'");
     answer("well");
     // The missing file has been written to the console, as it must.
@@ -95,7 +95,7 @@ export default {
     await until("a run", "document.getElementById('go').textContent === 'Pause' || !document.getElementById('error').hidden");
     assert.equal(await text("error"), "");
     assert.match(await text("recorded"), /^Recorded 0\.\d s/);
-    await later(500);
+    await advanced(300);
     await press("#go");
     await recordedAgain();
   },
@@ -106,7 +106,7 @@ export default {
     const before = await run("return document.querySelector('#eyes canvas').toDataURL()");
     await click("#go");
     await drag();
-    await later(700);
+    await advanced(300);
     await press("#go");
     assert.equal(await text("error"), "");
     assert.notEqual(await run("return document.querySelector('#eyes canvas').toDataURL()"), before);
@@ -121,7 +121,7 @@ export default {
       await drop(`mine.${kind}`, MODELS[kind]);
       // The machine runs by itself, so the model appears without a press of a button.
       await until("the run", "document.getElementById('go').textContent === 'Pause'");
-      await later(1500);
+      await advanced(300);
       assert.ok((await lit()) > 0, kind);
       if ((await text("go")) === "Pause") await press("#go");
       await settled();

@@ -64,7 +64,7 @@ export class Diagram {
     this.place.append(this.ring);
   }
 
-  /** Arranges the boards at equal distances around a rectangle, in the order in which a picture passes them. */
+  /** Arranges the boards around a rectangle, in the order in which a picture passes them. */
   layOut() {
     const count = this.boards.size;
     if (count === 0 || !this.ring) return;
@@ -76,20 +76,22 @@ export class Diagram {
     const first = this.boards.get(names[0]).button;
     const inset = [first.offsetWidth / 2 + 4, first.offsetHeight / 2 + 4];
     const [a, b] = [width - 2 * inset[0], height - 2 * inset[1]];
-    const around = 2 * (a + b);
-    const at = (share) => {
-      let way = (((share % 1) + 1) % 1) * around;
-      if (way < a) return [inset[0] + way, inset[1]];
-      way -= a;
-      if (way < b) return [inset[0] + a, inset[1] + way];
-      way -= b;
-      if (way < a) return [inset[0] + a - way, inset[1] + b];
-      return [inset[0], inset[1] + b - (way - a)];
-    };
+    // A row has a board in each of its corners, and the columns are between the rows, so no two boards cover each other.
+    const [across, down] = [a / first.offsetWidth, b / first.offsetHeight];
+    const inRow = Math.min(Math.max(2, Math.round(1 + (count * across) / (across + down) / 2)), Math.floor(count / 2));
+    const onRight = Math.ceil(count / 2) - inRow;
+    const onLeft = count - 2 * inRow - onRight;
+    const spread = (number, place) => Array.from({ length: number }, (_, n) => place(n)).map(([x, y]) => [inset[0] + a * x, inset[1] + b * y]);
+    const places = [
+      ...spread(inRow, (n) => [n / (inRow - 1), 0]),
+      ...spread(onRight, (n) => [1, (n + 1) / (onRight + 1)]),
+      ...spread(inRow, (n) => [1 - n / (inRow - 1), 1]),
+      ...spread(onLeft, (n) => [0, 1 - (n + 1) / (onLeft + 1)]),
+    ];
     // The host stands at the left of the upper row.
     names.forEach((name, n) => {
       const board = this.boards.get(name);
-      board.at = at(n / count);
+      board.at = places[n];
       board.button.style.left = `${board.at[0]}px`;
       board.button.style.top = `${board.at[1]}px`;
     });
