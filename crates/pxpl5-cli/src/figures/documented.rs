@@ -18,12 +18,15 @@ use serde_json::json;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-/// A measured group, and how to draw its pictures into a folder.
+/// Draws the pictures of a group into a folder.
+type Draw = Box<dyn FnOnce(&mut OutputFolder) -> Result<(), CliError>>;
+
+/// A measured group, and how to draw its pictures.
 struct Measured {
     markdown: String,
     json: String,
     text: String,
-    draw: Box<dyn FnOnce(&mut OutputFolder) -> Result<(), CliError>>,
+    draw: Draw,
 }
 
 /// Measures one group: `pxpl5 figures --group NAME`.
