@@ -9,7 +9,6 @@ use crate::rotation;
 use crate::time::seconds;
 
 /// A head whose yaw and whose position along x follow sine waves of one frequency around the pose `start`.
-/// [`crate::predict::gain`] has exact formulas for the effect of prediction on this motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sinusoid {
     /// Pose of the head at the centre of both sine waves, which is also the pose at time 0.
