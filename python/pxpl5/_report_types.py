@@ -124,7 +124,7 @@ class LatencyPercentilesData(TypedDict):
     #: From the head's pose to the light of the picture's middle.
     head_to_light: PercentilesData
     #: Error of the prediction interval.
-    aim_miss: PercentilesData
+    prediction_interval_error: PercentilesData
 
 
 class PixelErrorsData(TypedDict):

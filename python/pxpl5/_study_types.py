@@ -138,7 +138,7 @@ class PredictorMeanData(TypedDict):
     mean_px: float | None
 
 
-class MisaimedMeanData(TypedDict):
+class PredictionIntervalErrorMeanData(TypedDict):
     """Mean pixel error if all prediction intervals were longer (later_ms above 0) or shorter."""
 
     later_ms: int
@@ -173,7 +173,7 @@ class ComparedData(TypedDict):
     covered_share: float | None
     window: WindowData | None
     causes: list[CauseData]
-    misaimed: list[MisaimedMeanData]
+    prediction_interval_errors: list[PredictionIntervalErrorMeanData]
     predictors: list[PredictorMeanData]
     triangles_possible: int | None
     has_no_limit: bool

@@ -17,8 +17,8 @@ pub use definitions::{SEGMENTS, definitions};
 pub use document::{interpretations as interpretations_text, markdown, missed, table};
 pub(crate) use experiments::looking_at;
 pub use experiments::{
-    CellFit, EXPERIMENT_FRAMES, Experiments, NamedWalk, SizeLimit, SizeRow, SlowRendererResult,
-    point_objects_reduction, size_limits, size_rows,
+    CellFit, EXPERIMENT_FRAMES, Experiments, NamedWalk, SizeLimit, SlowRendererResult, point_objects_reduction,
+    size_limits,
 };
 pub use fit::{RATE_FITTED, RATES_HZ, fitted_cell_m, policy_rates_hz};
 pub(crate) use interpretations::gallery;

@@ -199,9 +199,9 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
             end_to_end.n,
             percentiles(&report.percentiles_ms.head_to_light, 2),
         );
-        let miss = &report.percentiles_ms.aim_miss;
-        if miss.max > 0.0 {
-            let _ = writeln!(text, "Prediction interval: wrong by {:.2} ms, at most {:.2} ms.", miss.mean, miss.max);
+        let wrong = &report.percentiles_ms.prediction_interval_error;
+        if wrong.max > 0.0 {
+            let _ = writeln!(text, "Prediction interval: wrong by {:.2} ms, at most {:.2} ms.", wrong.mean, wrong.max);
         }
         let covered = error
             .covered_share

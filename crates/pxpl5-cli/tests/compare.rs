@@ -59,8 +59,8 @@ fn computing_causes_and_predictors_changes_no_other_number_of_a_comparison() {
         let lists = rows.iter_mut().map(|row| {
             row["host_seconds"] = Value::Null;
             // Causes come with intervals that are wrong by -20, -10, 10 and 20 ms.
-            let misaimed = row["misaimed"].take().as_array().map_or(0, Vec::len);
-            assert_eq!(misaimed, if more.is_empty() || row["pipeline"] == "ideal" { 0 } else { 4 });
+            let errors = row["prediction_interval_errors"].take().as_array().map_or(0, Vec::len);
+            assert_eq!(errors, if more.is_empty() || row["pipeline"] == "ideal" { 0 } else { 4 });
             let lists = ["causes", "predictors"].map(|key| row[key].take().as_array().map_or(0, Vec::len));
             (row["pipeline"].as_str().expect("a name").to_owned(), lists)
         });

@@ -42,7 +42,10 @@ impl Numbers {
 }
 
 /// Words that are likely to cause trouble in some format.
-const WORDS: [&str; 28] = [
+const WORDS: [&str; 31] = [
+    "null",
+    "1e999",
+    "[]",
     "nan",
     "inf",
     "-inf",
@@ -73,19 +76,25 @@ const WORDS: [&str; 28] = [
     "#",
 ];
 
-/// Returns a copy of a file with one to six random mutations.
+fn noise(most: usize, numbers: &mut Numbers) -> Vec<u8> {
+    (0..numbers.below(most)).map(|_| numbers.next() as u8).collect()
+}
+
+/// Returns a copy of a file with one to six random mutations. One file in 32 is noise before its mutations.
 fn damaged(file: &[u8], others: &[(String, Vec<u8>)], numbers: &mut Numbers) -> Vec<u8> {
-    let mut bytes = file.to_vec();
+    let mut bytes = if numbers.below(32) == 0 { noise(400, numbers) } else { file.to_vec() };
     for _ in 0..=numbers.below(6) {
         let at = numbers.below(bytes.len() + 1);
         let end = (at + numbers.below(40)).min(bytes.len());
-        match numbers.below(7) {
+        match numbers.below(9) {
             0 => bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte ^= 1 << numbers.below(8)),
             1 => drop(bytes.splice(at..end, [])),
             2 => drop(bytes.splice(at..at, WORDS[numbers.below(WORDS.len())].bytes())),
             3 => drop(bytes.splice(at..end, WORDS[numbers.below(WORDS.len())].bytes())),
             4 => bytes.extend_from_within(at..end),
             5 => bytes.truncate(at.max(bytes.len() / 2)),
+            6 => bytes.truncate(at),
+            7 => drop(bytes.splice(at..end, noise(8, numbers))),
             _ => {
                 let other = &others[numbers.below(others.len())].1;
                 let from = numbers.below(other.len());

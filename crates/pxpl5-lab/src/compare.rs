@@ -28,5 +28,5 @@ pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use precision::{MAX_SEEDS, Precision, UntilPrecise};
 pub use predictors::{PredictorResult, Predictors, predictors};
 pub use query::{CompareQuery, Comparison, MIN_SEEDS};
-pub use row::{CauseShare, ComparisonRow, ErrorSpread, MisaimedMean, PredictorMean};
+pub use row::{CauseShare, ComparisonRow, ErrorSpread, PredictionIntervalErrorMean, PredictorMean};
 pub use store::{CompareStore, ROWS_FOLDER, ROWS_SCHEMA};

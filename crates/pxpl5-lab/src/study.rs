@@ -20,7 +20,8 @@ pub trait Study {
     /// The answer.
     type Report: Serialize;
 
-    /// Estimates the memory and time of the study on `threads` threads. The default is a study of a few seconds.
+    /// Estimates the memory and time of the study on `threads` threads. The default is
+    /// almost nothing, for a study whose work depends on no setting.
     fn estimate(&self, threads: usize) -> Estimate {
         let _ = threads;
         Estimate::NOTHING

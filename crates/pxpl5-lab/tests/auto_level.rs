@@ -21,8 +21,8 @@ fn run(experiment: &Experiment) -> (f64, f64) {
 }
 
 /// Tests that at least 95 % of the chosen runs of 200 experiments lie within the bound. By day, a sample is run. By
-/// night, runs for a bound of 5 % or more must also take at most half of the time of the transaction level, and the 400
-/// experiments that were in view when the margins were chosen are run and printed (docs/speed.md).
+/// night, runs for a bound of 5 % or more must also take at most half of the time of the transaction level, and the same
+/// holds for the 400 experiments that were in view when the margins were chosen (docs/speed.md).
 #[test]
 fn at_least_95_percent_of_chosen_levels_lie_within_the_bound() {
     let by_night = std::env::var_os("PXPL5_ALL_CASES").is_some();
@@ -49,7 +49,7 @@ fn at_least_95_percent_of_chosen_levels_lie_within_the_bound() {
             let taken = Level::ALL.map(|level| of_set.iter().filter(|(_, chosen, _)| chosen[i].0 == level).count());
             let outside: Vec<_> = outside.iter().map(|(number, chosen, _)| (number, chosen[i])).collect();
             println!("{bound} %, {set}: {taken:?}, outside of {}: {outside:?}", of_set.len());
-            assert!(set == "seen" || outside.len() * 20 <= of_set.len(), "{bound} %: {outside:?}");
+            assert!(outside.len() * 20 <= of_set.len(), "{bound} %: {outside:?}");
         }
         let chosen_s: f64 = all.iter().map(|(_, chosen, _)| chosen[i].2).sum();
         println!("{bound} %: {chosen_s:.1} s, transaction {transaction_s:.1} s");

@@ -59,7 +59,7 @@ impl PixelErrors {
     /// pictures.
     ///
     /// For a run that discarded its records, the result covers only the last periods.
-    pub fn misaimed(outcome: &Outcome, showing: Showing, later_ms: i64) -> Self {
+    pub fn with_prediction_interval_error(outcome: &Outcome, showing: Showing, later_ms: i64) -> Self {
         evaluated(outcome, showing, None, later_ms * PS_PER_MS as i64).0
     }
 }
@@ -123,9 +123,9 @@ impl LatencyPercentiles {
     /// Returns the percentiles of a run. Those that concern the head are empty without a head.
     pub fn of(outcome: &Outcome) -> Self {
         let of_head = HeadResults::from_observer(outcome).map(|results| results.percentiles);
-        let [head_to_light, aim_miss] = of_head.unwrap_or_else(|| budget_sum(outcome).percentiles());
+        let [head_to_light, prediction_interval_error] = of_head.unwrap_or_else(|| budget_sum(outcome).percentiles());
         let latency = Percentiles::of(outcome.tally().latency_ms.iter().copied());
-        Self { latency, head_to_light, aim_miss }
+        Self { latency, head_to_light, prediction_interval_error }
     }
 }
 

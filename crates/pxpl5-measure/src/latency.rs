@@ -29,7 +29,7 @@ pub struct LatencyPercentiles {
     pub head_to_light: Percentiles,
     /// Error of the prediction interval: distance between the instant for which the picture was predicted and the
     /// instant for which it should have been. Empty for pipelines that draw each part for its own instant.
-    pub aim_miss: Percentiles,
+    pub prediction_interval_error: Percentiles,
 }
 
 /// One part of the latency of pictures, with its statistics.

@@ -53,7 +53,7 @@ const LATENCY: &str =
 const TO_LIGHT: &str =
     "from the head's pose to the light of the picture's middle; without an ending the mean; only with a head.motion";
 
-const AIM_MISS: &str = "error of the prediction interval: distance between the instant for which a picture is predicted and the one for which it should be; only with a head.motion, and not for pipelines that draw each part for its own instant";
+const PREDICTION_INTERVAL_ERROR: &str = "error of the prediction interval: distance between the instant for which a picture is predicted and the one for which it should be; only with a head.motion, and not for pipelines that draw each part for its own instant";
 
 const EYE_LATENCY: &str = "from the start of an eye's TRANSFORM to the swap of its frame, over both eyes of all complete pictures in the window; none for Slats";
 
@@ -127,8 +127,12 @@ pub static QUANTITIES: [Quantity; 66] = [
     of_run("to_light_ms.p50", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p50)),
     of_run("to_light_ms.p95", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p95)),
     of_run("to_light_ms.p99", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p99)),
-    of_run("aim_miss_ms.mean", AIM_MISS, |_, r| Some(r.percentiles_ms.aim_miss.mean)),
-    of_run("aim_miss_ms.max", AIM_MISS, |_, r| Some(r.percentiles_ms.aim_miss.max)),
+    of_run("prediction_interval_error_ms.mean", PREDICTION_INTERVAL_ERROR, |_, r| {
+        Some(r.percentiles_ms.prediction_interval_error.mean)
+    }),
+    of_run("prediction_interval_error_ms.max", PREDICTION_INTERVAL_ERROR, |_, r| {
+        Some(r.percentiles_ms.prediction_interval_error.max)
+    }),
     of_run(
         "tracking_and_rendering_ms",
         "the sum of two means, as in figure 19: from the pose to the arrival of its report, and from the start of an eye's TRANSFORM to the swap; only with a head.motion",

@@ -90,7 +90,7 @@ fn stages_from_head_to_light_add_up() {
         assert_near(found.head_to_light.p50, expected.p50, name);
         assert_near(found.head_to_light.p95, expected.p95, name);
         assert_eq!((found.head_to_light.n, found.latency.n), (n as u64, outcome.latency_ms().n), "{name}");
-        assert_eq!(found.aim_miss.n, 0, "{name}: nothing is predicted");
+        assert_eq!(found.prediction_interval_error.n, 0, "{name}: nothing is predicted");
         // The report takes 3.75 ms to the first character, and 47 bytes at 115,200 baud.
         assert!((budget.tracking_ms - 3.75 - 4.08).abs() < 0.01, "{}", budget.tracking_ms);
     }
@@ -98,11 +98,11 @@ fn stages_from_head_to_light_add_up() {
 
 /// Returns the time in milliseconds between the instant for which each picture was predicted and the middle of its light.
 /// A picture is lit in `lit` periods, or until the next picture without such a number.
-fn aim_misses_ms(outcome: &Outcome, lit: Option<u64>) -> Vec<f64> {
+fn prediction_interval_errors_ms(outcome: &Outcome, lit: Option<u64>) -> Vec<f64> {
     let (display, window) = (outcome.record().display(), outcome.window().expect("a window"));
     let sampled = outcome.head().expect("a head").sampled();
     let pictures = outcome.pictures();
-    let mut misses = Vec::new();
+    let mut errors = Vec::new();
     for (number, times) in pictures.iter().enumerate() {
         let first = display.period_at(times.shown_at);
         if !times.is_shown() || !window.holds_picture(first) {
@@ -115,15 +115,15 @@ fn aim_misses_ms(outcome: &Outcome, lit: Option<u64>) -> Vec<f64> {
         let end = display.last_light(0, PeriodNumber(first.0 + periods - 1)).expect("lit");
         let pose = sampled.iter().rev().find(|pose| pose.number == times.view).expect("it was requested");
         let aimed_at = pose.predicted_for.expect("predicted");
-        misses.push((begin.0.midpoint(end.0) as f64 - aimed_at.0 as f64).abs() / 1e9);
+        errors.push((begin.0.midpoint(end.0) as f64 - aimed_at.0 as f64).abs() / 1e9);
     }
-    misses
+    errors
 }
 
 /// Slats draws a constant load, so the dry run knows its times of display. Then Rendering Control draws 1,200 triangles
 /// with the times that a dry run found for 10, so its pictures are lit later than predicted.
 #[test]
-fn the_miss_of_a_prediction_interval_is_the_time_from_its_instant_to_the_middle_of_the_light() {
+fn the_error_of_a_prediction_interval_is_the_time_from_its_instant_to_the_middle_of_the_light() {
     let predicted = || head(Synthetic::recorded_use(1), TrackerConfig::fastrak(), PredictorKind::ConstantVelocity);
     let slats = run(&(Arc::new(Slats::split()) as Arc<dyn Pipeline>), Some(predicted()), 90);
     let control = Arc::new(RenderingControl::mono()) as Arc<dyn Pipeline>;
@@ -132,8 +132,8 @@ fn the_miss_of_a_prediction_interval_is_the_time_from_its_instant_to_the_middle_
     let heavy = heavy.with_dry_run(light.dry_run().cloned()).run().expect("it runs");
     // A field of Slats is scanned once, and a picture of Rendering Control until the next one.
     let max = [(&slats, Some(1)), (&heavy, None)].map(|(outcome, lit)| {
-        let expected = Percentiles::of(aim_misses_ms(outcome, lit).into_iter());
-        let found = LatencyPercentiles::of(outcome).aim_miss;
+        let expected = Percentiles::of(prediction_interval_errors_ms(outcome, lit).into_iter());
+        let found = LatencyPercentiles::of(outcome).prediction_interval_error;
         assert!(found.n > 10 && found.n == expected.n, "{found:?} {expected:?}");
         assert_near(found.max, expected.max, "max");
         assert_near(found.mean, expected.mean, "mean");
@@ -189,7 +189,7 @@ fn a_wrong_prediction_interval_adds_the_way_of_the_head_in_its_error() {
         head(Slide::right_at(1.0), exact, PredictorKind::ConstantVelocity).evaluated_at(2.0).expect("in range");
     let outcome = experiment(&slats, "room", 45).head(sliding).run().expect("it runs");
     for later_ms in [0_i64, 20, 40, -20] {
-        let found = PixelErrors::misaimed(&outcome, Showing::Plain, later_ms).centre_px.mean;
+        let found = PixelErrors::with_prediction_interval_error(&outcome, Showing::Plain, later_ms).centre_px.mean;
         let expected = px_a_second * later_ms.unsigned_abs() as f64 / 1e3;
         assert!((found - expected).abs() < 0.06, "{later_ms} ms: {found} px, expected {expected}");
     }

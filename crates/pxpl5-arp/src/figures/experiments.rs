@@ -68,8 +68,6 @@ pub struct Experiments {
     /// Factors by which priority rendering reduces the number of draws of point objects: with 4 memories at 1 m/s, and
     /// with 5 memories at 0.37 m/s.
     pub reductions: [f64; 2],
-    /// Times for which an object's image is valid, for several ratios of size to distance.
-    pub sizes: Vec<SizeRow>,
     /// Limits of the ratio of an object's size to its distance, one for each interpretation. Above the limit, the
     /// growth of the object on the screen determines the validity period.
     pub size_limits: Vec<SizeLimit>,
@@ -130,7 +128,6 @@ impl Experiments {
             fits,
             walks,
             reductions: [point_objects_reduction(1.0, 4), point_objects_reduction(0.37, 5)],
-            sizes: size_rows(),
             size_limits: size_limits(),
             lens_px: straight_edge(Lens::Radial { k1: 0.32, k2: 0.0 })?,
             composite_differs: composite_differs(&world, &cells, path.place(6.15))?,
@@ -173,32 +170,6 @@ pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
         objects.frame(frame, &periods);
     });
     frames as f64 * POINTS as f64 / objects.counts()[1] as f64
-}
-
-/// Times for which the image of an object at 10 m stays valid if a walker approaches at 1 m/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SizeRow {
-    /// Diameter of the object, divided by the distance of its middle.
-    pub size_over_distance: f64,
-    /// Time in seconds until the eye's translation makes the image wrong by the threshold. The time is computed with
-    /// the distance of the object's middle.
-    pub translation_s: f64,
-    /// Time until the growth of the object's image reaches the threshold, for a disc and for a sphere, in seconds.
-    pub size_s: [f64; 2],
-}
-
-/// Returns rows for objects with diameters from 0.1 to 20 times their distance from the eye.
-pub fn size_rows() -> Vec<SizeRow> {
-    let threshold = Threshold::of_degrees(THETA_DEG);
-    let sizes = [0.1, 0.2, 0.5, 1.0, 1.4, 1.5, 1.9, 2.0, 5.0, 10.0, 20.0];
-    sizes.map(|size| size_row(&threshold, size)).to_vec()
-}
-
-fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
-    let radius = size * 10.0 / 2.0;
-    let rules = [SizeRule::Disc, SizeRule::Sphere];
-    let size_s = rules.map(|rule| Threshold { size: rule, ..*threshold }.max_approach(10.0, radius));
-    SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
 }
 
 /// A limit of the ratio of an object's size to its distance. Above the limit, the growth of the object on the screen

@@ -186,12 +186,12 @@ fn causes(comparison: &Comparison) -> String {
     }
     let mut text = format!("\n{}", laid_out(&lines, 1));
     // A wrong prediction interval is no cause of this error, but shows how exact the interval must be.
-    let misaimed = || comparison.pipelines.iter().filter(|row| !row.misaimed.is_empty());
-    let Some(first) = misaimed().next() else { return text };
-    let heads = first.misaimed.iter().map(|one| format!("{:+}", one.later_ms));
-    let mut lines = vec![std::iter::once("interval wrong by, ms".to_owned()).chain(heads).collect::<Vec<_>>()];
-    lines.extend(misaimed().map(|row| {
-        let px = row.misaimed.iter().map(|one| number(one.mean_px, 2));
+    let rows = || comparison.pipelines.iter().filter(|row| !row.prediction_interval_errors.is_empty());
+    let Some(first) = rows().next() else { return text };
+    let heads = first.prediction_interval_errors.iter().map(|one| format!("{:+}", one.later_ms));
+    let mut lines = vec![std::iter::once("prediction interval error, ms".to_owned()).chain(heads).collect::<Vec<_>>()];
+    lines.extend(rows().map(|row| {
+        let px = row.prediction_interval_errors.iter().map(|one| number(one.mean_px, 2));
         std::iter::once(row.pipeline.clone()).chain(px).collect()
     }));
     text.push_str(&format!("\n{}", laid_out(&lines, 1)));

@@ -200,7 +200,7 @@ impl Study for CompareQuery {
             commit: program::commit(),
             config_hash: any.experiment(Arc::clone(&common.scene)).config_hash().to_string(),
             settings: self.header()?.settings,
-            // What the importer changed belongs to all rows, too.
+            // All rows draw the scene, so its import warnings apply to all.
             warnings: any
                 .warnings()
                 .into_iter()

@@ -52,7 +52,7 @@ pub struct PredictorMean {
 
 /// Mean pixel error of a row if all prediction intervals were wrong.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct MisaimedMean {
+pub struct PredictionIntervalErrorMean {
     /// Milliseconds by which the intervals are too long, or too short if negative.
     pub later_ms: i64,
     /// Mean pixel error over the seeds. NaN if no pixel was evaluated.
@@ -128,7 +128,7 @@ pub struct ComparisonRow {
     pub causes: Vec<CauseShare>,
     /// Mean error for wrong prediction intervals. Empty if the comparison did not include causes.
     #[serde(default)]
-    pub misaimed: Vec<MisaimedMean>,
+    pub prediction_interval_errors: Vec<PredictionIntervalErrorMean>,
     /// Mean error of the first seed with each predictor. Empty if the comparison did not include predictors. Also empty
     /// for the row `ideal`, because predictors do not change its pictures.
     pub predictors: Vec<PredictorMean>,
@@ -205,7 +205,7 @@ impl ComparisonRow {
             covered_share: mean_of(trials.iter().filter_map(|trial| trial.errors.covered_share)),
             window: trials.first().and_then(|trial| trial.window),
             causes: causes(trials, sampling),
-            misaimed: misaimed(trials),
+            prediction_interval_errors: prediction_interval_errors(trials),
             predictors: Vec::new(),
             triangles_possible: None,
             has_no_limit: false,
@@ -284,11 +284,12 @@ fn pooled(trials: &[&Trial], values: impl Fn(&Trial) -> &Vec<f64>) -> Statistics
 }
 
 /// Returns the mean errors for wrong prediction intervals, over all seeds.
-fn misaimed(trials: &[&Trial]) -> Vec<MisaimedMean> {
-    let later_ms = trials.first().map(|trial| trial.misaimed.iter().map(|one| one.0)).into_iter().flatten();
+fn prediction_interval_errors(trials: &[&Trial]) -> Vec<PredictionIntervalErrorMean> {
+    let later_ms =
+        trials.first().map(|trial| trial.prediction_interval_errors.iter().map(|one| one.0)).into_iter().flatten();
     let mean = |(i, later_ms): (usize, i64)| {
-        let of_seeds = trials.iter().filter_map(|trial| trial.misaimed.get(i)).map(|one| one.1);
-        MisaimedMean { later_ms, mean_px: Statistics::of(of_seeds.filter(|px| px.is_finite())).mean }
+        let of_seeds = trials.iter().filter_map(|trial| trial.prediction_interval_errors.get(i)).map(|one| one.1);
+        PredictionIntervalErrorMean { later_ms, mean_px: Statistics::of(of_seeds.filter(|px| px.is_finite())).mean }
     };
     later_ms.enumerate().map(mean).collect()
 }

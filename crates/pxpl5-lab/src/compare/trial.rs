@@ -23,7 +23,7 @@ pub(super) struct Trial {
     pub(super) errors: PixelErrors,
     pub(super) causes: Option<ErrorCauses>,
     /// Wrong prediction intervals: milliseconds later, and mean error in pixels.
-    pub(super) misaimed: Vec<(i64, f64)>,
+    pub(super) prediction_interval_errors: Vec<(i64, f64)>,
     pub(super) updates_hz: Option<f64>,
     pub(super) due: Option<DuePictures>,
     pub(super) window: Option<ResultWindow>,
@@ -86,7 +86,7 @@ impl Trial {
             prediction_interval_ms: times(prediction_intervals_ms(outcome)),
             budget: Budget::of(outcome),
             causes: if causes { ErrorCauses::of(outcome, showing, &errors) } else { None },
-            misaimed: if causes { misaimed(outcome, showing) } else { Vec::new() },
+            prediction_interval_errors: if causes { prediction_interval_errors(outcome, showing) } else { Vec::new() },
             errors,
             updates_hz: report.updates_hz.filter(|_| is_timed),
             due: report.due.filter(|_| is_timed),
@@ -107,12 +107,14 @@ pub(super) fn with_raster(showing: Showing, head: Option<&Head>) -> Showing {
 }
 
 /// Errors of the prediction interval whose effect is evaluated, in milliseconds.
-const MISAIMS_MS: [i64; 4] = [-20, -10, 10, 20];
+const INTERVAL_ERRORS_MS: [i64; 4] = [-20, -10, 10, 20];
 
-fn misaimed(outcome: &Outcome, showing: Showing) -> Vec<(i64, f64)> {
+fn prediction_interval_errors(outcome: &Outcome, showing: Showing) -> Vec<(i64, f64)> {
     // The reference has no pictures and so no interval.
-    let later_ms = MISAIMS_MS.into_iter().filter(|_| showing != Showing::Ideal);
-    later_ms.map(|later_ms| (later_ms, PixelErrors::misaimed(outcome, showing, later_ms).pixels.mean)).collect()
+    let later_ms = INTERVAL_ERRORS_MS.into_iter().filter(|_| showing != Showing::Ideal);
+    later_ms
+        .map(|later_ms| (later_ms, PixelErrors::with_prediction_interval_error(outcome, showing, later_ms).pixels.mean))
+        .collect()
 }
 
 fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
