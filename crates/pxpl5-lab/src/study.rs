@@ -22,8 +22,7 @@ pub trait Study {
 
     /// Estimates the memory and time of the study on `threads` threads. The default is
     /// almost nothing, for a study whose work depends on no setting.
-    fn estimate(&self, threads: usize) -> Estimate {
-        let _ = threads;
+    fn estimate(&self, _threads: usize) -> Estimate {
         Estimate::NOTHING
     }
 

@@ -65,7 +65,9 @@ pub(super) fn scene_named(name: &str) -> Result<Arc<Scene>> {
     Ok(Arc::new(builtin(name)?))
 }
 
-/// Returns the number of complete pictures per second, or 0 if no picture was shown.
+/// Returns the number of complete pictures per second: 0 if pictures were due and none was shown, and NaN if a single one
+/// gives no rate.
 pub(super) fn rate_hz(summary: &Summary) -> f64 {
-    summary.updates_hz.unwrap_or(f64::NAN)
+    let none_shown = summary.due.is_some_and(|due| due.due > 0 && due.shown == 0);
+    summary.updates_hz.unwrap_or(if none_shown { 0.0 } else { f64::NAN })
 }
