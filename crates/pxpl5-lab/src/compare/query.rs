@@ -154,7 +154,7 @@ impl Study for CompareQuery {
         let any = self.any_plan(&compared_pipelines)?;
         let scene = any.load_scene()?;
         let held =
-            |compared: &ComparedPipeline| self.store.as_deref().and_then(|store| store.row(&compared.name)).cloned();
+            |compared: &ComparedPipeline| self.store.as_deref().and_then(|store| store.row(compared.name)).cloned();
         let missing = compared_pipelines.iter().filter(|compared| held(compared).is_none()).count();
         let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
         let watcher = SharedWatcher::new(watcher, (missing * runs_of_a_row) as u64);
@@ -193,7 +193,7 @@ impl Study for CompareQuery {
         let sampling = self.sampling(&any)?;
         // Settings of the first row alone do not belong to the head of all rows.
         let shared =
-            ComparedPipeline { settings: &[], ..compared_pipelines[0].clone() }.plan(&self.shared, any.seed)?;
+            ComparedPipeline { settings: &[], ..compared_pipelines[0] }.plan(&self.shared, any.seed)?;
         let mut comparison = Comparison {
             schema: "pxpl5-comparison/4",
             version: program::VERSION,
@@ -263,7 +263,7 @@ impl CompareQuery {
     pub(super) fn identity(&self) -> Result<(Plan, Vec<String>), StudyError> {
         let rows = self.compared_pipelines()?;
         let plan = self.any_plan(&rows)?;
-        Ok((plan, rows.into_iter().map(|row| row.name).collect()))
+        Ok((plan, rows.iter().map(|row| row.name.to_owned()).collect()))
     }
 
     /// Returns the checked settings of each row with the first seed, for an estimate of the cost of the comparison.

@@ -180,7 +180,7 @@ impl ComparisonRow {
         let sums_ms: Vec<f64> = trials.iter().filter_map(|trial| trial.tracking_and_rendering_ms).collect();
         let hz: Vec<f64> = trials.iter().filter_map(|trial| trial.updates_hz).collect();
         Self {
-            pipeline: compared.name.clone(),
+            pipeline: compared.name.to_owned(),
             settings: settings_text(compared),
             eyes: pipeline.eyes(),
             seeds: sampling.seeds,
