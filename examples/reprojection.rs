@@ -48,8 +48,6 @@ struct Shown {
     mean_px: Option<f64>,
     mean_deg: Option<f64>,
     empty: Option<f64>,
-    disoccluded: Option<f64>,
-    pose_age_ms: Option<f64>,
 }
 
 /// A run of one pipeline on one display under one motion.
@@ -58,7 +56,6 @@ struct Row {
     display: &'static str,
     motion: usize,
     picture_age_ms: f64,
-    triangles_per_s: f64,
     shown: Vec<Shown>,
     failure: Option<String>,
 }
@@ -125,15 +122,7 @@ fn measure(
         file.set_text(setting, "reprojection")?;
     }
     let plan = file.resolve_for(1)?;
-    let blank = Row {
-        pipeline,
-        display,
-        motion,
-        picture_age_ms: f64::NAN,
-        triangles_per_s: f64::NAN,
-        shown: Vec::new(),
-        failure: None,
-    };
+    let blank = Row { pipeline, display, motion, picture_age_ms: f64::NAN, shown: Vec::new(), failure: None };
     Ok(match plan.experiment(plan.load_scene()?).pixels(Pixels::Off).run() {
         Ok(outcome) => of_run(&outcome, blank),
         Err(error) => Row { failure: Some(error.to_string()), ..blank },
@@ -141,11 +130,6 @@ fn measure(
 }
 
 fn of_run(outcome: &Outcome, blank: Row) -> Row {
-    let seconds = outcome.fields() as f64 * outcome.field_ms() * 1e-3;
-    let Some(head) = outcome.head() else { return blank };
-    // A pipeline takes a view for each picture that it begins.
-    let views = head.sampled().len() * outcome.pipeline().eyes();
-    let triangles = views * head.scene().triangles().len();
     let ages = Budget::totals_ms(outcome);
     let shown = showings().into_iter().map(|(_, _, showing)| {
         let errors = PixelErrors::shown(outcome, showing);
@@ -154,17 +138,10 @@ fn of_run(outcome: &Outcome, blank: Row) -> Row {
         Shown {
             mean_px: is_known.then_some(errors.pixels.mean),
             mean_deg: is_known.then_some(errors.degrees.mean),
-            empty: device.as_ref().and_then(|device| device.empty_share),
-            disoccluded: device.as_ref().and_then(|device| device.disoccluded_share),
-            pose_age_ms: device.map(|device| device.pose_age_ms.mean),
+            empty: device.and_then(|device| device.empty_share),
         }
     });
-    Row {
-        picture_age_ms: Statistics::of(ages.into_iter()).mean,
-        triangles_per_s: triangles as f64 / seconds,
-        shown: shown.collect(),
-        ..blank
-    }
+    Row { picture_age_ms: Statistics::of(ages.into_iter()).mean, shown: shown.collect(), ..blank }
 }
 
 fn number(value: Option<f64>, digits: usize) -> String {
@@ -174,31 +151,26 @@ fn number(value: Option<f64>, digits: usize) -> String {
 fn table(motions: &[(String, String)], rows: &[Row]) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     for (motion, (title, name)) in motions.iter().enumerate() {
+        // Its errors are like those of walking and looking, so only the figure has it.
+        if name.starts_with("synthetic") {
+            continue;
+        }
         writeln!(text, "\n**{title}** (`{name}`)\n")?;
-        text += "| pipeline | display | picture age, ms | triangles/s |";
+        text += "| pipeline | display | picture age, ms |";
         showings().iter().for_each(|(name, ..)| text += &format!(" {name}, px |"));
-        text += " plain, deg | depth a line, deg | empty, % | hidden, % | pose age, ms |\n|---|---|---|---|";
+        text += " depth a line, deg | empty, % |\n|---|---|---|";
         showings().iter().for_each(|_| text += "---|");
-        text += "---|---|---|---|---|\n";
+        text += "---|---|\n";
         for row in rows.iter().filter(|row| row.motion == motion) {
             write!(text, "| {} | {} |", row.pipeline, row.display)?;
             if let Some(failure) = &row.failure {
                 writeln!(text, " {} |", failure.split(';').next().unwrap_or_default())?;
                 continue;
             }
-            write!(text, " {} | {:.0} |", number(Some(row.picture_age_ms), 1), row.triangles_per_s)?;
+            write!(text, " {} |", number(Some(row.picture_age_ms), 1))?;
             row.shown.iter().for_each(|shown| text += &format!(" {} |", number(shown.mean_px, 2)));
-            let [plain, turned, moved] = [&row.shown[0], &row.shown[2], &row.shown[3]];
-            let percent = |share: Option<f64>| number(share.map(|share| share * 100.0), 1);
-            writeln!(
-                text,
-                " {} | {} | {} | {} | {} |",
-                number(plain.mean_deg, 3),
-                number(moved.mean_deg, 3),
-                percent(turned.empty),
-                percent(moved.disoccluded),
-                number(turned.pose_age_ms, 1)
-            )?;
+            let empty = number(row.shown[2].empty.map(|share| share * 100.0), 1);
+            writeln!(text, " {} | {empty} |", number(row.shown[3].mean_deg, 3))?;
         }
     }
     Ok(text.trim_start().to_owned())
