@@ -1,8 +1,8 @@
 //! Measures the clocks per triangle of the three kernels, their causes, and their dependence on each assumption. Also
 //! computes the figures with the kernels on the boards.
 //!
-//! Prints docs/gp-timing.md: `cargo run --profile test --example gp_timing > docs/gp-timing.md`. With `--details`, also
-//! prints more tables.
+//! `cargo run --profile test --example gp_timing` prints the tables from which docs/gp-timing.md draws its conclusions.
+//! With `--details`, it also prints more tables.
 
 mod code_times;
 #[path = "../crates/pphigs/tests/kernel/mod.rs"]
@@ -565,78 +565,13 @@ fn sizes() {
     row(&["dual, out of the loops".into(), (end - at("finished")).to_string()]);
 }
 
-const INTRODUCTION: &str = "# How long does a graphics processor take for a triangle?
-
-For one triangle and eye, code like that of a good compiler of about 1990 takes some 2,200 clocks (55 us). Scheduled
-code takes some 840 (21 us), where optimised PPHIGS needed 21.7 us. The program of Slats, compiled code in single
-precision, takes 27 us, and its papers have 34 us for 1994 and 58 us for 1995. Nothing is fitted, so this is a check of
-the model, although its rules for waits and its memory times are assumed. Most depends on the instruction cache, because
-the scheduled loops fit into its 4 KB and unoptimised code does not.
-
-`cargo run --profile test --example gp_timing > docs/gp-timing.md` (some minutes) makes this page. Do not edit it.
-
-## The kernels
-
-Three i860 programs (*kernels*, in crates/pxpl5-geometry/kernels), and a fourth for Slats, read a triangle of the display
-list, and write the words of a renderer command and an entry into the bin of each region that it touches. They transform
-three corners and test whether these are inside the guard band, compute 1 / w with Newton steps, and round to 1/16 pixel.
-Then come the light at the corners (or their normals for Phong shading), three edge expressions, the planes of depth and
-of three components, the lines of a field, and the bins. They differ in their code:
-
-- *straight* is not optimised. Each statement reads and writes its variables in memory, and all functions are inlined.
-
-- *compiled* has functions, loops, local variables in registers, and scalar floating-point operations, like the output of
-  a good compiler for a plain C program. Its rules were written before the first measurement (compiled_rules.md).
-
-- *dual* consists of pairs of instructions, which `i860::linear` arranged. It processes a batch of 26 triangles in two
-  loops, each of which fits the instruction cache of 4 KB.
-
-- *single* is the compiled program of Slats: precomputed colours, both eyes in one pass, one bin for all regions, and
-  planes in single precision. Its rules were written before the first measurement, too (slats_rules.md).
-
-All give exactly the same words as the native code in Rust (crates/pphigs/tests/kernels.rs and code.rs). The clipper, for
-triangles that are not completely inside the guard band, is written like the compiled kernel. So is the code for spheres,
-edits, the beginning of a pass, messages, tokens, windows and views, in the same folder, in crates/pphigs/kernels and in
-crates/pxpl5-gp/kernels, whose ring_rules.md says which parts of the unpublished operating software it replaces. The
-decisions of a master and the warping of vertices have no i860 code, and the hardware of the ring interface needs none. A
-whole program therefore takes longer than the times below.
-
-The 1,000 triangles have about 30 pixels each. The kernel reads position, normal and colour of each corner from memory.
-The size of an NTSC frame or field is a constant in the code; kernels for other frames read it from their parameter
-block. The processor runs at 40 MHz with the freeze rules and the memory of crates/i860/src/timing.rs. Both are assumed,
-so the [last section](#what-the-times-depend-on) says how much they matter.
-";
-
-const DEPENDENCE: &str = "\
-## What the times depend on
-
-With `-- --details`, the same command also prints how much each cause of a wait and each number of the memory matters, and
-the clocks of Phong triangles, of strips, and of just-in-time pixels. In short:
-
-- **Waits.** The compiled kernel loses most to floating-point operations that wait for a scalar one in flight:
-  560 clocks, and 120 more behind products of doubles. In the straight kernel, instruction misses
-  cost 1,680 clocks, and numbers that are used too soon after their load cost 470. The dual kernel loses 95 to
-  instruction misses, and less than 30 to anything else.
-
-- **Memory.** If each further transfer of a line takes 4 clocks instead of 2, the straight kernel takes 850
-  clocks more, the dual 76 and the compiled 22. DMA at half of the data rate of one ring channel adds 630, 220
-  and 50. Any other number changes the dual kernel by at most 31 clocks and the compiled one by at most 12,
-  within its allowed range.
-
-- **Strips.** In long strips (T-meshes) the dual kernel takes 500 clocks a triangle with Phong shading, and
-  730 with corners of its own. In strips of four it takes 580. It cannot be much faster, because values occupy
-  the 30 registers until the floating-point pipelines have finished, and each of its two loops removes the
-  other from the instruction cache. An edge that two triangles share is computed twice.";
-
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    println!("{INTRODUCTION}");
     results();
     slats();
     comparison();
     board()?;
     table_of_code()?;
     sizes();
-    println!("\n{DEPENDENCE}");
     if std::env::args().any(|argument| argument == "--details") {
         phong();
         freeze_sensitivity();

@@ -63,8 +63,8 @@ impl GpTiming {
 }
 
 /// Source of the times of i860 code.
-const OF_CODE: &str = "mean time of this project's i860 code over three scenes (docs/gp-timing.md, made by the example \
-                       gp_timing; the tests of pxpl5-lab measure it again)";
+const OF_CODE: &str = "mean time of this project's i860 code over three scenes (docs/gp-timing.md; the example gp_timing \
+                       and the tests of pxpl5-lab measure it again)";
 
 impl GpTiming {
     /// Returns the source of a time that the table of the papers does not have, if the time belongs to another table of
