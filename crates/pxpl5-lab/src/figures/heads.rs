@@ -36,7 +36,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             I3D95,
             "errors in pixels of two systems with 90 and 50 ms from head to light: ratio",
             (1.8, ""),
-            "The head follows a synthetic motion of recorded use, for four seeds of two minutes. The pictures are drawn for the poses of 90 ms and of 50 ms before.",
+            "a synthetic motion of recorded use, four seeds of two minutes; the pictures are drawn for the poses of 90 ms and of 50 ms before",
             |_| Ok(ratio_of_errors()),
         )
     },
@@ -52,8 +52,8 @@ pub(super) const FIGURES: &[Measurement] = &[
             I3D95,
             "optical tracker and Rendering Control together",
             (90.0, "ms"),
-            "full-screen:12 on small-hmd, with a synthetic motion and without prediction: the time from the pose to the arrival of its report, plus \
-             the time from the start of TRANSFORM to the swap, as in figure 4",
+            "full-screen:12 on small-hmd, with a synthetic motion, without prediction: from the pose to the arrival of its report, plus \
+             from the start of TRANSFORM to the swap, as in figure 4",
             |settings| {
                 tracker_and_rendering(settings, settings.interpreted("small-hmd")?, settings.interpretation.pipeline())
             },

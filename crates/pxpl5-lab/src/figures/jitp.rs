@@ -21,9 +21,8 @@ use tracking::tracker::TrackerConfig;
 pub(super) const TITLE: &str = "Just-in-time pixels";
 
 pub(super) const ABOUT: &str = "The head turns by 200 degrees a second in front of a tracker without error or delay, and the view is 60 degrees wide \
-(JITP). So the error of a pixel, the angle between the direction that it shows and the one that it should show when it lights, comes \
-only from the time between the two. As in JITP, a pixel is 0.1 degrees, and each angle is scaled to the whole time of a field or line, \
-retrace included.";
+(JITP). So the error of a pixel, the angle between the direction that it shows and the right one when it lights, comes only from the time \
+between the two. As in JITP, a pixel is 0.1 degrees, and each angle is scaled to the whole time of a field or line, retrace included.";
 
 /// Degrees per second of a fast turn of the head, published in the paper on just-in-time pixels.
 const PAN: f64 = 200.0;
@@ -43,9 +42,9 @@ const LAST_LINE: u32 = 478;
 
 const JITP: (&str, &str) = ("JITP", "raster");
 
-const OF_FIELD: &str = "jitp-field-racing runs on small-hmd with an aim at the first pixel. The error is that of the last line of a field.";
-const OF_LINE: &str =
-    "jitp-scanline-racing draws strips of one line. The error is that of both ends of the middle line.";
+const OF_FIELD: &str =
+    "jitp-field-racing on small-hmd with an aim at the first pixel: the error of the last line of a field";
+const OF_LINE: &str = "jitp-scanline-racing with strips of one line: the error of both ends of the middle line";
 
 const BY_TURN: Basis = Basis::Derived("200 deg/s and the times of NTSC");
 const OF_TURN: &str = "The paper multiplies the same numbers. The row shows that the pipeline's errors follow";
@@ -81,7 +80,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             JITP,
             "a line takes about",
             (65.0, "us"),
-            "The result is the time between the first pixels of two lines of a field.",
+            "the time between the first pixels of two lines of a field",
             time_of_line,
         )
     },
@@ -92,8 +91,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             JITP,
             "share of the slant of a vertical edge that just-in-time pixels remove: seen straight",
             (100.0, "%"),
-            "An edge is drawn by jitp-field and by jitp-scanline, as seen by an eye that turns with the head. The result is the slant of a \
-             straight line through all rows.",
+            "an edge by jitp-field and by jitp-scanline, as seen by an eye that turns with the head: the slant of a straight line through all rows",
             slant_removed,
         )
     },
@@ -106,8 +104,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             JITP,
             "vertices transformed line by line, over those of one transform a field: about",
             (256.0, "times"),
-            "Both jitp-scanline-racing and jitp-field-racing run with one slave. The software of the slave takes no time, so no line is late. The \
-             result is the number of vertices transformed in 20 fields.",
+            "jitp-scanline-racing and jitp-field-racing with one slave, whose software takes no time, so no line is late: vertices transformed in 20 fields",
             transforms,
         )
     },

@@ -66,7 +66,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             LEECH,
             "Gouraud triangles a second",
             (1.6e6, "triangles/s"),
-            "typical:40000 mono on large: the result is the number of triangles of a frame times the frames per second",
+            "typical:40000 mono on large: triangles of a frame times frames per second",
             |settings| triangle_rate(settings, "large", Shading::Gouraud),
         )
     },
@@ -106,7 +106,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             ("F89", "renderer"),
             "Phong triangles a second of a renderer",
             (150e3, "triangles/s"),
-            "typical:20000 mono on small-hmd with one renderer: the result is the number of commands divided by the working time of the array. Of 1,000 commands, 997 are triangles.",
+            "typical:20000 mono on small-hmd with one renderer: commands over the working time of the array; of 1,000 commands, 997 are triangles",
             renderer_rate,
         )
     },
@@ -118,7 +118,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             ("i860PRM", "processor"),
             "single-precision peak of the i860 at 40 MHz",
             (80.0, "MFLOPS"),
-            "The i860 runs 100 iterations of a loop of 256 pipelined multiply-adds with warm caches. The result is the number of operations per time. The loop instructions take the rest of the time.",
+            "100 iterations of a loop of 256 pipelined multiply-adds with warm caches: operations per time; the instructions of the loop take the rest",
             |_| i860_peak(),
         )
     },

@@ -89,8 +89,8 @@ const OF_FRAMES: &[&str] = &[
 ];
 
 const APPLICATION: Basis = Basis::Interpretation("each eye, the large machine, culling");
-const OF_APPLICATION: &str = "TR94 names neither the machine nor culling. The project chose the large machine and culled scenes, because the scene `head` takes \
-     twice the printed time otherwise. Samples of each eye were chosen because of the printed deviations";
+const OF_APPLICATION: &str = "TR94 names neither the machine nor culling; on the small one, or with all faces, `head` takes twice the printed time. \
+    Samples of each eye were chosen because of the printed deviations";
 const GAP: &str = "If TR94's fields are exact, about one field (one COPY) is missing (see the section above)";
 const BIN_RULE: Basis = Basis::Rule("TRANSFORM waits until the bins have room for it");
 const OF_BINS: &str = "No paper states the rule. It was chosen because both figures follow from it";
@@ -112,19 +112,19 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Derived("40 x row 1"),
-        reason: "TR94 multiplies row 1 by 20 regions and two eyes, and so does the model as long as one eye is copied after the other",
+        reason: "TR94 multiplies row 1 by 20 regions and two eyes, and so does the model if it copies one eye after the other",
         varied: Varied::ByFormula,
         ..figure(
             "2",
             TR94,
             "copy of both eyes in stereo",
             (31.2, "ms"),
-            "full-screen:12 on small-hmd: the time of COPY left plus COPY right of a frame, each from its first word to its last word",
+            "full-screen:12 on small-hmd: COPY left plus COPY right of a frame, each from first to last word",
             |settings| trivial(settings).map(|summary| (summary.first_copy_ms + summary.last_copy_ms).into()),
         )
     },
     Measurement {
-        reason: "The rule `store` follows from TR94's text, the room from F89. TR94 derives the figure from the same rules, so the row checks the firmware",
+        reason: "`store` follows from TR94's text, the room from F89. TR94 derives the figure from the same rules, so the row checks the firmware",
         latency: Some(OF_THEORY),
         is_interpreted: true,
         varied: Varied::ByFormula,
@@ -133,7 +133,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             TR94,
             "stereo, trivial scene, theory: from the start of TRANSFORM to the end of COPY",
             (50.0, "ms"),
-            "full-screen:12 on small-hmd. Software, transform and array take no time, so COPY is the only work.",
+            "full-screen:12 on small-hmd. Software, transform and array take no time, so only COPY works",
             copy_alone,
         )
     },
@@ -177,15 +177,14 @@ pub(super) const FIGURES: &[Measurement] = &[
             TR94,
             "TRANSFORM, RENDER and COPY of equal length at 30 Hz: up to",
             (4004.0 / 60.0, "ms"),
-            "full-screen:516 on small-hmd: RENDER of these triangles takes 15.6 ms, like COPY. The time of a triangle on a GP is set so that \
-             TRANSFORM also takes 15.6 ms.",
+            "full-screen:516 on small-hmd: RENDER takes 15.6 ms, like COPY, and the time of a triangle on a GP is set so that TRANSFORM does, too",
             equal_stages,
         )
     },
     Measurement {
         range: Some(7.8),
         basis: Basis::Interpretation("a frame, from its first eye"),
-        reason: "The text does not say over which eyes. The frame was chosen because its stages add up to three TRANSFORMs",
+        reason: "The text does not name the eyes. The stages of a frame add up to its three TRANSFORMs",
         latency: Some(OF_FRAME),
         is_interpreted: true,
         varied: Varied::ByFormula,
@@ -195,8 +194,8 @@ pub(super) const FIGURES: &[Measurement] = &[
             TR94,
             "TRANSFORM = RENDER, both longer than COPY: 3 x TRANSFORM + 1 to 2 x COPY",
             (98.4, "ms"),
-            "full-screen:732 to 936 on small-hmd, like figure 5. TRANSFORM and RENDER take 22 to 28 ms (mean 25 ms), and COPY takes 15.6 ms. The \
-             expected latency is 75 ms + 15.6 to 31.2 ms.",
+            "full-screen:732 to 936 on small-hmd, like figure 5: TRANSFORM and RENDER take 22 to 28 ms (mean 25 ms), COPY 15.6 ms, so 75 ms + 15.6 to \
+            31.2 ms are expected",
             long_stages,
         )
     },
@@ -260,7 +259,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             TR94,
             "regions that a typical triangle touches, an eye",
             (1.3, "regions"),
-            "mig, molecules and head during 20 s of their head motions: the result is the number of entries of all bins per triangle on the screen",
+            "mig, molecules and head during 20 s of their head motions: entries of all bins per triangle on the screen",
             |settings| settings.applications.value("8".to_owned(), || regions_touched(settings)),
         )
     },
@@ -274,7 +273,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             TR94,
             "triangles that cover the screen, as many as the bins of 12 slaves hold: about",
             (7_700.0, "triangles"),
-            "full-screen:N on small-hmd: the largest N whose bins fit for one eye, computed from the size of the bins. The test tests/interpretations.rs runs this N and N + 1.",
+            "full-screen:N on small-hmd: the largest N whose bins fit for one eye, computed from their size; tests/interpretations.rs runs N and N + 1",
             most_in_bins,
         )
     },
@@ -304,7 +303,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             TR94,
             "the same: mean frame time, about 17.5 fields",
             (293.0, "ms"),
-            "full-screen:7700 on small-hmd: the time of an eye from the start of its TRANSFORM to the end of its COPY",
+            "full-screen:7700 on small-hmd: an eye from the start of its TRANSFORM to the end of its COPY",
             |settings| Ok(spread_ms(Statistics::of(full_bins(settings)?.eye_latencies_ms.iter().copied()))),
         )
     },
@@ -328,14 +327,15 @@ pub(super) const FIGURES: &[Measurement] = &[
             I3D95,
             "measured from outside with pendulum and photodiode, a minimal data set, rendering alone",
             (55.5, "ms"),
-            "full-screen:2 on small-hmd, one frame for each of 24 passes of the bob through its lowest point. The brackets give the results for a photodiode on the first and the last line.",
+            "full-screen:2 on small-hmd, one frame for each of 24 passes of the bob through its lowest point; in brackets, with the photodiode on the \
+            first and the last line",
             rig,
         )
     },
     Measurement {
         range: Some(1.5),
         basis: Basis::Derived("row 4"),
-        reason: "I3D95 measured one full-screen triangle for each GP in a full pipeline, which is the experiment of row 4",
+        reason: "I3D95 measured one full-screen triangle for each GP in a full pipeline, as row 4 does",
         latency: Some(LatencyDefinition { sentence: "I3D95: time stamps, without the first frames", ..TO_THE_SWAP }),
         is_interpreted: true,
         varied: Varied::ByFormula,

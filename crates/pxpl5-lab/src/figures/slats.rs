@@ -14,8 +14,8 @@ const TR94: (&str, &str) = ("TR94", SLATS);
 const I3D95: (&str, &str) = ("I3D95", SLATS);
 const BOTH: (&str, &str) = ("TR94, I3D95", SLATS);
 
-const OF_CLUMP: &str = "The time of a triangle is that of the project's code, without a fit. The rule for the buffer was chosen among three by comparison \
-                        with rows 12 and 13, because the paper is silent about it";
+const OF_CLUMP: &str = "The time of a triangle is that of the project's code, without a fit. The paper is silent about the buffer, whose rule was \
+    chosen among three by rows 12 and 13";
 const OF_FIFO: &str = "A renderer whose FIFO takes a whole message delays the next clump little. In TR94, the 4.68 ms that the COPY optimisation saves are enough \
                        for 30 more triangles, so a triangle takes 156 us there, more than the code and the ring need here. Only a FIFO of 256 words gives \
                        both limits within 6 %, while R1 and R2 ask for at least 1,024 (docs/interpretations.md, Findings)";
@@ -66,7 +66,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             TR94,
             "20 field regions to two frame buffers",
             (11.0, "region times"),
-            "full-screen:60 on slats without the COPY optimisation: the time from the first word to the last word, in units of 780 us",
+            "full-screen:60 on slats without the COPY optimisation: from the first to the last word, in units of 780 us",
             |settings| run(settings, 60, Slats::whole()).map(|s| (s.first_copy_ms * 1e3 / s.region_copy_us).into()),
         )
     },
@@ -79,7 +79,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             I3D95,
             "half of them",
             (3.9, "ms"),
-            "full-screen:100 on slats with the COPY optimisation: the time from the first word to the last word of the bottom regions",
+            "full-screen:100 on slats with the COPY optimisation: from the first to the last word of the bottom regions",
             |settings| Ok(run(settings, 100, Slats::split())?.last_copy_ms.into()),
         )
     },

@@ -22,8 +22,8 @@ Here dt is the 1/120 s between two reports.";
 
 const PF: (&str, &str) = ("PF", "filter");
 
-const FILTER: &str = "A tracker without noise reports a head that turns by 2 degrees a second. The result is an angle divided by the rate of the turn. The \
-                      angle lies between the reported pose and the pose of the head when the first character of the report is sent.";
+const FILTER: &str = "a tracker without noise and a head that turns by 2 degrees a second: the angle between the reported pose and that of the head \
+    when the first character of the report is sent, over the rate of the turn";
 
 const OF_FILTER: &str = "The rate of 120 Hz, the latency of 3.75 ms and the filter come from other pages of the manual";
 
@@ -38,9 +38,8 @@ pub(super) const FIGURES: &[Measurement] = &[
             ("TR94", "serial line"),
             "polling adds almost two fields (taken as 1.5 to 2)",
             (1.75, "fields"),
-            "A Fastrak runs with the polled and with the patched kernel, for 200 seeds of 2 s. The result is the longest wait of a report for the \
-             kernel. The mean in a run is a difference between both kernels, for full-screen:12 on small-hmd. It compares the mean time from the \
-             pose to the start of TRANSFORM.",
+            "a Fastrak with the polled and with the patched kernel, 200 seeds of 2 s: the longest wait of a report for the kernel. The mean in a run \
+            is the difference between both kernels in the mean time from the pose to the start of TRANSFORM, for full-screen:12 on small-hmd",
             polling,
         )
     },
