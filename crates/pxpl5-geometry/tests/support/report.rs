@@ -32,7 +32,7 @@ fn counted(s: &SetupStats) -> String {
         (s.clipped, "clipped"),
         (s.outside, "outside"),
         (s.degenerate, "degenerate"),
-        (s.untouched, "between pixels or off screen"),
+        (s.untouched, "on no pixel"),
         (s.not_finite, "not finite"),
         (s.flattened_planes, "flattened planes"),
         (s.spheres_outside, "outside"),
@@ -49,14 +49,13 @@ fn pipeline_row(out: &mut String, case: &Case, row: &Row) {
     let colour = if row.colour == 0.0 { "-".into() } else { short(row.colour) };
     let _ = writeln!(
         out,
-        "| {} | {} | {} | {} | {} | {} | {} | {} |",
+        "| {} | {} | {} | {} | {} | {} | {} |",
         case.name,
         grouped(row.exact),
         short(Row::per_million(row.wrong, row.exact)),
         short(row.depth),
         short(row.depth_plane),
         colour,
-        short(row.colour_plane),
         counted(&row.stats),
     );
 }
@@ -146,16 +145,7 @@ fn differs(case: &Case, row: &Row, pipeline: &[(Case, Row)]) -> bool {
 }
 
 fn triangles<'a>(out: &mut String, title: &str, rows: impl IntoIterator<Item = &'a (Case, Row)>) {
-    let columns = [
-        "case",
-        "pixels",
-        "wrong per million",
-        "depth error",
-        "of the plane",
-        "colour error",
-        "of the plane",
-        "counted",
-    ];
+    let columns = ["case", "pixels", "wrong per million", "depth error", "of the plane", "colour error", "counted"];
     heading(out, title, &columns);
     rows.into_iter().for_each(|(case, row)| pipeline_row(out, case, row));
 }
