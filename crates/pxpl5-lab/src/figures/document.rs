@@ -283,7 +283,7 @@ fn other(group: &FigureGroup) -> String {
 }
 
 /// Number of interpretations in the document, those with equal figures counted once.
-const BEST: usize = 6;
+const BEST: usize = 4;
 
 /// Returns the likeliest interpretations and the project's, without the figures that are equal in all of them.
 fn ranked(ranking: &Interpretations) -> String {
@@ -361,9 +361,11 @@ fn of_application(effects: &[Effect]) -> String {
     let printed =
         fly_throughs.iter().map(|figure| cell((figure.id, figure.value, figure.deviation.unwrap_or(f64::NAN))));
     let first = [vec!["printed".to_owned(), String::new()], printed.collect()].concat();
-    // The table leaves out the spreads between none and the mean.
-    let is_end =
-        |effect: &&Effect| matches!(effect.changes[..], [(_, mean), (_, spread)] if spread == 0 || spread == mean);
+    // Means between none and 30 ms, and spreads between none and the mean, change less.
+    let is_end = |effect: &&Effect| {
+        let [mean, spread] = [0, 1].map(|place: usize| effect.changes[place].1);
+        (mean == 0 || mean >= 30_000_000) && (spread == 0 || spread == mean)
+    };
     let rows = effects.iter().filter(is_end).map(|effect| {
         let times = effect.changes.iter().map(|(_, ns)| format!("{} ms", ns / 1_000_000));
         times.chain(effect.figures.iter().copied().map(cell)).collect::<Vec<_>>()
