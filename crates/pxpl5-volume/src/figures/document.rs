@@ -94,17 +94,18 @@ fn scene(scene: &MeasuredScene) -> [String; 11] {
     let [serial, overlapped] = scene.volumes_hz.map(|hz| format!("{hz:.2}"));
     let [draws, tiles] = [scene.draws_percent, scene.tile_occupancy_percent].map(|percent| format!("{percent:.1} %"));
     let hash = format!("`{}`", scene.volume_hash);
-    let (name, triangles) = (scene.scene.clone(), scene.triangles.to_string());
-    [name, triangles, draws, tiles, sent, cpu, gpu, bus, serial, overlapped, hash]
+    [scene.scene.clone(), scene.triangles.to_string(), draws, tiles, sent, cpu, gpu, bus, serial, overlapped, hash]
 }
 
 fn setting(setting: Parameter) -> [String; 3] {
     let Parameter { path, info, value, .. } = setting;
-    let range = match info.provenance {
-        Provenance::Published => String::new(),
-        _ => format!(", {} to {}", info.range.0, info.range.1),
+    // The text above the table says that the paper does not print the numbers with a range.
+    let source = info.source.trim_start_matches("the paper gives no value").trim_start_matches("; ");
+    let basis = match info.provenance {
+        Provenance::Published => format!("published: {source}"),
+        _ => format!("{} to {}: {source}", info.range.0, info.range.1).trim_end_matches(": ").to_owned(),
     };
-    [format!("`{path}`"), format!("{value} {}", info.unit), format!("{}{range}: {}", info.provenance, info.source)]
+    [format!("`{path}`"), format!("{value} {}", info.unit), basis]
 }
 
 /// Formats a number with nine significant digits.
