@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release --example reprojection [FOLDER] [RECORDING]` runs every pipeline in a gallery, under each
 //! motion of a head. The tracker is the optical one, with a Kalman filter. A recording of a head is one more motion.
-//! The evaluation is that of `compare`. The figure pictures/reprojection.svg and the tables of reprojection.md are
-//! written into docs/ by default.
+//! The evaluation is that of `compare`. It prints a table for each motion, and writes the figure
+//! pictures/reprojection.svg and the table of reprojection.md, by default into docs/.
 
 use pxpl5::{
     Budget, Every, ExperimentFile, EyeReport, Outcome, PixelErrors, Pixels, Reprojection, Showing, Statistics, Warp,
@@ -24,11 +24,14 @@ const PIPELINES: [(&str, &str, Displays); 5] = [
     ("jitp-dual-view-racing", "", &[("ntsc", 150)]),
 ];
 
+/// Motion whose table the page has.
+const WALKING_AND_LOOKING: &str = "walk:1:1";
+
 /// Motions with their descriptions and their names in experiment files.
 const MOTIONS: [(&str, &str); 4] = [
     ("rotation, 100 deg/s", "pan:100"),
     ("translation, 1 m/s", "walk:1"),
-    ("both, walking and looking", "walk:1:1"),
+    ("both, walking and looking", WALKING_AND_LOOKING),
     ("recorded use, synthetic", "synthetic:1"),
 ];
 
@@ -82,21 +85,27 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let page = folder.join("reprojection.md");
     let text = std::fs::read_to_string(&page)?;
-    std::fs::write(page, with_tables(&text, &table(&motions, &rows)?)?)?;
+    for (motion, named) in motions.iter().enumerate() {
+        let table = table(motion, named, &rows)?;
+        println!("{table}");
+        if named.1 == WALKING_AND_LOOKING {
+            std::fs::write(&page, with_table(&text, &table)?)?;
+        }
+    }
     std::fs::write(folder.join("pictures/reprojection.svg"), drawing(&motions, &rows)?)?;
     Ok(())
 }
 
-/// Marks of the page around the tables.
+/// Marks of the page around the table.
 const MARKS: [&str; 2] =
     ["<!-- made by examples/reprojection.rs: begin -->\n", "<!-- made by examples/reprojection.rs: end -->"];
 
-/// Returns a page with new tables between its marks.
-fn with_tables(page: &str, tables: &str) -> Result<String, String> {
+/// Returns a page with a new table between its marks.
+fn with_table(page: &str, table: &str) -> Result<String, String> {
     let missing = |mark: &str| format!("expected a page with the mark `{}`, found none", mark.trim());
     let (before, rest) = page.split_once(MARKS[0]).ok_or_else(|| missing(MARKS[0]))?;
     let (_, after) = rest.split_once(MARKS[1]).ok_or_else(|| missing(MARKS[1]))?;
-    Ok(format!("{before}{}\n{tables}\n{}{after}", MARKS[0], MARKS[1]))
+    Ok(format!("{before}{}\n{table}\n{}{after}", MARKS[0], MARKS[1]))
 }
 
 fn measure(
@@ -148,32 +157,24 @@ fn number(value: Option<f64>, digits: usize) -> String {
     value.filter(|value| value.is_finite()).map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
 }
 
-fn table(motions: &[(String, String)], rows: &[Row]) -> Result<String, std::fmt::Error> {
-    let mut text = String::new();
-    for (motion, (title, name)) in motions.iter().enumerate() {
-        // Its errors are like those of walking and looking, so only the figure has it.
-        if name.starts_with("synthetic") {
+fn table(motion: usize, (title, name): &(String, String), rows: &[Row]) -> Result<String, std::fmt::Error> {
+    let mut text = format!("**{title}** (`{name}`)\n\n| pipeline | display | picture age, ms |");
+    showings().iter().for_each(|(name, ..)| text += &format!(" {name}, px |"));
+    text += " depth a line, deg | empty, % |\n|---|---|---|";
+    showings().iter().for_each(|_| text += "---|");
+    text += "---|---|\n";
+    for row in rows.iter().filter(|row| row.motion == motion) {
+        write!(text, "| {} | {} |", row.pipeline, row.display)?;
+        if let Some(failure) = &row.failure {
+            writeln!(text, " {} |", failure.split(';').next().unwrap_or_default())?;
             continue;
         }
-        writeln!(text, "\n**{title}** (`{name}`)\n")?;
-        text += "| pipeline | display | picture age, ms |";
-        showings().iter().for_each(|(name, ..)| text += &format!(" {name}, px |"));
-        text += " depth a line, deg | empty, % |\n|---|---|---|";
-        showings().iter().for_each(|_| text += "---|");
-        text += "---|---|\n";
-        for row in rows.iter().filter(|row| row.motion == motion) {
-            write!(text, "| {} | {} |", row.pipeline, row.display)?;
-            if let Some(failure) = &row.failure {
-                writeln!(text, " {} |", failure.split(';').next().unwrap_or_default())?;
-                continue;
-            }
-            write!(text, " {} |", number(Some(row.picture_age_ms), 1))?;
-            row.shown.iter().for_each(|shown| text += &format!(" {} |", number(shown.mean_px, 2)));
-            let empty = number(row.shown[2].empty.map(|share| share * 100.0), 1);
-            writeln!(text, " {} | {empty} |", number(row.shown[3].mean_deg, 3))?;
-        }
+        write!(text, " {} |", number(Some(row.picture_age_ms), 1))?;
+        row.shown.iter().for_each(|shown| text += &format!(" {} |", number(shown.mean_px, 2)));
+        let empty = number(row.shown[2].empty.map(|share| share * 100.0), 1);
+        writeln!(text, " {} | {empty} |", number(row.shown[3].mean_deg, 3))?;
     }
-    Ok(text.trim_start().to_owned())
+    Ok(text)
 }
 
 const NAMES: f64 = 210.0;
