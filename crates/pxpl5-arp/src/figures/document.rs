@@ -41,10 +41,7 @@ pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
             ("shown", met(true)),
             ("rows", table(rows)),
             ("missed", missed(rows)),
-            (
-                "definitions",
-                figures::table(&DEFINITIONS, definitions().iter().filter(|one| !["D1", "D2"].contains(&one.id))),
-            ),
+            ("definitions", figures::table(&DEFINITIONS, definitions().iter().filter(|one| one.id.starts_with('A')))),
             ("published_rates", rates(&RATES_HZ)),
             ("fits", fits(all)),
             ("best", best(&all.interpretations)),
