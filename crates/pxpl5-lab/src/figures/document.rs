@@ -62,6 +62,9 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
             ("others", figures.groups.iter().filter(|group| group.document.is_some()).map(other).collect()),
         ],
     );
+    // Figures 1 to 4 and 10 to 15 have files in experiments/.
+    let has_file = |row: &&&FigureRow| row.id.parse().is_ok_and(|number: u32| number < 5 || (10..16).contains(&number));
+    let without_file = rows.iter().filter(|row| !has_file(row));
     let ranking = &alternatives.interpretations;
     let interpretations = filled(
         include_str!("interpretations.md.in"),
@@ -78,7 +81,7 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
             ("unmoved", unmoved(&figures.intervals)),
             ("provenance", by_text("reason", all().map(|figure| (figure.id, format!("{}.", figure.reason))))),
             ("about", about()),
-            ("experiments", by_text("experiment", rows.iter().map(|row| (row.id, row.experiment.to_owned())))),
+            ("experiments", by_text("experiment", without_file.map(|row| (row.id, row.experiment.to_owned())))),
         ],
     );
     let time = filled(include_str!("time.md.in"), &[("edges", edges(&rows))]);
