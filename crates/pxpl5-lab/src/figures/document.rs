@@ -65,6 +65,8 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
     // Figures 1 to 4 and 10 to 15 have files in experiments/.
     let has_file = |row: &&&FigureRow| row.id.parse().is_ok_and(|number: u32| number < 5 || (10..16).contains(&number));
     let without_file = rows.iter().filter(|row| !has_file(row));
+    // ACCURACY.md says from what the fitted and the derived figures follow.
+    let reasoned = all().filter(|figure| !matches!(figure.basis, Basis::Fitted(_) | Basis::Derived(_)));
     let ranking = &alternatives.interpretations;
     let interpretations = filled(
         include_str!("interpretations.md.in"),
@@ -79,7 +81,7 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
             ("samples", SAMPLES.to_string()),
             ("sensitivity", sensitivity(&figures.intervals)),
             ("unmoved", unmoved(&figures.intervals)),
-            ("provenance", by_text("reason", all().map(|figure| (figure.id, format!("{}.", figure.reason))))),
+            ("provenance", by_text("reason", reasoned.map(|figure| (figure.id, format!("{}.", figure.reason))))),
             ("about", about()),
             ("experiments", by_text("experiment", without_file.map(|row| (row.id, row.experiment.to_owned())))),
         ],
