@@ -213,7 +213,7 @@ fn sums(columns: [&[f64]; 4]) -> String {
     }))
 }
 
-fn walk(walked: &NamedWalk) -> [String; 8] {
+fn walk(walked: &NamedWalk) -> [String; 6] {
     let report = &walked.report;
     let tears = report.tears_texels.after.map_or_else(
         || "none".to_owned(),
@@ -222,10 +222,8 @@ fn walk(walked: &NamedWalk) -> [String; 8] {
     [
         walked.name.to_owned(),
         joined(report.memories.iter().map(|memory| memory.updates_hz), 2),
-        joined(report.memories.iter().map(|memory| memory.segments), 1),
         format!("{:.0}", report.priority.draws_per_s),
         format!("{:.1} %", report.priority.saved_percent),
-        report.priority.redeals.unwrap_or(0).to_string(),
         tears,
         report.tears_texels.stretch.map_or_else(|| "-".to_owned(), |stretch| texels(stretch.max)),
     ]
