@@ -141,7 +141,7 @@ pub fn text(measured: &Measured) -> String {
 /// more than 4 units of depth or 0.65 units of colour.
 fn differs(case: &Case, row: &Row, pipeline: &[(Case, Row)]) -> bool {
     let other = pipeline.iter().find(|(other, _)| other.name == case.name);
-    row.depth_plane > 4.0 || row.colour_plane > 0.65 || other.is_none_or(|(_, other)| other.wrong != row.wrong)
+    row.depth_plane > 4.0 || row.colour_plane > 0.65 || other.is_some_and(|(_, other)| other.wrong != row.wrong)
 }
 
 fn triangles<'a>(out: &mut String, title: &str, rows: impl IntoIterator<Item = &'a (Case, Row)>) {
