@@ -62,7 +62,6 @@ pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
             ("missing", format!("{:.0}", sum(&uncut) - sum(&cut))),
             ("our_sum_cut", format!("{:.0}", sum(&ours[0]))),
             ("our_sum_uncut", format!("{:.0}", sum(&ours[1]))),
-            ("sums", sums([&cut, &uncut, &ours[0], &ours[1]])),
             ("draws_cut", format!("{with:.1}")),
             ("draws_uncut", format!("{without:.1}")),
             ("saving", format!("{:.1}", 100.0 * (1.0 - with / without))),
@@ -201,15 +200,6 @@ fn thresholds(all: &Experiments) -> String {
             format!("{at_once_px:.1} px"),
             format!("{frame_late_px:.1} px"),
         ]
-    }))
-}
-
-/// Returns the numbers of sections in the fastest memories together. The same sections are drawn with and without
-/// cutting, only in different memories.
-fn sums(columns: [&[f64]; 4]) -> String {
-    lines((0..4).map(|memory: usize| {
-        let [a, b, c, d] = columns.map(|segments| sum(&segments[..=memory]));
-        [format!("0 to {memory}"), format!("{a:.0}"), format!("{b:.0}"), format!("{c:.1}"), format!("{d:.1}")]
     }))
 }
 
