@@ -100,10 +100,9 @@ fn edges(rows: &[&FigureRow]) -> String {
             "fields" => row.simulated,
             _ => f64::NAN,
         };
-        let percent = |fields_more: f64| format!("{fields_more:+.0} field, {:+.0} %", 100.0 * fields_more / fields);
-        let effect = |distance: f64, more: f64| match (distance.is_finite(), fields.is_finite()) {
+        let effect = match (later.is_finite(), fields.is_finite()) {
             (false, _) => "nothing".to_owned(),
-            (true, true) => percent(more),
+            (true, true) => format!("+1 field, {:+.0} %", 100.0 / fields),
             (true, false) => "one triangle less".to_owned(),
         };
         let mark = if later.min(earlier) < NEAR_FIELDS { " **near**" } else { "" };
@@ -111,12 +110,11 @@ fn edges(rows: &[&FigureRow]) -> String {
             row.id.to_owned(),
             SIMULATED.1(row),
             format!("{}{mark}", four(later)),
-            effect(later, 1.0),
+            effect,
             if earlier.is_finite() { four(earlier) } else { "-".to_owned() },
-            effect(earlier, -1.0),
         ])
     };
-    let headings = ["#", "simulated", "a retrace later after", "effect", "a retrace earlier before", "effect"];
+    let headings = ["#", "simulated", "a retrace later after", "effect", "a retrace earlier before"];
     rows_of(headings, rows.iter().filter_map(near))
 }
 
