@@ -25,13 +25,12 @@ const COLUMNS: [[&str; 2]; 5] =
     [["plain", "none"], ["plain", "velocity"], ["plain", "kalman"], ["rotation", "kalman"], ["depth", "kalman"]];
 
 /// Rows, at least one of each family.
-const ROWS: [&str; 10] = [
+const ROWS: [&str; 9] = [
     "rendering-control",
     "slats",
     "ideal",
     "frameless",
     "jitp-field",
-    "jitp-field-racing",
     "jitp-scanline-racing",
     "jitp-dual-view-racing",
     "arp-full",
