@@ -62,9 +62,10 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
             ("others", figures.groups.iter().filter(|group| group.document.is_some()).map(other).collect()),
         ],
     );
-    // Figures 1 to 7 and 9 to 15 have files in experiments/.
+    // Figures 1 to 7 and 9 to 15 have files in experiments/, and ACCURACY.md defines latencies.
     let number = |row: &FigureRow| row.id.trim_end_matches(char::is_alphabetic).parse().unwrap_or(u32::MAX);
-    let without_file = rows.iter().filter(|row| number(row) == 8 || number(row) > 15);
+    let is_defined = |row: &FigureRow| all().any(|figure| figure.id == row.id && figure.latency.is_some());
+    let described = rows.iter().filter(|row| number(row) == 8 || number(row) > 15).filter(|row| !is_defined(row));
     // ACCURACY.md says from what the fitted and the derived figures follow.
     let reasoned = all().filter(|figure| !matches!(figure.basis, Basis::Fitted(_) | Basis::Derived(_)));
     let ranking = &alternatives.interpretations;
@@ -83,7 +84,7 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
             ("unmoved", unmoved(&figures.intervals)),
             ("provenance", by_text("reason", reasoned.map(|figure| (figure.id, format!("{}.", figure.reason))))),
             ("about", about()),
-            ("experiments", by_text("experiment", without_file.map(|row| (row.id, row.experiment.to_owned())))),
+            ("experiments", by_text("experiment", described.map(|row| (row.id, row.experiment.to_owned())))),
         ],
     );
     let time = filled(include_str!("time.md.in"), &[("edges", edges(&rows))]);
