@@ -66,12 +66,12 @@ pub fn all() -> Vec<Fight> {
     let mut fights = Vec::new();
     for power in [8_u8, 12, 16, 18, 20, 22] {
         let nearer = 1.0 - 1.0 / (1_u32 << power) as f32;
-        fights.push(fight(format!("parallel, 2^-{power} of the distance apart"), base, base.map(|s| s * nearer)));
+        fights.push(fight(format!("parallel, 2^-{power}"), base, base.map(|s| s * nearer)));
     }
     for power in [4_u8, 8, 12, 16, 20] {
         let tilt = 1.0 / (1_u32 << power) as f32;
         let crossing = [1.0 - tilt, 1.5, 2.0 + tilt];
-        fights.push(fight(format!("crossing, tilted by 2^-{power}"), base, crossing));
+        fights.push(fight(format!("crossing, 2^-{power}"), base, crossing));
     }
     fights
 }

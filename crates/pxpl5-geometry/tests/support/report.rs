@@ -68,10 +68,9 @@ fn grid_row(out: &mut String, case: &Case, row: &Row) {
 fn sphere_row(out: &mut String, case: &SphereCase, row: &SphereRow) {
     let _ = writeln!(
         out,
-        "| {} | {} | {} | {} | {} | {} | {} |",
+        "| {} | {} | {} | {} | {} | {} |",
         case.name,
         grouped(row.exact),
-        grouped(row.wrong),
         short(row.depth),
         if row.depth_of_bulge == 0.0 { "-".into() } else { format!("1/{:.0}", 1.0 / row.depth_of_bulge) },
         row.bits,
@@ -151,7 +150,11 @@ fn triangles<'a>(out: &mut String, title: &str, rows: impl IntoIterator<Item = &
 }
 
 fn fights(out: &mut String, fights: &[Fight]) {
-    heading(out, "Z fighting: two surfaces", &["case", "depth units apart", "wrong per million"]);
+    heading(
+        out,
+        "Z fighting: surfaces that are 2^-n of their distance apart, or tilted by 2^-n",
+        &["case", "depth units apart", "wrong per million"],
+    );
     for f in fights {
         let part = short(Row::per_million(f.wrong, f.pixels));
         let _ = writeln!(out, "| {} | {} | {part} |", f.name, short(f.apart));
@@ -159,8 +162,8 @@ fn fights(out: &mut String, fights: &[Fight]) {
 }
 
 fn all_spheres(out: &mut String, rows: &[(SphereCase, SphereRow)]) {
-    let columns = ["case", "pixels", "wrong", "depth error", "as part of the bulge", "bits", "counted"];
-    heading(out, "Spheres", &columns);
+    let columns = ["case", "pixels", "depth error", "as part of the bulge", "bits", "counted"];
+    heading(out, "Spheres, which have no wrong pixel", &columns);
     rows.iter().for_each(|(case, row)| sphere_row(out, case, row));
 }
 
