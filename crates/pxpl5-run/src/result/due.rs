@@ -28,7 +28,8 @@ pub struct DuePictures {
     pub last_period: PeriodNumber,
     /// Number of display periods from one due picture to the next.
     pub periods_a_picture: u64,
-    /// Number of pictures due: the periods of the result window divided by `periods_a_picture`.
+    /// Number of pictures due: the periods of the result window divided by `periods_a_picture`. If no picture after the
+    /// warm-up was shown, pictures of the warm-up that were shown are left out.
     pub due: u64,
     /// Number of due pictures that were complete and in time.
     pub shown: u64,
@@ -59,20 +60,35 @@ impl DuePictures {
         let mut ends = PictureResults::default();
         pictures.filter(|(period, _)| *period < reached).for_each(|(period, end)| ends.note(period, end));
         let window = ResultWindow::of(&ends, Some(periods_a_picture), reached, reached)?;
-        Some(Self::of_ends(&ends, periods_a_picture, &window))
+        Self::of_ends(&ends, periods_a_picture, &window)
     }
 
-    pub(crate) fn of_ends(ends: &PictureResults, periods_a_picture: u64, window: &ResultWindow) -> Self {
+    pub(crate) fn of_ends(ends: &PictureResults, periods_a_picture: u64, window: &ResultWindow) -> Option<Self> {
         let every = periods_a_picture.max(1);
         let ResultWindow { first_period, last_period, .. } = *window;
         // Each due picture may be shown in any of the periods since the last due picture.
         let due = (first_period.0 + every - 1..=last_period.0).step_by(every as usize);
         let mut counts = [0; 4];
         due.for_each(|period| counts[ends.best(period, every).map_or(3, |end| end as usize)] += 1);
+        // Pictures of the warm-up have no latency. Without a later one, they do not count as shown either.
+        let is_result = |period: &PeriodNumber| window.holds_picture(*period) && ends.is_shown(*period);
+        let has_result = first_period.until(last_period.next()).any(|period| is_result(&period));
+        counts[0] *= u64::from(has_result);
         let [shown, late, incomplete, missed] = counts;
         let due = counts.iter().sum();
-        let pictures = ends.periods_shown([first_period, last_period]);
-        Self { first_period, last_period, periods_a_picture: every, due, shown, late, incomplete, missed, pictures }
+        let pictures = if has_result { ends.periods_shown([first_period, last_period]) } else { 0 };
+        let periods_a_picture = every;
+        (due > 0).then_some(Self {
+            first_period,
+            last_period,
+            periods_a_picture,
+            due,
+            shown,
+            late,
+            incomplete,
+            missed,
+            pictures,
+        })
     }
 
     /// Returns the number of due pictures that were not shown: late, incomplete and missed pictures.

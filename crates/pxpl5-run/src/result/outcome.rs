@@ -122,7 +122,7 @@ impl Outcome {
     /// pipeline has no due pictures, or if the run ended before the first due picture.
     pub fn due(&self) -> Option<DuePictures> {
         let every = self.pipeline().periods_a_picture(&self.record)?;
-        Some(DuePictures::of_ends(self.closed.tally.ends(), every, &self.closed.window?))
+        DuePictures::of_ends(self.closed.tally.ends(), every, &self.closed.window?)
     }
 
     /// Returns a text that defines for this pipeline when a picture is due, and when it is in time.
