@@ -425,7 +425,10 @@ fn a_scene_that_is_drawn_once_counts_as_shown_and_has_no_update_rate() {
     for pipeline in ["arp-priority", "arp-cells"] {
         for fields in ["60", "200"] {
             let run = ["run", "--pipeline", pipeline, "--fields", fields, "--pixels", "off", "--json"];
-            let report = json(&folder.run(&with(&run, &still)));
+            let output = folder.run(&with(&run, &still));
+            assert_eq!(output.status.code(), Some(1), "{pipeline} has no latency");
+            assert!(err(&output).contains("a head that moves"), "{}", err(&output));
+            let report = json_of(&output);
             assert!(report["shown"].as_u64() > Some(0) && report["updates_hz"].is_null(), "{pipeline}: {report}");
             let memories = report["arp"]["memories"].as_array().expect("a list");
             assert!(memories.iter().all(|memory| memory["updates_hz"].is_null()), "{pipeline}: {memories:?}");

@@ -81,6 +81,31 @@ fn a_tracker_parameter_outside_its_range_causes_a_warning() {
     assert!(!message.contains("warning"), "{message}");
 }
 
+/// Runs a command and interrupts it as soon as `is_begun` returns true.
+#[cfg(unix)]
+fn interrupted(folder: &Folder, args: &[&str], mut is_begun: impl FnMut() -> bool) -> std::process::Output {
+    let mut child = command(args);
+    let child = child.current_dir(&folder.0).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let child = child.expect("the command starts");
+    let started = Instant::now();
+    while !is_begun() {
+        assert!(started.elapsed() < Duration::from_secs(120), "it does not begin");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupt.expect("there is a kill").success());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(130), "{}", err(&output));
+    output
+}
+
+/// Returns a condition that is true two seconds from now. The command has then installed its handler and begun.
+#[cfg(unix)]
+fn in_two_seconds() -> impl FnMut() -> bool {
+    let begun = Instant::now();
+    move || begun.elapsed() > Duration::from_secs(2)
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_of_a_sweep_prints_a_command_that_resumes_the_sweep() {
@@ -89,38 +114,44 @@ fn ctrl_c_of_a_sweep_prints_a_command_that_resumes_the_sweep() {
         "s.toml",
         "pipeline = \"slats\"\nscene = \"mig\"\nfields = 60\n[sweep.grid]\ntriangles = { from = 1, to = 100 }\nseed = { from = 1, to = 9 }\n",
     );
-    let mut child = command(&["sweep", "s.toml", "--out", "o", "--threads", "1"]);
-    let child = child.current_dir(&folder.0).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let child = child.spawn().expect("the command starts");
     let rows = folder.0.join("o/rows.jsonl");
-    let started = Instant::now();
-    while std::fs::read_to_string(&rows).unwrap_or_default().lines().count() < 3 {
-        assert!(started.elapsed() < Duration::from_secs(120), "no rows");
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(interrupt.expect("there is a kill").success());
-    let output = child.wait_with_output().expect("it ends");
-    assert_eq!(output.status.code(), Some(130), "{}", err(&output));
+    let output = interrupted(&folder, &["sweep", "s.toml", "--out", "o", "--threads", "1"], || {
+        std::fs::read_to_string(&rows).unwrap_or_default().lines().count() >= 3
+    });
     assert!(err(&output).contains("pxpl5 sweep s.toml --out o --threads 1 --resume"), "{}", err(&output));
     let kept = std::fs::read_to_string(&rows).expect("rows").lines().count();
     assert!((3..900).contains(&kept), "{kept}");
 }
 
+#[cfg(unix)]
 #[test]
 fn an_interrupted_search_ends_with_130_and_says_how_far_it_came() {
     let folder = Folder::new("interrupted-search");
     let search = ["limit", "--pipeline", "slats", "--fields", "3000", "--level", "cycle"];
-    let child = command(&search).current_dir(&folder.0).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
-    let child = child.expect("the command starts");
-    // The handler is installed before the command reads its settings.
-    std::thread::sleep(Duration::from_secs(2));
-    let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(interrupt.expect("there is a kill").success());
-    let output = child.wait_with_output().expect("it ends");
+    let output = interrupted(&folder, &search, in_two_seconds());
     let text = err(&output);
-    assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{text}");
-    assert!(text.contains("interrupted") && text.contains("nothing was written"), "{text}");
+    assert!(output.stdout.is_empty() && text.contains("interrupted") && text.contains("nothing was written"), "{text}");
+}
+
+/// Tests that the report of an interrupted run is that of a run of so many fields, at both levels with events.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_reports_the_fields_so_far() {
+    let folder = Folder::new("interrupted-run");
+    for level in ["transaction", "cycle"] {
+        let run =
+            |fields| ["run", "--pipeline", "slats", "--scene", "mig", "--level", level, "--json", "--fields", fields];
+        let output = interrupted(&folder, &with(&run("900000"), &["--out", "o"]), in_two_seconds());
+        let part: serde_json::Value = serde_json::from_slice(&output.stdout).expect("a report");
+        let fields = part["fields"].as_u64().expect("a number");
+        assert!(err(&output).contains(&format!("interrupted after {fields} of 900000 fields")), "{}", err(&output));
+        let whole: serde_json::Value =
+            serde_json::from_slice(&folder.run(&run(&fields.to_string())).stdout).expect("JSON");
+        for key in ["trace_hash", "config_hash", "window", "due", "latency_ms", "events"] {
+            assert_eq!(part[key], whole[key], "{level}, {fields} fields: {key}");
+        }
+        assert!(folder.names().is_empty(), "{:?}", folder.names());
+    }
 }
 
 #[test]

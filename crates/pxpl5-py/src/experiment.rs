@@ -254,7 +254,7 @@ fn run(
     let each = if fields <= LOOKED_AT { fields } else { 0 };
     let stops: Vec<PeriodNumber> = PeriodNumber::FIRST.until(PeriodNumber::FIRST.after(each)).collect();
     let host = StoppableHost { workstation, watch: Arc::clone(&watch), functions };
-    let at = |field: PeriodNumber, _: &mut pxpl5::Machine| {
+    let at = |field: PeriodNumber, _: &mut pxpl5::Stepper| {
         watch.report(field.since(PeriodNumber::FIRST), fields);
         Ok(())
     };
