@@ -32,21 +32,6 @@ pub(crate) struct Simulated {
 }
 
 impl Simulated {
-    pub(crate) fn of(run: Result<Outcome, ExperimentError>) -> Result<Self, CliError> {
-        match run {
-            Ok(outcome) => Ok(Self { outcome, too_short: None }),
-            Err(error) => {
-                let too_short = CliError::failure(&error);
-                match error {
-                    ExperimentError::TooShort { partial, .. } => {
-                        Ok(Self { outcome: *partial, too_short: Some(too_short) })
-                    }
-                    other => Err(other.into()),
-                }
-            }
-        }
-    }
-
     /// Returns the outcome of the run. Fails if the run was too short for statistics.
     pub(crate) fn long_enough(self) -> Result<Outcome, CliError> {
         self.too_short.map_or(Ok(self.outcome), Err)
@@ -78,6 +63,7 @@ pub(crate) fn simulate(plan: &Plan, how: How<'_>) -> Result<Simulated, CliError>
     // The run stops at these fields to extrapolate its cost early.
     let stops = EARLY_CHECK_FIELDS.map(|field| PeriodNumber::FIRST.after(field));
     let mut bar = Bar::new("fields", how.quiet);
+    bar.advance(0, plan.fields);
     let monitor = how.budget.monitor(plan.fields);
     // Ctrl-C ends a dry run without a result, and a run with that of the fields so far.
     let experiment = experiment.stopped_by(interrupt::flag()).after_dry_run();
@@ -92,9 +78,15 @@ pub(crate) fn simulate(plan: &Plan, how: How<'_>) -> Result<Simulated, CliError>
         })
     });
     bar.clear();
-    let ended = bar.check("a report is that of these fields, and no file was written");
-    match Simulated::of(outcome) {
-        Ok(simulated) => Ok(Simulated { too_short: ended.err().or(simulated.too_short), ..simulated }),
-        Err(error) => Err(ended.err().unwrap_or(error)),
+    let ended = bar.check("only these fields are reported, and no file was written").err();
+    let error = match outcome {
+        Ok(outcome) => return Ok(Simulated { outcome, too_short: ended }),
+        Err(error) => error,
+    };
+    let reason = ended.unwrap_or_else(|| CliError::failure(&error));
+    match error {
+        ExperimentError::TooShort { partial, .. } => Ok(Simulated { outcome: *partial, too_short: Some(reason) }),
+        ExperimentError::Stopped(_) => Err(reason),
+        error => Err(error.into()),
     }
 }

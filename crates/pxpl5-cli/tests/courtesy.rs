@@ -81,14 +81,15 @@ fn a_tracker_parameter_outside_its_range_causes_a_warning() {
     assert!(!message.contains("warning"), "{message}");
 }
 
-/// Runs a command and interrupts it as soon as `is_begun` returns true.
+/// Runs a command and interrupts it after at least two seconds, as soon as `is_begun` returns true. The command has then
+/// installed its handler.
 #[cfg(unix)]
-fn interrupted(folder: &Folder, args: &[&str], mut is_begun: impl FnMut() -> bool) -> std::process::Output {
+fn interrupted(folder: &Folder, args: &[&str], is_begun: impl Fn() -> bool) -> std::process::Output {
     let mut child = command(args);
     let child = child.current_dir(&folder.0).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let child = child.expect("the command starts");
     let started = Instant::now();
-    while !is_begun() {
+    while started.elapsed() < Duration::from_secs(2) || !is_begun() {
         assert!(started.elapsed() < Duration::from_secs(120), "it does not begin");
         std::thread::sleep(Duration::from_millis(20));
     }
@@ -97,13 +98,6 @@ fn interrupted(folder: &Folder, args: &[&str], mut is_begun: impl FnMut() -> boo
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(130), "{}", err(&output));
     output
-}
-
-/// Returns a condition that is true two seconds from now. The command has then installed its handler and begun.
-#[cfg(unix)]
-fn in_two_seconds() -> impl FnMut() -> bool {
-    let begun = Instant::now();
-    move || begun.elapsed() > Duration::from_secs(2)
 }
 
 #[cfg(unix)]
@@ -123,35 +117,29 @@ fn ctrl_c_of_a_sweep_prints_a_command_that_resumes_the_sweep() {
     assert!((3..900).contains(&kept), "{kept}");
 }
 
+/// Tests that the report of an interrupted run is that of a run of so many fields, at both levels with events. A search
+/// has no such part.
 #[cfg(unix)]
 #[test]
-fn an_interrupted_search_ends_with_130_and_says_how_far_it_came() {
-    let folder = Folder::new("interrupted-search");
-    let search = ["limit", "--pipeline", "slats", "--fields", "3000", "--level", "cycle"];
-    let output = interrupted(&folder, &search, in_two_seconds());
-    let text = err(&output);
-    assert!(output.stdout.is_empty() && text.contains("interrupted") && text.contains("nothing was written"), "{text}");
-}
-
-/// Tests that the report of an interrupted run is that of a run of so many fields, at both levels with events.
-#[cfg(unix)]
-#[test]
-fn an_interrupted_run_reports_the_fields_so_far() {
+fn an_interrupted_run_reports_the_fields_so_far_and_a_search_says_how_far_it_came() {
     let folder = Folder::new("interrupted-run");
     for level in ["transaction", "cycle"] {
-        let run =
-            |fields| ["run", "--pipeline", "slats", "--scene", "mig", "--level", level, "--json", "--fields", fields];
-        let output = interrupted(&folder, &with(&run("900000"), &["--out", "o"]), in_two_seconds());
+        let run = |fields| {
+            ["run", "--pipeline", "slats", "--scene", "full-screen:9", "--level", level, "--json", "--fields", fields]
+        };
+        let output = interrupted(&folder, &with(&run("900000"), &["--out", "o"]), || true);
         let part: serde_json::Value = serde_json::from_slice(&output.stdout).expect("a report");
-        let fields = part["fields"].as_u64().expect("a number");
+        let fields = part["fields"].to_string();
         assert!(err(&output).contains(&format!("interrupted after {fields} of 900000 fields")), "{}", err(&output));
-        let whole: serde_json::Value =
-            serde_json::from_slice(&folder.run(&run(&fields.to_string())).stdout).expect("JSON");
+        let whole = json(&folder.run(&run(&fields)));
         for key in ["trace_hash", "config_hash", "window", "due", "latency_ms", "events"] {
             assert_eq!(part[key], whole[key], "{level}, {fields} fields: {key}");
         }
         assert!(folder.names().is_empty(), "{:?}", folder.names());
     }
+    let search = ["limit", "--pipeline", "slats", "--fields", "3000", "--level", "cycle"];
+    let output = interrupted(&folder, &search, || true);
+    assert!(output.stdout.is_empty() && err(&output).contains("nothing was written"), "{}", err(&output));
 }
 
 #[test]

@@ -45,7 +45,8 @@ pub struct DuePictures {
 }
 
 impl DuePictures {
-    /// Counts the due pictures of a run by result. Returns `None` if no complete picture was due.
+    /// Counts the due pictures of a run by result. Returns `None` if no complete picture was due, or if the run ended in
+    /// its warm-up.
     ///
     /// Each item of `pictures` is a picture that was begun: its display period and its result, in order of periods.
     /// `periods_a_picture` is the number of periods from one due picture to the next. `reached` is the first period
@@ -64,31 +65,23 @@ impl DuePictures {
     }
 
     pub(crate) fn of_ends(ends: &PictureResults, periods_a_picture: u64, window: &ResultWindow) -> Option<Self> {
-        let every = periods_a_picture.max(1);
+        let periods_a_picture = periods_a_picture.max(1);
         let ResultWindow { first_period, last_period, .. } = *window;
         // Each due picture may be shown in any of the periods since the last due picture.
-        let due = (first_period.0 + every - 1..=last_period.0).step_by(every as usize);
+        let due = (first_period.0 + periods_a_picture - 1..=last_period.0).step_by(periods_a_picture as usize);
         let mut counts = [0; 4];
-        due.for_each(|period| counts[ends.best(period, every).map_or(3, |end| end as usize)] += 1);
-        // Pictures of the warm-up have no latency. Without a later one, they do not count as shown either.
-        let is_result = |period: &PeriodNumber| window.holds_picture(*period) && ends.is_shown(*period);
-        let has_result = first_period.until(last_period.next()).any(|period| is_result(&period));
-        counts[0] *= u64::from(has_result);
+        due.for_each(|period| counts[ends.best(period, periods_a_picture).map_or(3, |end| end as usize)] += 1);
         let [shown, late, incomplete, missed] = counts;
         let due = counts.iter().sum();
-        let pictures = if has_result { ends.periods_shown([first_period, last_period]) } else { 0 };
-        let periods_a_picture = every;
-        (due > 0).then_some(Self {
-            first_period,
-            last_period,
-            periods_a_picture,
-            due,
-            shown,
-            late,
-            incomplete,
-            missed,
-            pictures,
-        })
+        let pictures = ends.periods_shown([first_period, last_period]);
+        let all = Self { first_period, last_period, periods_a_picture, due, shown, late, incomplete, missed, pictures };
+        // Pictures of the warm-up have no latency. Without a later one, they do not count, and the run was too short, or
+        // its scene is too heavy.
+        let is_result = |period| window.holds_picture(period) && ends.periods_shown([period; 2]) > 0;
+        if first_period.until(last_period.next()).any(is_result) {
+            return Some(all);
+        }
+        all.is_too_heavy().then(|| Self { due: all.not_shown(), shown: 0, pictures: 0, ..all })
     }
 
     /// Returns the number of due pictures that were not shown: late, incomplete and missed pictures.

@@ -77,10 +77,7 @@ impl PictureResults {
     }
 
     pub(crate) fn periods_shown(&self, [first, last]: [PeriodNumber; 2]) -> u64 {
-        first.until(last.next()).filter(|period| self.is_shown(*period)).count() as u64
-    }
-
-    pub(crate) fn is_shown(&self, period: PeriodNumber) -> bool {
-        self.best(period.0, 1) == Some(PictureResult::Shown)
+        let periods = first.until(last.next());
+        periods.filter(|period| self.best(period.0, 1) == Some(PictureResult::Shown)).count() as u64
     }
 }
