@@ -99,14 +99,13 @@ impl Experiment {
         stepper.finish()
     }
 
-    /// Returns an error if the result is no longer needed ([`Experiment::stopped_by`],
-    /// [`Host::is_stopped`](crate::Host::is_stopped)).
+    /// Returns an error if the result is no longer needed ([`Experiment::stopped_by`]).
     ///
     /// # Errors
     ///
     /// Returns [`ExperimentError::Stopped`] in this case.
     pub fn check_stopped(&self) -> Result<(), ExperimentError> {
-        if self.stop.is_stopped() || self.host.is_stopped() {
+        if self.stop.is_stopped() {
             return Err(ExperimentError::Stopped("the run was stopped".to_owned()));
         }
         Ok(())
