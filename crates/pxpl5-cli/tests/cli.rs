@@ -212,7 +212,6 @@ fn impossible_numbers_are_refused() {
         let args = ["run", "--pipeline", "slats", "--scene", "mig", "--fields", fields];
         refused(&args, 2, &["--fields", "from 1 to 10000000", fields]);
     }
-    too_short(&["run", "--pipeline", "slats", "--scene", "mig", "--fields", "1"], "simulate more fields");
     refused(&with(&SLATS, &["--triangles", "0"]), 2, &["--triangles", "from 1 to"]);
     refused(&with(&SLATS, &["--threads", "1025"]), 2, &["--threads", "1025"]);
     refused(&with(&SLATS, &["--threads", "-1"]), 2, &["--threads"]);
