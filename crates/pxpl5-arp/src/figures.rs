@@ -1,5 +1,6 @@
 //! Comparison of the figures in the papers on priority rendering with simulated figures.
 
+use pxpl5_sim::StopFlag;
 use pxpl5_sim::parameters::SettingError;
 
 mod compared;
@@ -38,7 +39,7 @@ use pxpl5_sim::figures::FigureRow;
 ///
 /// Fails in the same cases as [`Experiments::run`].
 pub fn all() -> Result<(Experiments, Vec<FigureRow>), SettingError> {
-    let experiments = Experiments::run()?;
+    let experiments = Experiments::run(&StopFlag::default())?;
     let rows = rows(&experiments);
     Ok((experiments, rows))
 }

@@ -2,6 +2,7 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::interrupt;
 use crate::numbers::{count_of, number, whole};
 use crate::one_picture;
 use crate::output::{OutputFolder, png, timeline};
@@ -85,16 +86,22 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let Simulated { outcome, too_short } = simulate(&plan, how)?;
     let results = Results::of_run(outcome);
     let Some((outcome, report)) = &results.run else { return Err(no_events()) };
+    // After Ctrl-C, the report of the fields so far is the result, and replaces no files of a whole run.
+    let is_whole = !interrupt::flag().is_stopped();
     // A file from a folder of results says whether the run repeats those results.
-    warn(plan.origin.changes(&Origin::of(outcome.experiment())).as_slice(), args.quiet);
+    let changes = plan.origin.changes(&Origin::of(outcome.experiment())).filter(|_| is_whole);
+    warn(changes.as_slice(), args.quiet);
     warn(out_of_view(report).as_slice(), args.quiet);
     warn(&near_edges(outcome), args.quiet);
     // A run without a latency still writes its files and its report, and then ends with an error.
-    let picture = args.picture.map(|number| one_picture::find(outcome, number));
+    let picture = args.picture.filter(|_| is_whole).map(|number| one_picture::find(outcome, number));
     let drawn = picture.as_ref().and_then(|found| found.as_ref().ok().copied());
-    let written = folder.map(|folder| write(folder, &plan, &results, drawn)).transpose()?;
+    let written = folder.filter(|_| is_whole).map(|folder| write(folder, &plan, &results, drawn)).transpose()?;
     let picture = picture.transpose()?;
-    let more = question.map(|question| Progress::new("resources", args.quiet).run(&question)).transpose()?;
+    let more = question
+        .filter(|_| is_whole)
+        .map(|question| Progress::new("resources", args.quiet).run(&question))
+        .transpose()?;
     if args.json {
         print(&format!("{}\n", with_more(report, more.as_deref())?))?;
     } else if !args.quiet {
@@ -106,8 +113,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     match too_short {
         Some(error) => Err(error),
         None if report.shown == 0 => Err(nothing_shown(report)),
-        // A still head needs no updates of display memories, so such a run may have no latency.
-        None if report.latency_ms.statistics.n == 0 && report.arp.is_none() => Err(nothing_measured(report)),
+        None if report.latency_ms.statistics.n == 0 => Err(nothing_measured(report)),
         None => Ok(()),
     }
 }
@@ -154,9 +160,11 @@ fn nothing_measured(report: &Report) -> CliError {
     }
     let every = report.fields.div_ceil(report.shown.max(1));
     let needed = WARM_UP_PERIODS.max((WARM_UP_PICTURES as u64 + 1) * every) + 2 * every;
+    let moving =
+        if report.arp.is_some() { " with a head that moves, because a still one needs no updates" } else { "" };
     CliError::failure(format!(
         "no picture has a latency: the warm-up takes {WARM_UP_PERIODS} fields and {WARM_UP_PICTURES} pictures, and the run has {} \
-         with {}; simulate about {needed} fields",
+         with {}; simulate about {needed} fields{moving}",
         count_of(report.fields, "field"),
         count_of(report.shown, "picture")
     ))

@@ -2,13 +2,15 @@
 
 use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
+use crate::interrupt;
 use crate::progress::Bar;
 use crate::scenes;
 use crate::terminal::{print_error, warn};
 use crate::too_heavy::too_heavy;
 use pxpl5::lab::estimate::RunWork;
 use pxpl5::{
-    ExperimentError, KeptRecords, Observation, Optimization, Outcome, PeriodNumber, Plan, Traffic, Workstation,
+    ExperimentError, KeptRecords, Observation, Optimization, Outcome, PeriodNumber, Plan, StopFlag, Traffic,
+    Workstation,
 };
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,25 +27,11 @@ pub(crate) struct How<'a> {
 #[derive(Debug)]
 pub(crate) struct Simulated {
     pub(crate) outcome: Outcome,
+    /// Error with which the command ends although there is an outcome: a run that was too short or interrupted.
     pub(crate) too_short: Option<CliError>,
 }
 
 impl Simulated {
-    pub(crate) fn of(run: Result<Outcome, ExperimentError>) -> Result<Self, CliError> {
-        match run {
-            Ok(outcome) => Ok(Self { outcome, too_short: None }),
-            Err(error) => {
-                let too_short = CliError::failure(&error);
-                match error {
-                    ExperimentError::TooShort { partial, .. } => {
-                        Ok(Self { outcome: *partial, too_short: Some(too_short) })
-                    }
-                    other => Err(other.into()),
-                }
-            }
-        }
-    }
-
     /// Returns the outcome of the run. Fails if the run was too short for statistics.
     pub(crate) fn long_enough(self) -> Result<Outcome, CliError> {
         self.too_short.map_or(Ok(self.outcome), Err)
@@ -75,14 +63,30 @@ pub(crate) fn simulate(plan: &Plan, how: How<'_>) -> Result<Simulated, CliError>
     // The run stops at these fields to extrapolate its cost early.
     let stops = EARLY_CHECK_FIELDS.map(|field| PeriodNumber::FIRST.after(field));
     let mut bar = Bar::new("fields", how.quiet);
+    bar.advance(0, plan.fields);
     let monitor = how.budget.monitor(plan.fields);
-    let outcome = experiment.run_stopping(&stops, |field, machine| {
-        let done = field.since(PeriodNumber::FIRST);
-        bar.advance(done, plan.fields);
-        bar.check("nothing was written").map_err(|error| ExperimentError::Stopped(error.message().to_owned()))?;
-        monitor.check(done, trace_bytes(machine.record().observation())).map_err(ExperimentError::Stopped)
+    // Ctrl-C ends a dry run without a result, and a run with that of the fields so far.
+    let experiment = experiment.stopped_by(interrupt::flag()).after_dry_run();
+    let outcome = experiment.and_then(|experiment| {
+        experiment.stopped_by(StopFlag::default()).run_stopping(&stops, |field, run| {
+            let done = field.since(PeriodNumber::FIRST);
+            bar.advance(done, plan.fields);
+            if interrupt::flag().is_stopped() {
+                run.end_early();
+            }
+            monitor.check(done, trace_bytes(run.record().observation())).map_err(ExperimentError::Stopped)
+        })
     });
     bar.clear();
-    bar.check("nothing was written")?;
-    Simulated::of(outcome)
+    let ended = bar.check("only these fields are reported, and no file was written").err();
+    let error = match outcome {
+        Ok(outcome) => return Ok(Simulated { outcome, too_short: ended }),
+        Err(error) => error,
+    };
+    let reason = ended.unwrap_or_else(|| CliError::failure(&error));
+    match error {
+        ExperimentError::TooShort { partial, .. } => Ok(Simulated { outcome: *partial, too_short: Some(reason) }),
+        ExperimentError::Stopped(_) => Err(reason),
+        error => Err(error.into()),
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::interrupt;
 use crate::numbers::count_of;
 use crate::one_picture;
 use crate::output::OutputFile;
@@ -58,7 +59,10 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     // A run that is too short for statistics still has a trace.
     let how = How { traffic: true, budget: args.budget, quiet: args.quiet, ..How::default() };
     let Simulated { outcome, too_short } = simulate(&plan, how)?;
-    warn(&too_short.iter().map(|note| note.message().to_owned()).collect::<Vec<_>>(), args.quiet);
+    match too_short {
+        Some(ended) if interrupt::flag().is_stopped() => return Err(ended),
+        note => warn(note.map(|note| note.message().to_owned()).as_slice(), args.quiet),
+    }
     let span = args.range.span(&outcome)?;
     let trace = Trace::of(&outcome).between(span);
     // The whole file is built in memory and then written at once.

@@ -81,6 +81,25 @@ fn a_tracker_parameter_outside_its_range_causes_a_warning() {
     assert!(!message.contains("warning"), "{message}");
 }
 
+/// Runs a command and interrupts it after at least two seconds, as soon as `is_begun` returns true. The command has then
+/// installed its handler.
+#[cfg(unix)]
+fn interrupted(folder: &Folder, args: &[&str], is_begun: impl Fn() -> bool) -> std::process::Output {
+    let mut child = command(args);
+    let child = child.current_dir(&folder.0).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let child = child.expect("the command starts");
+    let started = Instant::now();
+    while started.elapsed() < Duration::from_secs(2) || !is_begun() {
+        assert!(started.elapsed() < Duration::from_secs(120), "it does not begin");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupt.expect("there is a kill").success());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(130), "{}", err(&output));
+    output
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_of_a_sweep_prints_a_command_that_resumes_the_sweep() {
@@ -89,38 +108,38 @@ fn ctrl_c_of_a_sweep_prints_a_command_that_resumes_the_sweep() {
         "s.toml",
         "pipeline = \"slats\"\nscene = \"mig\"\nfields = 60\n[sweep.grid]\ntriangles = { from = 1, to = 100 }\nseed = { from = 1, to = 9 }\n",
     );
-    let mut child = command(&["sweep", "s.toml", "--out", "o", "--threads", "1"]);
-    let child = child.current_dir(&folder.0).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let child = child.spawn().expect("the command starts");
     let rows = folder.0.join("o/rows.jsonl");
-    let started = Instant::now();
-    while std::fs::read_to_string(&rows).unwrap_or_default().lines().count() < 3 {
-        assert!(started.elapsed() < Duration::from_secs(120), "no rows");
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(interrupt.expect("there is a kill").success());
-    let output = child.wait_with_output().expect("it ends");
-    assert_eq!(output.status.code(), Some(130), "{}", err(&output));
+    let output = interrupted(&folder, &["sweep", "s.toml", "--out", "o", "--threads", "1"], || {
+        std::fs::read_to_string(&rows).unwrap_or_default().lines().count() >= 3
+    });
     assert!(err(&output).contains("pxpl5 sweep s.toml --out o --threads 1 --resume"), "{}", err(&output));
     let kept = std::fs::read_to_string(&rows).expect("rows").lines().count();
     assert!((3..900).contains(&kept), "{kept}");
 }
 
+/// Tests that the report of an interrupted run is that of a run of so many fields, at both levels with events. A search
+/// has no such part.
+#[cfg(unix)]
 #[test]
-fn an_interrupted_search_ends_with_130_and_says_how_far_it_came() {
-    let folder = Folder::new("interrupted-search");
+fn an_interrupted_run_reports_the_fields_so_far_and_a_search_says_how_far_it_came() {
+    let folder = Folder::new("interrupted-run");
+    for level in ["transaction", "cycle"] {
+        let run = |fields| {
+            ["run", "--pipeline", "slats", "--scene", "full-screen:9", "--level", level, "--json", "--fields", fields]
+        };
+        let output = interrupted(&folder, &with(&run("900000"), &["--out", "o"]), || true);
+        let part: serde_json::Value = serde_json::from_slice(&output.stdout).expect("a report");
+        let fields = part["fields"].to_string();
+        assert!(err(&output).contains(&format!("interrupted after {fields} of 900000 fields")), "{}", err(&output));
+        let whole = json(&folder.run(&run(&fields)));
+        for key in ["trace_hash", "config_hash", "window", "due", "latency_ms", "events"] {
+            assert_eq!(part[key], whole[key], "{level}, {fields} fields: {key}");
+        }
+        assert!(folder.names().is_empty(), "{:?}", folder.names());
+    }
     let search = ["limit", "--pipeline", "slats", "--fields", "3000", "--level", "cycle"];
-    let child = command(&search).current_dir(&folder.0).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
-    let child = child.expect("the command starts");
-    // The handler is installed before the command reads its settings.
-    std::thread::sleep(Duration::from_secs(2));
-    let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(interrupt.expect("there is a kill").success());
-    let output = child.wait_with_output().expect("it ends");
-    let text = err(&output);
-    assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{text}");
-    assert!(text.contains("interrupted") && text.contains("nothing was written"), "{text}");
+    let output = interrupted(&folder, &search, || true);
+    assert!(output.stdout.is_empty() && err(&output).contains("nothing was written"), "{}", err(&output));
 }
 
 #[test]

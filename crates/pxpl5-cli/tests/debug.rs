@@ -81,13 +81,12 @@ fn debugger_commands_do_not_change_the_trace_of_the_run() {
     let text = "pipeline = \"slats\"\nscene = \"full-screen:2\"\nmachine.preset = \"slats\"\nfields = 8\n";
     let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("an experiment");
     let mut line = String::new();
-    let run =
-        plan.experiment(plan.load_scene().expect("built in")).run_stopping(&[PeriodNumber(5)], |field, machine| {
-            if field == PeriodNumber(5) {
-                line = format!("trace   {}\n", machine.record().trace_hash());
-            }
-            Ok(())
-        });
+    let run = plan.experiment(plan.load_scene().expect("built in")).run_stopping(&[PeriodNumber(5)], |field, run| {
+        if field == PeriodNumber(5) {
+            line = format!("trace   {}\n", run.record().trace_hash());
+        }
+        Ok(())
+    });
     run.expect("six pictures, more than the warm-up has");
     for commands in [
         "run to field 5; show time",

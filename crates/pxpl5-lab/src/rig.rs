@@ -334,11 +334,11 @@ fn observe(
     let machine = experiment.build()?;
     photodiodes.iter().try_for_each(|photodiode| photodiode.check(machine.record().display()))?;
     let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.fields)).collect();
-    let result = experiment.run_stopping(&every, |period, machine| {
+    let result = experiment.run_stopping(&every, |period, run| {
         watcher.progress(period.0, experiment.fields);
         // The stop comes before the retrace that ends the previous period.
         if let Some(over) = period.before(2) {
-            photodiodes.iter_mut().for_each(|photodiode| photodiode.sample(over, machine.record()));
+            photodiodes.iter_mut().for_each(|photodiode| photodiode.sample(over, run.record()));
         }
         Ok(())
     });

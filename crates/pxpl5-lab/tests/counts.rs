@@ -63,7 +63,8 @@ fn every_picture_due_has_one_result_and_heavier_loads_never_miss_fewer() {
         for (due, triangles) in counts.iter().zip(&loads) {
             assert_eq!(due.shown + due.late + due.incomplete + due.missed, due.due, "{pipeline}, {triangles}");
             let periods = due.last_period.next().since(due.first_period);
-            assert_eq!(periods, due.due * due.periods_a_picture, "{pipeline}, {triangles}");
+            let is_counted = periods == due.due * due.periods_a_picture;
+            assert!(is_counted || due.shown == 0, "{pipeline}, {triangles}: {due:?}");
         }
         for (pair, triangles) in counts.windows(2).zip(&loads) {
             let falls = pair[0].not_shown_share() - pair[1].not_shown_share();

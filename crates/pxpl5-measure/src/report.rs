@@ -69,7 +69,8 @@ pub struct Report {
     ///
     /// `None` if the run ended before the window of these periods began.
     pub window: Option<ResultWindow>,
-    /// Number of complete pictures in the result window. The statistics are computed over these pictures.
+    /// Number of complete pictures in the result window after the first four pictures of the run. The statistics are
+    /// computed over these pictures.
     pub pictures: usize,
     /// Latency of the pictures in display periods. For NTSC, a period is one field of 1001/60000 s.
     pub latency_fields: DefinedStatistics,

@@ -29,10 +29,6 @@ impl Progress {
     pub(crate) fn stop_flag(&self) -> StopFlag {
         self.stopped.clone()
     }
-
-    pub(crate) fn is_stopped(&self) -> bool {
-        self.stopped.is_stopped()
-    }
 }
 
 pub(crate) const POLL_INTERVAL: Duration = Duration::from_millis(50);

@@ -10,16 +10,14 @@ use crate::policy::{Asked, PythonFunctions};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::stepper::{MachineThread, Stepper};
-use pxpl5::device::PixelWorker;
 use pxpl5::firmware::Shading;
 use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
-    Experiment as Native, ExperimentError, Host, KeptRecords, Level, PeriodNumber, Pixels, Plan, PolicyPipeline,
+    Experiment as Native, ExperimentError, KeptRecords, Level, PeriodNumber, Pixels, Plan, PolicyPipeline,
     RegionPolicy, Results, Study, StudyError, SurfaceId, WhatIfQuery, Workstation, levels, registry,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use std::fmt;
 use std::sync::Arc;
 
 /// A checked experiment: a machine, a pipeline, a scene and a head.
@@ -117,7 +115,7 @@ impl Experiment {
         let workstation = threads.map_or_else(Workstation::new, Workstation::with_threads);
         let functions = self.functions.clone();
         let native = self.native.clone().keep(keep);
-        let result = in_background(py, progress, true, move |watch| run(&native, workstation, functions, watch));
+        let result = in_background(py, progress, true, move |watch| run(&native, workstation, &functions, &watch));
         // An exception of a Python function takes precedence over the error that it causes in the run.
         self.functions.check()?;
         outcome_of_run(py, result?, &self.plan.measure)
@@ -179,9 +177,10 @@ impl Experiment {
     fn what_if<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (native, functions) = (self.native.clone(), self.functions.clone());
         let result = in_background(py, None, true, move |watch| {
-            let host = StoppableHost { workstation: Workstation::with_threads(1), watch, functions };
-            let stop = host.watch.stop_flag();
-            WhatIfQuery { registry: registry(), experiment: native.host(host) }.run(&mut stop.clone())
+            let stop = watch.stop_flag();
+            functions.end(&stop);
+            let experiment = native.host(Workstation::with_threads(1)).stopped_by(stop.clone());
+            WhatIfQuery { registry: registry(), experiment }.run(&mut stop.clone())
         });
         self.functions.check()?;
         python(
@@ -205,10 +204,9 @@ impl Experiment {
         let result = in_background(py, None, !is_analytic, move |watch| {
             let workstation = Workstation::with_threads(1);
             if !is_analytic {
-                return run(&native, workstation, functions, watch).map(Results::of_run);
+                return run(&native, workstation, &functions, &watch).map(Results::of_run);
             }
-            let host = StoppableHost { workstation, watch, functions };
-            let summary = levels::summarise(&registry(), &native.host(host)).map_err(Box::new);
+            let summary = levels::summarise(&registry(), &native.host(workstation)).map_err(Box::new);
             summary.map(Results::of_closed_form)
         });
         self.functions.check()?;
@@ -225,8 +223,8 @@ impl Experiment {
     /// Returns the experiment on a host computer that Python can stop, and the flag with which Python stops the run.
     fn on_host(&self, workstation: Workstation) -> (Native, Arc<Progress>) {
         let watch = Arc::new(Progress::default());
-        let host = StoppableHost { workstation, watch: Arc::clone(&watch), functions: self.functions.clone() };
-        (self.native.clone().host(host), watch)
+        self.functions.end(&watch.stop_flag());
+        (self.native.clone().host(workstation).stopped_by(watch.stop_flag()), watch)
     }
 
     fn film_of(&self, surface: Option<u16>, first: u64, fields: u64) -> (Film, Arc<Progress>) {
@@ -246,43 +244,17 @@ const LOOKED_AT: u64 = 20_000;
 fn run(
     native: &Native,
     workstation: Workstation,
-    functions: PythonFunctions,
-    watch: Arc<Progress>,
+    functions: &PythonFunctions,
+    watch: &Progress,
 ) -> Result<pxpl5::Outcome, Box<ExperimentError>> {
     let fields = native.fields;
     // A short run stops in every field so that Ctrl-C takes effect soon. A long run stops only to report progress.
     let each = if fields <= LOOKED_AT { fields } else { 0 };
     let stops: Vec<PeriodNumber> = PeriodNumber::FIRST.until(PeriodNumber::FIRST.after(each)).collect();
-    let host = StoppableHost { workstation, watch: Arc::clone(&watch), functions };
-    let at = |field: PeriodNumber, _: &mut pxpl5::Machine| {
+    functions.end(&watch.stop_flag());
+    let at = |field: PeriodNumber, _: &mut pxpl5::Stepper| {
         watch.report(field.since(PeriodNumber::FIRST), fields);
         Ok(())
     };
-    native.clone().host(host).run_stopping(&stops, at).map_err(Box::new)
-}
-
-struct StoppableHost {
-    workstation: Workstation,
-    watch: Arc<Progress>,
-    functions: PythonFunctions,
-}
-
-impl fmt::Debug for StoppableHost {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("StoppableHost").field("workstation", &self.workstation).finish_non_exhaustive()
-    }
-}
-
-impl Host for StoppableHost {
-    fn seconds(&self) -> Option<f64> {
-        self.workstation.seconds()
-    }
-
-    fn is_stopped(&self) -> bool {
-        self.watch.is_stopped() || self.functions.has_raised()
-    }
-
-    fn pixel_worker(&self) -> Box<dyn PixelWorker> {
-        self.workstation.pixel_worker()
-    }
+    native.clone().host(workstation).stopped_by(watch.stop_flag()).run_stopping(&stops, at).map_err(Box::new)
 }

@@ -2,6 +2,7 @@
 
 use crate::arrays::{reals1, reals2};
 use crate::errors::wrong_setting;
+use crate::policy::Raised;
 use glam::{DQuat, DVec3};
 use numpy::PyArray2;
 use numpy::ndarray::{Array2, ArrayView1, ArrayView2};
@@ -188,7 +189,7 @@ impl Motion {
     /// Raises the exception that the motion's Python function has raised since the last check, if any.
     pub(crate) fn check(&self) -> PyResult<()> {
         match &self.called {
-            Some(called) => called.check(),
+            Some(called) => called.raised.check(),
             None => Ok(()),
         }
     }
@@ -198,20 +199,10 @@ impl Motion {
 pub(crate) struct CallableMotion {
     pose: Py<PyAny>,
     name: String,
-    raised: Mutex<Option<PyErr>>,
+    pub(crate) raised: Raised,
 }
 
 impl CallableMotion {
-    /// Returns true if the Python function has raised an exception that is not yet reported.
-    pub(crate) fn has_raised(&self) -> bool {
-        self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
-    }
-
-    pub(crate) fn check(&self) -> PyResult<()> {
-        let raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner).take();
-        raised.map_or(Ok(()), Err)
-    }
-
     fn asked(&self, t_ps: u64) -> PyResult<Pose> {
         let found: [f64; 7] = Python::attach(|py| {
             let answer = self.pose.call1(py, (seconds(t_ps),))?;
@@ -248,11 +239,11 @@ impl Moving for CallableMotion {
     /// Returns the pose that the Python function computes. After an exception, the head stands still until the run
     /// ends.
     fn pose(&self, t_ps: u64) -> Pose {
-        if self.has_raised() {
+        if self.raised.is_there() {
             return Pose::IDENTITY;
         }
         self.asked(t_ps).unwrap_or_else(|error| {
-            *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+            self.raised.keep(error);
             Pose::IDENTITY
         })
     }

@@ -4,34 +4,48 @@
 use crate::errors::wrong_setting;
 use crate::motion::CallableMotion;
 use pxpl5::firmware::RegionId;
-use pxpl5::{PolicyFrame, RegionAssignment, RegionPolicy, Time};
+use pxpl5::{PolicyFrame, RegionAssignment, RegionPolicy, StopFlag, Time};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::fmt;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A Python function that assigns regions to renderers. `raised` holds an exception of the function that is not yet
-/// reported.
+/// An exception of a Python function that is not yet reported, and the flag of the run that it ends.
+#[derive(Default)]
+pub(crate) struct Raised(Mutex<(Option<PyErr>, StopFlag)>);
+
+impl Raised {
+    fn state(&self) -> MutexGuard<'_, (Option<PyErr>, StopFlag)> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn is_there(&self) -> bool {
+        self.state().0.is_some()
+    }
+
+    pub(crate) fn keep(&self, error: PyErr) {
+        let mut state = self.state();
+        state.0 = Some(error);
+        state.1.stop();
+    }
+
+    /// Raises the exception, if any.
+    pub(crate) fn check(&self) -> PyResult<()> {
+        self.state().0.take().map_or(Ok(()), Err)
+    }
+}
+
+/// A Python function that assigns regions to renderers.
 pub(crate) struct Asked {
     policy: Py<PyAny>,
     name: String,
-    raised: Mutex<Option<PyErr>>,
+    raised: Raised,
 }
 
 impl Asked {
     pub(crate) fn new(py: Python<'_>, policy: Py<PyAny>) -> Self {
         let name = policy.getattr(py, "__qualname__").and_then(|name| name.extract(py));
-        Self { policy, name: name.unwrap_or_else(|_| "callable".to_owned()), raised: Mutex::default() }
-    }
-
-    pub(crate) fn has_raised(&self) -> bool {
-        self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
-    }
-
-    /// Raises the exception that the policy has raised, if any.
-    pub(crate) fn check(&self) -> PyResult<()> {
-        let raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner).take();
-        raised.map_or(Ok(()), Err)
+        Self { policy, name: name.unwrap_or_else(|_| "callable".to_owned()), raised: Raised::default() }
     }
 
     fn ask(&self, py: Python<'_>, frame: &PolicyFrame) -> PyResult<Vec<RegionAssignment>> {
@@ -72,7 +86,7 @@ impl RegionPolicy for Asked {
     /// the result is `None`, and the run ends at the next field.
     fn assign(&self, frame: &PolicyFrame) -> Option<Vec<RegionAssignment>> {
         let answer = Python::attach(|py| self.ask(py, frame));
-        answer.map_err(|error| *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error)).ok()
+        answer.map_err(|error| self.raised.keep(error)).ok()
     }
 }
 
@@ -83,15 +97,17 @@ pub(crate) struct PythonFunctions {
 }
 
 impl PythonFunctions {
-    /// Raises the exception that a Python function has raised during the run, if any.
-    pub(crate) fn check(&self) -> PyResult<()> {
-        self.motion.iter().try_for_each(|called| called.check())?;
-        self.policy.iter().try_for_each(|asked| asked.check())
+    fn raised(&self) -> impl Iterator<Item = &Raised> {
+        self.motion.iter().map(|called| &called.raised).chain(self.policy.iter().map(|asked| &asked.raised))
     }
 
-    /// Returns true if a Python function has raised an exception that is not yet reported.
-    pub(crate) fn has_raised(&self) -> bool {
-        self.motion.as_ref().is_some_and(|called| called.has_raised())
-            || self.policy.as_ref().is_some_and(|asked| asked.has_raised())
+    /// Raises the exception that a Python function has raised during the run, if any.
+    pub(crate) fn check(&self) -> PyResult<()> {
+        self.raised().try_for_each(Raised::check)
+    }
+
+    /// Lets exceptions of the Python functions end the run that `stop` ends.
+    pub(crate) fn end(&self, stop: &StopFlag) {
+        self.raised().for_each(|raised| raised.state().1 = stop.clone());
     }
 }

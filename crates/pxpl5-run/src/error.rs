@@ -43,8 +43,8 @@ pub enum ExperimentError {
     /// The scene has no triangles or spheres, or too many moving structures. The text states which.
     #[error("{0}")]
     Scene(String),
-    /// The host ([`crate::Host::is_stopped`]) or the observing function ([`crate::Experiment::run_stopping`]) ended the
-    /// run early.
+    /// A flag ([`crate::Experiment::stopped_by`]) or the observing function ([`crate::Experiment::run_stopping`]) ended
+    /// the run early.
     #[error("{0}")]
     Stopped(String),
     /// The machine failed. All observations before the failure are kept.

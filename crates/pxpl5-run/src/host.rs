@@ -10,14 +10,6 @@ pub trait Host: Debug + Send + Sync {
         None
     }
 
-    /// Returns true if the result of a run is no longer needed.
-    ///
-    /// A run calls this method from time to time. If the method returns true, the run ends with
-    /// [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
-    fn is_stopped(&self) -> bool {
-        false
-    }
-
     /// Returns the worker that computes the pixels of [`Pixels::All`](crate::Pixels::All).
     fn pixel_worker(&self) -> Box<dyn PixelWorker> {
         Box::new(SameThread::default())

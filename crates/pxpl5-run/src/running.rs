@@ -3,7 +3,7 @@ use crate::error::ExperimentError;
 use crate::experiment::Experiment;
 use crate::level::Level;
 use crate::result::outcome::Outcome;
-use crate::stepper::Stepper;
+use crate::stepper::{Pause, Stepper};
 use pxpl5_machine::Machine;
 use pxpl5_wire::PeriodNumber;
 
@@ -55,8 +55,8 @@ impl Experiment {
     /// Runs the experiment and calls `at` at the start of each field in `stops`, at every 60th field (at every field of the
     /// cycle level), and at the end of the run.
     ///
-    /// `at` receives the field and the machine, before the machine handles any event of this field. An error from `at`
-    /// ends the run.
+    /// `at` receives the field and the run, before the machine handles any event of this field. An error from `at`
+    /// ends the run without a result, and [`Stepper::end_early`] ends it with the result of the fields so far.
     ///
     /// # Errors
     ///
@@ -64,7 +64,7 @@ impl Experiment {
     pub fn run_stopping(
         &self,
         stops: &[PeriodNumber],
-        at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
+        at: impl FnMut(PeriodNumber, &mut Stepper) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
         self.perform(self.prepare()?, stops, at)
     }
@@ -85,29 +85,27 @@ impl Experiment {
         &self,
         preparation: Preparation,
         stops: &[PeriodNumber],
-        mut at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
+        mut at: impl FnMut(PeriodNumber, &mut Stepper) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
         // Run from stop to stop. A failed machine ends the loop, and `finish` returns the error.
         let mut stepper = Stepper::begin(self, preparation)?;
         for field in self.stops(stops) {
-            stepper.run_to(stepper.record().tick(field));
-            if stepper.failure().is_some() {
+            if stepper.run_to(stepper.record().tick(field)) != Pause::Reached {
                 break;
             }
             self.check_stopped()?;
-            at(field, stepper.machine_mut())?;
+            at(field, &mut stepper)?;
         }
         stepper.finish()
     }
 
-    /// Returns an error if the result is no longer needed ([`Experiment::stopped_by`],
-    /// [`Host::is_stopped`](crate::Host::is_stopped)).
+    /// Returns an error if the result is no longer needed ([`Experiment::stopped_by`]).
     ///
     /// # Errors
     ///
     /// Returns [`ExperimentError::Stopped`] in this case.
     pub fn check_stopped(&self) -> Result<(), ExperimentError> {
-        if self.stop.is_stopped() || self.host.is_stopped() {
+        if self.stop.is_stopped() {
             return Err(ExperimentError::Stopped("the run was stopped".to_owned()));
         }
         Ok(())

@@ -152,6 +152,14 @@ impl Stepper {
         self.breakpoints = addresses;
     }
 
+    /// Ends the run early: now, if a display period has just begun, and otherwise with the current period. The outcome
+    /// equals that of a run of so many fields, except that predictors were tuned for the whole run.
+    pub fn end_early(&mut self) {
+        let period = self.period();
+        let begun = period.since(PeriodNumber::FIRST) + u64::from(self.record().tick(period) < self.now);
+        self.experiment.fields = begun.clamp(1, self.experiment.fields);
+    }
+
     /// Runs to the end and returns the outcome.
     ///
     /// # Errors
@@ -227,10 +235,6 @@ impl Stepper {
     /// Returns the views of the tracked head, or `None` if no head is tracked.
     pub const fn head(&self) -> Option<&Arc<HeadViews>> {
         self.run.head.as_ref()
-    }
-
-    pub(crate) const fn machine_mut(&mut self) -> &mut Machine {
-        &mut self.run.machine
     }
 
     /// Returns the boards and all observations so far.

@@ -53,13 +53,6 @@ fn pictures_three_periods_apart_but_due_every_second_period_miss_a_third() {
 }
 
 #[test]
-fn a_delay_of_one_retrace_counts_as_one_missed_picture() {
-    let mut pictures = regular(9, 2, 50, Shown);
-    pictures.iter_mut().filter(|picture| picture.0 >= 31).for_each(|picture| picture.0 += 1);
-    assert_eq!(count(&pictures, 2, 51).missed, 1);
-}
-
-#[test]
 fn two_pictures_in_one_due_interval_count_as_one_due_picture_shown() {
     let due = count(&regular(4, 1, 40, Shown), 2, 40);
     assert_eq!((due.due, due.shown, due.pictures), (16, 16, 32));
@@ -93,12 +86,15 @@ fn the_window_begins_at_the_later_of_ninth_period_and_fifth_picture() {
     }
 }
 
-/// If a pipeline begins a picture every seventh period, and no picture is in time, then the pictures count as late from
-/// the ninth period on.
+/// The first four pictures have no latency, so they do not count as shown unless a fifth was shown. A picture every tenth
+/// period is too rare if one is due every third: of the 16 due at 12, 15 ... 57, those of 18, 28, 38 and 48 are shown.
 #[test]
-fn failures_after_the_eighth_period_are_counted() {
-    let due = count(&regular(2, 7, 60, Late), 1, 60);
-    assert_eq!((due.first_period.0, due.due, due.shown), (WARM_UP_PERIODS, 52, 0));
+fn pictures_of_the_warm_up_count_as_shown_only_if_a_later_picture_was_shown() {
+    assert_eq!(counted(&regular(8, 3, 18, Shown), 3, 24), None, "too short, and not too heavy");
+    let due = count(&regular(8, 10, 40, Shown), 3, 60);
+    assert_eq!((due.due, due.shown, due.missed, due.pictures), (13, 0, 13, 0));
+    let due = count(&regular(8, 10, 50, Shown), 3, 60);
+    assert_eq!((due.due, due.shown, due.missed, due.pictures), (16, 4, 12, 4));
 }
 
 /// The second half of a run does not move its window.
@@ -116,13 +112,6 @@ fn a_run_with_one_shown_picture_has_no_rate() {
     pictures[20].1 = Shown;
     let due = count(&pictures, 1, 60);
     assert_eq!((due.shown, due.updates_hz(1001.0 / 60.0)), (1, None));
-}
-
-#[test]
-fn a_rate_is_the_pictures_shown_over_the_time_of_the_window() {
-    let due = count(&regular(5, 2, 100, Shown), 2, 100);
-    let hz = due.updates_hz(1001.0 / 60.0).expect("shown");
-    assert!((hz - 30_000.0 / 1_001.0).abs() < 1e-9, "{hz}");
 }
 
 /// Returns the pictures of a pipeline whose queues are empty at first. Pictures are in time until `filled`. Later, only
@@ -143,7 +132,9 @@ proptest! {
     fn every_picture_due_has_exactly_one_result(pictures in ends(), every in 1u64..12, periods in 0u64..260) {
         if let Some(due) = counted(&pictures, every, periods) {
             prop_assert_eq!(due.shown + due.late + due.incomplete + due.missed, due.due);
-            prop_assert_eq!(window(&due), due.due * every);
+            // Only pictures of the warm-up without a later one are left out.
+            let left_out = window(&due) - due.due * every;
+            prop_assert!(left_out % every == 0 && (left_out == 0 || due.shown + due.pictures == 0 && left_out <= 4 * every));
             prop_assert!(due.last_period.0 < periods && due.due > 0);
         }
     }

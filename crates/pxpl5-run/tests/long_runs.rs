@@ -100,9 +100,9 @@ fn discarding_records_changes_no_result() {
 /// records that were read, all events, and the poses in memory at the end.
 fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
     let mut most = [0, 0];
-    let watched = experiment.clone().fields(fields).keep(KeptRecords::Statistics).run_stopping(&[], |_, machine| {
-        most[0] = most[0].max(machine.record().observation().records() as u64);
-        most[1] = most[1].max(machine.pending_events() as u64);
+    let watched = experiment.clone().fields(fields).keep(KeptRecords::Statistics).run_stopping(&[], |_, run| {
+        most[0] = most[0].max(run.record().observation().records() as u64);
+        most[1] = most[1].max(run.machine().pending_events() as u64);
         Ok(())
     });
     let outcome = watched.expect("it runs");

@@ -8,11 +8,12 @@ use super::lens::straight_edge;
 use super::rules::Rules;
 use crate::report::ArpReport;
 use crate::settings::{SourceKind, WalkSettings};
-use crate::walk::{WalkTally, at_frames, walk};
+use crate::walk::{WalkTally, at_frames, walk, walked};
 use crate::world::World;
 use address_recalculation::Lens;
 use address_recalculation::priority::{Objects, PriorityTiming, SizeRule, Threshold};
 use glam::{DMat3, DQuat, DVec3};
+use pxpl5_sim::StopFlag;
 use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
@@ -87,16 +88,17 @@ pub(crate) fn looking_at(eye: DVec3, point: DVec3) -> DQuat {
 }
 
 impl Experiments {
-    /// Runs all experiments.
+    /// Runs all experiments. After a stop, their results are those of short walks and useless.
     ///
     /// # Errors
     ///
     /// Returns a [`SettingError`] if a scene or a number is invalid. The built-in scenes and numbers are valid.
-    pub fn run() -> Result<Self, SettingError> {
+    pub fn run(stop: &StopFlag) -> Result<Self, SettingError> {
         // Fit the cell size first: all other experiments use it.
         let (scene, path) = gallery()?;
         let fit = |rules: Rules| -> Result<CellFit, SettingError> {
-            let (cell_m, rates_hz) = fitted_cell_m(&scene, &path, &rules, EXPERIMENT_FRAMES)?;
+            let frames = if stop.is_stopped() { 1 } else { EXPERIMENT_FRAMES };
+            let (cell_m, rates_hz) = fitted_cell_m(&scene, &path, &rules, frames)?;
             Ok(CellFit { rules, cell_m, rates_hz })
         };
         let doubled = Rules { inner_rings: 1, ring_growth: 2, has_cascade: false, ..Rules::USUAL };
@@ -116,14 +118,15 @@ impl Experiments {
         ];
         let mut walks = Vec::new();
         for (name, settings) in kinds {
-            let tally = walk(&world, &settings, EXPERIMENT_FRAMES, at_frames(&path, 1.0, 60.0))?;
+            let (_, tally) =
+                walked(&world, &settings, EXPERIMENT_FRAMES, at_frames(&path, 1.0, 60.0), &mut stop.clone())?;
             let report = ArpReport::of(&world, &settings, &tally);
             walks.push(NamedWalk { name, settings, tally, report });
         }
         Ok(Self {
             segments: world.segments.len(),
-            slowed: slowed(&world, &cells, &path)?,
-            interpretations: Interpretations::run(&mut ())?,
+            slowed: if stop.is_stopped() { Vec::new() } else { slowed(&world, &cells, &path)? },
+            interpretations: Interpretations::run(&mut stop.clone())?,
             thresholds: threshold_rows(side),
             fits,
             walks,

@@ -5,7 +5,7 @@ use super::table::{fresh, rows_text, titled};
 use crate::arp::settings::put;
 use crate::error::CliError;
 use crate::output::{OutputFile, OutputFolder};
-use crate::progress::{Bar, Progress};
+use crate::progress::Progress;
 use crate::terminal::{answer, json_text, print};
 use crate::volume::settings::load;
 use pxpl5::arp::{figures as walks, pictures};
@@ -34,7 +34,7 @@ pub(super) fn run(name: &str, args: &FiguresArgs) -> Result<(), CliError> {
     // Open all outputs before the experiments, so that a bad path fails at once.
     let document = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "figures")).transpose()?;
-    let group = if name == ADDRESS_RECALCULATION { address_recalculation(args)? } else { volumetric(args)? };
+    let group = if name == ADDRESS_RECALCULATION { address_recalculation()? } else { volumetric(args)? };
     document.map(|document| document.write(group.markdown.as_bytes())).transpose()?;
     if let Some(mut folder) = folder {
         (group.draw)(&mut folder)?;
@@ -46,12 +46,9 @@ pub(super) fn run(name: &str, args: &FiguresArgs) -> Result<(), CliError> {
     answer(args.json, args.quiet, &group.json, || group.text)
 }
 
-fn address_recalculation(args: &FiguresArgs) -> Result<Measured, CliError> {
-    let mut bar = Bar::new("walks and pictures", args.quiet);
+fn address_recalculation() -> Result<Measured, CliError> {
+    // The walks have no finished part to keep, so Ctrl-C ends the command at once.
     let (experiments, rows) = walks::all()?;
-    bar.advance(1, 2);
-    bar.check("nothing was written")?;
-    bar.clear();
     Ok(Measured {
         markdown: walks::markdown(&experiments, &rows),
         json: format!("{:#}\n", json!({ "schema": "pxpl5-arp-figures/2", "figures": rows })),

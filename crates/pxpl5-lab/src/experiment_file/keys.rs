@@ -266,18 +266,24 @@ fn is_machine_parameter(registry: &Registry, path: &str) -> bool {
 
 /// Returns the paths of all machine parameters with all displays of the registry.
 fn parameters(registry: &Registry) -> Vec<String> {
+    machine(registry).settings().into_iter().map(|(path, _)| path).collect()
+}
+
+fn machine(registry: &Registry) -> MachineConfig {
     let all_displays = registry.displays().iter().map(|entry| (entry.config)()).collect();
-    let machine = MachineConfig { displays: all_displays, ..registry.machine_of(MachineConfig::small_hmd()) };
-    machine.settings().into_iter().map(|(path, _)| path).collect()
+    MachineConfig { displays: all_displays, ..registry.machine_of(MachineConfig::small_hmd()) }
 }
 
 /// Creates the error of an invalid path, with the most similar valid path. The suggestion has the prefix `machine.`
 /// only if the invalid path is closer to that form.
 pub(super) fn unknown(registry: &Registry, found: &str) -> SettingError {
-    let parameters = parameters(registry);
+    // Published facts cannot be set.
+    let facts = machine(registry).parameters().into_iter().filter(|parameter| parameter.read_only);
+    let facts: Vec<String> = facts.map(|parameter| parameter.path).collect();
+    let mut parameters = parameters(registry);
+    parameters.retain(|path| !facts.contains(path));
     let long = parameters.iter().map(|path| format!("machine.{path}"));
     let own = keys(registry).into_iter().map(|key| key.path);
-    // Published facts cannot be set.
     let of_trackers = tracking_parameters().into_iter().filter(|parameter| !parameter.read_only);
     let of_trackers = of_trackers.map(|parameter| parameter.path);
     let all = own.chain(long).chain(parameters.iter().cloned()).chain(of_trackers);

@@ -4,6 +4,7 @@ use super::settings::FigureSettings;
 use super::value::{Result, scene_named};
 use crate::error::StudyError;
 use crate::parallel;
+use crate::study::check;
 use pxpl5_arp::figures::{Experiments, row, rows, shape};
 use pxpl5_run::{
     Experiment, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, RenderingControl, RotationLatency,
@@ -30,9 +31,10 @@ const COMPARED: usize = 55;
 ///
 /// Returns a [`StudyError`] that names the experiment.
 pub(super) fn address_recalculation(settings: &FigureSettings) -> Result<Vec<FigureRow>> {
-    let (turning, experiments) = parallel::both(|| turning(settings), Experiments::run);
+    let (turning, experiments) = parallel::both(|| turning(settings), || Experiments::run(&settings.stop));
     let mut all = turning.map_err(StudyError::of_figure("E1"))?;
     let experiments = experiments?;
+    check(&settings.stop)?;
     all.extend(rows(&experiments));
     Ok(all)
 }

@@ -151,7 +151,9 @@ impl Window {
         self.tally.count(record, &pictures);
         let every = pipeline.periods_a_picture(record);
         let window = ResultWindow::of(self.tally.ends(), every, reached, experiment.end());
-        let window = window.and_then(|window| window.not_before(experiment.results_from, every));
+        // A run that ends early has a shorter first half, but samples before the start so far are already discarded.
+        let from = experiment.results_from.max(self.tally.window_from);
+        let window = window.and_then(|window| window.not_before(from, every));
         self.take(&FinalResults { arrivals, pictures: &pictures, samples, window, ..all });
         Closed { tally: self.tally, window, observed: self.sum.map(|sum| sum.result()), pictures }
     }

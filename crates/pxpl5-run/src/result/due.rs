@@ -28,7 +28,8 @@ pub struct DuePictures {
     pub last_period: PeriodNumber,
     /// Number of display periods from one due picture to the next.
     pub periods_a_picture: u64,
-    /// Number of pictures due: the periods of the result window divided by `periods_a_picture`.
+    /// Number of pictures due: the periods of the result window divided by `periods_a_picture`. If no picture after the
+    /// warm-up was shown, pictures of the warm-up that were shown are left out.
     pub due: u64,
     /// Number of due pictures that were complete and in time.
     pub shown: u64,
@@ -44,7 +45,8 @@ pub struct DuePictures {
 }
 
 impl DuePictures {
-    /// Counts the due pictures of a run by result. Returns `None` if no complete picture was due.
+    /// Counts the due pictures of a run by result. Returns `None` if no complete picture was due, or if the run ended in
+    /// its warm-up.
     ///
     /// Each item of `pictures` is a picture that was begun: its display period and its result, in order of periods.
     /// `periods_a_picture` is the number of periods from one due picture to the next. `reached` is the first period
@@ -59,20 +61,27 @@ impl DuePictures {
         let mut ends = PictureResults::default();
         pictures.filter(|(period, _)| *period < reached).for_each(|(period, end)| ends.note(period, end));
         let window = ResultWindow::of(&ends, Some(periods_a_picture), reached, reached)?;
-        Some(Self::of_ends(&ends, periods_a_picture, &window))
+        Self::of_ends(&ends, periods_a_picture, &window)
     }
 
-    pub(crate) fn of_ends(ends: &PictureResults, periods_a_picture: u64, window: &ResultWindow) -> Self {
-        let every = periods_a_picture.max(1);
+    pub(crate) fn of_ends(ends: &PictureResults, periods_a_picture: u64, window: &ResultWindow) -> Option<Self> {
+        let periods_a_picture = periods_a_picture.max(1);
         let ResultWindow { first_period, last_period, .. } = *window;
         // Each due picture may be shown in any of the periods since the last due picture.
-        let due = (first_period.0 + every - 1..=last_period.0).step_by(every as usize);
+        let due = (first_period.0 + periods_a_picture - 1..=last_period.0).step_by(periods_a_picture as usize);
         let mut counts = [0; 4];
-        due.for_each(|period| counts[ends.best(period, every).map_or(3, |end| end as usize)] += 1);
+        due.for_each(|period| counts[ends.best(period, periods_a_picture).map_or(3, |end| end as usize)] += 1);
         let [shown, late, incomplete, missed] = counts;
         let due = counts.iter().sum();
         let pictures = ends.periods_shown([first_period, last_period]);
-        Self { first_period, last_period, periods_a_picture: every, due, shown, late, incomplete, missed, pictures }
+        let all = Self { first_period, last_period, periods_a_picture, due, shown, late, incomplete, missed, pictures };
+        // Pictures of the warm-up have no latency. Without a later one, they do not count, and the run was too short, or
+        // its scene is too heavy.
+        let is_result = |period| window.holds_picture(period) && ends.periods_shown([period; 2]) > 0;
+        if first_period.until(last_period.next()).any(is_result) {
+            return Some(all);
+        }
+        all.is_too_heavy().then(|| Self { due: all.not_shown(), shown: 0, pictures: 0, ..all })
     }
 
     /// Returns the number of due pictures that were not shown: late, incomplete and missed pictures.

@@ -119,10 +119,10 @@ impl Outcome {
     }
 
     /// Returns the number of due pictures, counted by result (shown, late, incomplete or missed). Returns `None` if the
-    /// pipeline has no due pictures, or if the run ended before the first due picture.
+    /// pipeline has no due pictures, or if the run ended before the first due picture or in its warm-up.
     pub fn due(&self) -> Option<DuePictures> {
         let every = self.pipeline().periods_a_picture(&self.record)?;
-        Some(DuePictures::of_ends(self.closed.tally.ends(), every, &self.closed.window?))
+        DuePictures::of_ends(self.closed.tally.ends(), every, &self.closed.window?)
     }
 
     /// Returns a text that defines for this pipeline when a picture is due, and when it is in time.

@@ -22,7 +22,7 @@ pub const WARM_UP_PERIODS: u64 = 8;
 pub const WINDOW_DEFINITION: &str = "latencies, due pictures, errors and rates cover one window; it begins with the 9th period of the \
     display, or with the first period of the fifth picture if that is later, and it ends with the last complete period; if a picture \
     due in the first half of the run was not shown, it begins with the first such picture, because earlier pictures may have profited \
-    from empty queues; the first four pictures have no latency and no error";
+    from empty queues; the first four pictures have no latency and no error, and count as shown only if a later one was shown";
 
 /// The display periods over which the results of a run are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -59,7 +59,7 @@ pub struct Tally {
     pub records_read: u64,
     surfaces_ms: Vec<Samples>,
     ends: PictureResults,
-    window_from: Option<PeriodNumber>,
+    pub(crate) window_from: Option<PeriodNumber>,
     region_ms: f64,
     region_pixels: u64,
     end: PeriodNumber,
