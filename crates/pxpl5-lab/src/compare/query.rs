@@ -451,7 +451,7 @@ impl CompareQuery {
         }
         if self.limits && !compared.is_reference() {
             row.triangles_definition = definition(&plan);
-            let query = LimitQuery { looks_above: false, ..LimitQuery::of_plan(&plan) };
+            let query = LimitQuery { looks_above: false, head: None, ..LimitQuery::of_plan(&plan) };
             let triangles = query.run(&mut common.watcher.stop()).ok().map(|limit| limit.triangles);
             row.has_no_limit = triangles == Some(CEILING);
             row.triangles_possible = triangles.filter(|triangles| *triangles < CEILING);
