@@ -118,10 +118,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         reason: "The overhead of a message was computed from this time",
         varied: Varied::ByFormula,
         ..figure(
-            "1",
-            TR94,
+            ("1", TR94, 780.0, "us"),
             "copy of one region",
-            (780.0, "us"),
             "mean over all regions of a stereo frame, per 15,360 pixels of port time",
             |settings| Ok(trivial(settings)?.region_copy_us.into()),
         )
@@ -131,10 +129,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         reason: "TR94 multiplies row 1 by 20 regions and two eyes, and so does the model as long as one eye is copied after the other",
         varied: Varied::ByFormula,
         ..figure(
-            "2",
-            TR94,
+            ("2", TR94, 31.2, "ms"),
             "copy of both eyes in stereo",
-            (31.2, "ms"),
             "full-screen:12 on small-hmd: the time of COPY left plus COPY right of a frame, each from its first word to its last word",
             |settings| trivial(settings).map(|summary| (summary.first_copy_ms + summary.last_copy_ms).into()),
         )
@@ -143,10 +139,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         reason: "The rule `store` follows from TR94's text, the room from F89. TR94 derives the figure from the same rules, so the row checks the firmware",
         latency: Some(OF_THEORY),
         ..interpreted(figure(
-            "3",
-            TR94,
+            ("3", TR94, 50.0, "ms"),
             "stereo, trivial scene, theory: from the start of TRANSFORM to the end of COPY",
-            (50.0, "ms"),
             "full-screen:12 on small-hmd. Software, transform and array take no time, so COPY is the only work.",
             copy_alone,
         ))
@@ -157,10 +151,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         latency: Some(TO_THE_SWAP),
         cause: "By TR94's rules, TRANSFORM may begin while two eyes wait for their copies, so a faster TRANSFORM or RENDER only waits longer",
         ..interpreted(figure(
-            "4",
-            TR94,
+            ("4", TR94, 56.5, "ms"),
             "small HMD machine, 12 triangles that cover the screen: from the start of TRANSFORM to the swap",
-            (56.5, "ms"),
             "full-screen:12 on small-hmd",
             |settings| {
                 let summary = trivial(settings)?;
@@ -173,10 +165,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         basis: Basis::Derived("row 2 takes two fields"),
         reason: "Copies of 31.2 ms fit into two fields and not into one",
         ..interpreted(figure(
-            "4b",
-            TR94,
+            ("4b", TR94, 30.0, "Hz"),
             "the same: frames per second",
-            (30.0, "Hz"),
             "full-screen:12 on small-hmd",
             |settings| trivial(settings).map(|summary| rate_hz(&summary).into()),
         ))
@@ -186,10 +176,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         latency: Some(GREATEST),
         cause: "TR94's greatest value lets COPY begin after RENDER. Here, COPY begins with the first finished region",
         ..interpreted(figure(
-            "5",
-            TR94,
+            ("5", TR94, 4004.0 / 60.0, "ms"),
             "TRANSFORM, RENDER and COPY of equal length at 30 Hz: up to",
-            (4004.0 / 60.0, "ms"),
             "full-screen:516 on small-hmd: RENDER of these triangles takes 15.6 ms, like COPY. The time of a triangle on a GP is set so that \
              TRANSFORM also takes 15.6 ms.",
             equal_stages,
@@ -202,10 +190,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         latency: Some(OF_FRAME),
         cause: "A renderer may copy its first regions while it draws the others, so COPY overlaps RENDER. TR94's formula lets COPY begin later",
         ..interpreted(figure(
-            "6",
-            TR94,
+            ("6", TR94, 98.4, "ms"),
             "TRANSFORM = RENDER, both longer than COPY: 3 x TRANSFORM + 1 to 2 x COPY",
-            (98.4, "ms"),
             "full-screen:732 to 936 on small-hmd, like figure 5. TRANSFORM and RENDER take 22 to 28 ms (mean 25 ms), and COPY takes 15.6 ms. The \
              expected latency is 75 ms + 15.6 to 31.2 ms.",
             long_stages,
@@ -214,10 +200,8 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         deviation: Some(0.589),
         ..of_application(figure(
-            "7",
-            TR94,
+            ("7", TR94, 4.61, "fields"),
             "Mig, 417 triangles, fly-through in an HMD (sd 0.589)",
-            (4.61, "fields"),
             "mig on large without back faces, 10 seeds of head motion with 150 frames each",
             |settings| application(settings, "mig", 1),
         ))
@@ -225,10 +209,8 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         deviation: Some(0.502),
         ..of_application(figure(
-            "7b",
-            TR94,
+            ("7b", TR94, 4.47, "fields"),
             "molecules, 2,620 triangles and 1,219 spheres, fly-through (sd 0.502)",
-            (4.47, "fields"),
             "molecules as in figure 7: 4 seeds of head motion, 150 frames each",
             |settings| application(settings, "molecules", 3),
         ))
@@ -236,10 +218,8 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         deviation: Some(2.48),
         ..of_application(figure(
-            "7c",
-            TR94,
+            ("7c", TR94, 8.13, "fields"),
             "head, 59,592 triangles, fly-through (sd 2.48)",
-            (8.13, "fields"),
             "head as in figure 7: 2 seeds of head motion, 150 frames each",
             |settings| application(settings, "head", 5),
         ))
@@ -249,10 +229,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         cause: "Only the scenes matter, and ours only resemble the original ones: the 59,592 triangles of `head` are tiny, those of \
                 `mig` are larger. Binning by bounding boxes gives hardly more regions",
         ..figure(
-            "8",
-            TR94,
+            ("8", TR94, 1.3, "regions"),
             "regions that a typical triangle touches, an eye",
-            (1.3, "regions"),
             "mig, molecules and head during 20 s of their head motions: the result is the number of entries of all bins per triangle on the screen",
             |settings| settings.applications.value("8".to_owned(), || regions_touched(settings)),
         )
@@ -261,10 +239,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         basis: Basis::Fitted("gp.bin_bytes"),
         reason: "The memory for bins was computed from this number",
         ..interpreted(figure(
-            "16",
-            TR94,
+            ("16", TR94, 7_700.0, "triangles"),
             "triangles that cover the screen, as many as the bins of 12 slaves hold: about",
-            (7_700.0, "triangles"),
             "full-screen:N on small-hmd: the largest N whose bins fit for one eye, computed from the size of the bins. The test tests/interpretations.rs runs this N and N + 1.",
             most_in_bins,
         ))
@@ -274,10 +250,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         basis: BIN_RULE,
         reason: OF_BINS,
         ..interpreted(figure(
-            "16b",
-            TR94,
+            ("16b", TR94, 2.0, "Hz"),
             "7,700 of them: frames a second",
-            (2.0, "Hz"),
             "full-screen:7700 on small-hmd",
             |settings| full_bins(settings).map(|summary| rate_hz(&summary).into()),
         ))
@@ -287,10 +261,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         reason: OF_BINS,
         latency: Some(OF_FULL_BINS),
         ..interpreted(figure(
-            "16c",
-            TR94,
+            ("16c", TR94, 293.0, "ms"),
             "the same: mean frame time, about 17.5 fields",
-            (293.0, "ms"),
             "full-screen:7700 on small-hmd: the time of an eye from the start of its TRANSFORM to the end of its COPY",
             |settings| Ok(spread_ms(Statistics::of(full_bins(settings)?.eye_latencies_ms.iter().copied()))),
         ))
@@ -311,10 +283,8 @@ pub(super) const FIGURES: &[Measurement] = &[
                 the wait for the retrace half a field on average, and the beam another half to the middle of the screen. \
                 A slower host would explain the rest (docs/interpretations.md, Findings)",
         ..figure(
-            "17",
-            I3D95,
+            ("17", I3D95, 55.5, "ms"),
             "measured from outside with pendulum and photodiode, a minimal data set, rendering alone",
-            (55.5, "ms"),
             "full-screen:2 on small-hmd, one frame for each of 24 passes of the bob through its lowest point. The brackets give the results for a photodiode on the first and the last line.",
             rig,
         )
@@ -326,10 +296,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         latency: Some(LatencyDefinition { sentence: "I3D95: time stamps, without the first frames", ..TO_THE_SWAP }),
         cause: "As row 4. I3D95 found the same range outside, where our pipeline is idle",
         ..interpreted(figure(
-            "17b",
-            I3D95,
+            ("17b", I3D95, 55.5, "ms"),
             "measured from inside, in a full pipeline: the same range",
-            (55.5, "ms"),
             "the experiment of figure 4, beside the latency of figure 17 by the time stamps of its frames on demand",
             inside_and_outside,
         ))

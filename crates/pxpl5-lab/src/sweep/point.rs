@@ -1,7 +1,7 @@
 //! Simulates one point of a sweep. Each point of a sweep is one experiment.
 
 use super::header::json;
-use super::{Shard, Sweep, SweepSpace, measures};
+use super::{Shard, Sweep, SweepSpace, is_run, measures};
 use crate::StudyError;
 use crate::estimate::Estimate;
 use crate::experiment_file::Plan;
@@ -132,12 +132,11 @@ impl Swept for Sweep {
         let config_hash = experiment.config_hash().to_string();
         // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times. A point
         // whose only quantity is the result of a search needs no run of its own.
-        let is_searched = |m: &Measure| m.name() == Measure::TRIANGLES;
-        let is_run = !plan.measure.iter().all(is_searched);
+        let is_run = is_run(&plan);
         let results =
             is_run.then(|| plan.results_of(experiment.host(BareHost).stopped_by(stop.clone()))).transpose()?;
         let value = |m: &Measure| match &results {
-            _ if is_searched(m) => LimitQuery::of_scene(&plan)?.possible(stop),
+            _ if m.name() == Measure::TRIANGLES => LimitQuery::of_scene(&plan)?.possible(stop),
             results => Ok(results.as_ref().and_then(|results| m.of(results))),
         };
         let level = choice.filter(|_| is_run).map(|choice| choice.to_string());
