@@ -327,7 +327,7 @@ fn assert_errors_are_of_what_was_shown(report: &Value, case: &str) {
     let budget = &report["head"]["end_to_end"];
     let stages = ["tracking_ms", "waiting_ms", "sending_ms", "drawing_ms", "showing_ms", "scanning_ms", "lighting_ms"];
     let sum = stages.map(|stage| number(&budget[stage])).into_iter().sum::<Option<f64>>();
-    let differs = sum.zip(number(&budget["total_ms"])).map_or(0.0, |(sum, total)| (sum - total).abs());
+    let differs = sum.zip(number(&budget["head_to_light_ms"])).map_or(0.0, |(sum, total)| (sum - total).abs());
     assert!(sum.is_some() == (budget["n"] != 0) && differs < 1e-6, "{case}: {budget}");
     assert!(whole(&budget["n"], "n", case) <= whole(&report["pictures"], "pictures", case), "{case}");
 }

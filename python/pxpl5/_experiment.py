@@ -89,11 +89,17 @@ class Made:
         if isinstance(head, str):
             self.put("head.motion", head)
         elif isinstance(head, Head):
-            self.motion = head.moving()
             for path, value in head.settings().items():
                 self.put(path, value)
+            self.move(head.moving())
         elif head is not None:
             raise SettingError(f"head: expected the name of a motion or a Head, found {head!r}")
+
+    def move(self, motion: Motion | None) -> None:
+        """Sets the motion of the head. None keeps the motion of the settings."""
+        self.motion = motion
+        if motion is not None:
+            self.settings.set_motion(motion)
 
     def _put_machine(self, machine: str | Machine | None) -> None:
         if isinstance(machine, Machine):
@@ -212,9 +218,7 @@ class Experiment(Strict):
 
     def _take(self, made: Made) -> None:
         self._made = made
-        self._native = _native.Experiment(
-            made.settings, scene=made.scene, motion=made.motion, policy=made.policy, phong=made.phong
-        )
+        self._native = _native.Experiment(made.settings, scene=made.scene, policy=made.policy, phong=made.phong)
 
     def run(
         self,
@@ -370,7 +374,8 @@ class Experiment(Strict):
     def settings(self) -> str:
         """Returns all effective settings as the text of an experiment file.
 
-        A :class:`Scene`, a :class:`Motion` and a policy have no name in an experiment file. The text has substitutes for them.
+        A :class:`Scene`, a motion without a name and a policy cannot be in an experiment file. The text has substitutes for scene and
+        policy, and a hash of the motion.
         """
         return self._made.settings.text()
 
@@ -417,7 +422,8 @@ def _experiment_of(
     """Returns the experiment with the given settings and objects. The module pickle calls this function."""
     made = Made()
     made.settings.parse(text, "pickle")
-    made.scene, made.motion, made.policy, made.phong = scene, motion, policy, phong
+    made.scene, made.policy, made.phong = scene, policy, phong
+    made.move(motion)
     experiment = Experiment.__new__(Experiment)
     experiment._take(made)
     return experiment

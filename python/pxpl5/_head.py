@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from ._checks import named
 from ._native import Motion
 
 
+@named
 @dataclass(frozen=True)
 class Head:
     """A moving head with a tracker and a predictor.
@@ -39,7 +41,7 @@ class Head:
     tracking: dict[str, float] = field(default_factory=dict)
 
     def settings(self) -> dict[str, object]:
-        """Returns the keys of an experiment file for this head. A motion without a name has the key of ``still``."""
+        """Returns the keys of an experiment file for this head. The motion ``still`` stands for a motion without a name."""
         named = isinstance(self.motion, str)
         keys: dict[str, object] = {
             "head.motion": self.motion if named else "still",

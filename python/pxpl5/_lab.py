@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from . import _native
-from ._checks import Strict, names, optional, whole
+from ._checks import Strict, named, names, optional, whole
 from ._drawing import Drawing, plotted
 from ._errors import SettingError
 from ._experiment import Made
@@ -78,6 +78,7 @@ def figure_ids() -> dict[str, str]:
     return dict(_native.figure_ids())
 
 
+@named
 def figures(
     ids: str | Sequence[str] | None = None, *, level: LevelName | str = "transaction", progress: Progress = None
 ) -> Table[FigureRow]:
@@ -180,11 +181,8 @@ def limit_over(
     bisection. Raises :class:`SettingError` for a wrong setting or range.
     """
     made = Made()
-    made.put_all(pipeline, scene, machine, head, {"level": level, **keys, **(settings or {})})
-    if made.motion is not None:
-        raise SettingError("head: expected a motion with a name, or the path of a recording, found a Motion")
-    _positive("rate_hz", rate_hz)
-    _positive("latency_fields", latency_fields)
+    goals = _goals(rate_hz, latency_fields)
+    made.put_all(pipeline, scene, machine, head, {"level": level, **goals, **keys, **(settings or {})})
     # An unknown key is refused with the nearest one, before its range is asked for.
     made.settings.copy().set(f"{over}=1", "over")
     with reporting(progress, "values") as reporter:
@@ -193,8 +191,6 @@ def limit_over(
             over,
             low=low,
             high=high,
-            rate_hz=rate_hz,
-            latency_fields=latency_fields,
             fields=optional("fields", fields, MIN_FIELDS),
             progress=reporter,
         )
@@ -217,9 +213,12 @@ def limit_over(
 MIN_FIELDS = 10
 
 
-def _positive(name: str, value: float | None) -> None:
-    if value is not None and not value > 0:
-        raise SettingError(f"{name}: expected a number above 0, found {value!r}")
+def _goals(rate_hz: float | None, latency_fields: float | None) -> dict[str, float | None]:
+    """Returns the keys of a goal."""
+    for name, value in (("rate_hz", rate_hz), ("latency_fields", latency_fields)):
+        if value is not None and not value > 0:
+            raise SettingError(f"{name}: expected a number above 0, found {value!r}")
+    return {"limit.rate_hz": rate_hz, "limit.latency_fields": latency_fields}
 
 
 def limit(
@@ -227,6 +226,7 @@ def limit(
     scene: str | PathLike[str] | None = None,
     *,
     machine: MachineName | str | Machine | None = None,
+    head: str | Head | None = None,
     rate_hz: float | None = None,
     latency_fields: float | None = None,
     fields: int | None = None,
@@ -239,23 +239,18 @@ def limit(
 
     - ``scene``: ``full-screen`` or ``typical``, or a built-in scene or model file, which is decimated; default: the scene in the
       pipeline's own definition of the limit.
+    - ``head``: a tracked head. Each simulation then tunes the predictor, unless its numbers are given.
     - ``rate_hz`` (least number of updates a second) or ``latency_fields`` (greatest mean latency): goal instead of the pipeline's goal.
 
     Raises :class:`SettingError` for a wrong setting.
     """
-    _positive("rate_hz", rate_hz)
-    _positive("latency_fields", latency_fields)
     made = Made()
-    test_scene = scene if scene in ("full-screen", "typical") else None
-    model = None if test_scene is not None else scene
-    made.put_all(pipeline, model or "full-screen:1", machine, None, {"level": level, **keys, **(settings or {})})
+    goals = _goals(rate_hz, latency_fields)
+    made.put_all(pipeline, scene or "full-screen:1", machine, head, {"level": level, **goals, **keys, **(settings or {})})
     with reporting(progress, "sizes") as reporter:
         found = _native.limit(
             made.settings,
-            test_scene=None if test_scene is None else str(test_scene),
-            thinned=model is not None,
-            rate_hz=rate_hz,
-            latency_fields=latency_fields,
+            of_scene=scene is not None,
             fields=optional("fields", fields, MIN_FIELDS),
             progress=reporter,
         )
@@ -352,7 +347,7 @@ def compare(
     ``limits`` adds the largest number of triangles of each row, ``causes`` the error by cause, ``predictors`` the error with every
     predictor. Each of the three takes longer.
 
-    - ``head``: a head whose motion has a name or is the path of a recording. The motion ``synthetic`` differs with the seed.
+    - ``head``: a :class:`Head`, or the name of a motion. The motion ``synthetic`` differs with the seed.
     - ``fields``: number of fields of each run; default: the length of the recording, or 300 without a recording.
     - ``only``: names of the rows to run; default: one or two rows of each family of pipelines.
     - ``all_rows``: True to run all rows.
@@ -378,8 +373,6 @@ def compare(
         raise SettingError(f"all_rows: expected no names in only, found {only!r}")
     made = Made()
     made.put_all(None, scene, machine, head, {**({} if fields is None else {"fields": fields}), **keys, **(settings or {})})
-    if made.motion is not None:
-        raise SettingError("head: expected a motion with a name, or the path of a recording, found a Motion")
     if not made.settings.has("head.tracker"):
         made.put("head.tracker", "optical")
     if isinstance(seeds, int):
@@ -457,6 +450,7 @@ LEVEL_DEFINITIONS = {
 }
 
 
+@named
 def levels(*, experiments: int | None = None, speeds: bool = False, progress: Progress = None) -> Table[LevelRow]:
     """Returns a row for each level of modelling, with its errors and its speed.
 
@@ -481,6 +475,7 @@ READING_DEFINITIONS = {
 }
 
 
+@named
 def interpretations(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Progress = None) -> Table[InterpretationRow]:
     """Ranks interpretations of the papers' open questions by their agreement with the figures of Rendering Control.
 

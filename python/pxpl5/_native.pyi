@@ -127,10 +127,7 @@ def figures(
 def limit(
     settings: Settings,
     *,
-    test_scene: str | None = None,
-    thinned: bool = False,
-    rate_hz: float | None = None,
-    latency_fields: float | None = None,
+    of_scene: bool = False,
     fields: int | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> LimitData: ...
@@ -140,8 +137,6 @@ def limit_over(
     *,
     low: float | None = None,
     high: float | None = None,
-    rate_hz: float | None = None,
-    latency_fields: float | None = None,
     fields: int | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> OverLimitData: ...
@@ -171,6 +166,7 @@ class Settings:
     def load(self, path: str | PathLike[str]) -> None: ...
     def parse(self, text: str, name: str) -> None: ...
     def set(self, assignment: str, place: str) -> None: ...
+    def set_motion(self, motion: Motion) -> None: ...
     def has(self, path: str) -> bool: ...
     @property
     def is_sweep(self) -> bool: ...
@@ -184,7 +180,6 @@ class Experiment:
         settings: Settings,
         *,
         scene: Scene | None = None,
-        motion: Motion | None = None,
         policy: Callable[[PolicyFrame], Sequence[tuple[int, int]]] | None = None,
         phong: bool = True,
     ) -> Experiment: ...
@@ -360,6 +355,8 @@ class Table(Generic[Row]):
     def names(self) -> list[str]: ...
     @property
     def definitions(self) -> dict[str, str]: ...
+    @overload
+    def __getitem__(self, name: slice, /) -> Table[Row]: ...
     @overload
     def __getitem__(self, name: NumberColumn | QuantityName, /) -> Numbers: ...
     @overload

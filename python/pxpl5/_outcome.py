@@ -316,10 +316,16 @@ class Outcome(Strict):
         """Returns a timeline as in the papers: the work of each resource on each picture. A timeline has at most 16 fields.
 
         The timeline shows the dependencies of one picture, by default the first picture after the warm-up. Raises
-        :class:`DiscardedError` as :attr:`pictures` does.
+        :class:`SettingError` for a picture or a field outside the run, and :class:`DiscardedError` as :attr:`pictures` does.
         """
         self._check_records("timeline")
         numbers = optional("picture", picture), optional("first_field", first_field), optional("fields", fields, 1)
+        if first_field is not None and first_field >= self.report["fields"]:
+            raise SettingError(f"first_field: expected 0 to {self.report['fields'] - 1}, found {first_field}")
+        begun = self.pictures["picture"]
+        if picture is not None and picture not in begun:
+            expected = f"{begun.min()} to {begun.max()}" if len(begun) else "none, because the run began no picture"
+            raise SettingError(f"picture: expected {expected}, found {picture}")
         return Drawing(self._live.timeline(*numbers, title))
 
     def page(self, name: str = "run") -> str:

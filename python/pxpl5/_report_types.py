@@ -160,7 +160,7 @@ class BudgetData(TypedDict):
     showing_ms: float | None
     scanning_ms: float | None
     lighting_ms: float | None
-    total_ms: float | None
+    head_to_light_ms: float | None
     n: int
 
 

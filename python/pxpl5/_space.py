@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from . import _native
-from ._checks import Strict, whole
+from ._checks import Strict, named, whole
 from ._machine import Machine
 from ._toml import toml_of
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ._study_types import SweepHeaderData
 
 
+@named
 @dataclass(frozen=True)
 class Range:
     """Whole numbers from ``start`` to at most ``stop`` at equal distances."""

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from . import _native
-from ._checks import Strict, optional
+from ._checks import Strict, named, optional
 from ._cluster import Cluster
 from ._drawing import Drawing, plotted
 from ._native import Table
@@ -86,6 +86,7 @@ class SweepResults(Strict):
         return self.table._repr_html_()
 
 
+@named
 def sweep(
     space: SweepSpace,
     *,

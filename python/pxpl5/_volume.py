@@ -7,6 +7,7 @@ from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
 from . import _native
+from ._checks import named
 from ._native import Scene, Table, Volume
 from ._progress import Progress, reporting
 from ._tables import table_of
@@ -25,13 +26,16 @@ def _scene(scene: str | PathLike[str] | Scene) -> Scene:
 
 
 def draw_volume(
-    scene: str | PathLike[str] | Scene, settings: Mapping[str, object] | None = None
+    scene: str | PathLike[str] | Scene, settings: Mapping[str, object] | None = None, **keys: object
 ) -> Volume:
     """Draws a scene as a volume. ``settings`` has values by path (:func:`volume_keys`); other settings are those of the paper.
 
+    Each path can also be a keyword argument, with ``__`` instead of a point: ``display__width=64``.
+
     Raises :class:`SettingError` with the path, the expected value and the found value.
     """
-    assignments = [f"{path}={_text(value)}" for path, value in (settings or {}).items()]
+    given = {path.replace("__", "."): value for path, value in keys.items()} | dict(settings or {})
+    assignments = [f"{path}={_text(value)}" for path, value in given.items()]
     return Volume.draw(_scene(scene), assignments)
 
 
@@ -44,6 +48,7 @@ def volume_keys() -> list[str]:
     return _native.volume_keys()
 
 
+@named
 def volume_figures(scenes: Sequence[str | Scene] = ("mig", "head", "molecules"), *, progress: Progress = None) -> Table[VolumeFigureRow]:
     """Returns a row for each figure of the SpatialGL paper, with published value, simulated value and provenance.
 

@@ -83,6 +83,42 @@ def test_numbers_of_a_tracker_can_be_set() -> None:
     assert any(parameter.path == "tracking.optical.latency" for parameter in pxpl5.tracking_parameters())
 
 
-def test_a_motion_needs_a_name_to_be_compared() -> None:
-    with pytest.raises(pxpl5.SettingError, match="expected a motion with a name"):
-        pxpl5.compare("full-screen:2", head=pxpl5.Head(pan), fields=60, seeds=1)
+def test_studies_take_a_callable_as_the_motion_that_it_describes() -> None:
+    def found(motion: object) -> tuple[float, pxpl5.OverLimit]:
+        head = pxpl5.Head(motion, predict="none")  # type: ignore[arg-type]
+        compared = pxpl5.compare("full-screen:2", head=head, fields=40, seeds=1, only="slats", progress=False)
+        limits = {"latency_fields": 1.01, "fields": 30, "high": 6, "progress": False}
+        over = pxpl5.limit_over("machine.n_renderers", "slats", "typical:10", head=head, **limits)  # type: ignore[arg-type]
+        return compared.data["pipelines"][0]["error"]["mean_px"]["mean"], over
+
+    (named, over), (called, over_called) = found("pan:100"), found(pan)
+    assert called == pytest.approx(named, rel=1e-6) and named > 1
+    assert over_called == over and over.least == 5
+    times = np.linspace(0, 1, 61)
+    poses = pxpl5.Motion("pan:100").poses(times)
+    recorded = pxpl5.Motion.from_arrays(times, poses[:, :3], poses[:, 3:])
+    head = pxpl5.Head(recorded, predict="none")
+    # The recording lasts a second: 59 whole fields of 1001/60 ms.
+    data = pxpl5.compare("full-screen:2", head=head, seeds=1, only="slats", progress=False).data
+    assert data["fields"] == 59 and dict(data["head"])["head.motion"].startswith("given:")
+
+
+def test_what_a_motion_raises_is_raised_by_studies() -> None:
+    def breaks(time_s: float) -> tuple[float, ...]:
+        # The hash of a motion covers every eighth of a second, so only a run finds this pose.
+        if 0.13 < time_s < 0.2:
+            raise ZeroDivisionError("no head")
+        return pan(time_s)
+
+    head = pxpl5.Head(breaks, predict="none")
+    with pytest.raises(ZeroDivisionError, match="no head"):
+        pxpl5.compare("full-screen:2", head=head, fields=40, seeds=1, only="slats", progress=False)
+    with pytest.raises(ZeroDivisionError, match="no head"):
+        pxpl5.limit("slats", "typical", head=head, progress=False)
+
+
+def test_a_limit_takes_a_head() -> None:
+    """A tracker that reports every field costs no time of the graphics processors: the limit is that without a head."""
+    plain = pxpl5.limit("slats", machine="slats", copy="whole", progress=False)
+    limit = pxpl5.limit("slats", machine="slats", copy="whole", head=pxpl5.Head("pan:100", predict="none"), progress=False)
+    assert limit.triangles == plain.triangles

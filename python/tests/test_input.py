@@ -71,6 +71,35 @@ def test_a_misspelled_attribute_names_the_nearest() -> None:
             thing.colour = 3  # type: ignore[union-attr]
 
 
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: pxpl5.Head("pan:100", traker="ideal"), "Head: there is no keyword traker; did you mean tracker?"),
+        (lambda: pxpl5.SweepSpace({}, sedes=2), "SweepSpace: there is no keyword sedes; did you mean seeds?"),
+        (lambda: pxpl5.Range(1, 2, stepp=1), "Range: there is no keyword stepp; did you mean step?"),
+        (lambda: pxpl5.Machine(prest="slats"), "Machine: there is no keyword prest; did you mean preset?"),
+        (lambda: pxpl5.Experiment.from_text("", setings={}), "there is no keyword setings; did you mean settings?"),
+        (lambda: pxpl5.Experiment("slats", "mig").run(thread=1), "Experiment.run: there is no keyword thread; did you mean threads?"),
+        (lambda: pxpl5.figures("9", levl="cycle"), "figures: there is no keyword levl; did you mean level?"),
+        (lambda: pxpl5.draw_volume("mig", display__wdth=64), "did you mean `display.width`"),
+        (lambda: pxpl5.limit("slats", traker="ideal"), "there is no key `traker`"),
+    ],
+)
+def test_a_wrong_keyword_is_refused_with_the_nearest(call, words: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(pxpl5.SettingError) as raised:
+        call()
+    assert words in str(raised.value)
+
+
+def test_a_timeline_outside_of_the_run_is_refused(slats: pxpl5.Outcome) -> None:
+    fields, last = slats.report["fields"], max(slats.pictures["picture"])
+    assert slats.timeline(first_field=fields - 1, picture=int(last)).svg.startswith("<svg")
+    with pytest.raises(pxpl5.SettingError, match=f"first_field: expected 0 to {fields - 1}, found {fields}"):
+        slats.timeline(first_field=fields)
+    with pytest.raises(pxpl5.SettingError, match=rf"picture: expected \d+ to {last}, found {last + 1}"):
+        slats.timeline(picture=int(last) + 1)
+
+
 def test_a_parameter_that_is_no_number_is_refused_in_words() -> None:
     machine = pxpl5.Machine()
     for wrong in ("fast", None, [1]):

@@ -49,6 +49,17 @@ def test_the_first_rows_are_a_table(mig: pxpl5.Outcome) -> None:
         pictures.head(-1)
 
 
+def test_a_slice_of_a_table_is_that_of_its_list_of_rows(mig: pxpl5.Outcome) -> None:
+    pictures = mig.pictures
+    rows = pictures.rows()
+    for part in (slice(2, 5), slice(-3, None), slice(None, 2), slice(None), slice(7, 3), slice(10**6, None)):
+        assert pictures[part].rows() == rows[part]
+    assert pictures[1:3].definitions == pictures.definitions and pyarrow.table(pictures[1:3]).num_rows == 2
+    assert list(pictures[2:5]["picture"]) == list(pictures["picture"][2:5])
+    with pytest.raises(pxpl5.SettingError, match="a slice of a table: expected the step 1, found 2"):
+        pictures[::2]
+
+
 def test_what_is_missing_is_null_and_nan(mig: pxpl5.Outcome) -> None:
     """During the warm-up a picture has no parts of its latency."""
     pictures = mig.pictures

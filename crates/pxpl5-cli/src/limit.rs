@@ -9,7 +9,7 @@ use crate::scenes;
 use crate::settings::set_within;
 use crate::terminal::{print, print_error, warn};
 use clap::Args;
-use pxpl5::limit::{CEILING, Limit, LimitQuery, Model, OverLimit, OverQuery};
+use pxpl5::limit::{CEILING, Limit, LimitQuery, OverLimit, OverQuery};
 use pxpl5::tracking::time::PS_PER_S;
 use pxpl5::{ExperimentFile, Goal, Level, LimitCriterion, Plan, TestScene};
 use pxpl5_sim::Time;
@@ -127,22 +127,14 @@ impl LimitArgs {
     fn query(&self) -> Result<LimitQuery, CliError> {
         let plan = self.file()?.resolve()?;
         self.check_rate(&plan)?;
-        // An option replaces one part of the pipeline's own criterion.
         warn(&plan.warnings(), self.quiet);
-        let query = LimitQuery::of_plan(&plan);
-        let fields = self.fields.unwrap_or(query.criterion.fields);
+        let fields = self.fields.unwrap_or(plan.limit.fields);
         if fields < MIN_FIELDS {
             return Err(CliError::usage(format!("--fields: expected at least {MIN_FIELDS}, found {fields}")));
         }
-        let scene = self.test_scene().unwrap_or(query.criterion.scene);
-        let goal = self.goal()?.unwrap_or(query.criterion.goal);
-        // Any other scene name is a model that is decimated to every size.
-        let model = if self.scene.is_some() && self.test_scene().is_none() {
-            Some(Model::load(plan.scene.clone())?)
-        } else {
-            None
-        };
-        Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
+        // Without --scene, the pipeline chooses the triangles.
+        let of = if self.scene.is_some() { LimitQuery::of_scene(&plan)? } else { LimitQuery::of_plan(&plan) };
+        Ok(LimitQuery { criterion: LimitCriterion { fields, ..of.criterion }, ..of })
     }
 
     /// Returns an error for a rate that the display cannot show.
@@ -188,8 +180,7 @@ impl LimitArgs {
         last.set_text(&format!("{key}={}", values.text(values.last())), "--over")?;
         let plan = last.resolve()?;
         warn(&first.warnings(), self.quiet);
-        let goal = self.goal()?.unwrap_or(first.limit.goal);
-        Ok((OverQuery { file, key: key.to_owned(), values, goal }, plan))
+        Ok((OverQuery { file, key: key.to_owned(), values, goal: first.limit.goal }, plan))
     }
 
     /// Returns the papers' test scene with the name in `--scene`, or `None` if `--scene` names another scene.
@@ -197,16 +188,14 @@ impl LimitArgs {
         TestScene::ALL.into_iter().find(|scene| self.scene.as_deref() == Some(scene.name()))
     }
 
-    /// Returns the settings that all scene sizes share. Without a model in `--scene`, these settings have a placeholder
-    /// scene of one triangle.
+    /// Returns the settings that all scene sizes share. Without `--scene`, these settings have a placeholder scene of one
+    /// triangle.
     fn file(&self) -> Result<ExperimentFile, CliError> {
         let mut file = ExperimentFile::with(registry());
         // A search over triangles starts with the pipeline whose limit was published.
         let pipeline = if self.key().is_some() { "rendering-control" } else { "slats" };
         file.set("pipeline", pipeline, "--pipeline")?;
-        // A test scene depends on the size, so a placeholder with one triangle stands for it.
-        let model = self.scene.as_deref().filter(|_| self.test_scene().is_none());
-        file.set("scene", model.unwrap_or("full-screen:1"), "--scene")?;
+        file.set("scene", self.scene.as_deref().unwrap_or("full-screen:1"), "--scene")?;
         // Options override the pipeline's defaults, and `--set` overrides options.
         for (key, value) in &self.pipeline.given {
             file.set_text(&format!("{key}={value}"), &format!("--{}", option_of(key)))?;
@@ -224,19 +213,14 @@ impl LimitArgs {
         for (key, option, value) in numbers {
             value.map(|value| file.set(key, i64::try_from(value).unwrap_or(i64::MAX), option)).transpose()?;
         }
+        let goals = [("limit.rate_hz", "--rate", self.rate), ("limit.latency_fields", "--latency", self.latency)];
+        for (key, option, value) in goals {
+            value.map(|value| file.set(key, value, option)).transpose()?;
+        }
         for assignment in &self.sets {
             file.set_text(assignment, "--set")?;
         }
         Ok(file)
-    }
-
-    fn goal(&self) -> Result<Option<Goal>, CliError> {
-        match (self.rate, self.latency) {
-            (None, None) => Ok(None),
-            (Some(hz), _) if hz > 0.0 => Ok(Some(Goal::RateHz(hz))),
-            (_, Some(fields)) if fields > 0.0 => Ok(Some(Goal::LatencyFields(fields))),
-            _ => Err(CliError::usage("--rate and --latency must be greater than 0")),
-        }
     }
 }
 

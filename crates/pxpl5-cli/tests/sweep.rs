@@ -224,6 +224,36 @@ fn the_published_sweep_has_a_few_hundred_points() {
     (0..sweep.space().points()).for_each(|point| drop(sweep.plan(point).expect("an experiment")));
 }
 
+/// Runs the two sweeps of docs/sweeps.md whose quantity is a limit.
+#[test]
+fn the_page_has_the_limits_of_its_sweeps() {
+    let folder = Folder::new("limits");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let page = fs::read_to_string(root.join("docs/sweeps.md")).expect("the page");
+    let rows = |name: &str| -> Vec<[u64; 3]> {
+        let file = root.join(format!("experiments/sweep-{name}.toml")).display().to_string();
+        succeeds(&folder.run(&["sweep", &file, "--out", name, "--quiet"]));
+        let csv = read(&folder, &format!("{name}/results.csv"));
+        let cells = |line: &str| {
+            [2, 3, 4].map(|n| line.split(',').nth(n).and_then(|cell| cell.parse().ok()).expect("a number"))
+        };
+        csv.lines().skip(1).map(cells).collect()
+    };
+    let all = rows("cheapest");
+    let mut enough: Vec<&[u64; 3]> = all.iter().filter(|[.., triangles]| *triangles >= 5_000).collect();
+    enough.sort_by_key(|[gps, renderers, _]| (gps + renderers, *gps));
+    let line = |[gps, renderers, triangles]: &&[u64; 3]| format!("{} {gps} {renderers} {triangles}\n", gps + renderers);
+    assert!(
+        page.contains(&format!("```text\n{}```", enough.iter().take(3).map(line).collect::<String>())),
+        "{enough:?}"
+    );
+    let boards = rows("boards");
+    for renderers in [5, 10, 20] {
+        let cells = boards.iter().filter(|row| row[1] == renderers).map(|row| format!(" {} |", row[2]));
+        assert!(page.contains(&format!("| {renderers} |{}", cells.collect::<String>())), "{boards:?}");
+    }
+}
+
 /// Tests that a relative path of a scene refers to the folder of the sweep's file, for any current folder and also in
 /// axes.
 #[test]

@@ -50,7 +50,7 @@ pub use scene::{ModelPlace, SceneChoice};
 pub use text::Settings;
 pub use tracking_numbers::tracking_parameters;
 
-use pxpl5_run::Registry;
+use pxpl5_run::{Fingerprint, Registry};
 use pxpl5_sim::parameters::{FileError, SettingError};
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -58,6 +58,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::Value;
 use toml::de::DeTable;
+use tracking::motion::Motion;
 
 /// The value of a setting with its origin: a file and line, or an option of the command line.
 #[derive(Clone, Debug)]
@@ -83,6 +84,9 @@ impl Setting {
 /// Name of the random head motion, which gets its seed from the run.
 const SYNTHETIC: &str = "synthetic";
 
+/// Prefix of the value of `head.motion` for a motion without a name.
+const GIVEN: &str = "given:";
+
 /// The settings of an experiment by path. Each setting is valid, but the combination of all settings is not yet
 /// checked.
 #[derive(Clone, Debug)]
@@ -93,6 +97,8 @@ pub struct ExperimentFile {
     /// File and line of each key in the table `sweep`, by the path of the key.
     pub(crate) sweep_places: BTreeMap<String, String>,
     contents: BTreeMap<String, Arc<[u8]>>,
+    /// Motion of the head that has no name ([`ExperimentFile::set_motion`]).
+    motion: Option<Arc<dyn Motion + Send + Sync>>,
 }
 
 impl ExperimentFile {
@@ -109,6 +115,7 @@ impl ExperimentFile {
             sweep: None,
             sweep_places: BTreeMap::new(),
             contents: BTreeMap::new(),
+            motion: None,
         }
     }
 
@@ -205,6 +212,19 @@ impl ExperimentFile {
     pub fn with_contents(mut self, name: impl Into<String>, contents: impl Into<Arc<[u8]>>) -> Self {
         self.contents.insert(name.into(), contents.into());
         self
+    }
+
+    /// Moves the head by a motion without a name, such as a function. The value of `head.motion` becomes a hash of the
+    /// motion, so that another motion is another experiment.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`Self::set`].
+    pub fn set_motion(&mut self, motion: Arc<dyn Motion + Send + Sync>) -> Result<(), SettingError> {
+        let mut hash = Fingerprint::default();
+        motion.identify(&mut |key, value| hash.setting(key, value));
+        self.motion = Some(motion);
+        self.set("head.motion", format!("{GIVEN}{hash}"), "the motion")
     }
 
     pub(super) fn contents(&self, name: &str) -> Option<&Arc<[u8]>> {

@@ -21,13 +21,13 @@ pub use search::{Hints, Limit, about, most};
 use crate::edges::{NEAR_FIELDS, to_other_retraces};
 use crate::error::StudyError;
 use crate::estimate::{Estimate, RunWork};
-use crate::experiment_file::{Plan, SceneChoice};
+use crate::experiment_file::{HeadChoice, Plan, SceneChoice};
 use crate::levels::{LevelChoice, choose_level, summarise};
 use crate::study::{Study, check};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{
-    Coverage, Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry,
-    Summary, TestScene,
+    Coverage, Experiment, ExperimentError, Goal, Head, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels,
+    Registry, Summary, TestScene,
 };
 use pxpl5_scene::{Decimation, Scene};
 use pxpl5_sim::parameters::SettingError;
@@ -47,6 +47,8 @@ pub struct LimitQuery {
     pub criterion: LimitCriterion,
     /// Model that replaces the test scene of `criterion`, if any.
     pub model: Option<Model>,
+    /// Tracked head of the viewer, if any. The closed form of the hints leaves it out.
+    pub head: Option<Arc<Head>>,
     /// Level of detail of all simulations.
     pub level: Level,
     /// Bound of the deviation from the cycle level in percent, if the level is chosen for each scene instead.
@@ -151,18 +153,31 @@ impl Study for LimitQuery {
 impl LimitQuery {
     /// Creates a query from the machine, pipeline and level of an experiment, with the pipeline's own criterion.
     pub fn of_plan(plan: &Plan) -> Self {
-        Self {
-            registry: Arc::clone(&plan.registry),
-            config: plan.machine.clone(),
-            pipeline: Arc::clone(&plan.pipeline),
-            criterion: plan.limit,
-            model: None,
-            level: plan.level,
-            within_percent: plan.within_percent,
-            uses_hints: true,
-            looks_above: true,
-            stop: StopFlag::default(),
+        let (registry, pipeline) = (Arc::clone(&plan.registry), Arc::clone(&plan.pipeline));
+        let head = plan.head.as_ref().map(HeadChoice::head);
+        let query = Self::new(registry, plan.machine.clone(), pipeline, plan.limit);
+        Self { head, level: plan.level, within_percent: plan.within_percent, ..query }
+    }
+
+    /// Creates a query whose scenes are those of an experiment with other numbers of triangles: a test scene if the
+    /// experiment draws one, otherwise its own scene with fewer triangles.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`Model::load`].
+    pub fn of_scene(plan: &Plan) -> Result<Self, SettingError> {
+        let mut query = Self::of_plan(plan);
+        match plan.scene.name.split(':').next().unwrap_or_default().parse() {
+            Ok(scene) => query.criterion.scene = scene,
+            Err(_) => query.model = Some(Model::load(plan.scene.clone())?),
         }
+        Ok(query)
+    }
+
+    /// Returns the largest number of triangles that reaches the goal, or `None` if [`CEILING`] triangles reach it.
+    pub(crate) fn possible(&self, stop: &StopFlag) -> Result<Option<f64>, StudyError> {
+        let limit = self.run(&mut stop.clone())?;
+        Ok(limit.has_limit().then_some(f64::from(limit.triangles)))
     }
 
     /// Creates a query with the pipeline's own criterion.
@@ -174,19 +189,28 @@ impl LimitQuery {
         let registry = crate::registry();
         let unknown = |_| SettingError::combination(format_args!("no pipeline {} is known", pipeline.name()));
         let criterion = (registry.pipeline(pipeline.name()).map_err(unknown)?.limit)(&PipelineSettings::default());
-        let (pipeline, level) = (Arc::new(pipeline), Level::Transaction);
-        Ok(Self {
+        Ok(Self::new(registry, config, Arc::new(pipeline), criterion))
+    }
+
+    fn new(
+        registry: Arc<Registry>,
+        config: MachineConfig,
+        pipeline: Arc<dyn Pipeline>,
+        criterion: LimitCriterion,
+    ) -> Self {
+        Self {
             registry,
             config,
             pipeline,
             criterion,
             model: None,
-            level,
+            head: None,
+            level: Level::Transaction,
             within_percent: None,
             uses_hints: true,
             looks_above: true,
             stop: StopFlag::default(),
-        })
+        }
     }
 
     /// Returns an error if the goal is an update rate that cannot be measured for the scene. A pipeline that draws all
@@ -218,7 +242,8 @@ impl LimitQuery {
         // Small triangles stand for a model, because the decimated sizes of a model are expensive to build.
         let scene = if self.model.is_some() { TestScene::Typical } else { self.criterion.scene };
         let criterion = LimitCriterion { scene, ..self.criterion };
-        let analytic = Self { level: Level::Analytic, within_percent: None, model: None, criterion, ..self.clone() };
+        let plain = Self { model: None, head: None, within_percent: None, ..self.clone() };
+        let analytic = Self { level: Level::Analytic, criterion, ..plain };
         let near = about(self.ceiling(), |triangles| analytic.reached(triangles)).ok();
         let doubtful = near.filter(|_| self.model.is_none()).map(|near| analytic.doubtful(near));
         Hints { near, doubtful: doubtful.unwrap_or_default() }
@@ -267,11 +292,12 @@ impl LimitQuery {
     }
 
     fn experiment_of(&self, scene: Arc<Scene>) -> Experiment {
-        Experiment::with(self.config.clone(), Arc::clone(&self.pipeline), scene)
+        let experiment = Experiment::with(self.config.clone(), Arc::clone(&self.pipeline), scene)
             .fields(self.criterion.fields)
             .pixels(Pixels::Off)
             .level(self.level)
-            .stopped_by(self.stop.clone())
+            .stopped_by(self.stop.clone());
+        self.head.iter().fold(experiment, |experiment, head| experiment.head(Arc::clone(head)))
     }
 
     fn summary(&self, triangles: u32) -> Result<Summary, ExperimentError> {

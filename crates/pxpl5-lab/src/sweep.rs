@@ -109,11 +109,16 @@ impl Sweep {
 }
 
 /// Returns the quantities of a row: the quantities in the experiment file, then the counts that a comparison of means
-/// requires ([`Measure::counts`]).
+/// requires ([`Measure::counts`]). A point without a run has no counts.
 fn measures(plan: &Plan) -> Vec<Measure> {
     let mut all = plan.measure.clone();
-    all.extend(Measure::counts().into_iter().filter(|count| !plan.measure.contains(count)));
+    all.extend(Measure::counts().into_iter().filter(|count| is_run(plan) && !plan.measure.contains(count)));
     all
+}
+
+/// Returns true unless the only quantity of a point is the result of a search.
+fn is_run(plan: &Plan) -> bool {
+    plan.measure.iter().map(Measure::name).ne([Measure::TRIANGLES])
 }
 
 #[cfg(test)]

@@ -113,7 +113,7 @@ fn without_a_complete_picture_there_is_no_latency_update_or_error() {
             "/latency_ms/mean",
             "/latency_fields/mean",
             "/updates_hz",
-            "/head/end_to_end/total_ms",
+            "/head/end_to_end/head_to_light_ms",
             "/head/end_to_end/drawing_ms",
             "/head/error/pixels/mean",
             "/head/error/pixels/p99",

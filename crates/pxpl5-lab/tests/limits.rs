@@ -7,8 +7,9 @@ use pxpl5_lab::ExperimentFile;
 use pxpl5_lab::Study;
 use pxpl5_lab::levels::summarise;
 use pxpl5_lab::limit::LimitQuery;
+use pxpl5_lab::sweep::{Sweep, Swept};
 use pxpl5_run::{Experiment, Level, TestScene};
-use pxpl5_sim::SplitMix64;
+use pxpl5_sim::{SplitMix64, StopFlag};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -120,6 +121,23 @@ fn many_senders_are_limited_by_their_shared_channels() {
     let [simulated, analytic] =
         [simulated, analytic].map(|query| f64::from(query.run(&mut ()).expect("it runs").triangles));
     assert!((analytic / simulated - 1.0).abs() < BOUND_PERCENT / 100.0, "{analytic} for {simulated}");
+}
+
+/// TR94 prints 110 triangles for whole copies, and 31.2 ms for the copies of a stereo pair, which allow 30 Hz and not 45.
+#[test]
+fn a_sweep_finds_the_triangles_of_a_point_for_its_goal() {
+    let possible = |settings: &str| {
+        let text =
+            format!("{settings}\nmeasure = [\"triangles_possible\"]\nlevel = \"analytic\"\n[sweep.grid]\nseed = [1]");
+        let sweep = Sweep::new(ExperimentFile::parse(&text, "test").expect("TOML")).expect("a sweep");
+        let found = sweep.simulate(0, &StopFlag::default()).expect("it runs");
+        assert_eq!((found.measured.len(), found.trace_hash), (1, None));
+        found.measured["triangles_possible"]
+    };
+    assert_eq!(possible("pipeline = \"slats\"\ncopy = \"whole\"\nscene = \"full-screen:1\""), Some(110.0));
+    let stereo =
+        |hz: u32| possible(&format!("pipeline = \"rendering-control\"\nscene = \"typical:1\"\nlimit.rate_hz = {hz}"));
+    assert!(stereo(30) > Some(0.0) && stereo(45) == Some(0.0), "{:?} {:?}", stereo(30), stereo(45));
 }
 
 /// Tests every size up to the result, although the search tries only some of them.

@@ -50,8 +50,7 @@ const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome
 const LATENCY: &str =
     "latency by the definition of the pipeline (see the report), over all complete pictures in the window";
 
-const TO_LIGHT: &str =
-    "from the head's pose to the light of the picture's middle; without an ending the mean; only with a head.motion";
+const TO_LIGHT: &str = "from the head's pose to the light of the picture's middle; only with a head.motion";
 
 const PREDICTION_INTERVAL_ERROR: &str = "error of the prediction interval: distance between the instant for which a picture is predicted and the one for which it should be; only with a head.motion, and not for pipelines that draw each part for its own instant";
 
@@ -66,7 +65,7 @@ const PATH: &str = "share of the latency that waits for this resource, 0 to 1, o
 /// All quantities that can be measured, by name.
 ///
 /// Quantities that need a simulated run have no value at the analytic level.
-pub static QUANTITIES: [Quantity; 66] = [
+pub static QUANTITIES: [Quantity; 67] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().rounded().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().rounded().sd),
     of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
@@ -123,10 +122,10 @@ pub static QUANTITIES: [Quantity; 66] = [
     of_summary("eye_ms", "from the start of an eye's TRANSFORM to the end of its COPY; mean; none for Slats", |s| {
         s.eye_latencies_ms.statistics().mean
     }),
-    of_run("to_light_ms", TO_LIGHT, |_, r| Some(r.head.as_ref()?.end_to_end.total_ms)),
-    of_run("to_light_ms.p50", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p50)),
-    of_run("to_light_ms.p95", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p95)),
-    of_run("to_light_ms.p99", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p99)),
+    of_run("head_to_light_ms.mean", TO_LIGHT, |_, r| Some(r.head.as_ref()?.end_to_end.head_to_light_ms)),
+    of_run("head_to_light_ms.p50", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p50)),
+    of_run("head_to_light_ms.p95", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p95)),
+    of_run("head_to_light_ms.p99", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p99)),
     of_run("prediction_interval_error_ms.mean", PREDICTION_INTERVAL_ERROR, |_, r| {
         Some(r.percentiles_ms.prediction_interval_error.mean)
     }),
@@ -158,6 +157,12 @@ pub static QUANTITIES: [Quantity; 66] = [
         "lines_never_shown",
         "lines of regions that were overwritten before the display had shown them; none for a display that shows whole buffers",
         |_, r| r.lines_never_shown().map(|lines| lines as f64),
+    ),
+    // No run has this quantity: a sweep searches for it.
+    of_summary(
+        Measure::TRIANGLES,
+        "largest number of triangles that reaches the goal of the pipeline or of `limit.*`, as `pxpl5 limit` finds it; only in sweeps",
+        |_| f64::NAN,
     ),
     of_run("pictures", "complete pictures in the window", |_, r| Some(r.pictures as f64)),
     of_run("events", "events of the simulation", |_, r| Some(r.events as f64)),
@@ -239,6 +244,9 @@ impl Measure {
     /// Name of the quantity that counts the due pictures that were not shown.
     pub const NOT_SHOWN: &'static str = "missed_retraces";
 
+    /// Name of the quantity that a sweep searches for: the largest number of triangles that reaches a goal.
+    pub const TRIANGLES: &'static str = "triangles_possible";
+
     /// Name of the quantity that counts the evaluated pixels.
     pub const EVALUATED: &'static str = "error_px.n";
 
@@ -265,9 +273,7 @@ impl Measure {
         };
         value.filter(|value| value.is_finite())
     }
-}
 
-impl Measure {
     /// Returns the value of this quantity for a run, or `None` if the run has no finite value for this quantity.
     ///
     /// This method computes a report of the run. If a report already exists, [`Measure::of`] takes less time.

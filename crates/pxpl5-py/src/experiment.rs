@@ -4,7 +4,6 @@ use crate::background::{Progress, in_background};
 use crate::catalogue::python;
 use crate::errors::{failed_run, wrong_setting};
 use crate::frames::{Frames, film_bytes};
-use crate::motion::Motion;
 use crate::outcome::{Outcome, exception, outcome_of_run};
 use crate::policy::{Asked, PythonFunctions};
 use crate::scene::Scene;
@@ -31,18 +30,17 @@ pub(crate) struct Experiment {
 
 #[pymethods]
 impl Experiment {
-    /// Creates an experiment from settings. An argument ``scene``, ``motion`` or ``policy`` replaces the scene, motion
-    /// or policy in the settings.
+    /// Creates an experiment from settings. An argument ``scene`` or ``policy`` replaces the scene or the policy in the
+    /// settings.
     ///
     /// Raises :class:`pxpl5.SettingError` for the first invalid or missing setting, and for a scene that cannot be
     /// loaded.
     #[new]
-    #[pyo3(signature = (settings, *, scene = None, motion = None, policy = None, phong = true))]
+    #[pyo3(signature = (settings, *, scene = None, policy = None, phong = true))]
     fn new(
         py: Python<'_>,
         settings: &Settings,
         scene: Option<&Scene>,
-        motion: Option<&Motion>,
         policy: Option<Py<PyAny>>,
         phong: bool,
     ) -> PyResult<Self> {
@@ -60,17 +58,10 @@ impl Experiment {
             plan.pipeline = Arc::new(PolicyPipeline::new(policy, shading));
         }
         // Runs in Python have events.
-        let (mut native, choice) = plan.with_chosen_level(scene, true);
+        let (native, choice) = plan.with_chosen_level(scene, true);
         let level = choice.map_or_else(|| plan.level_name(), |choice| choice.to_string());
-        // A motion in the arguments replaces the motion of the tracked head.
-        if let Some(motion) = motion {
-            let Some(head) = native.head.as_ref().cloned() else {
-                return Err(wrong_setting("a motion: expected a head with a tracker, found none"));
-            };
-            native = native.head(pxpl5::Head::clone(&head).with_motion(Arc::clone(&motion.moving)));
-        }
-        let motion = motion.and_then(|motion| motion.called.clone());
-        Ok(Self { plan, native, level, functions: PythonFunctions { motion, policy } })
+        let functions = PythonFunctions { motion: settings.motion.clone(), policy };
+        Ok(Self { plan, native, level, functions })
     }
 
     /// Returns a hash of all settings and inputs on which the trace of the run depends.

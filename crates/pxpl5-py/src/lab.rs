@@ -9,9 +9,9 @@ use pxpl5::figures::{FigureQuery, FigureRow, FigureSettings, all};
 use pxpl5::interpretations::InterpretationQuery;
 use pxpl5::lab::diff::DiffQuery;
 use pxpl5::levels::{LevelQuery, LevelRecord};
-use pxpl5::limit::{Limit, LimitQuery, Model, OverQuery};
+use pxpl5::limit::{Limit, LimitQuery, OverQuery};
 use pxpl5::rig::{PASSES, Rig, RigQuery};
-use pxpl5::{Goal, Level, SettingError, Study, StudyError};
+use pxpl5::{Level, SettingError, Study, StudyError};
 use pyo3::prelude::*;
 use serde_json::json;
 use std::path::PathBuf;
@@ -120,8 +120,9 @@ pub(crate) fn compare<'py>(
     let comparison = in_background(py, progress, waits, move |watch| {
         query.store = folder.map(|folder| query.open_store(&folder, resume)).transpose()?.map(Arc::new);
         query.run(&mut &*watch)
-    })?;
-    python(py, &comparison.map_err(wrong_study)?)
+    });
+    settings.check()?;
+    python(py, &comparison?.map_err(wrong_study)?)
 }
 
 fn wrong_study(error: StudyError) -> PyErr {
@@ -134,43 +135,31 @@ fn wrong_study(error: StudyError) -> PyErr {
 /// Finds the largest number of triangles that a pipeline draws in time. Returns a dictionary with triangles,
 /// first_miss, island, unbroken_from, tried, goal, fields and scene. ``triangles`` is None if there is no limit.
 ///
-/// ``test_scene`` is full-screen, typical or None. If ``thinned`` is true, triangles of the settings' own scene are
-/// removed instead of using a test scene. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal.
+/// If ``of_scene`` is true, the triangles are those of the settings' own scene instead of the pipeline's test scene.
 /// ``first_miss`` is the smallest tried number that misses the goal. ``island`` is the largest tried number above
 /// first_miss that reaches the goal. From ``unbroken_from`` on, all numbers up to ``triangles`` were tried. ``fields``
 /// is the length of each run.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]
-#[pyo3(signature = (settings, *, test_scene = None, thinned = false, rate_hz = None, latency_fields = None, fields = None, progress = None))]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+#[pyo3(signature = (settings, *, of_scene = false, fields = None, progress = None))]
 pub(crate) fn limit<'py>(
     py: Python<'py>,
     settings: &Settings,
-    test_scene: Option<&str>,
-    thinned: bool,
-    rate_hz: Option<f64>,
-    latency_fields: Option<f64>,
+    of_scene: bool,
     fields: Option<u64>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let plan = settings.plan()?;
-    let mut query = LimitQuery::of_plan(&plan);
+    let query = py.detach(|| if of_scene { LimitQuery::of_scene(&plan) } else { Ok(LimitQuery::of_plan(&plan)) });
+    let mut query = query.map_err(wrong_setting)?;
     query.criterion.fields = fields.unwrap_or(query.criterion.fields);
-    // A goal in the arguments replaces the goal of the pipeline.
-    let own = query.criterion.goal;
-    query.criterion.goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(own);
-    if let Some(name) = test_scene {
-        query.criterion.scene = name.parse().map_err(|error: SettingError| wrong_setting(error.at("test_scene")))?;
-    }
-    // With `thinned`, a reduced version of the settings' scene replaces the test scene.
-    if thinned {
-        query.model = Some(py.detach(|| Model::load(plan.scene)).map_err(wrong_setting)?);
-    }
     let drawn =
         query.model.as_ref().map_or(query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned());
     let criterion = query.criterion;
-    let found = study(py, progress, query)?.map_err(wrong_setting)?;
+    let found = study(py, progress, query);
+    settings.check()?;
+    let found = found?.map_err(wrong_setting)?;
     let Limit { triangles, first_miss, island, unbroken_from, tried } = found;
     python(
         py,
@@ -191,22 +180,18 @@ pub(crate) fn limit<'py>(
 /// fields, least, most, reached, tried, missed_at and because.
 ///
 /// ``low`` and ``high`` are the ends of the range that is searched. Without these two arguments, the search covers the
-/// range that the sources of the setting allow. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal.
-/// ``missed_at`` is a value that misses the goal, and ``because`` names the resource that limits the experiment with
+/// range that the sources of the setting allow. ``missed_at`` is a value that misses the goal, and ``because`` names the resource that limits the experiment with
 /// this value. ``fields`` is the length of each run.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting or range.
 #[pyfunction]
-#[pyo3(signature = (settings, key, *, low = None, high = None, rate_hz = None, latency_fields = None, fields = None, progress = None))]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+#[pyo3(signature = (settings, key, *, low = None, high = None, fields = None, progress = None))]
 pub(crate) fn limit_over<'py>(
     py: Python<'py>,
     settings: &Settings,
     key: &str,
     low: Option<f64>,
     high: Option<f64>,
-    rate_hz: Option<f64>,
-    latency_fields: Option<f64>,
     fields: Option<u64>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -215,10 +200,10 @@ pub(crate) fn limit_over<'py>(
     let fields = fields.unwrap_or(first.limit.fields);
     file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "keyword").map_err(wrong_setting)?;
     let values = OverQuery::values(&first, key, low, high).map_err(|error| wrong_setting(error.at("low and high")))?;
-    let goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(first.limit.goal);
-    let query = OverQuery { file, key: key.to_owned(), values, goal };
-    let limit = study(py, progress, query.clone())?;
-    let mut found = serde_json::to_value(limit.map_err(wrong_setting)?).map_err(wrong_setting)?;
+    let query = OverQuery { file, key: key.to_owned(), values, goal: first.limit.goal };
+    let limit = study(py, progress, query.clone());
+    settings.check()?;
+    let mut found = serde_json::to_value(limit?.map_err(wrong_setting)?).map_err(wrong_setting)?;
     found["over"] = key.into();
     found["goal"] = json!(query.goal);
     found["fields"] = fields.into();

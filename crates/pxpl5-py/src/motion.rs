@@ -6,6 +6,7 @@ use crate::policy::Raised;
 use glam::{DQuat, DVec3};
 use numpy::PyArray2;
 use numpy::ndarray::{Array2, ArrayView1, ArrayView2};
+use pxpl5::ExperimentFile;
 use pxpl5::tracking::motion::{Columns, End, Motion as Moving, Recording, RecordingFormat};
 use pxpl5::tracking::time::{nearest_ps, seconds};
 use pxpl5::tracking::{Pose, SettingSink};
@@ -23,7 +24,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// axis.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Motion {
-    pub(crate) moving: Arc<dyn Moving + Send + Sync>,
+    moving: Arc<dyn Moving + Send + Sync>,
     /// Python function that computes the poses of this motion, with the exception that the function has raised. `None`
     /// for other motions.
     pub(crate) called: Option<Arc<CallableMotion>>,
@@ -186,6 +187,15 @@ impl Motion {
 }
 
 impl Motion {
+    /// Moves the head of an experiment by this motion.
+    pub(crate) fn set_in(&self, file: &mut ExperimentFile) -> PyResult<()> {
+        let set = match self.origin {
+            Origin::Name => file.set("head.motion", self.about.as_str(), "a motion"),
+            Origin::Text { .. } | Origin::Callable => file.set_motion(Arc::clone(&self.moving)),
+        };
+        set.map_err(wrong_setting)
+    }
+
     /// Raises the exception that the motion's Python function has raised since the last check, if any.
     pub(crate) fn check(&self) -> PyResult<()> {
         match &self.called {

@@ -1,9 +1,11 @@
 //! Settings of an experiment by path, as in an experiment file.
 
 use crate::errors::wrong_setting;
+use crate::motion::{CallableMotion, Motion};
 use pxpl5::{ExperimentFile, Plan};
 use pyo3::prelude::*;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Settings of an experiment by path, as in an experiment file. The combination of all settings is checked only when an
 /// experiment is created from the settings.
@@ -11,6 +13,8 @@ use std::path::PathBuf;
 #[derive(Clone)]
 pub(crate) struct Settings {
     pub(crate) file: ExperimentFile,
+    /// Function of Python that moves the head, if any.
+    pub(crate) motion: Option<Arc<CallableMotion>>,
 }
 
 #[pymethods]
@@ -18,7 +22,7 @@ impl Settings {
     /// Creates empty settings.
     #[new]
     fn new() -> Self {
-        Self { file: ExperimentFile::new() }
+        Self { file: ExperimentFile::new(), motion: None }
     }
 
     /// Adds the settings of an experiment file (TOML) to the present settings. File names in the file are relative to
@@ -47,6 +51,15 @@ impl Settings {
         self.file.set_text(assignment, place).map_err(wrong_setting)
     }
 
+    /// Moves the head by a motion. A motion without a name has a hash as the value of ``head.motion``.
+    ///
+    /// Raises any exception of a Python function that computes the motion.
+    fn set_motion(&mut self, motion: &Motion) -> PyResult<()> {
+        motion.set_in(&mut self.file)?;
+        self.motion.clone_from(&motion.called);
+        self.check()
+    }
+
     /// Returns true if the setting at this path has a value.
     fn has(&self, path: &str) -> bool {
         self.file.place_of(path).is_some()
@@ -72,6 +85,11 @@ impl Settings {
 }
 
 impl Settings {
+    /// Raises the exception that the function of the head's motion has raised, if any.
+    pub(crate) fn check(&self) -> PyResult<()> {
+        self.motion.iter().try_for_each(|called| called.check())
+    }
+
     pub(crate) fn plan(&self) -> PyResult<Plan> {
         self.file.resolve().map_err(wrong_setting)
     }

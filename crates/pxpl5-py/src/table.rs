@@ -10,7 +10,7 @@ use arrow_schema::{DataType, Field, Schema};
 use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::{PyCapsule, PyDict, PyList, PyTuple, PyType};
+use pyo3::types::{PyCapsule, PyDict, PyList, PySlice, PyTuple, PyType};
 use pythonize::pythonize;
 use serde_json::{Map, Value};
 use std::collections::HashMap;
@@ -211,13 +211,21 @@ impl Table {
         fields.map(|field| (field.name().clone(), field.metadata().get("about").cloned().unwrap_or_default())).collect()
     }
 
-    /// Returns the values of a column by its name. Numbers are returned as a NumPy array of shape (rows,), int64 or
+    /// Returns the values of a column by its name, or the rows of a slice such as ``table[10:20]`` as a table. Numbers are returned as a NumPy array of shape (rows,), int64 or
     /// float64. If a number is missing, the array is float64 with NaN. Text and truth values are returned as a list
     /// with None for missing values. The numbers are copied, whereas readers of the Arrow stream share the memory of
     /// the table.
     ///
-    /// Raises KeyError with the existing names.
+    /// Raises KeyError with the existing names, and :class:`pxpl5.SettingError` for a slice whose step is not 1.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        if let Ok(slice) = name.cast::<PySlice>() {
+            let rows = slice.indices(self.batch.num_rows() as isize)?;
+            if rows.step != 1 {
+                return Err(wrong_setting(format!("a slice of a table: expected the step 1, found {}", rows.step)));
+            }
+            let batch = self.batch.slice(rows.start as usize, rows.slicelength);
+            return Ok(Bound::new(py, Self { batch })?.into_any());
+        }
         let Ok(name) = name.extract::<&str>() else {
             let found = name.repr()?;
             return Err(PyKeyError::new_err(format!(

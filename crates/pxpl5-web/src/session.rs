@@ -133,7 +133,7 @@ impl Session {
         let whole = Arc::clone(self.stepper.experiment().scene());
         let triangles = u32::try_from(whole.triangles().len()).ok().filter(|triangles| *triangles > 0)?;
         let model = Model::new(self.plan.scene.clone(), whole);
-        let query = LimitQuery { model: Some(model), ..LimitQuery::of_plan(&self.plan) };
+        let query = LimitQuery { model: Some(model), head: None, ..LimitQuery::of_plan(&self.plan) };
         about(triangles, |triangles| query.reached(triangles)).ok().map(u64::from)
     }
 

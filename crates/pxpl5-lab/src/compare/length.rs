@@ -47,7 +47,7 @@ impl CompareQuery {
 /// Returns the number of whole display periods in the recording that moves the head. Returns `None` if the motion is
 /// not a recording, if the recording is repeated without end, or if the display cannot be built.
 fn recorded_fields(plan: &Plan) -> Option<u64> {
-    let head = plan.head.as_ref().filter(|head| head.is_recording())?.head();
+    let until_ps = plan.head.as_ref()?.head().motion().moves_until_ps()?;
     // A period that begins when the recording ends is the first that is not simulated.
-    plan.display_periods(Time(head.motion().moves_until_ps()?))
+    plan.display_periods(Time(until_ps))
 }

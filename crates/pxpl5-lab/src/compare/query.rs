@@ -192,8 +192,7 @@ impl Study for CompareQuery {
         });
         let sampling = self.sampling(&any)?;
         // Settings of the first row alone do not belong to the head of all rows.
-        let shared =
-            ComparedPipeline { settings: &[], ..compared_pipelines[0] }.plan(&self.shared, any.seed)?;
+        let shared = ComparedPipeline { settings: &[], ..compared_pipelines[0] }.plan(&self.shared, any.seed)?;
         let mut comparison = Comparison {
             schema: "pxpl5-comparison/4",
             version: program::VERSION,
@@ -451,7 +450,7 @@ impl CompareQuery {
         }
         if self.limits && !compared.is_reference() {
             row.triangles_definition = definition(&plan);
-            let query = LimitQuery { looks_above: false, ..LimitQuery::of_plan(&plan) };
+            let query = LimitQuery { looks_above: false, head: None, ..LimitQuery::of_plan(&plan) };
             let triangles = query.run(&mut common.watcher.stop()).ok().map(|limit| limit.triangles);
             row.has_no_limit = triangles == Some(CEILING);
             row.triangles_possible = triangles.filter(|triangles| *triangles < CEILING);

@@ -3,7 +3,7 @@
 
 use super::read::{beside, plain, wrong};
 use super::scene::{SceneChoice, is_file};
-use super::{ExperimentFile, motion, reprojection, tracking_numbers};
+use super::{ExperimentFile, GIVEN, motion, reprojection, tracking_numbers};
 use crate::head_parts::{
     Replay, is_recorded_file, is_recording, is_walk, predictor, recording_of, replayed, tracker_by, walk,
 };
@@ -120,11 +120,6 @@ impl HeadChoice {
         Arc::clone(&self.head)
     }
 
-    /// Returns true if the motion of the head is a recording.
-    pub fn is_recording(&self) -> bool {
-        is_recording(&self.motion)
-    }
-
     pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
         self.head.motion().warnings().into_iter().map(|warning| format!("{}: {warning}", self.motion))
     }
@@ -176,6 +171,9 @@ fn moving(
     name: &str,
     replay: &Replay,
 ) -> Result<Arc<dyn tracking::motion::Motion + Send + Sync>, SettingError> {
+    if let Some(motion) = file.motion.as_ref().filter(|_| name.starts_with(GIVEN)) {
+        return Ok(Arc::clone(motion));
+    }
     // A recording in memory has priority over a file.
     if let Some(contents) = file.contents(name).filter(|_| is_recorded_file(name)) {
         let recording = recording_of(&**contents, name, replay);

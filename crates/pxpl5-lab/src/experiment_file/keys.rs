@@ -31,6 +31,8 @@ impl FileKey {
 /// Range of a coordinate of a model, m.
 const MODEL_M: KeyValues = KeyValues::Real(-1e4, 1e4);
 
+const RATE_HZ: KeyValues = KeyValues::Real(1e-3, 1e4);
+
 /// Keys that exist for every registry of pipelines and displays.
 const COMMON: &[Key] = &[
     Key::new("model.x", "place of the middle of the scene in its world, to the right", MODEL_M).with_unit("m"),
@@ -172,6 +174,13 @@ const COMMON: &[Key] = &[
     Key::new("within", "bound of the deviation from the cycle level, for the level auto", KeyValues::NUMBER)
         .with_unit("%")
         .with_default("5"),
+    Key::new("limit.rate_hz", "goal of the quantity triangles_possible: at least this many updates a second", RATE_HZ)
+        .with_default("the goal with which the pipeline was published"),
+    Key::new(
+        "limit.latency_fields",
+        "goal of the quantity triangles_possible: at most this mean latency, in fields",
+        KeyValues::Real(1e-3, 1e6),
+    ),
     Key::new("machine.preset", "a preset of `pxpl5 machines`", KeyValues::ANY),
     Key::new(
         "machine.code",

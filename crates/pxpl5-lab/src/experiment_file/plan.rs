@@ -12,8 +12,8 @@ use pxpl5_gp::CodeVersion;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{HeadSum, Measure, Results};
 use pxpl5_run::{
-    Experiment, ExperimentError, Level, LimitCriterion, Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry,
-    check_coverage, out_of_range, warning_without_code,
+    Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineEntry, PipelineSettings, Pixels,
+    Registry, check_coverage, out_of_range, warning_without_code,
 };
 use pxpl5_scene::{Hmd, Scene};
 use pxpl5_sim::Time;
@@ -74,6 +74,8 @@ pub struct Plan {
     pub pipeline: Arc<dyn Pipeline>,
     /// Criterion of a search for the largest number of triangles that are drawn in time.
     pub limit: LimitCriterion,
+    /// Goal that replaces the pipeline's own goal in `limit`, if the keys `limit.*` give one.
+    pub goal: Option<Goal>,
     /// Machine: a preset, adapted to the pipeline, with the parameters in the file.
     pub machine: MachineConfig,
     /// Scene by name and settings, not yet loaded.
@@ -122,6 +124,7 @@ impl ExperimentFile {
         let pipeline = (entry.build)(&given);
         let seed = self.seed()?;
         let head = HeadChoice::read(self, pipeline.as_ref(), seed)?;
+        let (own, goal) = ((entry.limit)(&given), self.goal()?);
         Ok(Plan {
             title: self.text("title")?.map(str::to_owned),
             registry: Arc::clone(self.registry()),
@@ -131,7 +134,8 @@ impl ExperimentFile {
             seed,
             level: self.level(entry, head.is_some())?.unwrap_or(Level::Transaction),
             within_percent: self.within()?,
-            limit: (entry.limit)(&given),
+            limit: LimitCriterion { goal: goal.unwrap_or(own.goal), ..own },
+            goal,
             hmd: hmd::read(self, pipeline.as_ref())?,
             pipeline,
             head,
@@ -145,6 +149,15 @@ impl ExperimentFile {
             published: Published::read(self)?,
             origin: Origin::read(self)?,
         })
+    }
+
+    fn goal(&self) -> Result<Option<Goal>, SettingError> {
+        let rate = self.number("limit.rate_hz")?.map(Goal::RateHz);
+        let latency = self.number("limit.latency_fields")?.map(Goal::LatencyFields);
+        match self.get("limit.latency_fields").filter(|_| rate.is_some()) {
+            Some(setting) => Err(wrong("limit.latency_fields", setting, "nothing beside limit.rate_hz")),
+            None => Ok(rate.or(latency)),
+        }
     }
 
     /// Returns the quantities in the key `measure`, or the default quantities.

@@ -6,7 +6,7 @@ use super::scene::is_file;
 use super::{ExperimentFile, hmd};
 use crate::head_parts::is_recorded_file;
 use pxpl5_machine::MachineConfig;
-use pxpl5_run::{Experiment, Fingerprint, KeyValue};
+use pxpl5_run::{Experiment, Fingerprint, Goal, KeyValue};
 use pxpl5_scene::Placement;
 use pxpl5_sim::parameters::Parameter;
 use pxpl5_sim::parameters::Value as Number;
@@ -56,6 +56,11 @@ impl Plan {
         all.put("level", self.level_name());
         self.within_percent.into_iter().for_each(|bound| all.put("within", bound));
         all.put("measure", self.measure.iter().map(|m| Value::from(m.name())).collect::<Vec<_>>());
+        match self.goal {
+            Some(Goal::RateHz(hz)) => all.put("limit.rate_hz", hz),
+            Some(Goal::LatencyFields(fields)) => all.put("limit.latency_fields", fields),
+            _ => {}
+        }
         all.put("output.pictures", self.output.pictures);
         all.put("output.timeline", self.output.timeline);
         all.put("output.csv", self.output.csv);

@@ -54,32 +54,30 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         basis: BY_TURN,
         reason: OF_TURN,
-        ..figure("J1", JITP, "error of one transform a field", (3.3, "deg"), OF_FIELD, error_of_field)
+        ..figure(("J1", JITP, 3.3, "deg"), "error of one transform a field", OF_FIELD, error_of_field)
     },
     Measurement {
         basis: BY_TURN,
         reason: OF_TURN,
-        ..figure("J1b", JITP, "the same", (33.0, "px"), OF_FIELD, |settings| in_pixels(error_of_field(settings)?))
+        ..figure(("J1b", JITP, 33.0, "px"), "the same", OF_FIELD, |settings| in_pixels(error_of_field(settings)?))
     },
     Measurement {
         basis: BY_TURN,
         reason: OF_TURN,
-        ..figure("J2", JITP, "error of one transform a line", (0.013, "deg"), OF_LINE, error_of_line)
+        ..figure(("J2", JITP, 0.013, "deg"), "error of one transform a line", OF_LINE, error_of_line)
     },
     Measurement {
         basis: BY_TURN,
         reason: OF_TURN,
-        ..figure("J2b", JITP, "the same", (0.13, "px"), OF_LINE, |settings| in_pixels(error_of_line(settings)?))
+        ..figure(("J2b", JITP, 0.13, "px"), "the same", OF_LINE, |settings| in_pixels(error_of_line(settings)?))
     },
     Measurement {
         range: Some(1.5),
         basis: Basis::Derived("the times of NTSC"),
         reason: "The time of a line is an input",
         ..figure(
-            "J3",
-            JITP,
+            ("J3", JITP, 65.0, "us"),
             "a line takes about",
-            (65.0, "us"),
             "the time between the first pixels of two lines of a field",
             time_of_line,
         )
@@ -87,10 +85,8 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         reason: "The paper shows a straight edge, and no rule was chosen to get it",
         ..figure(
-            "J4",
-            JITP,
+            ("J4", JITP, 100.0, "%"),
             "share of the slant of a vertical edge that just-in-time pixels remove: seen straight",
-            (100.0, "%"),
             "an edge by jitp-field and by jitp-scanline, as seen by an eye that turns with the head: the slant of a straight line through all rows",
             slant_removed,
         )
@@ -100,10 +96,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         reason: "Each visible line has one transform",
         cause: "A field has 240 visible lines, and JITP prints a round number",
         ..figure(
-            "J5",
-            JITP,
+            ("J5", JITP, 256.0, "times"),
             "vertices transformed line by line, over those of one transform a field: about",
-            (256.0, "times"),
             "jitp-scanline-racing and jitp-field-racing with one slave, whose software takes no time, so no line is late: vertices transformed in 20 fields",
             transforms,
         )

@@ -62,10 +62,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         varied: OF_GOURAUD,
         cause: CAUSE,
         ..figure(
-            "R1",
-            LEECH,
+            ("R1", LEECH, 1.6e6, "triangles/s"),
             "Gouraud triangles a second",
-            (1.6e6, "triangles/s"),
             "typical:40000 mono on large: triangles of a frame times frames per second",
             |settings| triangle_rate(settings, "large", Shading::Gouraud),
         )
@@ -76,10 +74,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         varied: OF_PHONG,
         cause: CAUSE,
         ..figure(
-            "R2",
-            LEECH,
+            ("R2", LEECH, 1.3e6, "triangles/s"),
             "Phong triangles a second: 1+ M, taken as more than 1 and less than the 1.6 M of Gouraud",
-            (1.3e6, "triangles/s"),
             "as R1 with Phong shading",
             |settings| triangle_rate(settings, "large", Shading::Phong),
         )
@@ -89,10 +85,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         varied: OF_PHONG,
         cause: CAUSE,
         ..figure(
-            "R3",
-            ("F89", "design goal"),
+            ("R3", ("F89", "design goal"), 1e6, "triangles/s"),
             "Phong triangles a second on 32 processors and 16 renderers",
-            (1e6, "triangles/s"),
             "as R2 on design-maximum",
             |settings| triangle_rate(settings, "design-maximum", Shading::Phong),
         )
@@ -102,10 +96,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         varied: OF_RENDERER,
         cause: "The published rate is a round number of the design; the model's follows from the array's bit-serial program",
         ..figure(
-            "R4b",
-            ("F89", "renderer"),
+            ("R4b", ("F89", "renderer"), 150e3, "triangles/s"),
             "Phong triangles a second of a renderer",
-            (150e3, "triangles/s"),
             "typical:20000 mono on small-hmd with one renderer: commands over the working time of the array; of 1,000 commands, 997 are triangles",
             renderer_rate,
         )
@@ -114,10 +106,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         basis: Basis::Derived("two operations a clock of 40 MHz"),
         reason: "Both are inputs. The row checks the pipelines of the model",
         ..figure(
-            "R7",
-            ("i860PRM", "processor"),
+            ("R7", ("i860PRM", "processor"), 80.0, "MFLOPS"),
             "single-precision peak of the i860 at 40 MHz",
-            (80.0, "MFLOPS"),
             "100 iterations of a loop of 256 pipelined multiply-adds with warm caches: operations per time; the instructions of the loop take the rest",
             |_| i860_peak(),
         )
@@ -128,10 +118,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         cause: "The program of the real spheres is unknown. Ours has an exact root; a paraboloid gives the upper end of the interval. Both are faster \
                 than the recollected rate, whose machine and spheres are not known",
         ..figure(
-            "R8",
-            ("UNC, recollected", "whole machine"),
+            ("R8", ("UNC, recollected", "whole machine"), 700e3, "spheres/s"),
             "Phong spheres a second",
-            (700e3, "spheres/s"),
             "20,000 spheres of 18 pixels, spread like the triangles of typical:N, mono on large",
             sphere_rate,
         )

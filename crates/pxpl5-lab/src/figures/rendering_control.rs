@@ -95,6 +95,22 @@ const GAP: &str = "If TR94's fields are exact, about one field (one COPY) is mis
 const BIN_RULE: Basis = Basis::Rule("TRANSFORM waits until the bins have room for it");
 const OF_BINS: &str = "No paper states the rule. It was chosen because both figures follow from it";
 
+const fn interpreted(figure: Measurement) -> Measurement {
+    Measurement { is_interpreted: true, varied: Varied::ByFormula, ..figure }
+}
+
+const fn of_application(figure: Measurement) -> Measurement {
+    Measurement {
+        basis: APPLICATION,
+        reason: OF_APPLICATION,
+        latency: Some(OF_THE_VIEWER),
+        is_interpreted: true,
+        varied: Varied::ByEvents(OF_FRAMES),
+        cause: GAP,
+        ..figure
+    }
+}
+
 /// The figures of Rendering Control, in the order of their numbers.
 pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
@@ -102,10 +118,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         reason: "The overhead of a message was computed from this time",
         varied: Varied::ByFormula,
         ..figure(
-            "1",
-            TR94,
+            ("1", TR94, 780.0, "us"),
             "copy of one region",
-            (780.0, "us"),
             "mean over all regions of a stereo frame, per 15,360 pixels of port time",
             |settings| Ok(trivial(settings)?.region_copy_us.into()),
         )
@@ -115,10 +129,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         reason: "TR94 multiplies row 1 by 20 regions and two eyes, and so does the model if it copies one eye after the other",
         varied: Varied::ByFormula,
         ..figure(
-            "2",
-            TR94,
+            ("2", TR94, 31.2, "ms"),
             "copy of both eyes in stereo",
-            (31.2, "ms"),
             "full-screen:12 on small-hmd: COPY left plus COPY right of a frame, each from first to last word",
             |settings| trivial(settings).map(|summary| (summary.first_copy_ms + summary.last_copy_ms).into()),
         )
@@ -126,139 +138,98 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         reason: "`store` follows from TR94's text, the room from F89. TR94 derives the figure from the same rules, so the row checks the firmware",
         latency: Some(OF_THEORY),
-        is_interpreted: true,
-        varied: Varied::ByFormula,
-        ..figure(
-            "3",
-            TR94,
+        ..interpreted(figure(
+            ("3", TR94, 50.0, "ms"),
             "stereo, trivial scene, theory: from the start of TRANSFORM to the end of COPY",
-            (50.0, "ms"),
             "full-screen:12 on small-hmd. Software, transform and array take no time, so only COPY works",
             copy_alone,
-        )
+        ))
     },
     Measurement {
         basis: Basis::Interpretation("each eye"),
         reason: "The text allows samples of the first eye, too",
         latency: Some(TO_THE_SWAP),
-        is_interpreted: true,
-        varied: Varied::ByFormula,
         cause: "By TR94's rules, TRANSFORM may begin while two eyes wait for their copies, so a faster TRANSFORM or RENDER only waits longer",
-        ..figure(
-            "4",
-            TR94,
+        ..interpreted(figure(
+            ("4", TR94, 56.5, "ms"),
             "small HMD machine, 12 triangles that cover the screen: from the start of TRANSFORM to the swap",
-            (56.5, "ms"),
             "full-screen:12 on small-hmd",
             |settings| {
                 let summary = trivial(settings)?;
                 let latencies = settings.interpretation.latencies_ms(&summary).iter().copied();
                 Ok(spread_ms(Statistics::of(latencies)).beside(to_other_retraces(&summary)))
             },
-        )
+        ))
     },
     Measurement {
         basis: Basis::Derived("row 2 takes two fields"),
         reason: "Copies of 31.2 ms fit into two fields and not into one",
-        is_interpreted: true,
-        varied: Varied::ByFormula,
-        ..figure("4b", TR94, "the same: frames per second", (30.0, "Hz"), "full-screen:12 on small-hmd", |settings| {
-            trivial(settings).map(|summary| rate_hz(&summary).into())
-        })
+        ..interpreted(figure(
+            ("4b", TR94, 30.0, "Hz"),
+            "the same: frames per second",
+            "full-screen:12 on small-hmd",
+            |settings| trivial(settings).map(|summary| rate_hz(&summary).into()),
+        ))
     },
     Measurement {
         reason: "As row 3. The paper's own words choose the greatest latency",
         latency: Some(GREATEST),
-        is_interpreted: true,
-        varied: Varied::ByFormula,
         cause: "TR94's greatest value lets COPY begin after RENDER. Here, COPY begins with the first finished region",
-        ..figure(
-            "5",
-            TR94,
+        ..interpreted(figure(
+            ("5", TR94, 4004.0 / 60.0, "ms"),
             "TRANSFORM, RENDER and COPY of equal length at 30 Hz: up to",
-            (4004.0 / 60.0, "ms"),
             "full-screen:516 on small-hmd: RENDER takes 15.6 ms, like COPY, and the time of a triangle on a GP is set so that TRANSFORM does, too",
             equal_stages,
-        )
+        ))
     },
     Measurement {
         range: Some(7.8),
         basis: Basis::Interpretation("a frame, from its first eye"),
         reason: "The text does not name the eyes. The stages of a frame add up to its three TRANSFORMs",
         latency: Some(OF_FRAME),
-        is_interpreted: true,
-        varied: Varied::ByFormula,
         cause: "A renderer may copy its first regions while it draws the others, so COPY overlaps RENDER. TR94's formula lets COPY begin later",
-        ..figure(
-            "6",
-            TR94,
+        ..interpreted(figure(
+            ("6", TR94, 98.4, "ms"),
             "TRANSFORM = RENDER, both longer than COPY: 3 x TRANSFORM + 1 to 2 x COPY",
-            (98.4, "ms"),
             "full-screen:732 to 936 on small-hmd, like figure 5: TRANSFORM and RENDER take 22 to 28 ms (mean 25 ms), COPY 15.6 ms, so 75 ms + 15.6 to \
             31.2 ms are expected",
             long_stages,
-        )
+        ))
     },
     Measurement {
         deviation: Some(0.589),
-        basis: APPLICATION,
-        reason: OF_APPLICATION,
-        latency: Some(OF_THE_VIEWER),
-        is_interpreted: true,
-        varied: Varied::ByEvents(OF_FRAMES),
-        cause: GAP,
-        ..figure(
-            "7",
-            TR94,
+        ..of_application(figure(
+            ("7", TR94, 4.61, "fields"),
             "Mig, 417 triangles, fly-through in an HMD (sd 0.589)",
-            (4.61, "fields"),
             "mig on large without back faces, 10 seeds of head motion with 150 frames each",
             |settings| application(settings, "mig", 1),
-        )
+        ))
     },
     Measurement {
         deviation: Some(0.502),
-        basis: APPLICATION,
-        reason: OF_APPLICATION,
-        latency: Some(OF_THE_VIEWER),
-        is_interpreted: true,
-        varied: Varied::ByEvents(OF_FRAMES),
-        cause: GAP,
-        ..figure(
-            "7b",
-            TR94,
+        ..of_application(figure(
+            ("7b", TR94, 4.47, "fields"),
             "molecules, 2,620 triangles and 1,219 spheres, fly-through (sd 0.502)",
-            (4.47, "fields"),
             "molecules as in figure 7: 4 seeds of head motion, 150 frames each",
             |settings| application(settings, "molecules", 3),
-        )
+        ))
     },
     Measurement {
         deviation: Some(2.48),
-        basis: APPLICATION,
-        reason: OF_APPLICATION,
-        latency: Some(OF_THE_VIEWER),
-        is_interpreted: true,
-        varied: Varied::ByEvents(OF_FRAMES),
-        cause: GAP,
-        ..figure(
-            "7c",
-            TR94,
+        ..of_application(figure(
+            ("7c", TR94, 8.13, "fields"),
             "head, 59,592 triangles, fly-through (sd 2.48)",
-            (8.13, "fields"),
             "head as in figure 7: 2 seeds of head motion, 150 frames each",
             |settings| application(settings, "head", 5),
-        )
+        ))
     },
     Measurement {
         reason: "No scene and no rule of binning was chosen by it",
         cause: "Only the scenes matter, and ours only resemble the original ones: the 59,592 triangles of `head` are tiny, those of \
                 `mig` are larger. Binning by bounding boxes gives hardly more regions",
         ..figure(
-            "8",
-            TR94,
+            ("8", TR94, 1.3, "regions"),
             "regions that a typical triangle touches, an eye",
-            (1.3, "regions"),
             "mig, molecules and head during 20 s of their head motions: entries of all bins per triangle on the screen",
             |settings| settings.applications.value("8".to_owned(), || regions_touched(settings)),
         )
@@ -266,46 +237,34 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         basis: Basis::Fitted("gp.bin_bytes"),
         reason: "The memory for bins was computed from this number",
-        is_interpreted: true,
-        varied: Varied::ByFormula,
-        ..figure(
-            "16",
-            TR94,
+        ..interpreted(figure(
+            ("16", TR94, 7_700.0, "triangles"),
             "triangles that cover the screen, as many as the bins of 12 slaves hold: about",
-            (7_700.0, "triangles"),
             "full-screen:N on small-hmd: the largest N whose bins fit for one eye, computed from their size; tests/interpretations.rs runs N and N + 1",
             most_in_bins,
-        )
+        ))
     },
     Measurement {
         range: Some(0.5),
         basis: BIN_RULE,
         reason: OF_BINS,
-        is_interpreted: true,
-        varied: Varied::ByFormula,
-        ..figure(
-            "16b",
-            TR94,
+        ..interpreted(figure(
+            ("16b", TR94, 2.0, "Hz"),
             "7,700 of them: frames a second",
-            (2.0, "Hz"),
             "full-screen:7700 on small-hmd",
             |settings| full_bins(settings).map(|summary| rate_hz(&summary).into()),
-        )
+        ))
     },
     Measurement {
         basis: BIN_RULE,
         reason: OF_BINS,
         latency: Some(OF_FULL_BINS),
-        is_interpreted: true,
-        varied: Varied::ByFormula,
-        ..figure(
-            "16c",
-            TR94,
+        ..interpreted(figure(
+            ("16c", TR94, 293.0, "ms"),
             "the same: mean frame time, about 17.5 fields",
-            (293.0, "ms"),
             "full-screen:7700 on small-hmd: an eye from the start of its TRANSFORM to the end of its COPY",
             |settings| Ok(spread_ms(Statistics::of(full_bins(settings)?.eye_latencies_ms.iter().copied()))),
-        )
+        ))
     },
     Measurement {
         range: Some(1.5),
@@ -323,10 +282,8 @@ pub(super) const FIGURES: &[Measurement] = &[
                 the wait for the retrace half a field on average, and the beam another half to the middle of the screen. \
                 A slower host would explain the rest (docs/interpretations.md, Findings)",
         ..figure(
-            "17",
-            I3D95,
+            ("17", I3D95, 55.5, "ms"),
             "measured from outside with pendulum and photodiode, a minimal data set, rendering alone",
-            (55.5, "ms"),
             "full-screen:2 on small-hmd, one frame for each of 24 passes of the bob through its lowest point; in brackets, with the photodiode on the \
             first and the last line",
             rig,
@@ -337,16 +294,12 @@ pub(super) const FIGURES: &[Measurement] = &[
         basis: Basis::Derived("row 4"),
         reason: "I3D95 measured one full-screen triangle for each GP in a full pipeline, as row 4 does",
         latency: Some(LatencyDefinition { sentence: "I3D95: time stamps, without the first frames", ..TO_THE_SWAP }),
-        is_interpreted: true,
-        varied: Varied::ByFormula,
         cause: "As row 4. I3D95 found the same range outside, where our pipeline is idle",
-        ..figure(
-            "17b",
-            I3D95,
+        ..interpreted(figure(
+            ("17b", I3D95, 55.5, "ms"),
             "measured from inside, in a full pipeline: the same range",
-            (55.5, "ms"),
             "the experiment of figure 4, beside the latency of figure 17 by the time stamps of its frames on demand",
             inside_and_outside,
-        )
+        ))
     },
 ];

@@ -28,114 +28,94 @@ const OF_FIELD: LatencyDefinition = LatencyDefinition {
     sentence: "TR94: from the begin of the transformation to that of the scan-out",
 };
 
+const fn by_formula(figure: Measurement) -> Measurement {
+    Measurement { varied: Varied::ByFormula, ..figure }
+}
+
 /// The figures of Slats, in the order of their numbers.
 pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         basis: Basis::Derived("the pipeline's definition"),
         reason: "A field of Slats that is drawn in time is shown after one field, by design",
         latency: Some(OF_FIELD),
-        varied: Varied::ByFormula,
-        ..figure(
-            "9",
-            BOTH,
+        ..by_formula(figure(
+            ("9", BOTH, 1.0, "fields"),
             "rendering latency, constant",
-            (1.0, "fields"),
             "full-screen:100 on slats with the COPY optimisation",
             latency,
-        )
+        ))
     },
     Measurement {
         basis: Basis::Derived("row 9 and the display's rate"),
         reason: "One new picture in each field, if no field is missed",
-        varied: Varied::ByFormula,
-        ..figure(
-            "9b",
-            BOTH,
+        ..by_formula(figure(
+            ("9b", BOTH, 60.0, "Hz"),
             "updates per second",
-            (60.0, "Hz"),
             "full-screen:100 on slats with the COPY optimisation",
             |settings| run(settings, 100, Slats::split()).map(|summary| rate_hz(&summary).into()),
-        )
+        ))
     },
     Measurement {
         basis: Basis::Rule("a frame-buffer port serves in order of arrival"),
         reason: "Any other order gives 12 region times",
-        varied: Varied::ByFormula,
-        ..figure(
-            "10",
-            TR94,
+        ..by_formula(figure(
+            ("10", TR94, 11.0, "region times"),
             "20 field regions to two frame buffers",
-            (11.0, "region times"),
             "full-screen:60 on slats without the COPY optimisation: from the first to the last word, in units of 780 us",
             |settings| run(settings, 60, Slats::whole()).map(|s| (s.first_copy_ms * 1e3 / s.region_copy_us).into()),
-        )
+        ))
     },
     Measurement {
         basis: Basis::Rule("odd renderers begin with the right eye"),
         reason: "Otherwise ten regions take six region times, 4.7 ms",
-        varied: Varied::ByFormula,
-        ..figure(
-            "11",
-            I3D95,
+        ..by_formula(figure(
+            ("11", I3D95, 3.9, "ms"),
             "half of them",
-            (3.9, "ms"),
             "full-screen:100 on slats with the COPY optimisation: from the first to the last word of the bottom regions",
             |settings| Ok(run(settings, 100, Slats::split())?.last_copy_ms.into()),
-        )
+        ))
     },
     Measurement {
         basis: Basis::Interpretation(CLUMP_RULE),
         reason: OF_CLUMP,
-        varied: Varied::ByFormula,
         cause: OF_FIFO,
-        ..figure(
-            "12",
-            TR94,
+        ..by_formula(figure(
+            ("12", TR94, 110.0, "triangles"),
             "most triangles without the COPY optimisation",
-            (110.0, "triangles"),
             "limit of full-screen:N on slats",
             |settings| limit(settings, "slats", Slats::whole()),
-        )
+        ))
     },
     Measurement {
         basis: Basis::Interpretation(CLUMP_RULE),
         reason: OF_CLUMP,
-        varied: Varied::ByFormula,
         cause: OF_FIFO,
-        ..figure(
-            "13",
-            TR94,
+        ..by_formula(figure(
+            ("13", TR94, 140.0, "triangles"),
             "most triangles with the COPY optimisation",
-            (140.0, "triangles"),
             "limit of full-screen:N on slats",
             |settings| limit(settings, "slats", Slats::split()),
-        )
+        ))
     },
     Measurement {
         basis: Basis::Fitted("gp.triangle_ns of slats-1995"),
         reason: "The time of a triangle was chosen so that this limit follows",
-        varied: Varied::ByFormula,
-        ..figure(
-            "14",
-            I3D95,
+        ..by_formula(figure(
+            ("14", I3D95, 100.0, "triangles"),
             "most triangles with the COPY optimisation, code of 1995: about",
-            (100.0, "triangles"),
             "limit of full-screen:N on slats-1995",
             |settings| limit(settings, "slats-1995", Slats::split()),
-        )
+        ))
     },
     Measurement {
         basis: Basis::Derived("a field less row 11"),
         reason: "The largest scene that fits begins its copy as late as possible: 16.68 ms - 3.9 ms",
-        varied: Varied::ByFormula,
-        ..figure(
-            "15",
-            I3D95,
+        ..by_formula(figure(
+            ("15", I3D95, 12.8, "ms"),
             "time before the first copy in a field: about",
-            (12.8, "ms"),
             "the largest scene of figure 13: the time from the retrace to the first word of the first copy",
             time_before_copy,
-        )
+        ))
     },
 ];
 

@@ -34,10 +34,8 @@ pub(super) const FIGURES: &[Measurement] = &[
         basis: Basis::Derived("the polling interval of 30 ms"),
         reason: "The longest wait for a poll is one interval",
         ..figure(
-            "T1",
-            ("TR94", "serial line"),
+            ("T1", ("TR94", "serial line"), 1.75, "fields"),
             "polling adds almost two fields (taken as 1.5 to 2)",
-            (1.75, "fields"),
             "a Fastrak with the polled and with the patched kernel, 200 seeds of 2 s: the longest wait of a report for the kernel. The mean in a run \
             is the difference between both kernels in the mean time from the pose to the start of TRANSFORM, for full-screen:12 on small-hmd",
             polling,
@@ -45,11 +43,11 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         reason: OF_FILTER,
-        ..figure("T2", PF, "apparent latency with a filter of 0.95", (4.2, "ms"), FILTER, |_| apparent_latency(0.95))
+        ..figure(("T2", PF, 4.2, "ms"), "apparent latency with a filter of 0.95", FILTER, |_| apparent_latency(0.95))
     },
     Measurement {
         reason: OF_FILTER,
-        ..figure("T3", PF, "the same with 0.05", (162.0, "ms"), FILTER, |_| apparent_latency(0.05))
+        ..figure(("T3", PF, 162.0, "ms"), "the same with 0.05", FILTER, |_| apparent_latency(0.05))
     },
 ];
 

@@ -1,10 +1,11 @@
 //! Simulates one point of a sweep. Each point of a sweep is one experiment.
 
 use super::header::json;
-use super::{Shard, Sweep, SweepSpace, measures};
+use super::{Shard, Sweep, SweepSpace, is_run, measures};
 use crate::StudyError;
 use crate::estimate::Estimate;
 use crate::experiment_file::Plan;
+use crate::limit::LimitQuery;
 use pxpl5_measure::Measure;
 use pxpl5_run::BareHost;
 use pxpl5_scene::Scene;
@@ -129,11 +130,19 @@ impl Swept for Sweep {
         let (experiment, choice) = plan.with_chosen_level(scene, needs_events);
         // The hash identifies the point even if its run fails later.
         let config_hash = experiment.config_hash().to_string();
-        // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times.
-        let results = plan.results_of(experiment.host(BareHost).stopped_by(stop.clone()))?;
-        let level = choice.map(|choice| choice.to_string());
-        let measured = measures(&plan).iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();
-        let trace_hash = results.run.map(|(_, report)| report.trace_hash);
+        // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times. A point
+        // whose only quantity is the result of a search needs no run of its own.
+        let is_run = is_run(&plan);
+        let results =
+            is_run.then(|| plan.results_of(experiment.host(BareHost).stopped_by(stop.clone()))).transpose()?;
+        let value = |m: &Measure| match &results {
+            _ if m.name() == Measure::TRIANGLES => LimitQuery::of_scene(&plan)?.possible(stop),
+            results => Ok(results.as_ref().and_then(|results| m.of(results))),
+        };
+        let level = choice.filter(|_| is_run).map(|choice| choice.to_string());
+        let named = |m: Measure| Ok((m.name().to_owned(), value(&m)?));
+        let measured = measures(&plan).into_iter().map(named).collect::<Result<_, StudyError>>()?;
+        let trace_hash = results.and_then(|results| results.run).map(|(_, report)| report.trace_hash);
         Ok(PointResults { measured, config_hash, trace_hash, level })
     }
 }

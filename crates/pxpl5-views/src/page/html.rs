@@ -54,7 +54,7 @@ mod tests {
 
     #[test]
     fn the_page_of_a_run_with_a_head_shows_its_stages_and_its_errors() {
-        let head = json!({"tracker": "T", "predictor": "P", "display": "vdrt", "end_to_end": {"total_ms": 76.5},
+        let head = json!({"tracker": "T", "predictor": "P", "display": "vdrt", "end_to_end": {"head_to_light_ms": 76.5},
             "error": {"pixels": {"p99": 14.25}, "degrees": {"mean": 0.5}}});
         let page = html(&[PageRun { report: json!({"head": head}), ..PageRun::default() }]);
         for text in ["T, prediction P, display vdrt", "76.500", "14.250", "0.500"] {
@@ -76,7 +76,7 @@ mod tests {
     fn a_page_is_never_wider_than_a_telephone() {
         let report = json!({"scene": "x".repeat(200), "config_hash": "f".repeat(32), "latency_parts_ms": [{"name": "copy"}],
             "latency_ms": {"definition": "d".repeat(300), "mean": 1.0, "sd": 0.0},
-            "head": {"tracker": "T", "end_to_end": {"total_ms": 76.5}, "error": {}}});
+            "head": {"tracker": "T", "end_to_end": {"head_to_light_ms": 76.5}, "error": {}}});
         let timeline = Some(b"<svg/>".to_vec());
         let run =
             PageRun { name: "n".repeat(200), report, timeline, latencies_ms: vec![1.0, 2.0], ..PageRun::default() };

@@ -80,7 +80,8 @@ fn swatch(name: &str) -> Element {
 
 const DUE: [&str; 7] = ["first_period", "last_period", "due", "shown", "late", "incomplete", "missed"];
 
-const STAGES: [&str; 7] = ["tracking", "waiting", "sending", "drawing", "showing", "scanning", "total"];
+const STAGES: [&str; 8] =
+    ["tracking", "waiting", "sending", "drawing", "showing", "scanning", "lighting", "head_to_light"];
 const ERRORS: [&str; 2] = ["pixels", "degrees"];
 const PERCENTILES: [&str; 5] = ["mean", "p50", "p90", "p99", "max"];
 
@@ -104,7 +105,7 @@ pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
 }
 
 fn stage_row(stage: &str, end_to_end: &Value) -> Element {
-    row([cell(stage), number_cell(decimal(&end_to_end[format!("{stage}_ms")], 3))])
+    row([cell(&stage.replace('_', " ")), number_cell(decimal(&end_to_end[format!("{stage}_ms")], 3))])
 }
 
 fn error_row(unit: &str, error: &Value) -> Element {
