@@ -190,7 +190,9 @@ impl Chart {
         if !self.axes.title.is_empty() {
             builder.caption(&self.axes.title, (FontFamily::SansSerif, em * 1.2));
         }
-        builder.margin(em * 0.6).x_label_area_size(em * 3.2).y_label_area_size(em * (2.4 + 0.6 * widest as f64));
+        // The last number of the horizontal axis is centred below the right edge, so half of it lies beyond.
+        let left = em * (2.4 + 0.6 * widest as f64);
+        builder.margin(em * 0.6).margin_right(em * 1.8).x_label_area_size(em * 3.2).y_label_area_size(left);
         let mut plane = builder.build_cartesian_2d(across.clone(), up.clone())?;
         // Draw the axes first, because the series lie above the mesh.
         plane
