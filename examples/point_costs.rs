@@ -1,9 +1,13 @@
 //! Compares the estimated cost of each point of a sweep with its measured CPU time on one thread.
 //!
 //! `cargo run --release --example point_costs -- OUT SWEEP.toml...` writes OUT/NAME/rows.jsonl for each sweep, for
-//! `pxpl5 plot`, and OUT/costs.md, the table of docs/guide/sweep-times.md. `scripts/costs` runs all steps.
+//! `pxpl5 plot`, OUT/costs.md, the table of docs/guide/sweep-times.md, and OUT/point-costs.svg, its figure of the first
+//! sweep. `scripts/costs` runs all steps.
+
+mod panels;
 
 use cpu_time::ThreadTime;
+use panels::{AXIS, Panel};
 use pxpl5::Fingerprint;
 use pxpl5::sweep::{Store, Sweep, SweepRow};
 use std::collections::BTreeMap;
@@ -15,11 +19,10 @@ use std::time::Duration;
 const USAGE: &str = "usage: point_costs OUT SWEEP.toml...";
 
 /// Quantities that are written for each point, with definitions.
-const QUANTITIES: [(&str, &str); 4] = [
+const QUANTITIES: [(&str, &str); 3] = [
     ("cost.estimated_ms", "milliseconds that the point was estimated to take on one thread"),
     ("cost.measured_ms", "milliseconds of CPU that it took on one thread"),
     ("cost.ratio", "measured for estimated"),
-    ("cost.percent", "share of its pipeline's points, in per cent, whose ratio is no greater"),
 ];
 
 /// Estimated and measured cost of a point that could be simulated.
@@ -29,7 +32,6 @@ struct Cost {
     group: String,
     estimated_s: f64,
     measured_s: f64,
-    percent: f64,
 }
 
 impl Cost {
@@ -44,10 +46,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut all = Vec::new();
     for file in files {
         let sweep = Sweep::load(file)?;
-        let mut costs = measured(&sweep)?;
-        rank(&mut costs);
+        let costs = measured(&sweep)?;
         let name = Path::new(file).file_stem().unwrap_or_default();
         write(&sweep, &costs, &Path::new(out).join(name))?;
+        if all.is_empty() {
+            std::fs::write(Path::new(out).join("point-costs.svg"), drawing(&ratios_of_groups(&costs))?)?;
+        }
         all.extend(costs);
     }
     let table = table(&all)?;
@@ -73,23 +77,10 @@ fn measured(sweep: &Sweep) -> Result<Vec<Cost>, Box<dyn Error>> {
             let plan = sweep.plan(point)?;
             let head = if plan.head.is_some() { ", tracked head" } else { "" };
             let group = format!("{}{head}", plan.pipeline.name());
-            costs.push(Cost { row, group, estimated_s, measured_s, percent: 0.0 });
+            costs.push(Cost { row, group, estimated_s, measured_s });
         }
     }
     Ok(costs)
-}
-
-/// Computes, for each point, the percentage of its group with the same or a smaller ratio.
-fn rank(costs: &mut [Cost]) {
-    let mut ratios: BTreeMap<String, Vec<f64>> = BTreeMap::new();
-    for cost in costs.iter() {
-        ratios.entry(cost.group.clone()).or_default().push(cost.ratio());
-    }
-    for cost in costs {
-        let of_group = &ratios[&cost.group];
-        let below = of_group.iter().filter(|ratio| **ratio <= cost.ratio()).count();
-        cost.percent = 100.0 * below as f64 / of_group.len() as f64;
-    }
 }
 
 /// Writes the points as the folder of a sweep, with the costs as measured quantities.
@@ -100,7 +91,7 @@ fn write(sweep: &Sweep, costs: &[Cost], folder: &Path) -> Result<(), Box<dyn Err
     let _ = std::fs::remove_dir_all(folder);
     let mut store = Store::open(folder, header, false)?;
     for cost in costs {
-        let values = [cost.estimated_s * 1e3, cost.measured_s * 1e3, cost.ratio(), cost.percent];
+        let values = [cost.estimated_s * 1e3, cost.measured_s * 1e3, cost.ratio()];
         let named = QUANTITIES.into_iter().zip(values).map(|((name, _), value)| (name.to_owned(), Some(value)));
         let row = SweepRow { measured: named.collect(), trace_hash: None, ..cost.row.clone() };
         store.append(&row, cost.measured_s)?;
@@ -108,34 +99,73 @@ fn write(sweep: &Sweep, costs: &[Cost], folder: &Path) -> Result<(), Box<dyn Err
     Ok(store.finish()?)
 }
 
+/// Returns the ratios of each group, from the least to the greatest.
+fn ratios_of_groups(costs: &[Cost]) -> BTreeMap<&str, Vec<f64>> {
+    let mut groups: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for cost in costs {
+        groups.entry(&cost.group).or_default().push(cost.ratio());
+    }
+    groups.values_mut().for_each(|ratios| ratios.sort_by(f64::total_cmp));
+    groups
+}
+
+/// Returns the least ratio, the ratio at 10, 50 and 90 % of the points, and the greatest ratio.
+fn percentiles(ratios: &[f64]) -> [f64; 5] {
+    [0.0, 0.1, 0.5, 0.9, 1.0].map(|share| ratios[(share * (ratios.len() - 1) as f64).round() as usize])
+}
+
 /// Returns a table of the ratios with a line for each pipeline.
 fn table(costs: &[Cost]) -> Result<String, std::fmt::Error> {
-    let mut groups: BTreeMap<&str, Vec<&Cost>> = BTreeMap::new();
-    for cost in costs {
-        groups.entry(&cost.group).or_default().push(cost);
-    }
     let mut text = "| pipeline | points | ms a point, least to greatest | least | 10 % | median | 90 % | greatest | within a factor of 2 |\n\
                     |---|---|---|---|---|---|---|---|---|\n"
         .to_owned();
-    for (name, of_group) in groups {
-        line(&mut text, name, &of_group)?;
+    for (name, ratios) in ratios_of_groups(costs) {
+        let of_group = costs.iter().filter(|cost| cost.group == name);
+        line(&mut text, name, &ratios, of_group.map(|cost| cost.measured_s * 1e3))?;
     }
-    line(&mut text, "all", &costs.iter().collect::<Vec<_>>())?;
+    let mut ratios: Vec<f64> = costs.iter().map(Cost::ratio).collect();
+    ratios.sort_by(f64::total_cmp);
+    line(&mut text, "all", &ratios, costs.iter().map(|cost| cost.measured_s * 1e3))?;
     Ok(text)
 }
 
-fn line(text: &mut String, name: &str, costs: &[&Cost]) -> std::fmt::Result {
-    let mut ratios: Vec<f64> = costs.iter().map(|cost| cost.ratio()).collect();
-    ratios.sort_by(f64::total_cmp);
-    let at = |share: f64| ratios[(share * (ratios.len() - 1) as f64).round() as usize];
+fn line(text: &mut String, name: &str, ratios: &[f64], ms: impl Iterator<Item = f64>) -> std::fmt::Result {
     let near = ratios.iter().filter(|ratio| (0.5..=2.0).contains(*ratio)).count();
-    let least = costs.iter().map(|cost| cost.measured_s).fold(f64::MAX, f64::min) * 1e3;
-    let most = costs.iter().map(|cost| cost.measured_s).fold(0.0, f64::max) * 1e3;
-    let [p0, p10, p50, p90, p100] = [0.0, 0.1, 0.5, 0.9, 1.0].map(at);
+    let (least, most) = ms.fold((f64::MAX, 0.0_f64), |(least, most), ms| (least.min(ms), most.max(ms)));
+    let [p0, p10, p50, p90, p100] = percentiles(ratios);
     let share = 100.0 * near as f64 / ratios.len() as f64;
     writeln!(
         text,
         "| {name} | {} | {least:.1} to {most:.0} | {p0:.2} | {p10:.2} | {p50:.2} | {p90:.2} | {p100:.2} | {share:.0} % |",
         ratios.len()
     )
+}
+
+/// Returns a figure with the ratios of each group: the median as a dot, a thick line from 10 to 90 % of the points, and
+/// a thin line from the least to the greatest. Ratios within a factor of two have a grey ground.
+fn drawing(groups: &BTreeMap<&str, Vec<f64>>) -> Result<String, std::fmt::Error> {
+    let panel = Panel {
+        title: "dot: median; thick: 10 to 90 % of the points; grey: within a factor of 2",
+        axis: "measured / estimated CPU time",
+        at: [176.0, 66.0],
+        length: 560.0,
+        ends: [0.05, 20.0],
+        marks: &[0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0],
+        rows: (groups.len(), 24.0),
+    };
+    let mut svg =
+        panels::begin(panel.bottom() + AXIS, "Measured time of the points of a sweep, relative to the estimate", &[]);
+    let [half, twice] = [0.5, 2.0].map(|ratio| panel.across(ratio));
+    let [top, bottom] = [panel.at[1], panel.bottom()];
+    writeln!(svg, r##"<path d="M{half:.1} {top}H{twice:.1}V{bottom}H{half:.1}z" fill="#eef1f4"/>"##)?;
+    panel.frame(&mut svg)?;
+    for (row, (name, ratios)) in groups.iter().enumerate() {
+        let ([p0, p10, p50, p90, p100], y) = (percentiles(ratios), panel.middle(row));
+        panel.name(&mut svg, row, name)?;
+        let [from, to] = [p10, p90].map(|ratio| panel.across(ratio));
+        writeln!(svg, r##"<path d="M{from:.1} {y}H{to:.1}" stroke="#7fb3d9" stroke-width="9"/>"##)?;
+        panel.dot(&mut svg, y, [p0, p50, p100], "#0072b2", &format!("median {p50:.2}, {} points", ratios.len()))?;
+    }
+    svg += "</svg>\n";
+    Ok(svg)
 }

@@ -5,6 +5,9 @@
 //! The evaluation is that of `compare`. It prints a table for each motion, and writes the figure
 //! pictures/reprojection.svg and the table of reprojection.md, by default into docs/.
 
+mod panels;
+
+use panels::{AXIS, Panel};
 use pxpl5::{
     Budget, Every, ExperimentFile, EyeReport, Outcome, PixelErrors, Pixels, Reprojection, Showing, Statistics, Warp,
 };
@@ -39,10 +42,10 @@ const MOTIONS: [(&str, &str); 4] = [
 fn showings() -> [(&'static str, &'static str, Showing); 4] {
     let device = |by, every| Showing::Reprojected(Reprojection::new(by, every));
     [
-        ("plain", "rgb(120,120,120)", Showing::Plain),
-        ("rotation a field", "rgb(210,110,30)", device(Warp::Rotation, Every::Field)),
-        ("rotation a line", "rgb(30,110,180)", device(Warp::Rotation, Every::Line)),
-        ("depth a line", "rgb(40,140,60)", device(Warp::Depth, Every::Line)),
+        ("plain", "#777777", Showing::Plain),
+        ("rotation a field", "#d55e00", device(Warp::Rotation, Every::Field)),
+        ("rotation a line", "#0072b2", device(Warp::Rotation, Every::Line)),
+        ("depth a line", "#009e73", device(Warp::Depth, Every::Line)),
     ]
 }
 
@@ -177,81 +180,42 @@ fn table(motion: usize, (title, name): &(String, String), rows: &[Row]) -> Resul
     Ok(text)
 }
 
-const NAMES: f64 = 210.0;
-const PANEL: f64 = 300.0;
-const PLOT: f64 = 250.0;
-const ROW: f64 = 40.0;
-const TOP: f64 = 92.0;
-
-/// Returns the horizontal position of an error in a panel, on a scale of decades from 0.01 to 10 degrees.
-fn across(deg: f64) -> f64 {
-    (deg.clamp(0.01, 10.0).log10() + 2.0) / 3.0 * PLOT
-}
+/// Top of the first rows, and height of a row.
+const TOP: f64 = 96.0;
+const ROW: f64 = 44.0;
+/// Height of the title of a panel.
+const TITLE: f64 = 28.0;
 
 fn drawing(motions: &[(String, String)], rows: &[Row]) -> Result<String, std::fmt::Error> {
     let of_first: Vec<&Row> = rows.iter().filter(|row| row.motion == 0).collect();
-    let (width, height) = (NAMES + PANEL * motions.len() as f64 + 12.0, TOP + ROW * of_first.len() as f64 + 48.0);
-    let mut svg = String::new();
-    writeln!(
-        svg,
-        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}">"#
-    )?;
-    writeln!(svg, r#"<rect width="100%" height="100%" fill="white"/>"#)?;
-    writeln!(svg, r#"<g font-family="sans-serif" font-size="12" fill="rgb(30,30,30)">"#)?;
-    writeln!(
-        svg,
-        r#"<text x="12" y="22" font-size="15">Mean error of each pipeline, plain and behind a device that moves its pictures to the newest pose</text>"#
-    )?;
-    for (i, (name, colour, _)) in showings().into_iter().enumerate() {
-        let x = 16.0 + 150.0 * i as f64;
-        writeln!(
-            svg,
-            r#"<circle cx="{x}" cy="42" r="4" fill="{colour}"/><text x="{}" y="46">{name}</text>"#,
-            x + 10.0
-        )?;
-    }
-    for (i, row) in of_first.iter().enumerate() {
-        let y = TOP + ROW * (i as f64 + 0.5);
-        writeln!(
-            svg,
-            r#"<text x="{}" y="{}" text-anchor="end">{}, {}</text>"#,
-            NAMES - 10.0,
-            y + 4.0,
-            row.pipeline,
-            row.display
-        )?;
-    }
+    let block = ROW * of_first.len() as f64 + AXIS + TITLE;
+    let height = TOP - TITLE + block * motions.len().div_ceil(2) as f64;
+    let colours = showings().map(|(name, colour, _)| (name, colour));
+    let title = "Mean error, plain and behind a device that moves pictures to the newest pose";
+    let mut svg = panels::begin(height, title, &colours);
     for (motion, (title, _)) in motions.iter().enumerate() {
-        let left = NAMES + PANEL * motion as f64 + 8.0;
-        axis(&mut svg, title, left, of_first.len())?;
+        // Two panels stand side by side, and the names of the rows are left of both.
+        let panel = Panel {
+            title,
+            axis: "error, degrees",
+            at: [206.0 + 288.0 * (motion % 2) as f64, TOP + block * (motion / 2) as f64],
+            length: 244.0,
+            ends: [0.01, 10.0],
+            marks: &[0.01, 0.1, 1.0, 10.0],
+            rows: (of_first.len(), ROW),
+        };
+        panel.frame(&mut svg)?;
         for (i, row) in rows.iter().filter(|row| row.motion == motion).enumerate() {
+            if motion % 2 == 0 {
+                panel.name(&mut svg, i, &format!("{}, {}", row.pipeline, row.display))?;
+            }
             for (j, (shown, (name, colour, _))) in row.shown.iter().zip(showings()).enumerate() {
-                let y = TOP + ROW * i as f64 + 8.0 * (j as f64 + 1.0);
                 let Some(deg) = shown.mean_deg else { continue };
-                let x = left + across(deg);
-                writeln!(svg, r#"<line x1="{left}" x2="{x}" y1="{y}" y2="{y}" stroke="{colour}" stroke-width="2"/>"#)?;
-                writeln!(
-                    svg,
-                    r#"<circle cx="{x}" cy="{y}" r="3.5" fill="{colour}"><title>{name}: {deg:.3} degrees</title></circle>"#
-                )?;
+                let y = panel.middle(i) + 9.0 * (j as f64 - 1.5);
+                panel.dot(&mut svg, y, [0.0, deg, deg], colour, &format!("{name}: {deg:.3} degrees"))?;
             }
         }
     }
-    svg += "</g>\n</svg>\n";
+    svg += "</svg>\n";
     Ok(svg)
-}
-
-fn axis(svg: &mut String, title: &str, left: f64, rows: usize) -> std::fmt::Result {
-    let bottom = TOP + ROW * rows as f64;
-    writeln!(svg, r#"<text x="{left}" y="76" font-size="13">{title}</text>"#)?;
-    for deg in [0.01, 0.1, 1.0, 10.0] {
-        let x = left + across(deg);
-        writeln!(svg, r#"<line x1="{x}" x2="{x}" y1="{TOP}" y2="{bottom}" stroke="rgb(205,205,205)"/>"#)?;
-        writeln!(
-            svg,
-            r#"<text x="{x}" y="{}" text-anchor="middle" fill="rgb(110,110,110)">{deg}</text>"#,
-            bottom + 16.0
-        )?;
-    }
-    writeln!(svg, r#"<text x="{}" y="{}" text-anchor="middle">error, degrees</text>"#, left + PLOT / 2.0, bottom + 36.0)
 }

@@ -4,6 +4,9 @@
 //! tracker and a Kalman filter. The evaluation is that of `compare`. The files systems.svg and systems.md are written
 //! into docs/ by default.
 
+mod panels;
+
+use panels::{AXIS, Panel};
 use pxpl5::display::Coverage;
 use pxpl5::{ExperimentFile, Measured, Outcome, Pixels};
 use std::collections::BTreeSet;
@@ -34,7 +37,7 @@ const SYSTEMS: [(&str, Option<(&str, &str)>); 17] = [
 
 /// Motions with their descriptions and their names in experiment files.
 const MOTIONS: [(&str, &str); 3] =
-    [("rotation, 100 deg/s", "pan:100"), ("translation, 1 m/s", "walk:1"), ("both, walking and looking", "walk:1:1")];
+    [("rotation, 100 deg/s", "pan:100"), ("translation, 1 m/s", "walk:1"), ("walking and looking", "walk:1:1")];
 
 const FIELDS: i64 = 150;
 
@@ -152,71 +155,41 @@ fn table(rows: &[(&str, Vec<Found>)]) -> Result<String, std::fmt::Error> {
     Ok(text)
 }
 
-const WIDTH: f64 = 1240.0;
-const NAMES: f64 = 190.0;
-const PANEL: f64 = 340.0;
-const PLOT: f64 = 190.0;
-const ROW: f64 = 26.0;
-const TOP: f64 = 74.0;
-
-/// Returns the horizontal position of an error in a panel, on a scale of decades from 0.1 to 100 px.
-fn across(px: f64) -> f64 {
-    (px.clamp(0.1, 100.0).log10() + 1.0) / 3.0 * PLOT
-}
+/// Colours of systems that draw what the eye sees, and of systems that draw six faces around the eye.
+const KINDS: [(&str, &str); 2] =
+    [("draws what the eye sees", "#d55e00"), ("draws six faces around the eye (arp)", "#0072b2")];
 
 fn drawing(rows: &[(&str, Vec<Found>)]) -> Result<String, std::fmt::Error> {
-    let height = TOP + ROW * rows.len() as f64 + 44.0;
-    let mut svg = String::new();
-    writeln!(
-        svg,
-        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}">"#
-    )?;
-    writeln!(svg, r#"<rect width="100%" height="100%" fill="white"/>"#)?;
-    writeln!(svg, r#"<g font-family="sans-serif" font-size="12" fill="rgb(30,30,30)">"#)?;
-    writeln!(svg, r#"<text x="12" y="22" font-size="15">Mean pixel error of each system, and what it costs</text>"#)?;
-    for (row, (system, _)) in rows.iter().enumerate() {
-        let y = TOP + ROW * (row as f64 + 0.5);
-        writeln!(svg, r#"<text x="{}" y="{}" text-anchor="end">{system}</text>"#, NAMES - 10.0, y + 4.0)?;
-        writeln!(svg, r#"<line x1="{NAMES}" x2="{WIDTH}" y1="{y}" y2="{y}" stroke="rgb(238,238,238)"/>"#)?;
-    }
-    for (panel, (title, _)) in MOTIONS.iter().enumerate() {
-        let left = NAMES + PANEL * panel as f64 + 8.0;
-        axis(&mut svg, title, left, rows.len())?;
+    let panels = MOTIONS.iter().enumerate().map(|(n, (title, _))| Panel {
+        title,
+        axis: "error, px",
+        at: [176.0 + 194.0 * n as f64, 92.0],
+        length: 142.0,
+        ends: [0.1, 100.0],
+        marks: &[0.1, 1.0, 10.0, 100.0],
+        rows: (rows.len(), 24.0),
+    });
+    let panels: Vec<Panel<'_>> = panels.collect();
+    let mut svg = panels::begin(panels[0].bottom() + AXIS, "Mean pixel error of each system", &KINDS);
+    for (n, panel) in panels.iter().enumerate() {
+        panel.frame(&mut svg)?;
         for (row, (system, found)) in rows.iter().enumerate() {
-            point(&mut svg, &found[panel], system, [left, TOP + ROW * (row as f64 + 0.5)])?;
+            if n == 0 {
+                panel.name(&mut svg, row, system)?;
+            }
+            point(&mut svg, panel, row, &found[n], system)?;
         }
     }
-    svg += "</g>\n</svg>\n";
+    svg += "</svg>\n";
     Ok(svg)
 }
 
-fn axis(svg: &mut String, title: &str, left: f64, rows: usize) -> std::fmt::Result {
-    let bottom = TOP + ROW * rows as f64;
-    writeln!(svg, r#"<text x="{left}" y="46" font-size="13">{title}</text>"#)?;
-    let numbers = left + PLOT + 14.0;
-    writeln!(svg, r#"<text x="{numbers}" y="{}" fill="rgb(110,110,110)">triangles/s</text>"#, TOP - 8.0)?;
-    writeln!(svg, r#"<text x="{}" y="{}" fill="rgb(110,110,110)">MB/s</text>"#, numbers + 80.0, TOP - 8.0)?;
-    for px in [0.1, 1.0, 10.0, 100.0] {
-        let x = left + across(px);
-        writeln!(svg, r#"<line x1="{x}" x2="{x}" y1="{TOP}" y2="{bottom}" stroke="rgb(205,205,205)"/>"#)?;
-        writeln!(
-            svg,
-            r#"<text x="{x}" y="{}" text-anchor="middle" fill="rgb(110,110,110)">{px}</text>"#,
-            bottom + 16.0
-        )?;
-    }
-    writeln!(svg, r#"<text x="{}" y="{}" text-anchor="middle">error, px</text>"#, left + PLOT / 2.0, bottom + 34.0)
-}
-
-fn point(svg: &mut String, found: &Found, system: &str, [left, y]: [f64; 2]) -> std::fmt::Result {
+fn point(svg: &mut String, panel: &Panel<'_>, row: usize, found: &Found, system: &str) -> std::fmt::Result {
+    let (left, y) = (panel.at[0], panel.middle(row));
     let Some(px) = found.mean_px else {
-        return writeln!(svg, r#"<text x="{left}" y="{}" fill="rgb(150,60,60)">nothing shown in time</text>"#, y + 4.0);
+        return writeln!(svg, r##"<text x="{left}" y="{}" fill="#a01212">nothing in time</text>"##, y + 5.0);
     };
-    let colour = if system.starts_with("arp") { "rgb(30,110,180)" } else { "rgb(210,110,30)" };
-    let x = left + across(px);
-    writeln!(svg, r#"<line x1="{left}" x2="{x}" y1="{y}" y2="{y}" stroke="{colour}" stroke-width="2"/>"#)?;
-    writeln!(svg, r#"<circle cx="{x}" cy="{y}" r="4" fill="{colour}"><title>{px:.2} px</title></circle>"#)?;
-    let numbers = left + PLOT + 14.0;
-    writeln!(svg, r#"<text x="{numbers}" y="{}">{:.0}</text>"#, y + 4.0, found.triangles_per_s)?;
-    writeln!(svg, r#"<text x="{}" y="{}">{:.1}</text>"#, numbers + 80.0, y + 4.0, found.bytes_per_s * 1e-6)
+    let (_, colour) = KINDS[usize::from(system.starts_with("arp"))];
+    panel.dot(svg, y, [0.0, px, px], colour, &format!("{px:.2} px"))?;
+    writeln!(svg, r#"<text x="{:.1}" y="{}">{px:.1}</text>"#, panel.across(px) + 9.0, y + 5.0)
 }

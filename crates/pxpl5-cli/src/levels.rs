@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
   pxpl5 levels
   pxpl5 levels --json
   pxpl5 levels --measure                                            measures everything again, on this computer
-  pxpl5 levels --measure --write crates/pxpl5-cli/src/levels.json --chart docs/levels.svg
+  pxpl5 levels --measure --write crates/pxpl5-cli/src/levels.json --chart levels.svg
   pxpl5 levels --measure --errors-only --experiments 1000           without speeds, which need an idle computer")]
 pub(crate) struct LevelsArgs {
     /// Print one JSON object.

@@ -40,7 +40,7 @@ pub fn tints_of(name: &str) -> Tints {
 }
 
 /// Returns the name of a stage in style sheets.
-pub(crate) const fn class_of(stage: Stage) -> &'static str {
+pub const fn class_of(stage: Stage) -> &'static str {
     match stage {
         Stage::Send => "send",
         Stage::Edit => "edit",

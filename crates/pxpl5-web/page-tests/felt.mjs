@@ -92,6 +92,14 @@ export default {
     const [alone] = await box();
     assert.ok(alone[0] > 1100 && alone[2] <= 1080, `${alone}`);
     await snapshot("lecture-race");
+    // The last steps have the most text: a number to keep, and parts of the latency.
+    for (const [story, last] of [["lag", 5], ["inside", 6], ["race", 5], ["turn", 4]]) {
+      await open(`#story=${story}&step=${last}&lecture`);
+      await until("the step", `document.documentElement.dataset.story === '${story} ${last} paused'`, 60000);
+      await snapshot(`lecture-${story}-${last}`);
+      const over = await run("return document.documentElement.scrollHeight - innerHeight");
+      assert.ok(over <= 0, `${story} ${last} is ${over} pixels higher than the screen`);
+    }
     await accessible("lecture mode");
     await run("document.activeElement.blur()");
     await key("f");

@@ -19,6 +19,20 @@ export default {
     console.log(`   ${limited.join("\n   ")}`);
     await accessible("the block of limits");
   },
+  async "the map of busy renderers has the shares of the table, and error and speed of the head are beside each other"() {
+    await open("#pipeline=rendering-control&scene=aircraft&fields=600&head.motion=sine:20:0.5&head.tracker=ideal&head.predict=none&at=95000000000");
+    // The map begins at time zero here, as the table does. The table has whole percents.
+    const [executing, copying] = await run("const { executing, copying } = document.querySelector('#busy canvas').dataset; return [executing, copying].map((share) => 100 * share)");
+    const row = await run("return [...document.querySelectorAll('#limits tr')].find((one) => one.firstChild.textContent === 'Renderers').textContent");
+    console.log(`   map: ${executing.toFixed(2)} % executing, ${copying.toFixed(2)} % copying; table: ${row}`);
+    assert.ok(executing > 1 && Math.abs(executing - parseFloat(/Renderers([\d.]+) %/.exec(row)[1])) <= 0.51);
+    assert.ok(copying > 1 && Math.abs(copying - parseFloat(/copying ([\d.]+) %/.exec(row)[1])) <= 0.51);
+    assert.ok((await lit("#limits .loads canvas")) > 3, "regions with different loads");
+    assert.ok(await run("return document.getElementById('busy').lastChild.hidden"), "one instant is no curve");
+    for (let n = 0; n < 20; n += 1) await press('[data-step="field"]');
+    assert.ok(!(await run("return document.getElementById('busy').lastChild.hidden")));
+    await accessible("busy renderers");
+  },
   async "steps go on by a field, a line and an event"() {
     await open("#fields=120");
     assert.equal(await text("time"), "0.000 ms");

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, readdirSync, statSync } from "node:fs";
 import { dirname, join } from "node:path";
-import { accessible, ask, emulate, later, open, page, picture, press, run, session, settled, site, text, until } from "./browser.mjs";
+import { accessible, advanced, ask, emulate, later, open, page, picture, press, run, session, settled, site, text, until } from "./browser.mjs";
 
 export default {
   async "it fits 390, 1280 and 2560 pixels, light and dark"() {
@@ -32,6 +32,15 @@ export default {
       await accessible(`laboratory, ${scheme}`);
     }
     await emulate("prefers-color-scheme", "light");
+    // Pictures of the book, in docs/pictures.
+    for (const [name, story, step, width, height] of [["live-lag", "lag", 3, 1000, 594], ["live-inside", "inside", 4, 1240, 900]]) {
+      await open(`#story=${story}&step=${step}`);
+      await until("the step", `document.documentElement.dataset.story === '${story} ${step} paused'`, 60000);
+      await picture(name, width, height);
+    }
+    await open();
+    await advanced(700);
+    await picture("live-start", 1000, 620);
     await open("#pipeline=slats&beside=rendering-control&scene=aircraft&fields=120&head.motion=sine:10:0.5&at=500000000000");
     await picture("two-1280", 1280, 2000);
     await open("#pipeline=arp-full&display=arp&scene=mig&head.motion=sine:10:0.5&fields=60&at=600000000000");

@@ -1,6 +1,6 @@
 // Drawing of the results of the machines: pictures, boards, latencies.
 
-const make = (name, given = {}, ...inner) => {
+export const make = (name, given = {}, ...inner) => {
   const element = Object.assign(document.createElement(name), given);
   element.append(...inner);
   return element;
@@ -34,7 +34,7 @@ function screenOf(canvas, ...more) {
   return screen;
 }
 
-function canvasOf(width, height, label) {
+export function canvasOf(width, height, label) {
   const canvas = make("canvas", { width, height });
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", label);

@@ -1,11 +1,5 @@
 // The limits of a run: the waits of the last pictures, the use of the boards, and the number of primitives that the machine can show.
-import { inMs, nameOf } from "./draw.js";
-
-const make = (name, given = {}, ...inner) => {
-  const element = Object.assign(document.createElement(name), given);
-  element.append(...inner);
-  return element;
-};
+import { canvasOf, inMs, make, nameOf } from "./draw.js";
 
 /** Returns a share of 0 to 1 as text. A share that was not measured is a dash. */
 export const percent = (share) => (typeof share === "number" && Number.isFinite(share) ? `${(100 * share).toFixed(share > 0 && share < 0.01 ? 1 : 0)} %` : "-");
@@ -51,10 +45,40 @@ function busyPart(utilisation) {
   return [make("table", {}, make("caption", { textContent: "Share of the time since the start for which boards were busy" }), head, make("tbody", {}, ...rows))];
 }
 
-/** Shows the waits of the last pictures and the use of the boards, for each machine. */
+/** Draws the mean time that renderers needed for each region of the first eye. `regions` are those of the last pictures. */
+function regionLoads(regions) {
+  const loads = new Map();
+  for (const { region: { surface, rectangle, lines }, executed_us: us } of regions) {
+    if (surface !== 0) continue;
+    const key = `${rectangle} ${lines}`;
+    const load = loads.get(key) ?? { rectangle, lines, us: 0, n: 0 };
+    loads.set(key, { ...load, us: load.us + us, n: load.n + 1 });
+  }
+  const all = [...loads.values()].map((load) => ({ ...load, us: load.us / load.n }));
+  if (all.length === 0) return [];
+  const most = Math.max(...all.map(({ us }) => us));
+  const mean = all.reduce((sum, { us }) => sum + us, 0) / all.length;
+  const [wide, high] = [0, 1].map((axis) => Math.max(...all.map(({ rectangle: box, lines }) => (axis ? (box[1] + box[3]) * lines[1] : box[0] + box[2]))));
+  const canvas = canvasOf(wide, high, `Load of the regions of the left eye: ${mean.toFixed(0)} microseconds in the mean, at most ${most.toFixed(0)}`);
+  const context = canvas.getContext("2d");
+  Object.assign(context, { font: "600 22px system-ui, sans-serif", textAlign: "center", textBaseline: "middle" });
+  for (const { rectangle: [x, top, width, height], lines: [first, step], us } of all) {
+    // The regions of two fields cover the same place, so each has one half of it.
+    const [left, y, across, down] = step === 1 ? [x, top, width, height] : [x + (first * width) / 2, top * 2, width / 2, height * 2];
+    context.fillStyle = `rgb(${[232, 151, 58].map((part) => Math.round(255 - (255 - part) * (us / most)))})`;
+    context.fillRect(left, y, across, down);
+    context.strokeRect(left, y, across, down);
+    context.fillStyle = "#111";
+    if (across >= 50 && down >= 30) context.fillText(us < 10 ? us.toFixed(1) : us.toFixed(0), left + across / 2, y + down / 2);
+  }
+  const about = `Load of the regions: microseconds of a renderer for each region of the left eye, as a mean over the last pictures. The heaviest has ${(most / mean).toFixed(1)} times the mean.`;
+  return [make("figure", { className: "loads" }, canvas, make("figcaption", { textContent: about }))];
+}
+
+/** Shows the waits of the last pictures the use of the boards and the load of the regions, for each machine. */
 export function drawLimits(place, machines, names) {
-  place.replaceChildren(...machines.map(({ limits: { path, utilisation } }, n) =>
-    make("div", {}, ...(machines.length > 1 ? [make("h3", { textContent: nameOf(names[n]) })] : []), ...pathPart(path), ...busyPart(utilisation))));
+  place.replaceChildren(...machines.map(({ limits: { path, utilisation, regions } }, n) =>
+    make("div", {}, ...(machines.length > 1 ? [make("h3", { textContent: nameOf(names[n]) })] : []), ...pathPart(path), ...busyPart(utilisation), ...regionLoads(regions))));
 }
 
 /** Returns the meaning of "in time" for a pipeline with a deadline of its own, or an empty text. */

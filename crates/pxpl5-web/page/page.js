@@ -6,6 +6,7 @@ import { Headset, hasHeadset } from "./headset.js";
 import { keepLecture, lecture } from "./lecture.js";
 import { Sensor, sensorRefused } from "./sensor.js";
 import { drawAge, drawBoards, drawFaces, drawLatency, drawOver, drawRing, drawTimeline, humane, inMs, layOutEyes, nameOf, picture } from "./draw.js";
+import { Busy } from "./busy.js";
 import { Diagram } from "./diagram.js";
 import { explain } from "./hints.js";
 import { drawHeavy, drawLimits } from "./limits.js";
@@ -243,6 +244,7 @@ async function build(kept = null, begin = 0) {
   heavy = null;
   machines = [];
   diagram.clear();
+  busy.clear();
   await go({ to: begin });
   if (mode === "lab") intoForm();
   return true;
@@ -257,6 +259,7 @@ async function rewind(to) {
   if (found) {
     live?.again(to, found.note);
     reached = found.at;
+    busy.clear();
     messagesAfter = to;
     seenLast = null;
   } else {
@@ -289,6 +292,7 @@ function wanted(now) {
     if (inLab && at("timeline-part").open) want.timeline = Number(at("span").value);
     if (shows("latency")) want.latencies = inLab ? 8 : 1;
   }
+  want.busy = inLab && at("busy-part").open;
   if (inLab && at("limits-part").open && (stands || now - updatedAt.limits > LIMITS_EVERY)) {
     updatedAt.limits = now;
     want.limits = true;
@@ -411,6 +415,10 @@ function draw(seen) {
   at("beam-legend").hidden = !shows("beam");
   at("wire-legend").hidden = !shows("wire");
   at("region-legend").hidden = !shows("regions");
+  if (seen.busy) {
+    busy.add(seen);
+    if (seen.boards) busy.draw(at("busy"), names());
+  }
   if (seen.machines[0].limits) drawLimits(at("limits"), seen.machines, names());
   if (seen.machines[0].missesAll !== undefined) tellHeavy(seen.machines);
   if (mode === "lab") drawLink(state);
@@ -493,6 +501,7 @@ function layOutParts() {
   document.body.classList.toggle("with-diagram", shows("diagram") && mode === "story");
 }
 
+const busy = new Busy();
 const diagram = new Diagram(at("diagram"), at("diagram-legend"), choose);
 
 function choose(name) {

@@ -57,10 +57,14 @@ const OPERATIONS = {
   go({ by, to, step, stop, rows, want, note }) {
     if (rows) machines.forEach((machine) => machine.moved(rows));
     checkpoint(note);
+    const busy = want?.busy ? machines.map(() => []) : null;
+    const sample = () => busy?.forEach((samples, n) => samples.push([machines[n].now(), machines[n].busy()]));
+    sample();
     if (stop) {
       const end = to ?? machines[0].now() + by;
       const stopped = seek(stop, end);
-      return { ...snapshot(want), stopped };
+      sample();
+      return { ...snapshot(want), stopped, busy };
     }
     if (step) machines.forEach((machine) => machine.step(step));
     const goal = to ?? (by ? Math.min(...machines.map((machine) => machine.now())) + by : 0);
@@ -72,8 +76,10 @@ const OPERATIONS = {
       machines.forEach((machine, n) => machine.run_to(Math.round(from[n] + ((goal - from[n]) * part) / 8)));
       worked += performance.now() - before;
       checkpoint(note);
+      sample();
     }
-    return snapshot(want);
+    sample();
+    return { ...snapshot(want), busy };
   },
   edges: () => machines[0].edges(),
   /** Returns the number of primitives in a machine's scene, and the number that the machine could show in time. */
@@ -174,7 +180,7 @@ function snapshot(want) {
       heat: want.error ? machine.heat(surface) : null,
       difference: want.error ? JSON.parse(machine.difference(surface)) : null,
     }));
-    return { state, surfaces, age: want.age ? JSON.parse(machine.age()) : undefined, offset: want.age ? JSON.parse(machine.misregistration()) : undefined, missesAll: want.age ? machine.misses_all() : undefined, regions: want.regions ? JSON.parse(machine.regions()) : null, latencies: want.latencies ? JSON.parse(machine.latencies(want.latencies)) : null, limits: want.limits ? JSON.parse(machine.limits()) : null };
+    return { state, surfaces, age: want.age ? JSON.parse(machine.age()) : undefined, offset: want.age || want.busy ? JSON.parse(machine.misregistration()) : undefined, missesAll: want.age ? machine.misses_all() : undefined, regions: want.regions ? JSON.parse(machine.regions()) : null, latencies: want.latencies ? JSON.parse(machine.latencies(want.latencies)) : null, limits: want.limits ? JSON.parse(machine.limits()) : null };
   });
   const machine = machines[want.of ?? 0] ?? machines[0];
   const boards = want.boards ? JSON.parse(machine.boards()) : null;

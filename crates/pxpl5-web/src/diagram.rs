@@ -1,10 +1,11 @@
 //! Data for the block diagram and the guided tours of the page. The data are stages of processors, messages, regions
 //! that are being drawn or copied, and the age of the shown picture.
 
-use pxpl5_gp::{Stage, StageEdge};
-use pxpl5_machine::Board;
+use pxpl5_gp::StageEdge;
+use pxpl5_machine::{Board, Record};
 use pxpl5_run::{PictureTimes, Stepper};
 use pxpl5_sim::Time;
+use pxpl5_views::palette::class_of;
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionPlace};
 use serde_json::{Value, json};
 
@@ -14,19 +15,7 @@ pub(crate) fn stage(stepper: &Stepper, board: Board) -> Option<&'static str> {
     let ports = stepper.record().ports();
     let marks = &stepper.record().observation().marks;
     let last = marks.iter().rev().find(|mark| mark.time <= stepper.now() && ports.board(mark.node) == board)?;
-    (last.edge == StageEdge::Begin).then(|| name(last.stage))
-}
-
-const fn name(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Sample => "sample",
-        Stage::Send => "send",
-        Stage::Edit => "edit",
-        Stage::Transform => "transform",
-        Stage::Render => "render",
-        Stage::Copy => "copy",
-        Stage::Swap => "swap",
-    }
+    (last.edge == StageEdge::Begin).then(|| class_of(last.stage))
 }
 
 /// Returns the ring messages that began after an instant, including messages that still occupy a channel. The result
@@ -54,32 +43,44 @@ pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
 /// between two lines of the field. `surface` is null for a region of a cube face.
 pub(crate) fn regions(stepper: &Stepper) -> Value {
     let record = stepper.record();
+    let snapshots = || (0..record.renderers().len()).filter_map(|number| Some((number, stepper.renderer(number)?)));
+    let drawn = snapshots()
+        .filter_map(|(number, snapshot)| Some(region(record, "render", number, snapshot.works(), snapshot.drawing?)));
+    let copied = snapshots()
+        .filter_map(|(number, board)| Some(region(record, "copy", number, true, place_of(board.copying?.target))));
+    drawn.chain(copied).collect()
+}
+
+/// Returns the regions that renderers have drawn lately, as in [`regions`], each with the time in which its renderer
+/// executed commands for it, in microseconds.
+pub(crate) fn loads(stepper: &Stepper) -> Value {
+    let record = stepper.record();
+    let loads = record.observation().drawn.iter().map(|(number, drawn)| {
+        json!({"region": region(record, "drawn", *number, false, place_of(drawn.target)), "executed_us": drawn.executed.as_ms() * 1e3})
+    });
+    loads.collect()
+}
+
+const fn place_of(CopyTarget { frame_buffer, lines, grid, region, .. }: CopyTarget) -> RegionPlace {
+    RegionPlace { frame_buffer: Some(frame_buffer), lines, grid, region }
+}
+
+fn region(record: &Record, stage: &str, number: usize, works: bool, place: RegionPlace) -> Value {
     // The surfaces of a display are its frame buffers, in the order of their ports.
     let surface_of = |port: NodeId| {
         record.displays().iter().find_map(|display| {
-            let place = display.nodes().iter().position(|node| *node == port);
-            place.map(|place| place % display.surfaces().len())
+            display.nodes().iter().position(|node| *node == port).map(|place| place % display.surfaces().len())
         })
     };
-    let region = |stage: &str, number: usize, works: bool, place: RegionPlace| {
-        let lines = match place.lines {
-            Lines::Frame => [0, 1],
-            Lines::Field(FieldParity::Even) => [0, 2],
-            Lines::Field(FieldParity::Odd) => [1, 2],
-        };
-        json!({
-            "stage": stage, "renderer": number, "works": works, "surface": place.frame_buffer.and_then(surface_of),
-            "rectangle": place.grid.rectangle(place.region), "lines": lines,
-        })
+    let lines = match place.lines {
+        Lines::Frame => [0, 1],
+        Lines::Field(FieldParity::Even) => [0, 2],
+        Lines::Field(FieldParity::Odd) => [1, 2],
     };
-    let snapshots = || (0..record.renderers().len()).filter_map(|number| Some((number, stepper.renderer(number)?)));
-    let drawn = snapshots()
-        .filter_map(|(number, snapshot)| Some(region("render", number, snapshot.works(), snapshot.drawing?)));
-    let copied = snapshots().filter_map(|(number, snapshot)| {
-        let CopyTarget { frame_buffer, lines, grid, region: id, .. } = snapshot.copying?.target;
-        Some(region("copy", number, true, RegionPlace { frame_buffer: Some(frame_buffer), lines, grid, region: id }))
-    });
-    drawn.chain(copied).collect()
+    json!({
+        "stage": stage, "renderer": number, "works": works, "surface": place.frame_buffer.and_then(surface_of),
+        "rectangle": place.grid.rectangle(place.region), "lines": lines,
+    })
 }
 
 /// Returns the age of the shown picture in milliseconds: the time since the tracker measured the head for it, or without a
@@ -176,6 +177,9 @@ mod tests {
         }
         // A stereo pair of frames has 2 x 20 regions.
         assert!(copied.len() >= 40, "{}", copied.len());
+        let loads = loads(session.stepper());
+        let mut us = loads.as_array().expect("a list").iter().filter_map(|load| load["executed_us"].as_f64());
+        assert!(us.clone().count() >= 40 && us.all(|us| (129.0..131.0).contains(&us)), "{loads}");
     }
 
     #[test]

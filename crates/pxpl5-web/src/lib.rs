@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!   address  #pipeline=slats&scene=mig&...  --> settings --> ExperimentFile --> Stepper     (this crate, compiled to wasm)
-//!   page/    run, pause, step, slower  ----------> run_for, step_*   |
+//!   page/    run, pause, step, slower  ----------> run_to, step       |
 //!            eyes, ring, boards  <---- bytes and JSON ---------------+
 //! ```
 //!
@@ -67,11 +67,6 @@ impl WebMachine {
         Session::new(settings, files).map(Self).map_err(refused)
     }
 
-    /// Runs the machine for `ps` picoseconds of simulated time, or to the end of the experiment.
-    pub fn run_for(&mut self, ps: f64) {
-        self.0.run_for(ps as u64);
-    }
-
     /// Runs the machine until the instant `ps`, in picoseconds. An instant in the past has no effect.
     pub fn run_to(&mut self, ps: f64) {
         self.0.run_to(ps as u64);
@@ -116,6 +111,12 @@ impl WebMachine {
     /// Returns the present state of each board as JSON.
     pub fn boards(&self) -> String {
         state::boards(self.0.stepper()).to_string()
+    }
+
+    /// Returns the time for which each renderer has executed commands so far, and then the time of copies of each
+    /// renderer, in picoseconds.
+    pub fn busy(&self) -> Vec<f64> {
+        state::busy(self.0.stepper())
     }
 
     /// Returns the messages that began after the instant `after_ps` (picoseconds) as JSON, at most `most` messages. If
@@ -224,8 +225,8 @@ impl WebMachine {
         state::misses_all(self.0.stepper())
     }
 
-    /// Returns, as JSON, the share of time for which each kind of board was busy, and the waits that delayed the last
-    /// pictures. Shares are 0 to 1, and values that were not measured are null.
+    /// Returns, as JSON, the share of time for which each kind of board was busy, the waits that delayed the last
+    /// pictures, and the load of the regions that were drawn lately. Shares are 0 to 1, and values that were not measured are null.
     pub fn limits(&self) -> String {
         state::limits(self.0.stepper()).to_string()
     }

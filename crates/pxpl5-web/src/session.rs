@@ -57,10 +57,6 @@ impl Session {
         moves.extend(&more).map_err(|error| error.to_string())
     }
 
-    pub(crate) fn run_for(&mut self, ps: u64) {
-        self.run_to(self.stepper.now().0.saturating_add(ps));
-    }
-
     pub(crate) fn run_to(&mut self, ps: u64) {
         // The end of the experiment is reported only if the run continues to a later instant.
         let pause = self.stepper.run_to(Time(ps).min(self.stepper.end() + Span(1)));
@@ -171,15 +167,11 @@ mod tests {
     fn a_run_on_the_page_has_the_trace_hash_of_the_command() {
         let mut session = new(SETTINGS).expect("known settings");
         while session.state()["over"] == false {
-            session.run_for(7_000_000_000);
+            session.run_to(session.stepper().now().0 + 7_000_000_000);
             let _ = (session.seen(0), pictures::renderer(session.stepper(), 0), state::timeline(session.stepper(), 4));
         }
-        let plan = ExperimentFile::parse(
-            &SETTINGS.replace("slats", "\"slats\"").replace("full-screen:2", "\"full-screen:2\""),
-            "text",
-        )
-        .and_then(|file| file.resolve())
-        .expect("an experiment");
+        let text = SETTINGS.replace("slats", "\"slats\"").replace("full-screen:2", "\"full-screen:2\"");
+        let plan = ExperimentFile::parse(&text, "text").and_then(|file| file.resolve()).expect("an experiment");
         let outcome = match plan.experiment(plan.load_scene().expect("built in")).run() {
             Err(ExperimentError::TooShort { partial, .. }) => *partial,
             other => other.expect("it runs"),
@@ -259,7 +251,7 @@ mod tests {
     #[test]
     fn pictures_have_the_sizes_of_the_listed_surfaces() {
         let mut session = new(SETTINGS).expect("known settings");
-        session.run_for(60_000_000_000);
+        session.run_to(60_000_000_000);
         for (number, surface) in session.state()["surfaces"].as_array().expect("a list").iter().enumerate() {
             let pixels = surface["width"].as_u64().expect("a number") * surface["height"].as_u64().expect("a number");
             assert_eq!(session.seen(number as u16).len() as u64, 4 * pixels);
@@ -272,7 +264,7 @@ mod tests {
     #[test]
     fn every_listed_board_has_a_snapshot_and_an_unknown_board_is_refused() {
         let mut session = new(SETTINGS).expect("known settings");
-        session.run_for(40_000_000_000);
+        session.run_to(40_000_000_000);
         let boards = state::boards(session.stepper());
         for board in boards.as_array().expect("a list") {
             let name = board["name"].as_str().expect("a name");
@@ -306,10 +298,10 @@ mod tests {
     #[test]
     fn a_failed_machine_is_reported_as_a_state() {
         let mut session = new("pipeline=slats\nscene=full-screen:200000\nfields=8\npixels=off").expect("known");
-        session.run_for(200_000_000_000);
+        session.run_to(200_000_000_000);
         let state = session.state();
         assert!(state["failure"].as_str().is_some_and(|error| error.contains("GP")), "{state}");
-        session.run_for(1);
+        session.run_to(200_000_000_001);
         assert_eq!(session.state()["failure"], state["failure"]);
     }
 }

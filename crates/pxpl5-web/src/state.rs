@@ -30,6 +30,7 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
         "surfaces": surfaces.collect::<Vec<_>>(),
         "field_of_view_deg": stepper.experiment().hmd().config().horizontal_fov_deg,
         "memories": pictures::memories(stepper),
+        "turn_deg_s": stepper.head().map(|head| head.head().motion().angular_velocity(stepper.now().0).length().to_degrees()),
     })
 }
 
@@ -51,9 +52,9 @@ pub(crate) fn misses_all(stepper: &Stepper) -> bool {
     run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
 }
 
-/// Returns, as JSON, the share of time for which each kind of board was busy, and the waits that delayed the last
-/// pictures. Shares are 0 to 1. `utilisation` is null at time zero, and `path` is null before the first complete
-/// picture.
+/// Returns, as JSON, the share of time for which each kind of board was busy, the waits that delayed the last pictures,
+/// and the load of the regions that were drawn lately. Shares are 0 to 1. `utilisation` is null at time zero, and `path`
+/// is null before the first complete picture.
 pub(crate) fn limits(stepper: &Stepper) -> Value {
     let path = CriticalPath::so_far(&stepper.observed_run());
     let path = path.map(|path| {
@@ -66,7 +67,15 @@ pub(crate) fn limits(stepper: &Stepper) -> Value {
             "chain": path.chain,
         })
     });
-    json!({"utilisation": Utilisation::so_far(stepper), "path": path})
+    json!({"utilisation": Utilisation::so_far(stepper), "path": path, "regions": diagram::loads(stepper)})
+}
+
+/// Returns the time for which each renderer has executed commands so far, and then the time of copies of each renderer,
+/// in picoseconds.
+pub(crate) fn busy(stepper: &Stepper) -> Vec<f64> {
+    let (boards, now) = (stepper.record().renderers(), stepper.now());
+    let spans = boards.iter().map(|board| board.busy_at(now)).chain(boards.iter().map(|board| board.copying_at(now)));
+    spans.map(|span| span.0 as f64).collect()
 }
 
 pub(crate) fn misregistration(stepper: &Stepper) -> Value {

@@ -161,15 +161,16 @@ impl Chart {
             let lines = self.series.len().div_ceil(NAMES_A_LINE) as f64;
             root.split_vertically(f64::from(measures.height) - lines * NAME_HEIGHT_EM * em)
         } else {
-            root.split_horizontally(f64::from(measures.width) - 18.0 * em)
+            // A letter is 0.42 em wide in the mean. Longer names than the 50 letters of a level of modelling are cut.
+            let letters = self.series.iter().map(|series| series.name.chars().count()).max().unwrap_or(0).min(50);
+            root.split_horizontally(f64::from(measures.width) - (5.0 + 0.42 * letters as f64) * em)
         };
         self.draw_plane(&plane, measures)?;
         // Each entry of the legend has a line sample and a name.
-        let columns = if measures.names_below { NAMES_A_LINE } else { 1 };
+        let (columns, first) = if measures.names_below { (NAMES_A_LINE, 0.6) } else { (1, 3.6) };
         let column = f64::from(names.dim_in_pixel().0) / columns as f64;
         for (i, series) in self.series.iter().enumerate() {
             let x = em * 1.2 + column * (i % columns) as f64;
-            let first = if measures.names_below { 0.6 } else { 3.6 };
             let y = em * (first + NAME_HEIGHT_EM * (i / columns) as f64);
             draw_name(&names, Appearance::of(i, measures.em), series, (x as i32, y as i32))?;
         }
@@ -189,7 +190,9 @@ impl Chart {
         if !self.axes.title.is_empty() {
             builder.caption(&self.axes.title, (FontFamily::SansSerif, em * 1.2));
         }
-        builder.margin(em * 0.6).x_label_area_size(em * 3.2).y_label_area_size(em * (2.4 + 0.6 * widest as f64));
+        // The last number of the horizontal axis is centred below the right edge, so half of it lies beyond.
+        let left = em * (2.4 + 0.6 * widest as f64);
+        builder.margin(em * 0.6).margin_right(em * 1.8).x_label_area_size(em * 3.2).y_label_area_size(left);
         let mut plane = builder.build_cartesian_2d(across.clone(), up.clone())?;
         // Draw the axes first, because the series lie above the mesh.
         plane

@@ -7,9 +7,9 @@ use std::ops::Range;
 /// Scale of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AxisScale {
-    /// Linear scale from 0 to the greatest drawn number.
+    /// Linear scale from 0 to a little more than the greatest drawn number.
     FromZero,
-    /// Linear scale from the smallest to the greatest drawn number.
+    /// Linear scale from the smallest to the greatest drawn number, with some room beyond both.
     Fitted,
     /// Logarithmic scale in powers of ten. Zero and negative numbers have no position.
     Decades,
@@ -34,7 +34,7 @@ impl Axis {
         let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |ends, p| (ends.0.min(p), ends.1.max(p)));
         let (low, high) = if low <= high { (low, high) } else { (0.0, 1.0) };
         let ends = match scale {
-            AxisScale::FromZero => (0.0, high.max(1e-9)),
+            AxisScale::FromZero => (0.0, widened(0.0, high.max(0.0)).1),
             AxisScale::Fitted => widened(low, high),
             AxisScale::Decades => (low.floor(), high.ceil().max(low.floor() + 1.0)),
             AxisScale::Names(names) => (-0.5, names.len().max(1) as f64 - 0.5),

@@ -12,6 +12,8 @@ img{max-width:100%;height:auto}figure{margin:0;min-width:0}.chart{width:100%;max
 .pair img{width:100%}table{border-collapse:collapse;font-variant-numeric:tabular-nums}\
 td,th{padding:.25rem .6rem;border-bottom:1px solid #ccc;text-align:left;vertical-align:top}.wide td{min-width:4rem}td.n{text-align:right;white-space:nowrap}\
 .swatch{display:inline-block;width:.8em;height:.8em;margin-right:.4em}.dim{color:#555}.loud{color:#a00;font-weight:bold}.wide code{overflow-wrap:normal}\
+@media screen and (prefers-color-scheme:dark){:root{color-scheme:dark}body{color:#e6e9ed;background:#14171a}td,th{border-color:#3a4047}\
+.dim{color:#a5aeb8}.loud{color:#ff8f8f}.chart,.swatch{filter:invert(1) hue-rotate(180deg)}}\
 @media print{body{max-width:none;font-size:10pt}section,figure,table{break-inside:avoid}.wide img{min-width:0}\
 *{print-color-adjust:exact;-webkit-print-color-adjust:exact}}";
 

@@ -23,7 +23,8 @@ fn pictures(run: &PageRun) -> Element {
         let nothing = Element::new("p").with("class", "dim").text("No pictures in this folder.");
         return section.child(&nothing);
     }
-    let figures = run.pictures.iter().map(figure);
+    let about = |picture: &PagePicture| format!("What the {} sees at the end", picture.label);
+    let figures = run.pictures.iter().map(|picture| figure("image/png", picture, &about(picture)));
     let pair = Element::new("div").with("class", "pair").children(figures);
     section.child(&heading("Last displayed pictures")).child(&pair)
 }
@@ -37,13 +38,13 @@ fn details(run: &PageRun) -> Element {
     Element::new("section").children(speed(&run.report)).children(configuration(&run.report))
 }
 
-fn figure(picture: &PagePicture) -> Element {
-    let about = format!("What the {} sees at the end", picture.label);
+/// Returns a picture with its caption. `about` describes it to readers who cannot see it.
+pub(super) fn figure(kind: &str, picture: &PagePicture, about: &str) -> Element {
     let caption = Element::new("figcaption").text(&picture.label);
-    Element::new("figure").child(&image("image/png", &picture.png, &about)).child(&caption)
+    Element::new("figure").child(&image(kind, &picture.png, about)).child(&caption)
 }
 
-pub(super) fn image(kind: &str, bytes: &[u8], about: &str) -> Element {
+fn image(kind: &str, bytes: &[u8], about: &str) -> Element {
     let source = format!("data:{kind};base64,{}", STANDARD.encode(bytes));
     Element::new("img").with("src", source).with("alt", about)
 }

@@ -2,7 +2,7 @@
 
 use super::html::page;
 use super::run::PagePicture;
-use super::section::image;
+use super::section::figure;
 use super::values::{cell, heading, number_cell, paragraph, row, table};
 use crate::markup::Element;
 
@@ -33,28 +33,23 @@ fn section(of: &PageTable) -> Element {
     let mut section = Element::new("section").child(&Element::new("h2").text(&of.name));
     section.end_line();
     of.about.iter().for_each(|text| section.add_line(&paragraph(text)));
+    // Charts come first, because they show more than a table at a glance.
+    let charts = of.charts.iter().map(|chart| figure("image/svg+xml", chart, &chart.label));
+    section.add_line(&Element::new("div").with("class", "pair").children(charts));
     let names: Vec<&str> = of.columns.iter().map(String::as_str).collect();
     if !names.is_empty() {
         section.add_line(&table(&names, of.rows.iter().map(|cells| row(cells.iter().map(|text| shown(text))))));
     }
-    // Charts and pictures follow the table.
-    let charts = of.charts.iter().map(|chart| figure("image/svg+xml", chart));
-    let pictures = of.pictures.iter().map(|picture| figure("image/png", picture));
-    let figures: Vec<Element> = charts.chain(pictures).collect();
-    if figures.is_empty() {
+    if of.pictures.is_empty() {
         return section;
     }
-    section.child(&heading("Pictures")).child(&Element::new("div").with("class", "pair").children(figures))
+    let pictures = of.pictures.iter().map(|picture| figure("image/png", picture, &picture.label));
+    section.child(&heading("Pictures")).child(&Element::new("div").with("class", "pair").children(pictures))
 }
 
 /// Returns a table cell, aligned to the right if its text is a number.
 fn shown(text: &str) -> Element {
     if text == "-" || text.parse::<f64>().is_ok() { number_cell(text) } else { cell(text) }
-}
-
-fn figure(kind: &str, picture: &PagePicture) -> Element {
-    let caption = Element::new("figcaption").text(&picture.label);
-    Element::new("figure").child(&image(kind, &picture.png, &picture.label)).child(&caption)
 }
 
 #[cfg(test)]
