@@ -87,7 +87,7 @@ impl Settings {
 impl Settings {
     /// Raises the exception that the function of the head's motion has raised, if any.
     pub(crate) fn check(&self) -> PyResult<()> {
-        self.motion.iter().try_for_each(|called| called.check())
+        self.motion.iter().try_for_each(|called| called.raised.check())
     }
 
     pub(crate) fn plan(&self) -> PyResult<Plan> {

@@ -134,7 +134,7 @@ proptest! {
             prop_assert_eq!(due.shown + due.late + due.incomplete + due.missed, due.due);
             // Only pictures of the warm-up without a later one are left out.
             let left_out = window(&due) - due.due * every;
-            prop_assert!(left_out % every == 0 && (left_out == 0 || due.shown + due.pictures == 0 && left_out <= 4 * every));
+            prop_assert!(left_out.is_multiple_of(every) && (left_out == 0 || due.shown + due.pictures == 0 && left_out <= 4 * every));
             prop_assert!(due.last_period.0 < periods && due.due > 0);
         }
     }

@@ -105,7 +105,7 @@ pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
 }
 
 fn stage_row(stage: &str, end_to_end: &Value) -> Element {
-    row([cell(&stage.replace('_', " ")), number_cell(decimal(&end_to_end[format!("{stage}_ms")], 3))])
+    row([cell(stage.replace('_', " ")), number_cell(decimal(&end_to_end[format!("{stage}_ms")], 3))])
 }
 
 fn error_row(unit: &str, error: &Value) -> Element {
