@@ -60,17 +60,6 @@ impl Settings {
         self.check()
     }
 
-    /// Returns true if the setting at this path has a value.
-    fn has(&self, path: &str) -> bool {
-        self.file.place_of(path).is_some()
-    }
-
-    /// Returns true if the settings define a sweep, in which some settings have several values.
-    #[getter]
-    fn is_sweep(&self) -> bool {
-        self.file.is_sweep()
-    }
-
     /// Returns all settings that are in effect, as the text of an equivalent experiment file.
     ///
     /// Raises :class:`pxpl5.SettingError` for the first invalid or missing setting.
