@@ -15,7 +15,7 @@ use pyo3::types::{PyBytes, PyTuple};
 use std::collections::BTreeMap;
 use std::fmt::{self, Write as _};
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// A motion of the head, which has a pose at every instant of simulated time.
 ///
@@ -131,7 +131,7 @@ impl Motion {
     #[staticmethod]
     #[pyo3(signature = (pose, *, name = "callable"))]
     fn from_callable(pose: Py<PyAny>, name: &str) -> Self {
-        let called = Arc::new(CallableMotion { pose, name: name.to_owned(), raised: Mutex::default() });
+        let called = Arc::new(CallableMotion { pose, name: name.to_owned(), raised: Raised::default() });
         Self { moving: called.clone(), called: Some(called), about: name.to_owned(), origin: Origin::Callable }
     }
 
