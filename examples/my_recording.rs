@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let report = experiment.head(head).run()?.report();
             let head = report.head.ok_or("a report without a head")?;
             let error = head.error.pixels;
-            let light = head.end_to_end.head_to_light_ms;
+            let light = head.end_to_end.total_ms;
             println!(
                 "{pipeline:22} {predict:7} {light:6.1} ms from head to light, {:6.2} px of error, 99 %: {:.1}",
                 error.mean, error.p99

@@ -61,7 +61,7 @@ pub use pxpl5_measure::Report;
 /// let report = outcome.report();
 /// let head: HeadReport = report.head.ok_or("a tracked head")?;
 /// let budget: Budget = head.end_to_end;
-/// assert!(budget.head_to_light_ms > 0.0);
+/// assert!(budget.total_ms > 0.0);
 /// let eye: Option<EyeReport> = report.eye;
 /// let device: Option<ReprojectionReport> = eye.and_then(|eye| eye.reprojection);
 /// assert!(device.is_some());

@@ -244,7 +244,7 @@ fn latency_and_error(pipeline: impl Pipeline + 'static) -> (f64, f64) {
     let tracker =
         TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::optical_ceiling() };
     let outcome = run(pipeline, head(Synthetic::recorded_use(3), tracker, PredictorKind::None), 900);
-    (Budget::of(&outcome).head_to_light_ms, PixelErrors::of(&outcome).centre_deg.mean)
+    (Budget::of(&outcome).total_ms, PixelErrors::of(&outcome).centre_deg.mean)
 }
 
 #[test]

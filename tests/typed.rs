@@ -20,7 +20,7 @@ fn a_cube_with_its_latency_by_stage_error_and_picture_takes_forty_lines() {
         assert!(part.statistics.statistics.mean >= 0.0, "{}", part.name);
     }
     // A turn of 0.5 rad/s in the latency to light moves the middle by f tan(0.5 t), and f is 320 px / tan 30.
-    let to_light_s = report.head.as_ref().expect("a head").end_to_end.head_to_light_ms / 1e3;
+    let to_light_s = report.head.as_ref().expect("a head").end_to_end.total_ms / 1e3;
     let expected = 320.0 / 30f64.to_radians().tan() * (0.5 * to_light_s).tan();
     let fields = &report.head.as_ref().expect("a head").error.by_field;
     let centre = fields.iter().map(|field| field.centre_px).filter(|px| px.is_finite());

@@ -373,8 +373,6 @@ def compare(
         raise SettingError(f"all_rows: expected no names in only, found {only!r}")
     made = Made()
     made.put_all(None, scene, machine, head, {**({} if fields is None else {"fields": fields}), **keys, **(settings or {})})
-    if not made.settings.has("head.tracker"):
-        made.put("head.tracker", "optical")
     if isinstance(seeds, int):
         numbers = list(range(1, whole("seeds", seeds, 1) + 1))
     else:

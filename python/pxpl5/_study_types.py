@@ -49,9 +49,9 @@ class DetailData(TypedDict):
 
 
 class FittedData(TypedDict, total=False):
-    """The parameter or rule that was chosen to reproduce a figure, if there is one."""
+    """The parameter, rule or row that decides a figure, if there is one."""
 
-    fitted: str
+    chosen: str
 
 
 class VolumeFigureData(PublishedFigure, FittedData):

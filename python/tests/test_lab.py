@@ -12,20 +12,21 @@ def test_one_latency_figure_is_met() -> None:
     """Figure 9: Slats shows every picture after one field; figure 10: 20 field regions in 11 region times."""
     table = pxpl5.figures(["9", "10"], progress=False)
     row = table.row(0)
-    assert (row["id"], row["published"], row["unit"], row["provenance"]) == ("9", 1.0, "fields", "free")
+    assert (row["id"], row["published"], row["unit"], row["provenance"]) == ("9", 1.0, "fields", "derived")
     assert row["simulated"] == pytest.approx(1.0) and row["misses"] is False
     assert table.row(1)["published"] == 11 and table.row(1)["misses"] is False
-    assert len(pxpl5.figure_ids()) == 26
+    assert {"4b", "19", "R7"} <= set(pxpl5.figure_ids())
     with pytest.raises(pxpl5.SettingError, match="there is no figure `99`; did you mean `9`"):
         pxpl5.figures(["99"])
 
 
 def test_slats_draws_the_published_110_triangles_with_whole_copies() -> None:
-    """The time of a triangle is fitted to figure 12. The analytic level finds the same limit."""
-    limit = pxpl5.limit("slats", machine="slats", copy="whole")
+    """The papers' time of a triangle is fitted to figure 12. The analytic level finds the same limit."""
+    keys = {"machine": "slats", "copy": "whole", "machine__times": "papers"}
+    limit = pxpl5.limit("slats", **keys)
     assert limit.triangles == 110 and limit.first_miss == 111
     assert limit.goal == "no_missed_retrace"
-    analytic = pxpl5.limit("slats", machine="slats", copy="whole", level="analytic")
+    analytic = pxpl5.limit("slats", level="analytic", **keys)
     assert analytic.triangles == 110
 
 
@@ -97,7 +98,8 @@ def test_seeds_are_added_until_the_interval_is_narrow() -> None:
     found = short(until_precision="0.001px", max_seeds=4, fields=40)
     assert (found.data["until_precision"], found.data["max_seeds"], found.data["seeds"]) == ("0.001px", 4, [1, 2])
     assert {row["pipeline"]: (row["seeds"], row["is_precise"]) for row in found.data["pipelines"]}["slats"] == (4, False)
-    wide = short(until_precision="10000%", fields=40)
+    # The interval of a logarithm over two seeds can be hundreds of times as wide as the mean.
+    wide = short(until_precision="1000000%", fields=40)
     assert {(row["seeds"], row["is_precise"]) for row in wide.data["pipelines"]} == {(2, True)}
     assert wide.data["max_seeds"] == 50
 

@@ -94,7 +94,7 @@ def test_results_of_studies_have_their_types(slats: pxpl5.Outcome) -> None:
     check_rows(pxpl5.figures(["9", "10"], progress=False), _rows.FigureRow)
     made = Made()
     made.put_all("slats", "mig", "slats", None, {"level": "analytic"})
-    assert misfits(_native.limit(made.settings, thinned=True), _study_types.LimitData) == []
+    assert misfits(_native.limit(made.settings, of_scene=True), _study_types.LimitData) == []
     over = _native.limit_over(made.settings, "machine.n_gps", low=2.0, high=6.0, fields=20)
     assert misfits(over, _study_types.OverLimitData) == []
     experiment = pxpl5.Experiment("rendering-control", "full-screen:2", fields=30)

@@ -203,7 +203,7 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
         let _ = writeln!(
             text,
             "Head to light: {} ms, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}); 50, 95, 99 %: {} ms.",
-            number(end_to_end.head_to_light_ms, 2),
+            number(end_to_end.total_ms, 2),
             end_to_end.n,
             percentiles(&report.percentiles_ms.head_to_light, 2),
         );

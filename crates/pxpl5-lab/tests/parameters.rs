@@ -120,7 +120,7 @@ fn head_to_light_ms(latency_ms: u64) -> f64 {
     let latency = format!("tracking.optical.latency={latency_ms}");
     let plan = plan(&["head.motion=pan:40", "head.predict=none", "tracking.optical.rate=1000", "fields=60", &latency]);
     let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("it is small");
-    outcome.report().head.expect("a head").end_to_end.head_to_light_ms
+    outcome.report().head.expect("a head").end_to_end.total_ms
 }
 
 #[test]

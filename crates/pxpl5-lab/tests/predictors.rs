@@ -74,7 +74,7 @@ fn the_report_names_the_tuning_of_a_filter_and_uses_the_interval_of_the_pipeline
     println!("interval {interval_ms} ms, budget {:?}", head.end_to_end);
     // A frame is visible for two fields and is predicted for the middle of both. This instant is half a field after the
     // light of the picture's middle.
-    let expected_ms = head.end_to_end.head_to_light_ms + 1001.0 / 60.0 / 2.0;
+    let expected_ms = head.end_to_end.total_ms + 1001.0 / 60.0 / 2.0;
     assert!((interval_ms - expected_ms).abs() <= 1.0, "{interval_ms} {expected_ms}");
     assert_ne!(training.seed, 1, "not on the noise that is evaluated");
     assert_eq!(head.prediction.kind, PredictorKind::Kalman);

@@ -41,9 +41,10 @@ pub struct Budget {
     /// the response of the panel. 0 for a display that lights a pixel for an instant.
     #[serde(deserialize_with = "number_or_nan")]
     pub lighting_ms: f64,
-    /// Time from the measurement of the pose until the middle of the light of the picture's middle.
-    #[serde(deserialize_with = "number_or_nan")]
-    pub head_to_light_ms: f64,
+    /// Time from the measurement of the pose until the middle of the light of the picture's middle: `head_to_light_ms` in
+    /// reports.
+    #[serde(rename = "head_to_light_ms", deserialize_with = "number_or_nan")]
+    pub total_ms: f64,
     /// Number of pictures over which the means are computed.
     pub n: u64,
 }
@@ -74,7 +75,7 @@ impl Budget {
             showing_ms: mean(|budget| budget.showing_ms),
             scanning_ms: mean(|budget| budget.scanning_ms),
             lighting_ms: mean(|budget| budget.lighting_ms),
-            head_to_light_ms: mean(|budget| budget.head_to_light_ms),
+            total_ms: mean(|budget| budget.total_ms),
             n,
         }
     }
@@ -84,8 +85,7 @@ impl Budget {
 ///
 /// The first mean is the time from the measurement of the pose until its report reaches the host. The second mean is
 /// the time from the start of TRANSFORM until the picture is shown, over both eyes. The sum leaves out these stages of
-/// [`Budget::head_to_light_ms`]: the wait for the pipeline, SEND and EDIT, the scan to the middle of the picture, and its
-/// light.
+/// [`Budget::total_ms`]: the wait for the pipeline, SEND and EDIT, the scan to the middle of the picture, and its light.
 pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
     let Budget { tracking_ms, drawing_ms, showing_ms, .. } = Budget::of(outcome);
     let of_eyes = outcome.summary().eye_latency_ms();
@@ -150,23 +150,10 @@ impl BudgetSum {
 
     pub(crate) fn result(self) -> Budget {
         let n = self.stages_ms[0].count();
-        budget(self.stages_ms.map(|samples| samples.statistics().mean), n)
-    }
-}
-
-fn budget(means: [f64; STAGES], n: u64) -> Budget {
-    let head_to_light_ms = means.iter().sum();
-    let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms] = means;
-    Budget {
-        tracking_ms,
-        waiting_ms,
-        sending_ms,
-        drawing_ms,
-        showing_ms,
-        scanning_ms,
-        lighting_ms,
-        head_to_light_ms,
-        n,
+        let means = self.stages_ms.map(|samples| samples.statistics().mean);
+        let total_ms = means.iter().sum();
+        let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms] = means;
+        Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms, total_ms, n }
     }
 }
 

@@ -122,7 +122,7 @@ pub static QUANTITIES: [Quantity; 67] = [
     of_summary("eye_ms", "from the start of an eye's TRANSFORM to the end of its COPY; mean; none for Slats", |s| {
         s.eye_latencies_ms.statistics().mean
     }),
-    of_run("head_to_light_ms.mean", TO_LIGHT, |_, r| Some(r.head.as_ref()?.end_to_end.head_to_light_ms)),
+    of_run("head_to_light_ms.mean", TO_LIGHT, |_, r| Some(r.head.as_ref()?.end_to_end.total_ms)),
     of_run("head_to_light_ms.p50", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p50)),
     of_run("head_to_light_ms.p95", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p95)),
     of_run("head_to_light_ms.p99", TO_LIGHT, |_, r| Some(r.percentiles_ms.head_to_light.p99)),

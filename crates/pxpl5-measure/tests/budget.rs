@@ -79,7 +79,7 @@ fn stages_from_head_to_light_add_up() {
             budget.scanning_ms,
         ];
         of_stages.iter().zip(&stages).for_each(|(found, expected)| assert_near(*found, mean(expected), name));
-        assert_near(budget.head_to_light_ms, of_stages.iter().sum(), name);
+        assert_near(budget.total_ms, of_stages.iter().sum(), name);
         let totals: Vec<f64> = (0..n).map(|i| stages.iter().map(|stage| stage[i]).sum()).collect();
         let found = Budget::totals_ms(&outcome);
         assert_eq!(found.len(), n);
@@ -146,7 +146,7 @@ fn the_error_of_a_prediction_interval_is_the_time_from_its_instant_to_the_middle
 fn without_a_head_no_stage_is_measured() {
     let outcome = run(&(Arc::new(Slats::split()) as Arc<dyn Pipeline>), None, 60);
     let budget = Budget::of(&outcome);
-    assert!(budget.n == 0 && budget.head_to_light_ms.is_nan() && budget.tracking_ms.is_nan());
+    assert!(budget.n == 0 && budget.total_ms.is_nan() && budget.tracking_ms.is_nan());
     assert_eq!(budget.n, Budget::default().n);
     assert!(Budget::totals_ms(&outcome).is_empty());
     assert_eq!(ErrorCauses::of(&outcome, Showing::Plain, &PixelErrors::of(&outcome)), None);

@@ -91,7 +91,7 @@ fn every_quantity_equals_the_number_of_that_name_in_the_report() {
         ("latency_ms.max", report.latency_ms.statistics.max),
         ("latency_fields.mean", report.latency_ms.statistics.mean * FIELD_HZ * 1e-3),
         ("missed_share", (due.due - due.shown) as f64 / due.due as f64),
-        ("head_to_light_ms.mean", head.end_to_end.head_to_light_ms),
+        ("head_to_light_ms.mean", head.end_to_end.total_ms),
         ("error_px.mean", head.error.pixels.mean),
         ("error_px.p50", head.error.pixels.p50),
         ("error_px.p90", head.error.pixels.p90),

@@ -60,7 +60,7 @@ impl Experiment {
         // Runs in Python have events.
         let (native, choice) = plan.with_chosen_level(scene, true);
         let level = choice.map_or_else(|| plan.level_name(), |choice| choice.to_string());
-        let functions = PythonFunctions { motion: settings.motion.clone(), policy };
+        let functions = PythonFunctions { policy, ..settings.functions.clone() };
         Ok(Self { plan, native, level, functions })
     }
 

@@ -117,11 +117,13 @@ pub(crate) fn compare<'py>(
     query.set_length().map_err(wrong_setting)?;
     // With a folder, Ctrl-C waits until all runs have stopped, so that the comparison can be resumed at once.
     let waits = folder.is_some();
+    let functions = settings.functions.clone();
     let comparison = in_background(py, progress, waits, move |watch| {
+        functions.end(&watch.stop_flag());
         query.store = folder.map(|folder| query.open_store(&folder, resume)).transpose()?.map(Arc::new);
         query.run(&mut &*watch)
     });
-    settings.check()?;
+    settings.functions.check()?;
     python(py, &comparison?.map_err(wrong_study)?)
 }
 
@@ -158,7 +160,7 @@ pub(crate) fn limit<'py>(
         query.model.as_ref().map_or(query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned());
     let criterion = query.criterion;
     let found = study(py, progress, query);
-    settings.check()?;
+    settings.functions.check()?;
     let found = found?.map_err(wrong_setting)?;
     let Limit { triangles, first_miss, island, unbroken_from, tried } = found;
     python(
@@ -202,7 +204,7 @@ pub(crate) fn limit_over<'py>(
     let values = OverQuery::values(&first, key, low, high).map_err(|error| wrong_setting(error.at("low and high")))?;
     let query = OverQuery { file, key: key.to_owned(), values, goal: first.limit.goal };
     let limit = study(py, progress, query.clone());
-    settings.check()?;
+    settings.functions.check()?;
     let mut found = serde_json::to_value(limit?.map_err(wrong_setting)?).map_err(wrong_setting)?;
     found["over"] = key.into();
     found["goal"] = json!(query.goal);

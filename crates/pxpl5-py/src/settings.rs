@@ -1,11 +1,11 @@
 //! Settings of an experiment by path, as in an experiment file.
 
 use crate::errors::wrong_setting;
-use crate::motion::{CallableMotion, Motion};
+use crate::motion::Motion;
+use crate::policy::PythonFunctions;
 use pxpl5::{ExperimentFile, Plan};
 use pyo3::prelude::*;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Settings of an experiment by path, as in an experiment file. The combination of all settings is checked only when an
 /// experiment is created from the settings.
@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub(crate) struct Settings {
     pub(crate) file: ExperimentFile,
     /// Function of Python that moves the head, if any.
-    pub(crate) motion: Option<Arc<CallableMotion>>,
+    pub(crate) functions: PythonFunctions,
 }
 
 #[pymethods]
@@ -22,7 +22,7 @@ impl Settings {
     /// Creates empty settings.
     #[new]
     fn new() -> Self {
-        Self { file: ExperimentFile::new(), motion: None }
+        Self { file: ExperimentFile::new(), functions: PythonFunctions::default() }
     }
 
     /// Adds the settings of an experiment file (TOML) to the present settings. File names in the file are relative to
@@ -56,19 +56,8 @@ impl Settings {
     /// Raises any exception of a Python function that computes the motion.
     fn set_motion(&mut self, motion: &Motion) -> PyResult<()> {
         motion.set_in(&mut self.file)?;
-        self.motion.clone_from(&motion.called);
-        self.check()
-    }
-
-    /// Returns true if the setting at this path has a value.
-    fn has(&self, path: &str) -> bool {
-        self.file.place_of(path).is_some()
-    }
-
-    /// Returns true if the settings define a sweep, in which some settings have several values.
-    #[getter]
-    fn is_sweep(&self) -> bool {
-        self.file.is_sweep()
+        self.functions.motion.clone_from(&motion.called);
+        self.functions.check()
     }
 
     /// Returns all settings that are in effect, as the text of an equivalent experiment file.
@@ -85,11 +74,6 @@ impl Settings {
 }
 
 impl Settings {
-    /// Raises the exception that the function of the head's motion has raised, if any.
-    pub(crate) fn check(&self) -> PyResult<()> {
-        self.motion.iter().try_for_each(|called| called.raised.check())
-    }
-
     pub(crate) fn plan(&self) -> PyResult<Plan> {
         self.file.resolve().map_err(wrong_setting)
     }
