@@ -1,8 +1,8 @@
 //! Compares systems by pixel error and cost: rotation, translation and both, in a gallery.
 //!
 //! `cargo run --release --example systems [FOLDER]` runs every system under three motions of a head with the optical
-//! tracker and a Kalman filter. The evaluation is that of `compare`. The files systems.svg and systems.md are written
-//! into docs/ by default.
+//! tracker and a Kalman filter. The evaluation is that of `compare`. The files pictures/systems.svg, with the errors, and
+//! systems.md, with errors and costs, are written into docs/ by default.
 
 mod panels;
 
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         rows.push((system, found));
     }
-    std::fs::write(folder.join("systems.svg"), drawing(&rows)?)?;
+    std::fs::write(folder.join("pictures/systems.svg"), drawing(&rows)?)?;
     std::fs::write(folder.join("systems.md"), table(&rows)?)?;
     Ok(())
 }

@@ -24,17 +24,15 @@ export class Busy {
     busy.forEach((samples, n) => {
       const rows = (this.#rows[n] ??= []);
       for (const [ps, spans] of samples) {
-        const last = rows.at(-1);
-        // A machine that has gone back in time begins again.
-        if (last && ps < last.ps) rows.length = 0;
-        if (!last || ps > last.ps) rows.push({ ps, spans });
+        while (rows.length > 0 && rows.at(-1).ps >= ps) rows.pop();
+        rows.push({ ps, spans });
       }
       while (rows.length > 2 && rows[1].ps < rows.at(-1).ps - MAP_PS) rows.shift();
     });
     machines.forEach(({ state, offset }, n) => {
       const points = (this.#curves[n] ??= []);
-      if (points.at(-1)?.ps >= state.now_ps) points.length = 0;
-      points.push({ ps: state.now_ps, px: offset?.pixels ?? null, speed: state.turn_deg_s });
+      while (points.length > 0 && points.at(-1).ps >= state.now_ps) points.pop();
+      points.push({ ps: state.now_ps, px: offset?.pixels ?? null, speed: state.turn_deg_s ?? null });
       while (points[0].ps < state.now_ps - CURVES_PS) points.shift();
     });
   }
@@ -89,7 +87,7 @@ export class Busy {
     if (figure.hidden) return;
     const now = all[0].at(-1).ps;
     const high = 90;
-    const { context, colour, across } = begin(canvas, 2 * high + 20, now - CURVES_PS, now);
+    const { context, colour, across } = begin(canvas, 2 * high + 20, all[0][0].ps, now);
     const most = [Math.max(1, ...all.flat().map(({ px }) => px ?? 0)), Math.max(1, ...all[0].map(({ speed }) => speed ?? 0))];
     const strip = (top, points, value, greatest, dashes) => {
       context.setLineDash(dashes);

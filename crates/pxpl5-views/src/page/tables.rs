@@ -34,8 +34,7 @@ fn section(of: &PageTable) -> Element {
     section.end_line();
     of.about.iter().for_each(|text| section.add_line(&paragraph(text)));
     // Charts come first, because they show more than a table at a glance.
-    let charts = of.charts.iter().map(|chart| figure("image/svg+xml", chart, &chart.label));
-    section.add_line(&Element::new("div").with("class", "pair").children(charts));
+    of.charts.iter().for_each(|chart| section.add_line(&figure("image/svg+xml", chart, &chart.label)));
     let names: Vec<&str> = of.columns.iter().map(String::as_str).collect();
     if !names.is_empty() {
         section.add_line(&table(&names, of.rows.iter().map(|cells| row(cells.iter().map(|text| shown(text))))));
