@@ -129,17 +129,10 @@ fn model_files_are_drawn_and_bad_files_are_refused_with_the_reason() {
 fn an_invalid_option_is_reported_before_drawing_with_exit_code_2() {
     let folder = Folder::new("volume-refused");
     for (arguments, parts) in [
-        (&["run", "--set", "display.slices=397"][..], &["display.slices", "even", "397"][..]),
-        (&["run", "--set", "display.width=770"], &["display.width", "multiple of 8", "770"]),
-        (&["run", "--set", "tile.size=12"], &["tile.size", "multiple of 8", "12"]),
-        (&["run", "--clip", "hyperbolic:-1"], &["clip.bias_px2", "0 to", "-1"]),
-        (&["run", "--clip", "tapered:4"], &["clip.offset_px", "0 to 3.04", "4"]),
-        (&["run", "--clip", "cone"], &["--clip", "prism, user-planes", "cone"]),
+        (&["run", "--clip", "cone"][..], &["--clip", "prism, user-planes", "cone"][..]),
         (&["run", "--projection", "fisheye"], &["--projection", "orthographic", "fisheye"]),
-        (&["run", "--set", "jitter.eye_distance=0.005"], &["jitter.eye_distance", "more than", "1.92"]),
         (&["run", "--set", "clip.bias=1"], &["clip.bias", "did you mean"]),
         (&["run", "--set", "clip.bias_px2"], &["--set", "equals sign"]),
-        (&["run", "--samples", "9"], &["draw.samples", "1, 4 or 16", "9"]),
         (&["run", "--scene", "migg"], &["mig"]),
         (&["slice", "396", "--out", "o.png"], &["0 to 395", "396"]),
         (&["view", "--cut", "90", "--out", "o.png"], &["0:90", "90"]),
@@ -197,8 +190,6 @@ fn an_invalid_sweep_is_refused_before_drawing() {
         ("[sweep.grid]\ntile.size = { from = 3, to = 1 }\n", "from <= to"),
         ("measure = [\"lit\"]\n[sweep.grid]\ntile.size = [8]\n", "lit_voxels"),
         ("measure = [\"host_seconds\"]\n[sweep.grid]\ntile.size = [8]\n", "host_seconds"),
-        ("[sweep]\ngird = 1\n", "sweep.gird"),
-        ("[sweep", "TOML"),
     ] {
         folder.file("s.toml", text);
         let output = folder.run(&["volume", "sweep", "s.toml", "--out", "o"]);
