@@ -7,7 +7,7 @@ const MAP_PS = 100.1e9;
 /** Simulated picoseconds that the curves show. */
 const CURVES_PS = 5e12;
 /** Simulated picoseconds without a picture after which a curve begins again. */
-const GAP_PS = 150e9;
+const GAP_PS = 250e9;
 /** Size of both drawings in pixels: the whole width, the space for names on the left, and the height of a row. */
 const [WIDTH, LEFT, ROW] = [1000, 110, 14];
 
@@ -32,6 +32,7 @@ export class Busy {
       while (rows.length > 2 && rows[1].ps < rows.at(-1).ps - MAP_PS) rows.shift();
     });
     machines.forEach(({ state, offset }, n) => {
+      if (offset === undefined) return;
       const points = (this.#curves[n] ??= []);
       while (points.length > 0 && points.at(-1).ps >= state.now_ps) points.pop();
       points.push({ ps: state.now_ps, px: offset?.pixels ?? null, speed: state.turn_deg_s ?? null });
