@@ -6,6 +6,8 @@ import { percent } from "./limits.js";
 const MAP_PS = 100.1e9;
 /** Simulated picoseconds that the curves show. */
 const CURVES_PS = 5e12;
+/** Simulated picoseconds without a picture after which a curve begins again. */
+const GAP_PS = 250e9;
 /** Size of both drawings in pixels: the whole width, the space for names on the left, and the height of a row. */
 const [WIDTH, LEFT, ROW] = [1000, 110, 14];
 
@@ -30,6 +32,7 @@ export class Busy {
       while (rows.length > 2 && rows[1].ps < rows.at(-1).ps - MAP_PS) rows.shift();
     });
     machines.forEach(({ state, offset }, n) => {
+      if (offset === undefined) return;
       const points = (this.#curves[n] ??= []);
       while (points.length > 0 && points.at(-1).ps >= state.now_ps) points.pop();
       points.push({ ps: state.now_ps, px: offset?.pixels ?? null, speed: state.turn_deg_s ?? null });
@@ -87,16 +90,16 @@ export class Busy {
     if (figure.hidden) return;
     const now = all[0].at(-1).ps;
     const high = 90;
-    const { context, colour, across } = begin(canvas, 2 * high + 20, all[0][0].ps, now);
+    const { context, colour, across } = begin(canvas, 2 * high + 20, all[0].find(({ px }) => px !== null)?.ps ?? all[0][0].ps, now);
     const most = [Math.max(1, ...all.flat().map(({ px }) => px ?? 0)), Math.max(1, ...all[0].map(({ speed }) => speed ?? 0))];
     const strip = (top, points, value, greatest, dashes) => {
       context.setLineDash(dashes);
       context.beginPath();
-      let isOn = false;
-      for (const point of points) {
-        const y = point[value] === null ? null : top + high * (1 - point[value] / greatest);
-        if (y !== null) context[isOn ? "lineTo" : "moveTo"](across(point.ps), y);
-        isOn = y !== null;
+      let before = -GAP_PS;
+      for (const point of points.filter((one) => one[value] !== null)) {
+        const y = top + high * (1 - point[value] / greatest);
+        context[point.ps - before < GAP_PS ? "lineTo" : "moveTo"](across(point.ps), y);
+        before = point.ps;
       }
       context.stroke();
     };

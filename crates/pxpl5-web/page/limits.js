@@ -45,7 +45,8 @@ function busyPart(utilisation) {
   return [make("table", {}, make("caption", { textContent: "Share of the time since the start for which boards were busy" }), head, make("tbody", {}, ...rows))];
 }
 
-/** Draws the mean time that renderers needed for each region of the first eye. `regions` are those of the last pictures. */
+/** Draws the mean time that renderers needed for each region of the first eye. `regions` are those of the last pictures. A renderer must
+ *  draw one region after the other: one that holds several regions at once, as in Slats, has all of its time in the region that it copies first. */
 function regionLoads(regions) {
   const loads = new Map();
   for (const { region: { surface, rectangle, lines }, executed_us: us } of regions) {
@@ -78,7 +79,7 @@ function regionLoads(regions) {
 /** Shows the waits of the last pictures the use of the boards and the load of the regions, for each machine. */
 export function drawLimits(place, machines, names) {
   place.replaceChildren(...machines.map(({ limits: { path, utilisation, regions } }, n) =>
-    make("div", {}, ...(machines.length > 1 ? [make("h3", { textContent: nameOf(names[n]) })] : []), ...pathPart(path), ...busyPart(utilisation), ...regionLoads(regions))));
+    make("div", {}, ...(machines.length > 1 ? [make("h3", { textContent: nameOf(names[n]) })] : []), ...pathPart(path), ...busyPart(utilisation), ...(names[n] === "rendering-control" ? regionLoads(regions) : []))));
 }
 
 /** Returns the meaning of "in time" for a pipeline with a deadline of its own, or an empty text. */

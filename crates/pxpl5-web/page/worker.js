@@ -182,7 +182,7 @@ function snapshot(want) {
       heat: want.error ? machine.heat(surface) : null,
       difference: want.error ? JSON.parse(machine.difference(surface)) : null,
     }));
-    return { state, surfaces, age: want.age ? JSON.parse(machine.age()) : undefined, offset: want.age || want.busy ? JSON.parse(machine.misregistration()) : undefined, missesAll: want.age ? machine.misses_all() : undefined, regions: want.regions ? JSON.parse(machine.regions()) : null, latencies: want.latencies ? JSON.parse(machine.latencies(want.latencies)) : null, limits: want.limits ? JSON.parse(machine.limits()) : null };
+    return { state, surfaces, age: want.age ? JSON.parse(machine.age()) : undefined, offset: want.age ? JSON.parse(machine.misregistration()) : undefined, missesAll: want.age ? machine.misses_all() : undefined, regions: want.regions ? JSON.parse(machine.regions()) : null, latencies: want.latencies ? JSON.parse(machine.latencies(want.latencies)) : null, limits: want.limits ? JSON.parse(machine.limits()) : null };
   });
   const machine = machines[want.of ?? 0] ?? machines[0];
   const boards = want.boards ? JSON.parse(machine.boards()) : null;

@@ -51,11 +51,12 @@ pub(crate) fn regions(stepper: &Stepper) -> Value {
     drawn.chain(copied).collect()
 }
 
-/// Returns the regions that renderers have drawn lately, as in [`regions`], each with the time in which its renderer
+/// Returns the last regions that renderers have drawn, as in [`regions`], each with the time in which its renderer
 /// executed commands for it, in microseconds.
 pub(crate) fn loads(stepper: &Stepper) -> Value {
     let record = stepper.record();
-    let loads = record.observation().drawn.iter().map(|(number, drawn)| {
+    // Ten stereo pairs of 20 regions. Pipelines that draw strips have so many that their text would need 200 MB.
+    let loads = record.observation().drawn.iter().rev().take(400).map(|(number, drawn)| {
         json!({"region": region(record, "drawn", *number, false, place_of(drawn.target)), "executed_us": drawn.executed.as_ms() * 1e3})
     });
     loads.collect()
