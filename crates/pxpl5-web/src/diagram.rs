@@ -180,7 +180,8 @@ mod tests {
         assert!(copied.len() >= 40, "{}", copied.len());
         let loads = loads(session.stepper());
         let mut us = loads.as_array().expect("a list").iter().filter_map(|load| load["executed_us"].as_f64());
-        assert!(us.clone().count() >= 40 && us.all(|us| (129.0..131.0).contains(&us)), "{loads}");
+        // Clearing and shading the pixels add to the time of the triangles, and take less than it.
+        assert!(us.clone().count() >= 40 && us.all(|us| (129.0..258.0).contains(&us)), "{loads}");
     }
 
     #[test]
