@@ -1,8 +1,7 @@
 //! Motions of the head: by name, from recordings, from arrays, or from a Python function.
 
 use crate::arrays::{reals1, reals2};
-use crate::errors::wrong_setting;
-use crate::policy::Raised;
+use crate::errors::{Raised, wrong_setting};
 use glam::{DQuat, DVec3};
 use numpy::PyArray2;
 use numpy::ndarray::{Array2, ArrayView1, ArrayView2};

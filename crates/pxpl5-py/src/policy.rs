@@ -1,39 +1,14 @@
 //! A policy in Python: a function that decides which renderer draws which region, and in which order. The pipeline
 //! itself is `pxpl5::PolicyPipeline`.
 
-use crate::errors::wrong_setting;
+use crate::errors::{Raised, wrong_setting};
 use crate::motion::CallableMotion;
 use pxpl5::firmware::RegionId;
 use pxpl5::{PolicyFrame, RegionAssignment, RegionPolicy, StopFlag, Time};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::fmt;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// An exception of a Python function that is not yet reported, and the flag of the run that it ends.
-#[derive(Default)]
-pub(crate) struct Raised(Mutex<(Option<PyErr>, StopFlag)>);
-
-impl Raised {
-    fn state(&self) -> MutexGuard<'_, (Option<PyErr>, StopFlag)> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    pub(crate) fn is_there(&self) -> bool {
-        self.state().0.is_some()
-    }
-
-    pub(crate) fn keep(&self, error: PyErr) {
-        let mut state = self.state();
-        state.0 = Some(error);
-        state.1.stop();
-    }
-
-    /// Raises the exception, if any.
-    pub(crate) fn check(&self) -> PyResult<()> {
-        self.state().0.take().map_or(Ok(()), Err)
-    }
-}
+use std::sync::Arc;
 
 /// A Python function that assigns regions to renderers.
 pub(crate) struct Asked {
@@ -108,6 +83,6 @@ impl PythonFunctions {
 
     /// Lets exceptions of the Python functions end the run that `stop` ends.
     pub(crate) fn end(&self, stop: &StopFlag) {
-        self.raised().for_each(|raised| raised.state().1 = stop.clone());
+        self.raised().for_each(|raised| raised.ends(stop.clone()));
     }
 }
