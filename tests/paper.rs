@@ -78,7 +78,12 @@ fn compared(pipeline: &str, column: &str) -> f64 {
     let columns: Vec<&str> = lines.next().expect("names of columns").split(',').collect();
     let place = columns.iter().position(|name| *name == column).unwrap_or_else(|| panic!("no {column}: {columns:?}"));
     let row = lines.find(|line| line.split(',').next() == Some(pipeline)).expect("a row of the pipeline");
-    row.split(',').nth(place).expect("a cell").parse().expect("a number")
+    let mut is_quoted = false;
+    let cells = |sign: char| {
+        is_quoted ^= sign == '"';
+        sign == ',' && !is_quoted
+    };
+    row.split(cells).nth(place).expect("a cell").parse().expect("a number")
 }
 
 /// Returns the phrases of the paper that contain a result, made from the files that have the result.
@@ -114,6 +119,7 @@ fn results() -> Vec<String> {
         format!("are {} over five motions)", error("rendering-control")),
         format!("and {}).", error("slats-touched")),
         format!("the tracker has {} pixels", pixels("ideal", "mean")),
+        format!("to all regions, has {} pixels", pixels("slats", "mean")),
     ]
 }
 
@@ -129,13 +135,6 @@ fn every_number_in_the_paper_comes_from_a_result_file() {
     let plain = NAMES.iter().fold(cited, |text, name| text.replace(name, ""));
     let words: Vec<&str> = plain.split(' ').filter(|word| word.contains(|c: char| c.is_ascii_digit())).collect();
     assert!(words.is_empty(), "numbers without a source: {words:?}");
-}
-
-#[test]
-fn slats_as_published_cannot_draw_the_scene_of_the_paper() {
-    let table = read("paper/comparison.csv");
-    let row = table.lines().find(|line| line.starts_with("slats,")).expect("a row of Slats");
-    assert!(row.contains("cannot draw the scene"), "{row}");
 }
 
 #[test]

@@ -42,7 +42,7 @@ impl Appearance {
     }
 
     /// Draws the marker of the series. The markers of successive series are a disc, a triangle, a cross and a ring, and
-    /// then repeat.
+    /// then repeat, moved by one where the colours repeat.
     pub(super) fn mark<B, C>(
         &self,
         area: &DrawingArea<B, C>,
@@ -56,7 +56,7 @@ impl Appearance {
         if self.is_hollow {
             return area.draw(&Circle::new(at, size * 3 / 2, self.stroke()));
         }
-        match self.place % 4 {
+        match (self.place + self.place / COLOURS.len()) % 4 {
             0 => area.draw(&Circle::new(at, size, self.colour.filled())),
             1 => area.draw(&TriangleMarker::new(at, size, self.colour.filled())),
             2 => area.draw(&Cross::new(at, size, self.stroke())),
