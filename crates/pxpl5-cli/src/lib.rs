@@ -227,10 +227,15 @@ mod tests {
 
     /// Splits a command line into words. Removes quotes, comments, redirections, and an explanation after three spaces.
     fn words(line: &str) -> Vec<String> {
-        let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
+        let line = line.split(['#', '>']).next().unwrap_or_default();
         // Help texts separate an explanation by three spaces.
         let line = line.split("   ").next().unwrap_or_default().replace("$SLURM_ARRAY_TASK_ID", "1");
-        line.split_whitespace().map(str::to_owned).collect()
+        let mut is_quoted = false;
+        let ends = |sign: char| {
+            is_quoted ^= sign == '"' || sign == '\'';
+            sign == ' ' && !is_quoted
+        };
+        line.split(ends).map(|word| word.replace(['"', '\''], "")).filter(|word| !word.is_empty()).collect()
     }
 
     fn parses(text: &str) -> usize {

@@ -191,7 +191,6 @@ fn a_comparison_writes_its_tables_drawings_and_four_pictures_into_the_folder() {
 fn an_invalid_option_is_reported_with_exit_code_2() {
     for (arguments, expected) in [
         (["--head", "dance"], "expected still, pan:DEG_PER_S"),
-        (["--seeds", "0"], "--seeds"),
         (["--pipeline", "slats"], "pxpl5 run --pipeline"),
         (["--only", "slats,vdtr"], "there is no row `vdtr`; did you mean `vdrt`?"),
     ] {

@@ -102,7 +102,6 @@ fn a_wrong_command_is_reported_with_expected_and_found() {
     for (commands, expected) in [
         ("jump", "expected a command (run, next, step,"),
         ("run to field 3; run to 10ms", "expected an instant not before now, 50.050000 ms, found 10.000000 ms"),
-        ("next renderer 99", "expected renderer 0 to"),
         ("run until fifo 99 > 3", "renderer: expected 0 to"),
         ("run until inbox ring > 3", "expected the host or a graphics processor of this machine, found ring"),
         ("break start", "--level cycle"),

@@ -133,12 +133,10 @@ fn an_invalid_option_is_reported_before_drawing_with_exit_code_2() {
         (&["run", "--projection", "fisheye"], &["--projection", "orthographic", "fisheye"]),
         (&["run", "--set", "clip.bias=1"], &["clip.bias", "did you mean"]),
         (&["run", "--set", "clip.bias_px2"], &["--set", "equals sign"]),
-        (&["run", "--scene", "migg"], &["mig"]),
         (&["slice", "396", "--out", "o.png"], &["0 to 395", "396"]),
         (&["view", "--cut", "90", "--out", "o.png"], &["0:90", "90"]),
         (&["view", "--distance", "1", "--out", "o.png"], &["distance", "outside of the display", "384"]),
         (&["view", "--exposure", "-1", "--out", "o.png"], &["--exposure", "above 0", "-1"]),
-        (&["sheet"], &["--out"]),
     ] {
         let output = folder.run(&[&["volume"], arguments].concat());
         let message = err(&output);
@@ -186,7 +184,6 @@ fn an_invalid_sweep_is_refused_before_drawing() {
     for (text, part) in [
         ("scene = \"mig\"\n", "sweep.grid"),
         ("[sweep.grid]\nclip.bias = [1]\n", "clip.bias"),
-        ("[sweep.grid]\ntile.size = []\n", "a list with values"),
         ("[sweep.grid]\ntile.size = { from = 3, to = 1 }\n", "from <= to"),
         ("measure = [\"lit\"]\n[sweep.grid]\ntile.size = [8]\n", "lit_voxels"),
         ("measure = [\"host_seconds\"]\n[sweep.grid]\ntile.size = [8]\n", "host_seconds"),
