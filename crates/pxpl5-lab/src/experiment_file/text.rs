@@ -241,7 +241,7 @@ fn toml_number(value: Number) -> Value {
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.lines(f, None)?;
-        for table in ["model", "head", "hmd", "tracking", "machine", "output", "published", "origin"] {
+        for table in ["model", "head", "hmd", "tracking", "machine", "limit", "output", "published", "origin"] {
             if self.values.keys().any(|path| path.split_once('.').is_some_and(|(of, _)| of == table)) {
                 writeln!(f, "\n[{table}]")?;
                 self.lines(f, Some(table))?;
