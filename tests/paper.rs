@@ -78,12 +78,8 @@ fn compared(pipeline: &str, column: &str) -> f64 {
     let columns: Vec<&str> = lines.next().expect("names of columns").split(',').collect();
     let place = columns.iter().position(|name| *name == column).unwrap_or_else(|| panic!("no {column}: {columns:?}"));
     let row = lines.find(|line| line.split(',').next() == Some(pipeline)).expect("a row of the pipeline");
-    let mut is_quoted = false;
-    let cells = |sign: char| {
-        is_quoted ^= sign == '"';
-        sign == ',' && !is_quoted
-    };
-    row.split(cells).nth(place).expect("a cell").parse().expect("a number")
+    let without_texts: String = row.split('"').step_by(2).collect();
+    without_texts.split(',').nth(place).expect("a cell").parse().expect("a number")
 }
 
 /// Returns the phrases of the paper that contain a result, made from the files that have the result.

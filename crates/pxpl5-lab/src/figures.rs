@@ -38,7 +38,7 @@ pub use document::{Documents, TIME_MARK, documents};
 pub use groups::{FigureGroup, FigureQuery, Figures};
 pub use headline::{Counted, Headline};
 pub use interpretation::{FieldCount, Interpretation, LatencySamples, ROOM};
-pub use measurement::{LatencyDefinition, MISS_PERCENT, Measurement, Varied};
+pub use measurement::{LatencyDefinition, MISS_PERCENT, Measurement, Varied, has_file};
 pub use pxpl5_sim::figures::{Basis, Detail, FigureRow};
 pub use rig_lines::PHOTODIODE_LINE;
 pub use settings::FigureSettings;

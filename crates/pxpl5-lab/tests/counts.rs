@@ -63,8 +63,10 @@ fn every_picture_due_has_one_result_and_heavier_loads_never_miss_fewer() {
         for (due, triangles) in counts.iter().zip(&loads) {
             assert_eq!(due.shown + due.late + due.incomplete + due.missed, due.due, "{pipeline}, {triangles}");
             let periods = due.last_period.next().since(due.first_period);
-            let is_counted = periods == due.due * due.periods_a_picture;
-            assert!(is_counted || due.shown == 0, "{pipeline}, {triangles}: {due:?}");
+            // Without a picture after the warm-up, the warm-up's shown pictures, at most four, are left out.
+            let most = if due.shown == 0 { 4 } else { 0 };
+            let is_counted = (0..=most).any(|left_out| periods == (due.due + left_out) * due.periods_a_picture);
+            assert!(is_counted, "{pipeline}, {triangles}: {due:?}");
         }
         for (pair, triangles) in counts.windows(2).zip(&loads) {
             let falls = pair[0].not_shown_share() - pair[1].not_shown_share();

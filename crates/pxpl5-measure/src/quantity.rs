@@ -161,7 +161,7 @@ pub static QUANTITIES: [Quantity; 67] = [
     // No run has this quantity: a sweep searches for it.
     of_summary(
         Measure::TRIANGLES,
-        "largest number of triangles that reaches the goal of the pipeline or of `limit.*`, as `pxpl5 limit` finds it; only in sweeps",
+        "largest number of triangles that reaches the goal of the pipeline or of `limit.*`, as `pxpl5 limit` finds it; none if 1,000,000 reach it; only in sweeps",
         |_| f64::NAN,
     ),
     of_run("pictures", "complete pictures in the window", |_, r| Some(r.pictures as f64)),

@@ -182,8 +182,8 @@ pub(crate) fn limit<'py>(
 /// fields, least, most, reached, tried, missed_at and because.
 ///
 /// ``low`` and ``high`` are the ends of the range that is searched. Without these two arguments, the search covers the
-/// range that the sources of the setting allow. ``missed_at`` is a value that misses the goal, and ``because`` names the resource that limits the experiment with
-/// this value. ``fields`` is the length of each run.
+/// range that the sources of the setting allow. ``missed_at`` is a value that misses the goal, and ``because`` names the
+/// resource that limits the experiment with this value. ``fields`` is the length of each run.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting or range.
 #[pyfunction]

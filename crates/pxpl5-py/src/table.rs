@@ -211,10 +211,10 @@ impl Table {
         fields.map(|field| (field.name().clone(), field.metadata().get("about").cloned().unwrap_or_default())).collect()
     }
 
-    /// Returns the values of a column by its name, or the rows of a slice such as ``table[10:20]`` as a table. Numbers are returned as a NumPy array of shape (rows,), int64 or
-    /// float64. If a number is missing, the array is float64 with NaN. Text and truth values are returned as a list
-    /// with None for missing values. The numbers are copied, whereas readers of the Arrow stream share the memory of
-    /// the table.
+    /// Returns the values of a column by its name, or the rows of a slice such as ``table[10:20]`` as a table. Numbers
+    /// are returned as a NumPy array of shape (rows,), int64 or float64. If a number is missing, the array is float64
+    /// with NaN. Text and truth values are returned as a list with None for missing values. The numbers are copied,
+    /// whereas readers of the Arrow stream share the memory of the table.
     ///
     /// Raises KeyError with the existing names, and :class:`pxpl5.SettingError` for a slice whose step is not 1.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {

@@ -226,7 +226,8 @@ impl WebMachine {
     }
 
     /// Returns, as JSON, the share of time for which each kind of board was busy, the waits that delayed the last
-    /// pictures, and the load of the regions that were drawn lately. Shares are 0 to 1, and values that were not measured are null.
+    /// pictures, and the load of the regions that were drawn lately. Shares are 0 to 1, and values that were not measured
+    /// are null.
     pub fn limits(&self) -> String {
         state::limits(self.0.stepper()).to_string()
     }

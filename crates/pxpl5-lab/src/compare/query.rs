@@ -450,6 +450,7 @@ impl CompareQuery {
         }
         if self.limits && !compared.is_reference() {
             row.triangles_definition = definition(&plan);
+            // The limit is that of the pipeline and the machine, so a search without the head is enough.
             let query = LimitQuery { looks_above: false, head: None, ..LimitQuery::of_plan(&plan) };
             let triangles = query.run(&mut common.watcher.stop()).ok().map(|limit| limit.triangles);
             row.has_no_limit = triangles == Some(CEILING);

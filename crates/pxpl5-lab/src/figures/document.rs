@@ -5,6 +5,7 @@ use super::Interpretation;
 use super::value::{EARLIER, LATER, WHOLE};
 use super::{
     Alternatives, Basis, Effect, FigureGroup, FigureRow, Figures, Headline, MISS_PERCENT, Measurement, TOPICS, all,
+    has_file,
 };
 use crate::edges::NEAR_FIELDS;
 use crate::interpretations::{ALIKE, FigureFit, Fit, Interpretations, figures as ranked_figures};
@@ -62,12 +63,8 @@ pub fn documents(figures: &Figures, alternatives: &Alternatives) -> Documents {
             ("others", figures.groups.iter().filter(|group| group.document.is_some()).map(other).collect()),
         ],
     );
-    // Figures 1 to 7 and 9 to 15 have files in experiments/, and ACCURACY.md defines latencies.
-    let number = |row: &FigureRow| row.id.trim_end_matches(char::is_alphabetic).parse().unwrap_or(u32::MAX);
-    let is_defined = |row: &FigureRow| all().any(|figure| figure.id == row.id && figure.latency.is_some());
-    let described = rows.iter().filter(|row| number(row) == 8 || number(row) > 15).filter(|row| !is_defined(row));
-    // ACCURACY.md says from what the fitted and the derived figures follow.
-    let reasoned = all().filter(|figure| !matches!(figure.basis, Basis::Fitted(_) | Basis::Derived(_)));
+    let described = rows.iter().filter(|row| !has_file(row.id));
+    let reasoned = all().filter(|figure| !figure.reason.is_empty());
     let ranking = &alternatives.interpretations;
     let interpretations = filled(
         include_str!("interpretations.md.in"),

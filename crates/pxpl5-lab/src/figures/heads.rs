@@ -30,7 +30,6 @@ const FIFO_AND_CHANNELS: Varied = Varied::ByEvents(&["renderer.fifo_words", "rin
 pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         basis: Basis::Derived("90 over 50"),
-        reason: "The error of a point ahead is linear in the latency, apart from the curvature of the motion. I3D95 says so itself",
         ..figure(
             ("18", I3D95, 1.8, ""),
             "errors in pixels of two systems with 90 and 50 ms from head to light: ratio",
@@ -40,7 +39,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Derived("33 ms + row 4"),
-        reason: "The tracker's latency is an input",
         latency: Some(WITH_TRACKER),
         is_interpreted: true,
         varied: FIFO_AND_CHANNELS,
@@ -57,7 +55,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Derived("33 ms + row 9"),
-        reason: "Both are inputs or true by definition",
         latency: Some(LatencyDefinition { eyes: "both eyes together", ..WITH_TRACKER }),
         varied: FIFO_AND_CHANNELS,
         ..figure(

@@ -47,34 +47,28 @@ const OF_FIELD: &str =
 const OF_LINE: &str = "jitp-scanline-racing with strips of one line: the error of both ends of the middle line";
 
 const BY_TURN: Basis = Basis::Derived("200 deg/s and the times of NTSC");
-const OF_TURN: &str = "The paper multiplies the same numbers. The row shows that the pipeline's errors follow";
 
 /// The figures of just-in-time pixels, in the order of their numbers.
 pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         basis: BY_TURN,
-        reason: OF_TURN,
         ..figure(("J1", JITP, 3.3, "deg"), "error of one transform a field", OF_FIELD, error_of_field)
     },
     Measurement {
         basis: BY_TURN,
-        reason: OF_TURN,
         ..figure(("J1b", JITP, 33.0, "px"), "the same", OF_FIELD, |settings| in_pixels(error_of_field(settings)?))
     },
     Measurement {
         basis: BY_TURN,
-        reason: OF_TURN,
         ..figure(("J2", JITP, 0.013, "deg"), "error of one transform a line", OF_LINE, error_of_line)
     },
     Measurement {
         basis: BY_TURN,
-        reason: OF_TURN,
         ..figure(("J2b", JITP, 0.13, "px"), "the same", OF_LINE, |settings| in_pixels(error_of_line(settings)?))
     },
     Measurement {
         range: Some(1.5),
         basis: Basis::Derived("the times of NTSC"),
-        reason: "The time of a line is an input",
         ..figure(
             ("J3", JITP, 65.0, "us"),
             "a line takes about",
@@ -93,7 +87,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Derived("240 visible lines"),
-        reason: "Each visible line has one transform",
         cause: "A field has 240 visible lines, and JITP prints a round number",
         ..figure(
             ("J5", JITP, 256.0, "times"),

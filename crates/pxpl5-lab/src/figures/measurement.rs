@@ -43,7 +43,7 @@ pub struct Measurement {
     pub experiment: &'static str,
     /// Relation between the figure and the choices in the model.
     pub basis: Basis,
-    /// Reason for `basis`.
+    /// Reason for `basis`. Empty if the basis itself says from what the figure follows.
     pub reason: &'static str,
     /// Definition of the latency, if the figure is one.
     pub latency: Option<LatencyDefinition>,
@@ -110,6 +110,11 @@ pub(super) const fn figure(
         cause: "",
         measure,
     }
+}
+
+/// Returns true if a file of experiments/ runs the figure with this number, such as figure-04.toml for 4 and 4b.
+pub fn has_file(id: &str) -> bool {
+    matches!(id.trim_end_matches(char::is_alphabetic).parse(), Ok(1..=7 | 9..=15))
 }
 
 impl Measurement {

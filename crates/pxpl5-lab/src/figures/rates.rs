@@ -104,7 +104,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Derived("two operations a clock of 40 MHz"),
-        reason: "Both are inputs. The row checks the pipelines of the model",
         ..figure(
             ("R7", ("i860PRM", "processor"), 80.0, "MFLOPS"),
             "single-precision peak of the i860 at 40 MHz",

@@ -115,7 +115,6 @@ const fn of_application(figure: Measurement) -> Measurement {
 pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         basis: Basis::Fitted("ring.overhead_words"),
-        reason: "The overhead of a message was computed from this time",
         varied: Varied::ByFormula,
         ..figure(
             ("1", TR94, 780.0, "us"),
@@ -126,7 +125,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Derived("40 x row 1"),
-        reason: "TR94 multiplies row 1 by 20 regions and two eyes, and so does the model if it copies one eye after the other",
         varied: Varied::ByFormula,
         ..figure(
             ("2", TR94, 31.2, "ms"),
@@ -163,7 +161,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Derived("row 2 takes two fields"),
-        reason: "Copies of 31.2 ms fit into two fields and not into one",
         ..interpreted(figure(
             ("4b", TR94, 30.0, "Hz"),
             "the same: frames per second",
@@ -236,7 +233,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Fitted("gp.bin_bytes"),
-        reason: "The memory for bins was computed from this number",
         ..interpreted(figure(
             ("16", TR94, 7_700.0, "triangles"),
             "triangles that cover the screen, as many as the bins of 12 slaves hold: about",
@@ -292,7 +288,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         range: Some(1.5),
         basis: Basis::Derived("row 4"),
-        reason: "I3D95 measured one full-screen triangle for each GP in a full pipeline, as row 4 does",
         latency: Some(LatencyDefinition { sentence: "I3D95: time stamps, without the first frames", ..TO_THE_SWAP }),
         cause: "As row 4. I3D95 found the same range outside, where our pipeline is idle",
         ..interpreted(figure(

@@ -36,7 +36,6 @@ const fn by_formula(figure: Measurement) -> Measurement {
 pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         basis: Basis::Derived("the pipeline's definition"),
-        reason: "A field of Slats that is drawn in time is shown after one field, by design",
         latency: Some(OF_FIELD),
         ..by_formula(figure(
             ("9", BOTH, 1.0, "fields"),
@@ -47,7 +46,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Derived("row 9 and the display's rate"),
-        reason: "One new picture in each field, if no field is missed",
         ..by_formula(figure(
             ("9b", BOTH, 60.0, "Hz"),
             "updates per second",
@@ -99,7 +97,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Fitted("gp.triangle_ns of slats-1995"),
-        reason: "The time of a triangle was chosen so that this limit follows",
         ..by_formula(figure(
             ("14", I3D95, 100.0, "triangles"),
             "most triangles with the COPY optimisation, code of 1995: about",
@@ -109,7 +106,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Derived("a field less row 11"),
-        reason: "The largest scene that fits begins its copy as late as possible: 16.68 ms - 3.9 ms",
         ..by_formula(figure(
             ("15", I3D95, 12.8, "ms"),
             "time before the first copy in a field: about",

@@ -32,7 +32,6 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         range: Some(0.25),
         basis: Basis::Derived("the polling interval of 30 ms"),
-        reason: "The longest wait for a poll is one interval",
         ..figure(
             ("T1", ("TR94", "serial line"), 1.75, "fields"),
             "polling adds almost two fields (taken as 1.5 to 2)",

@@ -6,6 +6,8 @@
 use super::Sweep;
 use crate::Plan;
 use crate::estimate::{Estimate, RunWork};
+use crate::limit::LimitQuery;
+use crate::study::Study;
 use pxpl5_measure::Measure;
 use pxpl5_run::{Experiment, Level};
 use std::collections::BTreeMap;
@@ -51,7 +53,12 @@ impl Sweep {
         if let Some(pictures_a_field) = pictures_from_closed_form(&plan, experiment) {
             work = RunWork { pictures_a_field, uses_closed_form: true, ..work };
         }
-        Estimate { bytes: work.bytes(), seconds: POINT + work.core_seconds() }
+        let search = if plan.measure.iter().any(|measure| measure.name() == Measure::TRIANGLES) {
+            LimitQuery::of_scene(&plan).map_or(Estimate::NOTHING, |query| query.estimate(1))
+        } else {
+            Estimate::NOTHING
+        };
+        Estimate { bytes: work.bytes().max(search.bytes), seconds: POINT + work.core_seconds() + search.seconds }
     }
 }
 
@@ -80,5 +87,7 @@ mod tests {
         let costs = sweep(text).costs(&(0..8).collect::<Vec<_>>());
         let [a, same, heavy, _, long, _, both, _] = costs[..] else { panic!("8 points, found {}", costs.len()) };
         assert!(a == same && a < heavy && a < long && heavy < both && long < both, "{costs:?}");
+        let searched = sweep(&format!("measure = [\"triangles_possible\"]\n{text}")).costs(&[0]);
+        assert!(searched[0] > 2.0 * a, "a search runs many sizes: {searched:?}");
     }
 }
