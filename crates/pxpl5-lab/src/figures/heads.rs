@@ -42,7 +42,7 @@ pub(super) const FIGURES: &[Measurement] = &[
         latency: Some(WITH_TRACKER),
         is_interpreted: true,
         varied: FIFO_AND_CHANNELS,
-        cause: "As row 4, whose printed value is lower than the range of 54 to 57 ms from which I3D95's sum takes 57",
+        cause: "As row 4. I3D95's sum takes 57 ms for Rendering Control, from its range of 54 to 57 ms",
         ..figure(
             ("19", I3D95, 90.0, "ms"),
             "optical tracker and Rendering Control together",

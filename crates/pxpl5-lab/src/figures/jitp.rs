@@ -21,8 +21,8 @@ use tracking::tracker::TrackerConfig;
 pub(super) const TITLE: &str = "Just-in-time pixels";
 
 pub(super) const ABOUT: &str = "The head turns by 200 degrees a second in front of a tracker without error or delay, and the view is 60 degrees wide \
-(JITP). So the error of a pixel, the angle between the direction that it shows and the right one when it lights, comes only from the time \
-between the two. As in JITP, a pixel is 0.1 degrees, and each angle is scaled to the whole time of a field or line, retrace included.";
+(JITP). The error of a pixel is the angle between the direction that it shows and the right one when it lights. Here it comes only from the age of \
+the pose. As in JITP, a pixel is 0.1 degrees wide, and each angle is scaled to the whole time of a field or line, retrace included.";
 
 /// Degrees per second of a fast turn of the head, published in the paper on just-in-time pixels.
 const PAN: f64 = 200.0;
@@ -87,7 +87,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Derived("240 visible lines"),
-        cause: "A field has 240 visible lines, and JITP prints a round number",
+        cause: "A field has 240 visible lines, and JITP's 256 is a round number",
         ..figure(
             ("J5", JITP, 256.0, "times"),
             "vertices transformed line by line, over those of one transform a field: about",

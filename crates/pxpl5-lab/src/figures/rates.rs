@@ -48,7 +48,7 @@ pub(super) const FIFO_WORDS: &str = "renderer.fifo_words";
 
 const LEECH: (&str, &str) = ("Leech 1991", "whole machine");
 
-const OF_RATES: &str = "Neither the machine nor the scene was chosen by it";
+const OF_RATES: &str = "Neither the machine nor the scene was chosen by these figures";
 
 const CAUSE: &str = "Each of the 20 renderers has one region, so the region with the most work decides, and a full FIFO blocks a channel. The \
                      source states neither the size of the machine nor that of the triangles";
@@ -83,7 +83,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         reason: OF_RATES,
         varied: OF_PHONG,
-        cause: CAUSE,
+        cause: "F89's rate is a round goal without a size of triangles. In the model, four of the 16 renderers draw two of the 20 regions, and the others wait for them",
         ..figure(
             ("R3", ("F89", "design goal"), 1e6, "triangles/s"),
             "Phong triangles a second on 32 processors and 16 renderers",
@@ -114,8 +114,8 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         reason: OF_RATES,
         varied: OF_SPHERES,
-        cause: "The program of the real spheres is unknown. Ours has an exact root; a paraboloid gives the upper end of the interval. Both are faster \
-                than the recollected rate, whose machine and spheres are not known",
+        cause: "The real program for spheres is unknown. Ours computes an exact root; a paraboloid gives the upper end of \
+                the interval. Both are faster than the recollected rate, whose machine and spheres are not known",
         ..figure(
             ("R8", ("UNC, recollected", "whole machine"), 700e3, "spheres/s"),
             "Phong spheres a second",

@@ -91,9 +91,9 @@ const OF_FRAMES: &[&str] = &[
 const APPLICATION: Basis = Basis::Interpretation("each eye, the large machine, culling");
 const OF_APPLICATION: &str = "TR94 names neither the machine nor culling; on the small one, or with all faces, `head` takes twice the printed time. \
     Samples of each eye were chosen because of the printed deviations";
-const GAP: &str = "If TR94's fields are exact, about one field (one COPY) is missing (see the section above)";
+const GAP: &str = "If TR94's fields are exact, about one field (one COPY) is missing in the model (see the section above)";
 const BIN_RULE: Basis = Basis::Rule("TRANSFORM waits until the bins have room for it");
-const OF_BINS: &str = "No paper states the rule. It was chosen because both figures follow from it";
+const OF_BINS: &str = "No paper states the rule for full bins. It was chosen because both figures follow from it";
 
 const fn interpreted(figure: Measurement) -> Measurement {
     Measurement { is_interpreted: true, varied: Varied::ByFormula, ..figure }
@@ -134,7 +134,7 @@ pub(super) const FIGURES: &[Measurement] = &[
         )
     },
     Measurement {
-        reason: "`store` follows from TR94's text, the room from F89. TR94 derives the figure from the same rules, so the row checks the firmware",
+        reason: "`store` follows from TR94's text, and the room for stored regions from F89. TR94 derives the figure from the same rules, so the row checks the firmware",
         latency: Some(OF_THEORY),
         ..interpreted(figure(
             ("3", TR94, 50.0, "ms"),
@@ -145,7 +145,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         basis: Basis::Interpretation("each eye"),
-        reason: "The text allows samples of the first eye, too",
+        reason: "TR94's text allows samples of the first eye, too",
         latency: Some(TO_THE_SWAP),
         cause: "By TR94's rules, TRANSFORM may begin while two eyes wait for their copies, so a faster TRANSFORM or RENDER only waits longer",
         ..interpreted(figure(
@@ -171,7 +171,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         reason: "As row 3. The paper's own words choose the greatest latency",
         latency: Some(GREATEST),
-        cause: "TR94's greatest value lets COPY begin after RENDER. Here, COPY begins with the first finished region",
+        cause: "For its greatest value, TR94 lets COPY begin after RENDER. Here, COPY begins with the first finished region",
         ..interpreted(figure(
             ("5", TR94, 4004.0 / 60.0, "ms"),
             "TRANSFORM, RENDER and COPY of equal length at 30 Hz: up to",
@@ -182,7 +182,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         range: Some(7.8),
         basis: Basis::Interpretation("a frame, from its first eye"),
-        reason: "The text does not name the eyes. The stages of a frame add up to its three TRANSFORMs",
+        reason: "The text does not name the eyes. The stages of both eyes add up to the formula's three TRANSFORMs",
         latency: Some(OF_FRAME),
         cause: "A renderer may copy its first regions while it draws the others, so COPY overlaps RENDER. TR94's formula lets COPY begin later",
         ..interpreted(figure(
@@ -221,9 +221,9 @@ pub(super) const FIGURES: &[Measurement] = &[
         ))
     },
     Measurement {
-        reason: "No scene and no rule of binning was chosen by it",
-        cause: "Only the scenes matter, and ours only resemble the original ones: the 59,592 triangles of `head` are tiny, those of \
-                `mig` are larger. Binning by bounding boxes gives hardly more regions",
+        reason: "No scene and no rule of binning was chosen by this figure",
+        cause: "The number depends on the scenes, and ours only resemble the original ones: the 59,592 \
+                triangles of `head` are tiny. Binning by bounding boxes gives hardly more regions",
         ..figure(
             ("8", TR94, 1.3, "regions"),
             "regions that a typical triangle touches, an eye",
@@ -264,7 +264,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     },
     Measurement {
         range: Some(1.5),
-        reason: "Nothing of the rig was chosen by it",
+        reason: "Nothing of the rig was chosen by this figure",
         latency: Some(OF_RIG),
         is_interpreted: true,
         varied: Varied::ByEvents(&[
@@ -289,7 +289,7 @@ pub(super) const FIGURES: &[Measurement] = &[
         range: Some(1.5),
         basis: Basis::Derived("row 4"),
         latency: Some(LatencyDefinition { sentence: "I3D95: time stamps, without the first frames", ..TO_THE_SWAP }),
-        cause: "As row 4. I3D95 found the same range outside, where our pipeline is idle",
+        cause: "As row 4. I3D95 found the same range from outside (row 17), where our pipeline is idle and faster",
         ..interpreted(figure(
             ("17b", I3D95, 55.5, "ms"),
             "measured from inside, in a full pipeline: the same range",

@@ -14,11 +14,11 @@ const TR94: (&str, &str) = ("TR94", SLATS);
 const I3D95: (&str, &str) = ("I3D95", SLATS);
 const BOTH: (&str, &str) = ("TR94, I3D95", SLATS);
 
-const OF_CLUMP: &str = "The time of a triangle is that of the project's code, without a fit. The paper is silent about the buffer, whose rule was \
-    chosen among three by rows 12 and 13";
-const OF_FIFO: &str = "A renderer whose FIFO takes a whole message delays the next clump little. In TR94, the 4.68 ms that the COPY optimisation saves are enough \
-                       for 30 more triangles, so a triangle takes 156 us there, more than the code and the ring need here. Only a FIFO of 256 words gives \
-                       both limits within 6 %, while R1 and R2 ask for at least 1,024 (docs/interpretations.md, Findings)";
+const OF_CLUMP: &str = "The time of a triangle is that of the project's code, without a fit. TR94 does not say when a clump's buffer is free. Our rule \
+    was chosen among three by rows 12 and 13";
+const OF_FIFO: &str = "Our FIFOs take a whole message, so renderers delay the next clump little. In TR94, the COPY optimisation \
+                       saves 4.68 ms and allows 30 more triangles, so a triangle takes 156 us there. Our code and ring need less. \
+                       FIFOs of 256 words would give both limits within 6 %, but rows R1 and R2 ask for at least 1,024 (docs/interpretations.md, Findings)";
 
 const OF_FIELD: LatencyDefinition = LatencyDefinition {
     from: "retrace at which TRANSFORM of a field begins",
