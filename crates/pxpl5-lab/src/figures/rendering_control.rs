@@ -91,7 +91,7 @@ const OF_FRAMES: &[&str] = &[
 const APPLICATION: Basis = Basis::Interpretation("each eye, the large machine, culling");
 const OF_APPLICATION: &str = "TR94 names neither the machine nor culling; on the small one, or with all faces, `head` takes twice the printed time. \
     Samples of each eye were chosen because of the printed deviations";
-const GAP: &str = "If TR94's fields are exact, about one field (one COPY) is missing in the model (see the section above)";
+const GAP: &str = "If TR94's fields are exact, the model lacks about one field (one COPY; see the section above)";
 const BIN_RULE: Basis = Basis::Rule("TRANSFORM waits until the bins have room for it");
 const OF_BINS: &str = "No paper states the rule for full bins. It was chosen because both figures follow from it";
 
@@ -274,9 +274,9 @@ pub(super) const FIGURES: &[Measurement] = &[
             "host.message_ns",
             "host.application_ns",
         ]),
-        cause: "A frame on demand finds every stage idle, and two triangles are drawn quickly. COPY of both eyes takes two fields less 2 ms, \
-                the wait for the retrace half a field on average, and the beam another half to the middle of the screen. \
-                A slower host would explain the rest (docs/interpretations.md, Findings)",
+        cause: "A frame on demand finds every stage idle, and two triangles are drawn quickly. COPY of both eyes takes two fields less 2 ms, the wait for the \
+                retrace adds half a field on average, and the beam's way to the \
+                middle of the screen another half. A slower host would explain the rest (docs/interpretations.md, Findings)",
         ..figure(
             ("17", I3D95, 55.5, "ms"),
             "measured from outside with pendulum and photodiode, a minimal data set, rendering alone",
