@@ -326,7 +326,7 @@ fn confidence(ranking: &Interpretations) -> String {
     let place = fits.iter().position(|fit| fit.interpretation == Interpretation::USUAL);
     let behind = place.map_or(f64::NAN, |place| fits[0].log_likelihood - fits[place].log_likelihood);
     format!(
-        "Interpretations within a factor of {ALIKE:.1} of the greatest likelihood: {}. The project's, in bold, has a log L\n\
+        "Number of interpretations within a factor of {ALIKE:.1} of the greatest likelihood: {}. The project's, in bold, has a log L\n\
          {behind:.1} lower, because it follows the text where text and figures disagree: the likeliest ones count whole\n\
          fields, which contradicts TR94's own conversions.",
         alike.len(),
