@@ -1,16 +1,12 @@
-//! Choice of the vector instructions (such as AVX2) at run time.
+//! Choice of the vector instructions (such as AVX2) at run time, with the vectors of `fearless_simd`.
 //!
-//! All `unsafe` code of this crate is here, in `simd/x86.rs` and in `simd/wasm.rs`. It checks that the processor has a
-//! vector unit before it calls functions that are compiled for this unit. WebAssembly has one unit for a whole module,
-//! chosen at compile time. The gain is measured by the benchmark groups `lanes/Portable` and `lanes/Avx2` (`cargo bench
-//! -p pxpl5-renderer`).
-#![allow(unsafe_code)] // The compiler cannot check the features of the processor.
+//! The gain is measured by the benchmark groups `lanes/Portable` and `lanes/Avx2` (`cargo bench -p pxpl5-benches --bench
+//! pixels`).
+#![allow(unsafe_code)] // In one macro: the proof that a processor has a unit is taken, not carried.
 
-#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-mod wasm;
+use fearless_simd::{Simd, i32x8, mask32x8, prelude::*, u32x8, u64x4};
 #[cfg(target_arch = "x86_64")]
-mod x86;
-
+use fearless_simd::{i32x16, mask32x16, u32x16, u64x8};
 use pxpl5_wire::REGION_SIZE;
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -26,19 +22,18 @@ static MOST: AtomicU8 = AtomicU8::new(Vectors::Avx512 as u8);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Vectors {
-    /// Only the instructions that every processor of the compiler's target has.
+    /// Only the instructions that every processor of the compiler's target has: SSE2 on x86-64, and simd128 on
+    /// WebAssembly if the compiler may use it.
     Portable,
-    /// WebAssembly with simd128: two vectors of four 32-bit numbers.
-    Simd128,
     /// x86-64 with AVX2: vectors of eight 32-bit numbers.
     Avx2,
-    /// x86-64 with AVX-512 (F, BW, DQ and VL): vectors of sixteen 32-bit numbers.
+    /// x86-64 with AVX-512 as in Ice Lake: vectors of sixteen 32-bit numbers.
     Avx512,
 }
 
 impl Vectors {
     /// All vector units, from the slowest to the fastest. The discriminant of each unit is its index in this array.
-    const ALL: [Self; 4] = [Self::Portable, Self::Simd128, Self::Avx2, Self::Avx512];
+    const ALL: [Self; 3] = [Self::Portable, Self::Avx2, Self::Avx512];
 
     /// Returns all vector units that the running computer has, from the slowest to the fastest.
     pub fn available() -> Vec<Self> {
@@ -63,27 +58,28 @@ impl Vectors {
     fn present(self) -> bool {
         match self {
             Self::Portable => true,
-            Self::Simd128 => false,
-            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi2"),
-            Self::Avx512 => {
-                Self::Avx2.present()
-                    && is_x86_feature_detected!("avx512f")
-                    && is_x86_feature_detected!("avx512bw")
-                    && is_x86_feature_detected!("avx512dq")
-                    && is_x86_feature_detected!("avx512vl")
-            }
+            Self::Avx2 => fearless_simd::Level::new().as_avx2().is_some(),
+            Self::Avx512 => fearless_simd::Level::new().as_avx512().is_some(),
         }
     }
 
     #[cfg(not(target_arch = "x86_64"))]
     fn present(self) -> bool {
-        self == Self::Portable || self == Self::Simd128 && cfg!(target_feature = "simd128")
+        self == Self::Portable
     }
 }
 
 /// A vector unit that the running computer certainly has, because a constructor has checked this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PresentVectors(Vectors);
+
+/// The instructions that every processor of the compiler's target has.
+#[cfg(target_arch = "x86_64")]
+pub(crate) type Baseline = fearless_simd::Sse2;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+pub(crate) type Baseline = fearless_simd::WasmSimd128;
+#[cfg(not(any(target_arch = "x86_64", all(target_arch = "wasm32", target_feature = "simd128"))))]
+pub(crate) type Baseline = fearless_simd::Fallback;
 
 impl PresentVectors {
     /// Returns the vector unit `wanted` if the running computer has it, otherwise [`Vectors::Portable`].
@@ -94,16 +90,53 @@ impl PresentVectors {
     #[inline]
     pub(crate) fn run<K: VectorKernel>(self, kernel: K) -> K::Output {
         match self.0 {
-            // SAFETY: a `PresentVectors` exists only if the processor reports these features.
             #[cfg(target_arch = "x86_64")]
-            Vectors::Avx512 => unsafe { avx512(kernel) },
-            // SAFETY: a `PresentVectors` exists only if the processor reports this feature.
+            Vectors::Avx512 => run_on::<fearless_simd::Avx512, Sixteen<fearless_simd::Avx512>, K>(kernel),
             #[cfg(target_arch = "x86_64")]
-            Vectors::Avx2 => unsafe { avx2(kernel) },
-            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-            Vectors::Simd128 => kernel.run::<wasm::Simd128>(),
-            _ => kernel.run::<PortableVector>(),
+            Vectors::Avx2 => run_on::<fearless_simd::Avx2, Eight<fearless_simd::Avx2>, K>(kernel),
+            _ => run_on::<Baseline, Eight<Baseline>, K>(kernel),
         }
+    }
+}
+
+/// Runs a loop in a function that is compiled for one vector unit, which must be present.
+#[inline(always)]
+fn run_on<S: Unit, V: SimdVector, K: VectorKernel>(kernel: K) -> K::Output {
+    S::here().vectorize(
+        #[inline(always)]
+        || kernel.run::<V>(),
+    )
+}
+
+/// A vector unit whose proof of presence is taken from [`PresentVectors`], and not carried with each vector.
+pub(crate) trait Unit: Simd {
+    fn here() -> Self;
+}
+
+#[cfg(target_arch = "x86_64")]
+macro_rules! units {
+    ($($unit:ident),*) => { $(
+        impl Unit for fearless_simd::$unit {
+            #[inline(always)]
+            fn here() -> Self {
+                // SAFETY: vectors are made only below `PresentVectors::run`, which chooses a unit that is present.
+                unsafe { Self::assume_supported() }
+            }
+        }
+    )* };
+}
+
+#[cfg(target_arch = "x86_64")]
+units!(Sse2, Avx2, Avx512);
+
+#[cfg(not(target_arch = "x86_64"))]
+impl Unit for Baseline {
+    #[inline(always)]
+    fn here() -> Self {
+        #[cfg(target_feature = "simd128")]
+        return Self::assume_supported();
+        #[cfg(not(target_feature = "simd128"))]
+        return Self::new();
     }
 }
 
@@ -112,18 +145,6 @@ impl PresentVectors {
 pub(crate) trait VectorKernel {
     type Output;
     fn run<V: SimdVector>(self) -> Self::Output;
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,bmi2")]
-fn avx2<K: VectorKernel>(kernel: K) -> K::Output {
-    kernel.run::<x86::Avx2>()
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,bmi2,avx512f,avx512bw,avx512dq,avx512vl")]
-fn avx512<K: VectorKernel>(kernel: K) -> K::Output {
-    kernel.run::<x86::Avx512>()
 }
 
 /// A vector of 32-bit integers. The loops use vectors explicitly, because compilers do not vectorize short loops.
@@ -172,160 +193,149 @@ pub(crate) trait SimdVector: Copy {
     fn store_mask(mask: Self::Mask, to: &mut [u8]);
 }
 
-/// Eight integers in an array, for processors without a supported vector unit.
-#[derive(Clone, Copy)]
-pub(crate) struct PortableVector([i32; 8]);
+macro_rules! vector {
+    ($name:ident, $lanes:literal, $u32s:ident, $i32s:ident, $u64s:ident, $mask:ident, [$($four:literal),*]) => {
+        #[derive(Clone, Copy)]
+        pub(crate) struct $name<S: Simd>($u32s<S>);
 
-/// Masks for four lanes, indexed by a number of four bits. Lane i is all ones if bit i of the number is set. Processors
-/// without AVX2 need this table, because they cannot shift each lane by its own count.
-const FOUR_LANES: [[i32; 4]; 16] = {
-    let mut out = [[0; 4]; 16];
-    let mut bits = 0;
-    while bits < 16 {
-        let mut k = 0;
-        while k < 4 {
-            out[bits][k] = -((bits >> k & 1) as i32);
-            k += 1;
+        impl<S: Unit> $name<S> {
+            #[inline(always)]
+            fn signed(self) -> $i32s<S> {
+                self.0.bitcast()
+            }
+
+            #[inline(always)]
+            fn blended(self, mask: $mask<S>, old: Self) -> [u32; $lanes] {
+                mask.select(self.0, old.0).to_array()
+            }
         }
-        bits += 1;
-    }
-    out
-};
 
-impl PortableVector {
-    #[inline(always)]
-    fn map(self, f: impl Fn(i32) -> i32) -> Self {
-        Self(self.0.map(f))
-    }
+        impl<S: Unit> SimdVector for $name<S> {
+            const LANES: usize = $lanes;
+            type Mask = $mask<S>;
 
-    #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(i32, i32) -> i32) -> Self {
-        Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
-    }
+            #[inline(always)]
+            fn splat(value: i32) -> Self {
+                Self($u32s::splat(S::here(), value as u32))
+            }
+
+            #[inline(always)]
+            fn ramp(first: i32, step: i32) -> Self {
+                Self($u32s::from_fn(S::here(), |k| k as u32) * step as u32 + first as u32)
+            }
+
+            #[inline(always)]
+            fn ramp_of_fours(first: i32, step: i32, down: i32) -> Self {
+                let [columns, rows] = [|k| (k % FOUR) as u32, |k| (k / FOUR) as u32].map(|f| $u32s::from_fn(S::here(), f));
+                Self(columns * step as u32 + (rows * down as u32 + first as u32))
+            }
+
+            #[inline(always)]
+            fn load(from: &[u32]) -> Self {
+                Self((*from.first_chunk().expect("a whole vector")).simd_into(S::here()))
+            }
+
+            #[inline(always)]
+            fn load_fours(from: &[u32]) -> Self {
+                let from: &[u32; ROW * ($lanes / FOUR - 1) + FOUR] = from.first_chunk().expect("whole rows");
+                let mut lanes = [0; $lanes];
+                $(lanes[FOUR * $four..][..FOUR].copy_from_slice(&from[ROW * $four..][..FOUR]);)*
+                Self(lanes.simd_into(S::here()))
+            }
+
+            #[inline(always)]
+            fn load_words(from: &[u64]) -> Self {
+                let words: $u64s<S> = (*from.first_chunk().expect("a whole vector")).simd_into(S::here());
+                Self(words.bitcast())
+            }
+
+            #[inline(always)]
+            fn store_words(self, to: &mut [u64]) {
+                let words: $u64s<S> = self.0.bitcast();
+                *to.first_chunk_mut().expect("a whole vector") = words.to_array();
+            }
+
+            #[inline(always)]
+            fn spread(bits: u64) -> Self {
+                Self($mask::from_bitmask(S::here(), bits).to_vector().bitcast())
+            }
+
+            #[inline(always)]
+            fn bit(self, t: u32) -> Self {
+                Self((Self(self.0 << (31 - t)).signed() >> 31).bitcast())
+            }
+
+            #[inline(always)]
+            fn signs(self) -> u32 {
+                self.signed().simd_lt(0).to_bitmask() as u32
+            }
+
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                Self(self.0 + other.0)
+            }
+
+            #[inline(always)]
+            fn or(self, other: Self) -> Self {
+                Self(self.0 | other.0)
+            }
+
+            #[inline(always)]
+            fn and(self, other: Self) -> Self {
+                Self(self.0 & other.0)
+            }
+
+            #[inline(always)]
+            fn xor(self, other: Self) -> Self {
+                Self(self.0 ^ other.0)
+            }
+
+            #[inline(always)]
+            fn shift_right(self, by: u32) -> Self {
+                if by < 32 { Self(self.0 >> by) } else { Self::splat(0) }
+            }
+
+            #[inline(always)]
+            fn shift_left(self, by: u32) -> Self {
+                if by < 32 { Self(self.0 << by) } else { Self::splat(0) }
+            }
+
+            #[inline(always)]
+            fn passes(self, new: Self, old: Self) -> $mask<S> {
+                self.signed().simd_ge(0) & new.signed().simd_lt(old.signed())
+            }
+
+            #[inline(always)]
+            fn any_of(a: $mask<S>, b: $mask<S>) -> bool {
+                (a | b).any_true()
+            }
+
+            #[inline(always)]
+            fn store(self, mask: $mask<S>, old: Self, to: &mut [u32]) {
+                *to.first_chunk_mut().expect("a whole vector") = self.blended(mask, old);
+            }
+
+            #[inline(always)]
+            fn store_fours(self, mask: $mask<S>, old: Self, to: &mut [u32]) {
+                let to: &mut [u32; ROW * ($lanes / FOUR - 1) + FOUR] = to.first_chunk_mut().expect("whole rows");
+                let blended = self.blended(mask, old);
+                $(to[ROW * $four..][..FOUR].copy_from_slice(&blended[FOUR * $four..][..FOUR]);)*
+            }
+
+            #[inline(always)]
+            fn store_mask(mask: $mask<S>, to: &mut [u8]) {
+                let bits = mask.to_bitmask();
+                for (k, to) in to[..Self::LANES].iter_mut().enumerate() {
+                    *to = 0_u8.wrapping_sub((bits >> k & 1) as u8);
+                }
+            }
+        }
+    };
 }
 
-impl SimdVector for PortableVector {
-    const LANES: usize = 8;
-    type Mask = Self;
-
-    #[inline(always)]
-    fn splat(value: i32) -> Self {
-        Self([value; 8])
-    }
-
-    #[inline(always)]
-    fn ramp(first: i32, step: i32) -> Self {
-        Self(std::array::from_fn(|k| first.wrapping_add(step.wrapping_mul(k as i32))))
-    }
-
-    #[inline(always)]
-    fn ramp_of_fours(first: i32, step: i32, down: i32) -> Self {
-        let at = |k: usize| step.wrapping_mul((k % FOUR) as i32).wrapping_add(down.wrapping_mul((k / FOUR) as i32));
-        Self(std::array::from_fn(|k| first.wrapping_add(at(k))))
-    }
-
-    #[inline(always)]
-    fn load(from: &[u32]) -> Self {
-        let from: &[u32; 8] = from.first_chunk().expect("a whole vector");
-        Self(from.map(|v| v as i32))
-    }
-
-    #[inline(always)]
-    fn load_fours(from: &[u32]) -> Self {
-        let from: &[u32; ROW + FOUR] = from.first_chunk().expect("whole rows");
-        Self(std::array::from_fn(|k| from[k / FOUR * ROW + k % FOUR] as i32))
-    }
-
-    #[inline(always)]
-    fn load_words(from: &[u64]) -> Self {
-        let from: &[u64; 4] = from.first_chunk().expect("a whole vector");
-        Self(std::array::from_fn(|k| (from[k / 2] >> (32 * (k % 2))) as i32))
-    }
-
-    #[inline(always)]
-    fn store_words(self, to: &mut [u64]) {
-        let to: &mut [u64; 4] = to.first_chunk_mut().expect("a whole vector");
-        *to = std::array::from_fn(|k| self.0[2 * k] as u32 as u64 | (self.0[2 * k + 1] as u64) << 32);
-    }
-
-    #[inline(always)]
-    fn spread(bits: u64) -> Self {
-        let [a, b, c, d] = FOUR_LANES[bits as usize & 15];
-        let [e, f, g, h] = FOUR_LANES[(bits >> 4) as usize & 15];
-        Self([a, b, c, d, e, f, g, h])
-    }
-
-    #[inline(always)]
-    fn bit(self, t: u32) -> Self {
-        self.map(|v| v << (31 - t) >> 31)
-    }
-
-    #[inline(always)]
-    fn signs(self) -> u32 {
-        (0..8).fold(0, |signs, k| signs | (self.0[k] as u32 >> 31) << k)
-    }
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, i32::wrapping_add)
-    }
-
-    #[inline(always)]
-    fn or(self, other: Self) -> Self {
-        self.zip(other, |a, b| a | b)
-    }
-
-    #[inline(always)]
-    fn and(self, other: Self) -> Self {
-        self.zip(other, |a, b| a & b)
-    }
-
-    #[inline(always)]
-    fn xor(self, other: Self) -> Self {
-        self.zip(other, |a, b| a ^ b)
-    }
-
-    #[inline(always)]
-    fn shift_right(self, by: u32) -> Self {
-        // A scalar shift of the processor uses the count modulo 32. A shift of a vector unit uses the whole count.
-        if by < 32 { self.map(|v| (v as u32 >> by) as i32) } else { Self::splat(0) }
-    }
-
-    #[inline(always)]
-    fn shift_left(self, by: u32) -> Self {
-        if by < 32 { self.map(|v| v << by) } else { Self::splat(0) }
-    }
-
-    #[inline(always)]
-    fn passes(self, new: Self, old: Self) -> Self {
-        let nearer = new.zip(old, |new, old| -i32::from(new < old));
-        self.zip(nearer, |edges, nearer| nearer & !(edges >> 31))
-    }
-
-    #[inline(always)]
-    fn any_of(a: Self, b: Self) -> bool {
-        a.or(b).0.iter().fold(0, |any, m| any | m) != 0
-    }
-
-    #[inline(always)]
-    fn store(self, mask: Self, old: Self, to: &mut [u32]) {
-        let to: &mut [u32; 8] = to.first_chunk_mut().expect("a whole vector");
-        *to = std::array::from_fn(|k| (self.0[k] & mask.0[k] | old.0[k] & !mask.0[k]) as u32);
-    }
-
-    #[inline(always)]
-    fn store_fours(self, mask: Self, old: Self, to: &mut [u32]) {
-        let to: &mut [u32; ROW + FOUR] = to.first_chunk_mut().expect("whole rows");
-        for k in 0..8 {
-            to[k / FOUR * ROW + k % FOUR] = (self.0[k] & mask.0[k] | old.0[k] & !mask.0[k]) as u32;
-        }
-    }
-
-    #[inline(always)]
-    fn store_mask(mask: Self, to: &mut [u8]) {
-        to[..8].copy_from_slice(&mask.0.map(|m| m as u8));
-    }
-}
+vector!(Eight, 8, u32x8, i32x8, u64x4, mask32x8, [0, 1]);
+#[cfg(target_arch = "x86_64")]
+vector!(Sixteen, 16, u32x16, i32x16, u64x8, mask32x16, [0, 1, 2, 3]);
 
 #[cfg(test)]
 mod tests {
@@ -501,7 +511,6 @@ mod tests {
     fn an_absent_vector_unit_is_replaced_by_portable_code_and_the_best_allowed_unit_is_chosen() {
         let available = Vectors::available();
         assert_eq!(available.first(), Some(&Vectors::Portable));
-        assert!(cfg!(target_arch = "wasm32") || !available.contains(&Vectors::Simd128));
         for wanted in Vectors::ALL {
             let expected = if available.contains(&wanted) { wanted } else { Vectors::Portable };
             assert_eq!(PresentVectors::or_portable(wanted), PresentVectors(expected));

@@ -299,7 +299,8 @@ pub(super) fn full_add<V: SimdVector>(a: V, b: V, carry: &mut V) -> V {
 mod tests {
     use super::tile::{ACROSS, HEIGHT};
     use super::*;
-    use crate::simd::PortableVector;
+    use crate::simd::{Baseline, Eight};
+    type PortableVector = Eight<Baseline>;
 
     fn value<E: WholeTrees>(coefficients: &E::Coefficients, bits: u32, x: usize, y: usize) -> i64 {
         let evaluator = E::run_trees::<PortableVector>(coefficients, bits as usize);
