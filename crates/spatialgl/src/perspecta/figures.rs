@@ -149,7 +149,7 @@ pub fn measured(stats: &VolumeStats) -> Vec<FigureRow> {
     let occupied = stats.tile_occupancy_percent();
     let occupancy = row("P17", "tiles that are not empty, most scenes", "%", (10.0, 0.0), occupied);
     let draws = 100.0 * stats.draws as f64 / stats.draws_unbinned.max(1) as f64;
-    let binned = row("section 6", "draws that bins leave of all", "%", (28.5, 4.0), draws);
+    let binned = row("section 6", "share of draws left after binning", "%", (28.5, 4.0), draws);
     vec![occupancy.with_accepted([5.0, 20.0]), binned]
 }
 
