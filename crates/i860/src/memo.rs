@@ -176,7 +176,7 @@ pub(crate) struct RememberedClocks {
     exit: Number,
     pub(crate) clocks: u16,
     pub(crate) instructions: u16,
-    /// Number of the cache line of the last fetch in the run (a part of a block).
+    /// Number of the cache line that the run fetched last.
     pub(crate) line: u32,
     pub(crate) waited: WaitedClocks,
 }

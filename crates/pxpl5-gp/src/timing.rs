@@ -67,8 +67,8 @@ const OF_CODE: &str = "mean time of this project's i860 code over three scenes (
                        and the tests of pxpl5-lab measure it again)";
 
 impl GpTiming {
-    /// Returns the source of a time that the table of the papers does not have, if the time belongs to another table of
-    /// this module.
+    /// Returns the source of a time that is not in the table of the papers but in another table of this module. Returns
+    /// `None` for all other times.
     pub fn source_of(name: &str, value: Value) -> Option<&'static str> {
         const OTHERS: [(GpTiming, &str); 8] = [
             (GpTiming::SLATS_1994, OF_CODE),

@@ -87,8 +87,8 @@ impl Study for WhatIfQuery {
     }
 
     /// Finds the effects: the experiment runs again for each resource, without pixels. Formulas are used only for an
-    /// experiment at the analytic level, because near saturation they miss the times of a run by more than a tenth of a
-    /// resource changes. A changed experiment that cannot run has no results.
+    /// experiment at the analytic level, because near saturation their error exceeds the effect of 10 % more of a
+    /// resource. A changed experiment that cannot run has no results.
     fn run(&self, watcher: &mut dyn Watcher) -> Result<Vec<WhatIf>, StudyError> {
         let (registry, experiment) = (&self.registry, self.experiment.clone().stopped_by(watcher.stop()));
         let tried = experiment.pixels(Pixels::Off).keep(KeptRecords::Statistics);

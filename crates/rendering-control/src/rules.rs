@@ -54,9 +54,9 @@ pub struct Completed {
     pub rendered: u64,
     /// Number of drawings of which all regions have arrived in a frame buffer (COPY).
     pub copied: u64,
-    /// Number of frames that frame buffers have shown after a swap. For pictures that are announced
-    /// ([`Drawn::ANNOUNCES`](crate::Drawn::ANNOUNCES)), this is the number of all swaps, and the rules of swaps and of
-    /// free frame buffers do not apply.
+    /// Number of frames that frame buffers have shown after a swap. If pictures are announced
+    /// ([`Drawn::ANNOUNCES`](crate::Drawn::ANNOUNCES)), all swaps count, and the rules for swaps and for free frame
+    /// buffers do not apply.
     pub swapped: u64,
 }
 

@@ -6,8 +6,8 @@ use pxpl5_wire::format::{Z_BITS, Z_FRACTION_BITS};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Widths {
     z_bits: u32,
-    /// Bits of a sphere's square root, 10 to 12. The value is 12 if pixel memory has no bits for the root and cannot
-    /// draw spheres.
+    /// Bits of a sphere's square root, 10 to 12. If pixel memory has no bits for the root, the renderer draws no
+    /// spheres, and the value is 12.
     pub(crate) root_bits: u32,
 }
 

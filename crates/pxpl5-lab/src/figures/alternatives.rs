@@ -26,7 +26,7 @@ pub struct Alternatives {
     pub other_rule: Vec<FigureRow>,
     /// Rates and limits for each size of a renderer's FIFO.
     pub fifo: Vec<Effect>,
-    /// Latency of the pendulum rig for several times of the host.
+    /// Latency of the pendulum rig for several durations of a message, and of the application, on the host.
     pub host: Vec<Effect>,
     /// Fit of the model to the published figures of Rendering Control, for each interpretation of the papers.
     pub interpretations: Interpretations,

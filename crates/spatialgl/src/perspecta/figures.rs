@@ -192,8 +192,8 @@ fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<FigureRow> {
     ]
 }
 
-/// Returns the mean number of planes that show a point of the display's disc. This mean is the area of one slice's
-/// volume within the disc, times the number of planes, divided by the area of the disc.
+/// Returns the mean number of planes that show a point of the display's disc. This mean is the area that one slice's
+/// volume has in common with the disc, times the number of planes, divided by the area of the disc.
 fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
     let steps = 100_000;
     let radius = wedge.radius;

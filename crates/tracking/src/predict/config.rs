@@ -78,8 +78,9 @@ pub struct PredictorConfig {
     /// Decay of the head's angular velocity and angular acceleration, as a Kalman filter assumes it.
     #[serde(default)]
     pub orientation_decay: Decay,
-    /// Prediction intervals of position and orientation, ps, at which a Kalman filter is checked against the last report
-    /// and against a constant velocity. The three are weighted by their recent errors. 0 uses the filter alone.
+    /// Prediction intervals of position and orientation, ps. At these intervals, the predictions of a Kalman filter, of
+    /// the last report and of a constant velocity are compared, and weighted by their recent errors. 0 uses the filter
+    /// alone.
     #[serde(default)]
     pub check_ps: [u64; 2],
     /// Longest time, ps, for which the predictor extrapolates, forwards or backwards from the newest measurement. For
