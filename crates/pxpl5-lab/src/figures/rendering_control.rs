@@ -147,7 +147,7 @@ pub(super) const FIGURES: &[Measurement] = &[
         basis: Basis::Interpretation("each eye"),
         reason: "TR94's text allows samples of the first eye, too",
         latency: Some(TO_THE_SWAP),
-        cause: "By TR94's rules, TRANSFORM may begin while two eyes wait for their copies, so a faster TRANSFORM or RENDER only waits longer",
+        cause: "By TR94's rules, TRANSFORM may begin while two eyes wait for their copies, so pictures of a faster TRANSFORM or RENDER only wait longer for COPY",
         ..interpreted(figure(
             ("4", TR94, 56.5, "ms"),
             "small HMD machine, 12 triangles that cover the screen: from the start of TRANSFORM to the swap",
