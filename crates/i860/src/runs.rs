@@ -90,8 +90,8 @@ impl Clock {
         memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
     }
 
-    /// Restores the scoreboard to its current state. While clocks were reused, the model stored only the number of this
-    /// state.
+    /// Writes the current state into the scoreboard. While memoized clocks were reused, the model knew only the number
+    /// of this state.
     #[inline]
     pub(crate) fn write_board(&mut self) {
         if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {

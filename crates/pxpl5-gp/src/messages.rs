@@ -92,7 +92,8 @@ impl Gp {
         Span::ZERO
     }
 
-    /// Sends one message in the background. The program first spends `due` and the CPU time of the message software.
+    /// Sends one message in the background. Before, the program spends `due`, the CPU time of its earlier work, and the
+    /// CPU time of the message software.
     #[inline]
     async fn send_after(&self, due: Span, message: (NodeId, u32, Body)) {
         let due = self.spend_before_code(due).await;

@@ -273,7 +273,7 @@ fn is_machine_parameter(registry: &Registry, path: &str) -> bool {
     parameters(registry).iter().any(|candidate| candidate == path)
 }
 
-/// Returns the paths of all machine parameters with all displays of the registry.
+/// Returns the paths of all parameters of a machine that has every display of the registry.
 fn parameters(registry: &Registry) -> Vec<String> {
     machine(registry).settings().into_iter().map(|(path, _)| path).collect()
 }

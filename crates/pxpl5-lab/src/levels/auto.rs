@@ -101,8 +101,8 @@ impl Forms {
 /// `needs_events` is true.
 ///
 /// The deviation is that of [`compared_ms`]: mean latency, or the time to the first copy of Slats. Other quantities may
-/// deviate more. Pipelines without a closed form, and tracked heads, run at the cycle level, because nothing tells how
-/// near they are to an edge.
+/// deviate more. Pipelines without a closed form, and tracked heads, run at the cycle level, because no formula
+/// tells how near their copies end to a retrace.
 pub fn choose_level(
     registry: &Registry,
     experiment: &Experiment,

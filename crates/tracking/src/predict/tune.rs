@@ -287,7 +287,7 @@ impl TrainingData {
     }
 
     /// Returns the settings with the baselines that give the least errors, and the mean errors in metres and degrees. A
-    /// baseline is the number of reports between the two poses of a difference.
+    /// baseline is the number of reports between the two poses whose difference gives a velocity.
     fn best_baselines(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut best = [(f64::INFINITY, 1); 2];
         for baseline in 1..=LONGEST_BASELINE {
