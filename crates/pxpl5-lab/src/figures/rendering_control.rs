@@ -147,7 +147,7 @@ pub(super) const FIGURES: &[Measurement] = &[
         basis: Basis::Interpretation("each eye"),
         reason: "TR94's text allows samples of the first eye, too",
         latency: Some(TO_THE_SWAP),
-        cause: "By TR94's rules, TRANSFORM may begin while two eyes wait for their copies, so pictures of a faster TRANSFORM or RENDER only wait longer for COPY",
+        cause: "By TR94's rules, TRANSFORM may begin while two eyes wait for their copies, so with a faster TRANSFORM or RENDER, a picture only waits longer for COPY",
         ..interpreted(figure(
             ("4", TR94, 56.5, "ms"),
             "small HMD machine, 12 triangles that cover the screen: from the start of TRANSFORM to the swap",
@@ -289,7 +289,7 @@ pub(super) const FIGURES: &[Measurement] = &[
         range: Some(1.5),
         basis: Basis::Derived("row 4"),
         latency: Some(LatencyDefinition { sentence: "I3D95: time stamps, without the first frames", ..TO_THE_SWAP }),
-        cause: "As row 4. I3D95 found the same range from outside (row 17), where our pipeline is idle and faster",
+        cause: "As row 4. I3D95 found the same range from outside (row 17), where our pipeline is faster, because it is idle before each frame",
         ..interpreted(figure(
             ("17b", I3D95, 55.5, "ms"),
             "measured from inside, in a full pipeline: the same range",

@@ -50,8 +50,8 @@ fn source(id: &str) -> &'static str {
 fn cause(id: &str) -> &'static str {
     match id {
         "P17" => {
-            "The SpatialGL paper says \"most scenes\" and does not name these scenes. The interval from 5 to 20 is \
-             an assumption of the project. A slender object such as the Mig leaves most of the volume empty."
+            "The SpatialGL paper says \"most scenes\" without naming them, and the interval from 5 to 20 is assumed. \
+             A slender object such as the Mig leaves most of the volume empty."
         }
         "section 6" => {
             "The expected value holds for small triangles. The triangles of the Mig are large, so they \
