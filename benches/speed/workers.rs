@@ -96,7 +96,7 @@ pub(crate) fn table() -> Fallible<String> {
     let mut text = format!(
         "This table is computed from the times of {} regions in {pairs} stereo pairs of `head`, measured one by one. A pair\n\
          takes {:.2} ms of simulation and {:.2} ms of drawing. One thread simulates and puts regions into a queue of {}, from\n\
-         which the others take them. When the queue is full, and at the end, it draws too. The goal for two threads is 7 ms.\n\n\
+         which the others take them. When the queue is full, and at the end, it draws too. Goal for two threads: 7 ms.\n\n\
          | threads | ms a pair | faster than one | of what the simulating thread alone allows |\n|---|---|---|---|\n",
         pieces.len(),
         simulating / pairs as f64 * 1e3,
