@@ -128,7 +128,7 @@ fn a_time_per_triangle_applies_where_no_code_runs() {
 fn with_i860_code_the_times_of_the_table_have_no_effect() {
     let hash_on = |machine: &MachineConfig, pipeline: Arc<dyn Pipeline>, name: &str| {
         let scene = Arc::new(scene::builtin(name).expect("built in"));
-        let experiment = Experiment::with(machine.clone(), pipeline, scene).fields(support::sample_or_all(12, 24));
+        let experiment = Experiment::with(machine.clone(), pipeline, scene).fields(support::sample_or_all(6, 24));
         hash(&experiment.pixels(Pixels::Off).level(Level::Cycle))
     };
     let slats: Arc<dyn Pipeline> = Arc::new(Slats::split());

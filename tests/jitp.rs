@@ -307,7 +307,7 @@ fn frameless_blocks_are_drawn_once_per_pass_and_are_half_a_pass_old() {
     assert!((age_ms / (pass_ms / 2.0) - 1.0).abs() < 0.05, "{age_ms} {pass_ms}");
 }
 
-/// Runs each of six failing trackers with a twelfth of the pipelines.
+/// Runs each of six failing trackers with one in 24 of the pipelines.
 /// `PXPL5_ALL_CASES=1` runs every pipeline with all trackers.
 #[test]
 fn every_pipeline_continues_when_the_tracker_fails() {
@@ -332,7 +332,7 @@ fn every_pipeline_continues_when_the_tracker_fails() {
     let compared: Vec<_> = registry.pipelines().iter().filter(|entry| entry.compared).collect();
     for (number, tracker) in trackers.enumerate() {
         let head = Arc::new(head(Synthetic::recorded_use(2), tracker, PredictorKind::Kalman));
-        let is_run = |index: usize| (index + number).is_multiple_of(12) || support::runs_all_cases();
+        let is_run = |index: usize| (index + number).is_multiple_of(24) || support::runs_all_cases();
         compared.par_iter().enumerate().filter(|(index, _)| is_run(*index)).for_each(|(_, entry)| {
             let pipeline = (entry.build)(&PipelineSettings::default());
             let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, Arc::new(small()));
