@@ -274,9 +274,9 @@ pub(super) const FIGURES: &[Measurement] = &[
             "host.message_ns",
             "host.application_ns",
         ]),
-        cause: "A frame on demand finds every stage idle, and two triangles are drawn quickly. COPY of both eyes takes two fields less 2 ms, the wait for the \
-                retrace adds half a field on average, and the beam's way to the \
-                middle of the screen another half. A slower host would explain the rest (docs/interpretations.md, Findings)",
+        cause: "A frame on demand finds every stage idle, so three parts are almost all of its time: \
+                COPY of both eyes takes two fields less 2 ms, the wait for the retrace adds half a field on average, \
+                and the beam's way to the middle of the screen another half. A slower host would explain the rest (docs/interpretations.md, Findings)",
         ..figure(
             ("17", I3D95, 55.5, "ms"),
             "measured from outside with pendulum and photodiode, a minimal data set, rendering alone",
