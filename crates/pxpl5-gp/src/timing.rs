@@ -206,8 +206,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this timing table with the times of Slats with commands for touched regions only: code scheduled by hand,
-    /// otherwise as in [`Self::of_compiled_touched`].
+    /// Returns this timing table with the times of Slats in code scheduled by hand, which sends commands only to the
+    /// touched regions. Otherwise, the program is that of [`Self::of_compiled_touched`].
     #[must_use]
     pub const fn of_scheduled_touched(self) -> Self {
         Self {

@@ -57,7 +57,8 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
     }
 
     /// Builds the display at the ring ports `nodes`. There must be as many ports as [`DisplayConfig::ports`] returns. Each
-    /// port receives one word in the time `word`, the ring's own, because a channel holds both of its ends (TR94, F89).
+    /// port receives one word in the ring's word time `word`, because a channel holds the ports of the sender and of the
+    /// receiver during a transfer (TR94, F89).
     ///
     /// # Errors
     ///

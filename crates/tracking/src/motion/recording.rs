@@ -39,7 +39,8 @@ const GAP_TIMES: u64 = 5;
 /// which no interpolation can reconstruct.
 const GAP_S: f64 = 0.2;
 
-/// Number of samples up to which a recording may be a list of a few poses, far apart in time. Assumed.
+/// Greatest number of samples that can be far apart in time without a warning, because such a recording may be a list
+/// of a few poses. Assumed.
 const FEW_SAMPLES: usize = 10;
 
 type Sample = (u64, Pose);

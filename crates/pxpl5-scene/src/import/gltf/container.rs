@@ -81,8 +81,8 @@ impl<'a> Chunks<'a> {
         source.syntax(at, "the JSON of glTF 2.0", found)
     }
 
-    /// Returns the greatest number of bytes that the JSON takes after parsing. A list keeps the text of each item, so
-    /// each comma and each bracket may stand for an item.
+    /// Returns the greatest number of bytes that the JSON takes after parsing. The parser stores a reference for each item
+    /// of a list, and each comma or opening bracket of the JSON may stand for an item.
     pub(super) fn parsed_bytes(&self) -> usize {
         let items = self.json.iter().filter(|byte| matches!(byte, b',' | b'[')).count();
         self.json.len().saturating_add(items.saturating_mul(ITEM_BYTES))
