@@ -108,7 +108,7 @@ fn run_on<S: Unit, V: SimdVector, K: VectorKernel>(kernel: K) -> K::Output {
     )
 }
 
-/// A vector unit whose proof of presence is taken from [`PresentVectors`], and not carried with each vector.
+/// A vector unit of the running computer. Vectors carry no proof that it is present: [`PresentVectors`] has tested it.
 pub(crate) trait Unit: Simd {
     fn here() -> Self;
 }

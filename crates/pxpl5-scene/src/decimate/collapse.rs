@@ -187,8 +187,8 @@ impl Decimator {
         }
     }
 
-    /// Returns true if no collapse is possible any more, because each collapse would leave one triangle too few. A
-    /// collapse inside a surface removes two triangles.
+    /// Returns true if no collapse is possible any more, because the surface is closed and has one triangle more than
+    /// `wanted`, and each collapse removes two.
     const fn is_stuck(&self, wanted: usize, rules: Rules) -> bool {
         self.is_closed && !rules.may_overshoot && self.surface.left == wanted + 1
     }
