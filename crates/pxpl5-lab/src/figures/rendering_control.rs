@@ -274,7 +274,7 @@ pub(super) const FIGURES: &[Measurement] = &[
             "host.message_ns",
             "host.application_ns",
         ]),
-        cause: "A frame on demand finds every stage idle, so three parts are almost all of its time: \
+        cause: "A frame on demand finds every stage idle, so three parts are almost all of its time. \
                 COPY of both eyes takes two fields less 2 ms, the wait for the retrace adds half a field on average, \
                 and the beam's way to the middle of the screen another half. A slower host would explain the rest (docs/interpretations.md, Findings)",
         ..figure(
