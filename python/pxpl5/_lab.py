@@ -271,7 +271,7 @@ class Comparison(Strict):
         """A row for each pipeline: latency, head to light, rate, errors in pixels and largest number of triangles.
 
         Names of columns contain points. A mean over seeds has the column ``.mean``, and ``.low``, ``.high`` and ``.method`` for its 95 %
-        interval. ``due`` and ``not_shown`` count pictures, and ``error.n`` counts evaluated pixels.
+        interval. ``pictures_due`` and ``missed_retraces`` count pictures, and ``error.n`` counts evaluated pixels.
         """
         left_out = ("end_to_end", "causes", "predictors", "picture", "errors", "display_counters")
         rows = []
@@ -310,8 +310,8 @@ class Comparison(Strict):
                 row["latency_ms"]["mean"],
                 row["head_to_light_ms"]["mean"],
                 row["tracking_and_rendering_ms"]["mean"],
-                row["due"],
-                row["not_shown"],
+                row["pictures_due"],
+                row["missed_retraces"],
                 row["error"]["mean_px"]["mean"],
                 row["error"]["n"],
                 "no limit" if row["has_no_limit"] else row["triangles_possible"],

@@ -68,8 +68,8 @@ class DueData(WindowData):
 class TooHeavyData(TypedDict):
     """Advice for a scene that the machine draws too slowly."""
 
-    due: int
-    not_shown: int
+    pictures_due: int
+    missed_retraces: int
     primitives: int
     primitives_in_time: int | None
     advice: str

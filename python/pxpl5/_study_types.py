@@ -162,8 +162,8 @@ class ComparedData(TypedDict):
     end_to_end: BudgetData
     prediction_interval_ms: StatisticsData
     updates_hz: IntervalData
-    due: int | None
-    not_shown: int | None
+    pictures_due: int | None
+    missed_retraces: int | None
     late_regions: int | None
     error: ErrorSpreadData
     #: Mean error of each seed.

@@ -32,7 +32,7 @@ use std::path::{Path, PathBuf};
 
 An axis that varies must be named by --x, --by or --band; otherwise, the command fails. A row without a result does not count as 0. The
 column `missing` counts such rows, and a point without any number is not drawn. A hollow mark stands for runs with pictures that were
-due and not shown: its mean is of the others. FIG.csv has the sums of `due`, `not_shown` and `samples` (evaluated pixels).")]
+due and not shown: its mean is of the others. FIG.csv has the sums of `pictures_due`, `missed_retraces` and `samples` (evaluated pixels).")]
 pub(crate) struct PlotArgs {
     /// Results of `pxpl5 sweep --out` or `pxpl5 compare --out`: the folder, or its rows.jsonl or comparison.json.
     #[arg(value_name = "DIR|FILE")]
@@ -212,8 +212,8 @@ fn interval(args: &PlotArgs, kind: RowsKind) -> String {
 /// Returns the groups of rows as CSV, with columns of names before columns of numbers. The cell of a missing number is
 /// empty.
 fn csv(question: &Question, groups: &[Group]) -> String {
-    let columns = ["mean", "sd", "n", "low", "high", "missing", "due", "not_shown", "samples"].map(str::to_owned);
-    let names = question.by.iter().cloned().chain([question.x.clone()]).chain(columns);
+    let columns = ["mean", "sd", "n", "low", "high", "missing", "pictures_due", "missed_retraces", "samples"];
+    let names = question.by.iter().cloned().chain([question.x.clone()]).chain(columns.map(str::to_owned));
     let number = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
     let count = |value: Option<u64>| value.map_or_else(String::new, |count| count.to_string());
     let rows = groups.iter().map(|group| {
@@ -224,8 +224,8 @@ fn csv(question: &Question, groups: &[Group]) -> String {
             number(group.interval.0),
             number(group.interval.1),
             group.missing.to_string(),
-            count(group.counts.due),
-            count(group.counts.not_shown),
+            count(group.counts.pictures_due),
+            count(group.counts.missed_retraces),
             count(group.counts.samples),
         ];
         group.by.iter().cloned().chain([question::text(&group.x)]).chain(numbers).collect::<Vec<_>>()

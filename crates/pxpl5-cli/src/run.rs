@@ -33,7 +33,7 @@ use std::path::PathBuf;
   pxpl5 run --pipeline jitp-scanline-racing --scene full-screen:4 --head pan:200 --tracker fastrak
   pxpl5 run --pipeline slats --scene mig --triangles 100 --set gp.triangle_ns=30000
   pxpl5 run --pipeline slats --scene mig --triangles 50 --level cycle
-  pxpl5 run --pipeline rendering-control --scene head --fields 600 --picture 57 --out out/head
+  pxpl5 run --pipeline rendering-control --scene head --fields 900 --picture 57 --out out/head
 
 Exit code 0: The run succeeded. Exit code 1: The run failed, or it showed no picture after the first four and so has no latency. The report
 and all files are written also without a latency, with null for missing results. Exit code 2: The command line or a file is wrong.")]

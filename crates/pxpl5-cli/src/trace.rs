@@ -19,7 +19,7 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:
   pxpl5 trace --pipeline slats --scene mig --triangles 140 --fields 20 --out slats.json
   pxpl5 trace --pipeline rendering-control --scene mig --fields 30 --out mig.json
-  pxpl5 trace --pipeline rendering-control --scene head --fields 300 --picture 57 --out picture-57.vcd
+  pxpl5 trace --pipeline rendering-control --scene mig --fields 300 --picture 57 --out picture-57.vcd
 
 A trace holds every message. About 30 fields are enough to show how a pipeline works.")]
 pub(crate) struct TraceArgs {
@@ -68,7 +68,7 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     // The whole file is built in memory and then written at once.
     let mut bytes = Vec::new();
     let is_waveform = args.out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vcd"));
-    let made = if is_waveform { vcd(&trace, span[0], &mut bytes) } else { chrome(&trace, &mut bytes) };
+    let made = if is_waveform { vcd(&trace, span, &mut bytes) } else { chrome(&trace, &mut bytes) };
     made.map_err(CliError::failure)?;
     let silent = args.quiet || file.is_standard_output();
     file.write(&bytes)?;

@@ -43,7 +43,7 @@ const FULL: [&str; 9] = [
 fn a_run_prints_one_object_with_units_in_its_names() {
     let folder = Folder::new("json");
     let report = json(&folder.run(&with(&SLATS, &["--json", "--seed", "7"])));
-    assert_eq!(report["schema"], "pxpl5-report/2");
+    assert_eq!(report["schema"], "pxpl5-report/3");
     assert_eq!((&report["pipeline"], &report["machine"]), (&"slats".into(), &"slats".into()));
     assert_eq!((&report["scene"], &report["triangles"]), (&"full-screen:10".into(), &10.into()));
     assert_eq!((&report["spheres"], &report["fields"], &report["seed"]), (&0.into(), &12.into(), &7.into()));

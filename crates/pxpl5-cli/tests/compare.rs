@@ -208,14 +208,14 @@ fn values_that_were_not_measured_are_null_in_json() {
     let json = json(&compare(&[settings.as_slice(), &only, &["--json"]].concat()));
     // None of the 22 due fields of either seed was shown. The screen still shows the picture of the start.
     let heavy = row(&json, "jitp-dual-screen");
-    assert_eq!((&heavy["due"], &heavy["not_shown"]), (&Value::from(44), &Value::from(44)), "{heavy}");
+    assert_eq!((&heavy["pictures_due"], &heavy["missed_retraces"]), (&Value::from(44), &Value::from(44)), "{heavy}");
     assert!(heavy["error"]["mean_px"]["mean"].is_null() && heavy["error"]["n"] == 0, "{heavy}");
     assert_eq!(heavy["causes"], serde_json::json!([]), "{heavy}");
     let failure = heavy["failure"].as_str().expect("the row says why");
     assert!(failure.starts_with("cannot draw the scene: of 44 pictures due none was complete in time"), "{failure}");
     for name in ["ideal", "frameless"] {
         let never = row(&json, name);
-        for count in ["due", "not_shown", "late_regions"] {
+        for count in ["pictures_due", "missed_retraces", "late_regions"] {
             assert!(never[count].is_null(), "{name} {count}: {never}");
         }
     }

@@ -36,7 +36,7 @@ fn a_plot_computes_means_deviations_and_intervals_over_the_seeds() {
     assert_eq!(folder.names(), ["fig.csv", "fig.json", "fig.svg", "rows.jsonl"]);
     let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
     let mut lines = table.lines();
-    assert_eq!(lines.next(), Some("copy,n,mean,sd,n,low,high,missing,due,not_shown,samples"));
+    assert_eq!(lines.next(), Some("copy,n,mean,sd,n,low,high,missing,pictures_due,missed_retraces,samples"));
     for (line, (copy, n, mean)) in lines.by_ref().zip([
         ("whole", "1", 12.0),
         ("whole", "2", 22.0),
@@ -161,7 +161,7 @@ fn a_plot_of_a_comparison_has_one_point_for_each_pipeline() {
     let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
     assert_eq!(
         table,
-        "pipeline,head_to_light_ms.mean,mean,sd,n,low,high,missing,due,not_shown,samples\n\
+        "pipeline,head_to_light_ms.mean,mean,sd,n,low,high,missing,pictures_due,missed_retraces,samples\n\
          slats,50.0,8,,5,7,9,0,,,\njitp-field,40.0,7,,5,6,8,0,,,\n"
     );
 }
@@ -187,7 +187,7 @@ fn a_plotted_point_with_missed_pictures_is_hollow_and_has_its_counts_in_the_tabl
     assert!(run.status.success(), "{}", err(&run));
     let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
     let ends: Vec<&str> = table.lines().map(|line| line.splitn(7, ',').last().unwrap_or_default()).collect();
-    assert_eq!(ends, ["missing,due,not_shown,samples", "0,40,0,1000", "0,40,7,1000"], "{table}");
+    assert_eq!(ends, ["missing,pictures_due,missed_retraces,samples", "0,40,0,1000", "0,40,7,1000"], "{table}");
     let svg = std::fs::read_to_string(folder.0.join("fig.svg")).expect("written");
     assert_eq!(circles(&svg, true), 1, "{svg}");
 }
@@ -197,7 +197,7 @@ fn finished_rows_of_an_unfinished_comparison_can_be_drawn() {
     let folder = Folder::new("plot-unfinished");
     let row = |name: &str, px: f64, missed: u64| {
         let error = json!({"mean_px": {"mean": px, "low": px - 1.0, "high": px + 1.0, "n": 5}, "n": 100});
-        json!({"row": {"pipeline": name, "due": 9, "not_shown": missed, "error": error}, "by_field": [], "picture": null})
+        json!({"row": {"pipeline": name, "pictures_due": 9, "missed_retraces": missed, "error": error}, "by_field": [], "picture": null})
     };
     let header = json!({"schema": "pxpl5-comparison-rows/2", "rows": ["slats", "vdrt", "ideal"]});
     std::fs::create_dir(folder.0.join("rows")).expect("made");

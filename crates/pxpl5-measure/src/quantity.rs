@@ -234,15 +234,15 @@ impl Measure {
     /// Returns the counts that every row of results needs: pictures due, pictures not shown, and evaluated pixels.
     /// Without these counts, a mean over few pictures looks like a mean over all pictures.
     pub fn counts() -> Vec<Self> {
-        let is_count = |q: &&Quantity| [Self::DUE, Self::NOT_SHOWN, Self::EVALUATED].contains(&q.name);
+        let is_count = |q: &&Quantity| [Self::PICTURES_DUE, Self::MISSED_RETRACES, Self::EVALUATED].contains(&q.name);
         QUANTITIES.iter().filter(is_count).map(Self).collect()
     }
 
     /// Name of the quantity that counts the due pictures.
-    pub const DUE: &'static str = "pictures_due";
+    pub const PICTURES_DUE: &'static str = "pictures_due";
 
     /// Name of the quantity that counts the due pictures that were not shown.
-    pub const NOT_SHOWN: &'static str = "missed_retraces";
+    pub const MISSED_RETRACES: &'static str = "missed_retraces";
 
     /// Name of the quantity that a sweep searches for: the largest number of triangles that reaches a goal.
     pub const TRIANGLES: &'static str = "triangles_possible";

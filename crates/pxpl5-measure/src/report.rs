@@ -204,7 +204,7 @@ fn faults(record: &Record) -> impl Iterator<Item = String> {
 
 impl Report {
     /// Name and version of the layout of this report.
-    pub const SCHEMA: &'static str = "pxpl5-report/2";
+    pub const SCHEMA: &'static str = "pxpl5-report/3";
 
     /// Computes the report of an outcome.
     pub fn of(outcome: &Outcome) -> Self {

@@ -10,9 +10,9 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TooHeavy {
     /// Number of pictures that were due.
-    pub due: u64,
+    pub pictures_due: u64,
     /// Number of pictures due that were late, incomplete or missed.
-    pub not_shown: u64,
+    pub missed_retraces: u64,
     /// Number of primitives in the scene: triangles and spheres.
     pub primitives: u64,
     /// Number of primitives to which the scene must be decimated for pictures in time, by the pipeline's closed form.
@@ -32,7 +32,7 @@ impl TooHeavy {
         let primitives = experiment.scene().primitives() as u64;
         let primitives_in_time = experiment.primitives_in_time().filter(|in_time| *in_time < primitives);
         let advice = advice(experiment.pipeline().name(), primitives_in_time);
-        Some(Self { due: due.due, not_shown: due.not_shown(), primitives, primitives_in_time, advice })
+        Some(Self { pictures_due: due.due, missed_retraces: due.not_shown(), primitives, primitives_in_time, advice })
     }
 }
 
@@ -55,13 +55,13 @@ const fn ending(count: u64) -> &'static str {
 
 impl fmt::Display for TooHeavy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { due, not_shown, primitives, advice, .. } = self;
+        let Self { pictures_due, missed_retraces, primitives, advice, .. } = self;
         write!(
             f,
-            "TOO HEAVY: with {primitives} primitive{} {not_shown} of {due} picture{} due {} not shown in time; {advice}.",
+            "TOO HEAVY: with {primitives} primitive{} {missed_retraces} of {pictures_due} picture{} due {} not shown in time; {advice}.",
             ending(*primitives),
-            ending(*due),
-            if *not_shown == 1 { "was" } else { "were" }
+            ending(*pictures_due),
+            if *missed_retraces == 1 { "was" } else { "were" }
         )
     }
 }

@@ -17,7 +17,9 @@ const COLUMNS: [Column; 19] = [
     ("figure 19", "ms", |row| number(row.tracking_and_rendering_ms.mean, 2)),
     ("predicts", "ms", |row| number(row.prediction_interval_ms.mean, 2)),
     ("updates", "Hz", |row| number(row.updates_hz.mean, 2)),
-    ("not shown", "", |row| row.not_shown.zip(row.due).map_or_else(dash, |(missed, due)| format!("{missed} of {due}"))),
+    ("not shown", "", |row| {
+        row.missed_retraces.zip(row.pictures_due).map_or_else(dash, |(missed, due)| format!("{missed} of {due}"))
+    }),
     ("error", "px", |row| number(row.error.mean_px.mean, 2)),
     ("interval", "px", |row| interval(&row.error.mean_px)),
     ("above best", "px", |row| match row.above_best_px {

@@ -43,26 +43,24 @@ pub(super) struct Group {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counts {
     /// Number of due pictures, each of which had to be shown at a certain retrace.
-    pub(super) due: Option<u64>,
-    pub(super) not_shown: Option<u64>,
+    pub(super) pictures_due: Option<u64>,
+    pub(super) missed_retraces: Option<u64>,
     pub(super) samples: Option<u64>,
 }
 
 impl Counts {
     fn of(kind: RowsKind, rows: &[&Row]) -> Self {
-        let names = match kind {
-            RowsKind::Sweep => [Measure::DUE, Measure::NOT_SHOWN, Measure::EVALUATED],
-            RowsKind::Comparison => ["due", "not_shown", "error.n"],
-        };
-        let [due, not_shown, samples] = names.map(|name| {
+        let evaluated = if kind == RowsKind::Sweep { Measure::EVALUATED } else { "error.n" };
+        let names = [Measure::PICTURES_DUE, Measure::MISSED_RETRACES, evaluated];
+        let [pictures_due, missed_retraces, samples] = names.map(|name| {
             let mut values = rows.iter().filter_map(|row| value(row, name)?.as_f64()).peekable();
             values.peek().is_some().then(|| values.sum::<f64>() as u64)
         });
-        Self { due, not_shown, samples }
+        Self { pictures_due, missed_retraces, samples }
     }
 
     pub(super) fn has_missing_pictures(&self) -> bool {
-        self.not_shown.is_some_and(|missed| missed > 0)
+        self.missed_retraces.is_some_and(|missed| missed > 0)
     }
 }
 

@@ -12,7 +12,7 @@ pub(super) fn runs(files: &Files<'_>) -> Result<Vec<PageRun>, CliError> {
     let bytes = files.first(REPORT).map_err(|error| no_report(&path, &error))?;
     let all: Value = serde_json::from_slice(&bytes).map_err(|error| no_report(&path, &error.to_string()))?;
     match all["schema"].as_str() {
-        Some("pxpl5-report/2") => Ok(vec![run(files, "", "", &all, &Value::Null)]),
+        Some("pxpl5-report/3") => Ok(vec![run(files, "", "", &all, &Value::Null)]),
         Some("pxpl5-demo/1") => {
             let runs = all["runs"].as_array().map(Vec::as_slice).unwrap_or_default();
             Ok(runs.iter().map(|entry| demo_run(files, entry)).collect())

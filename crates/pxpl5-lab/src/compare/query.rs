@@ -194,7 +194,7 @@ impl Study for CompareQuery {
         // Settings of the first row alone do not belong to the head of all rows.
         let shared = ComparedPipeline { settings: &[], ..compared_pipelines[0] }.plan(&self.shared, any.seed)?;
         let mut comparison = Comparison {
-            schema: "pxpl5-comparison/4",
+            schema: "pxpl5-comparison/5",
             version: program::VERSION,
             commit: program::commit(),
             config_hash: any.experiment(Arc::clone(&common.scene)).config_hash().to_string(),
@@ -473,7 +473,7 @@ fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     let could = row
         .triangles_possible
         .map_or_else(String::new, |n| format!("; it could draw {n} {}", row.triangles_definition));
-    match row.due.filter(|due| *due > 0) {
+    match row.pictures_due.filter(|due| *due > 0) {
         Some(due) => format!(
             "cannot draw the scene: of {due} pictures due none was complete in time, so the scene is too heavy{could}"
         ),

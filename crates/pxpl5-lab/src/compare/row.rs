@@ -104,10 +104,10 @@ pub struct ComparisonRow {
     /// no such seeds.
     pub updates_hz: MeanInterval,
     /// Number of due pictures in all seeds. `None` if the pipeline's pictures have no deadlines.
-    pub due: Option<u64>,
+    pub pictures_due: Option<u64>,
     /// Number of due pictures that were late, incomplete or missed. `None` if the pipeline's pictures have no
     /// deadlines.
-    pub not_shown: Option<u64>,
+    pub missed_retraces: Option<u64>,
     /// Number of regions in all seeds that arrived after their deadline. `None` if regions have no deadline.
     pub late_regions: Option<usize>,
     /// Pixel errors on a grid of pixels, over all evaluated fields.
@@ -196,8 +196,8 @@ impl ComparisonRow {
             end_to_end: Budget::pooled(trials.iter().filter(|_| !is_reference).map(|trial| trial.budget)),
             prediction_interval_ms: pooled(trials, |trial| &trial.prediction_interval_ms),
             updates_hz: over_seeds(&hz),
-            due: sum(trials.iter().map(|trial| Some(trial.due?.due))),
-            not_shown: sum(trials.iter().map(|trial| Some(trial.due?.not_shown()))),
+            pictures_due: sum(trials.iter().map(|trial| Some(trial.due?.due))),
+            missed_retraces: sum(trials.iter().map(|trial| Some(trial.due?.not_shown()))),
             late_regions: sum(trials.iter().map(|trial| trial.due.map(|_| trial.late_regions))),
             error: ErrorSpread::of(trials, sampling),
             seed_px: seed_means(trials),
@@ -230,7 +230,7 @@ impl ComparisonRow {
 
     /// Returns true if every picture that was due was shown in time.
     pub fn shows_all(&self) -> bool {
-        self.not_shown.unwrap_or(0) == 0
+        self.missed_retraces.unwrap_or(0) == 0
     }
 
     /// Returns true if the error of the row can be ranked with the errors of other rows. The rows `delayed-video` and
@@ -251,8 +251,8 @@ impl fmt::Display for ComparisonRow {
         let px = self.error.mean_px.mean;
         let error = if px.is_finite() { format!("error {px:.2} px") } else { "no error".to_owned() };
         write!(f, "{}: {error}", self.pipeline)?;
-        match self.not_shown.filter(|missed| *missed > 0) {
-            Some(missed) => write!(f, ", {missed} of {} pictures not shown", self.due.unwrap_or_default()),
+        match self.missed_retraces.filter(|missed| *missed > 0) {
+            Some(missed) => write!(f, ", {missed} of {} pictures not shown", self.pictures_due.unwrap_or_default()),
             None => Ok(()),
         }
     }

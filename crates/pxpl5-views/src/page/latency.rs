@@ -37,7 +37,7 @@ fn of_how_many(n: &Value) -> Option<Element> {
 /// the pipeline, the result also has a prominent warning.
 pub(super) fn due(report: &Value) -> Vec<Element> {
     let heavy = report["too_heavy"]["advice"].as_str().map(|advice| {
-        let [missed, due] = ["not_shown", "due"].map(|key| text_or_dash(&report["too_heavy"][key]));
+        let [missed, due] = ["missed_retraces", "pictures_due"].map(|key| text_or_dash(&report["too_heavy"][key]));
         let text = format!("Too heavy: {missed} of {due} pictures due were not shown in time; {advice}.");
         Element::new("p").with("class", "loud").text(text)
     });

@@ -7,7 +7,7 @@ use serde_json::Value;
 pub struct PageRun {
     /// Heading of the experiment.
     pub name: String,
-    /// Report of the experiment, as in `report.json` (schema `pxpl5-report/2`).
+    /// Report of the experiment, as in `report.json` (schema `pxpl5-report/3`).
     pub report: Value,
     /// Comparison with a published value: `quantity`, `published`, `error_percent` and `source`. Null if the papers
     /// give no value.

@@ -23,7 +23,7 @@ enum Change {
 /// Changes in order of time. At one instant, the last change of a signal counts, as in hardware.
 type Changes = BTreeMap<(Time, IdCode), Change>;
 
-/// Writes a trace as a waveform with a resolution of 1 ps, from the time `begin`.
+/// Writes a trace as a waveform with a resolution of 1 ps, from the time `begin` to the time `end`.
 ///
 /// Each board, surface and video of a display is a scope. A stage or another track of slices has three signals: one is
 /// 1 while the resource works, one has the picture's number, and one has the name of the work as a string. Instants are
@@ -32,7 +32,7 @@ type Changes = BTreeMap<(Time, IdCode), Change>;
 /// # Errors
 ///
 /// Returns any error of the writer `out`.
-pub fn vcd(trace: &Trace, begin: Time, out: impl Write) -> io::Result<()> {
+pub fn vcd(trace: &Trace, [begin, end]: [Time; 2], out: impl Write) -> io::Result<()> {
     let mut out = Writer::new(out);
     for (key, value) in &trace.origin {
         out.comment(&format!("{key}: {value}"))?;
@@ -47,7 +47,7 @@ pub fn vcd(trace: &Trace, begin: Time, out: impl Write) -> io::Result<()> {
         out.upscope()?;
     }
     out.enddefinitions()?;
-    write(&mut out, begin, &changes)
+    write(&mut out, [begin, end], &changes)
 }
 
 /// Returns a name without white space, which ends names and strings of the format.
@@ -86,11 +86,11 @@ fn declare(out: &mut Writer<impl Write>, track: &Track, begin: Time, changes: &m
     Ok(())
 }
 
-fn write(out: &mut Writer<impl Write>, begin: Time, changes: &Changes) -> io::Result<()> {
+fn write(out: &mut Writer<impl Write>, [begin, end]: [Time; 2], changes: &Changes) -> io::Result<()> {
     let mut now = begin;
     out.timestamp(begin.0)?;
     out.begin(SimulationCommand::Dumpvars)?;
-    for ((time, signal), change) in changes {
+    for ((time, signal), change) in changes.iter().take_while(|((time, _), _)| *time <= end) {
         // The values at the beginning are the first of the sorted changes.
         if *time > now {
             if now == begin {
