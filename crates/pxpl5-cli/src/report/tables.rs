@@ -56,9 +56,9 @@ fn answer(results: &ResultRows) -> Option<String> {
     let more = format!("{least}. {} has {above:.2} px more", name(next));
     let ends = px(next, "above_best_px.low").zip(px(next, "above_best_px.high"));
     let Some((low, high)) = ends else { return Some(format!("{more}, which may be chance: there is no interval.")) };
-    let is_significant = if low > 0.0 { "is significant" } else { "may be chance" };
+    let verdict = if low > 0.0 { "a significant difference" } else { "a difference that may be chance" };
     let confidence = results.about.get("confidence").map_or_else(dash, shown);
-    Some(format!("{more}, from {low:.2} to {high:.2} at a confidence of {confidence}: this {is_significant}."))
+    Some(format!("{more}, from {low:.2} to {high:.2} at a confidence of {confidence}: {verdict}."))
 }
 
 fn numbers_first(row: &Row) -> Row {
