@@ -160,15 +160,8 @@ impl PlotArgs {
         if kind == RowsKind::Comparison && by.is_empty() {
             by.push("pipeline".to_owned());
         }
-        let only = self.only.clone();
-        Question {
-            x: self.x.clone(),
-            y: self.y.clone(),
-            by,
-            band: self.band.clone(),
-            only,
-            confidence: self.confidence,
-        }
+        let (x, y, band, only) = (self.x.clone(), self.y.clone(), self.band.clone(), self.only.clone());
+        Question { x, y, by, band, only, confidence: self.confidence }
     }
 }
 

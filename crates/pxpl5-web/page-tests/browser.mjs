@@ -117,14 +117,21 @@ export const drop = (name, contents) => run(`
   data.items.add(new File([${JSON.stringify(contents)}], '${name}'));
   dispatchEvent(new DragEvent('drop', { dataTransfer: data, cancelable: true }))`);
 
-/** A drag of 60 pixels to the right across the first picture, in half a second. */
-export async function drag() {
+/** A drag of 60 pixels to the right across the first picture, in half a second, or with `between` awaited after each of twelve parts. */
+export async function drag(between) {
   await run("document.querySelector('#eyes canvas').scrollIntoView({ block: 'center' })");
   const box = await run("const b = document.querySelector('#eyes canvas').getBoundingClientRect(); return [b.left, b.top, b.width, b.height]");
   const [x, y] = [Math.round(box[0] + box[2] / 2), Math.round(box[1] + box[3] / 2)];
   const moves = Array.from({ length: 12 }, (_, n) => ({ type: "pointerMove", duration: 40, x: x + 5 * (n + 1), y }));
-  const actions = [{ type: "pointerMove", duration: 0, x, y }, { type: "pointerDown", button: 0 }, ...moves, { type: "pointerUp", button: 0 }];
-  await ask("POST", `${session}/actions`, { actions: [{ type: "pointer", id: "mouse", parameters: { pointerType: "mouse" }, actions }] });
+  const act = (...actions) => ask("POST", `${session}/actions`, { actions: [{ type: "pointer", id: "mouse", parameters: { pointerType: "mouse" }, actions }] });
+  const [down, up] = [[{ type: "pointerMove", duration: 0, x, y }, { type: "pointerDown", button: 0 }], { type: "pointerUp", button: 0 }];
+  if (!between) return act(...down, ...moves, up);
+  await act(...down);
+  for (const move of moves) {
+    await act(move);
+    await between();
+  }
+  return act(up);
 }
 
 /** The link of what was recorded finds the same hash on the page, and its command the same. */
@@ -199,23 +206,43 @@ export async function picture(name, width, height = 1400) {
   assert.equal(overflow, 0, `nothing sticks out at ${width} pixels`);
 }
 
-/** What the command prints as the hash of an experiment's trace at an instant. */
-function hashOfTheCommand(command, folder) {
+/** What the command that the page names prints, or the reason for which it does not run. */
+function outputOfTheCommand(command, folder) {
   const program = resolve(process.env.PXPL5 ?? "target/debug/pxpl5");
   const parts = command.split('"').flatMap((part, n) => (n % 2 ? [part] : part.trim().split(/\s+/).filter(Boolean)));
   const { stdout, stderr, error } = spawnSync(program, parts.slice(1), { encoding: "utf8", cwd: folder });
   assert.ok(!error, `${program}: ${error?.message}`);
-  return /^trace {3}(\S+)$/m.exec(stdout)?.[1] ?? `no hash: ${stderr}`;
+  return stdout || stderr;
 }
 
 /** The command finds the hash that the page shows. */
 export async function sameHash(folder) {
   const [hashes, commands] = [(await text("hash")).split(" "), (await text("command")).split("\n")];
   commands.forEach((command, n) => {
-    const found = hashOfTheCommand(command, folder);
+    const output = outputOfTheCommand(command, folder);
+    const found = /^trace {3}(\S+)$/m.exec(output)?.[1] ?? `no hash: ${output}`;
     console.log(`   ${command}\n   trace ${found}`);
     assert.equal(found, hashes[n]);
   });
+}
+
+/** Pixels that differ between the first picture of the page and that of the command, which has other vector instructions. */
+export async function otherPixels() {
+  const folder = resolve(pictures);
+  const output = outputOfTheCommand((await text("command")).replace("show time", "seen left seen.png"), folder);
+  assert.match(output, /seen\.png/);
+  const png = readFileSync(join(folder, "seen.png")).toString("base64");
+  return ask("POST", `${session}/execute/async`, { args: [png], script: `const [png, done] = arguments;
+    const shown = document.querySelector('#eyes canvas');
+    const { width, height } = shown;
+    const image = new Image();
+    image.onload = () => {
+      const canvas = Object.assign(document.createElement('canvas'), { width, height });
+      canvas.getContext('2d').drawImage(image, 0, 0);
+      const [one, other] = [shown, canvas].map((from) => new Uint32Array(from.getContext('2d').getImageData(0, 0, width, height).data.buffer));
+      done([image.width === width && image.height === height, one.filter((pixel, n) => pixel !== other[n]).length]);
+    };
+    image.src = 'data:image/png;base64,' + png;` });
 }
 
 /** Runs for some seconds of the browser's clock, and returns simulated by real time. */

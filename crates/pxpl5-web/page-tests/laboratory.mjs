@@ -1,6 +1,6 @@
 // Tests of what the laboratory shows.
 import assert from "node:assert/strict";
-import { accessible, advanced, alone, click, key, later, lit, open, press, run, sameHash, set, settled, shareOfACore, shownMs, speed, text, until } from "./browser.mjs";
+import { accessible, advanced, alone, click, key, later, lit, open, otherPixels, press, run, sameHash, set, settled, shareOfACore, shownMs, speed, text, until } from "./browser.mjs";
 
 export default {
   async "the laboratory shows the waits of the pictures and the use of the boards"() {
@@ -31,6 +31,12 @@ export default {
     assert.ok(await run("return document.getElementById('busy').lastChild.hidden"), "one instant is no curve");
     for (let n = 0; n < 20; n += 1) await press('[data-step="field"]');
     assert.ok(!(await run("return document.getElementById('busy').lastChild.hidden")));
+    const [{ px, speed }, age] = await run("return [{ ...document.getElementById('busy').lastChild.firstChild.dataset }, document.querySelector('.age').textContent]");
+    // A sine of 20 degrees and 0.5 Hz turns by at most 20 pi degrees a second.
+    const turns = 20 * Math.PI * Math.abs(Math.cos((Math.PI * (await shownMs())) / 1000));
+    console.log(`   curves end at ${px} px and ${speed} degrees a second; shown: ${age}; of the sine: ${turns.toFixed(2)}`);
+    assert.ok(turns > 1 && Math.abs(speed - turns) < 0.01);
+    assert.ok(Math.abs(px - parseFloat(/, ([\d.]+) px off/.exec(age)[1])) <= 0.5);
     await accessible("busy renderers");
   },
   async "steps go on by a field, a line and an event"() {
@@ -81,6 +87,16 @@ export default {
     await press("#go");
     assert.ok((await lit()) > 3, "the Mig is seen");
     assert.match(await text("latency"), /render/i);
+  },
+  async "pictures are those of the command, pixel by pixel, though the browser has other vector instructions"() {
+    for (const hash of ["pipeline=rendering-control&scene=mig", "pipeline=slats&scene=aircraft", "pipeline=rendering-control&scene=molecules&triangles=300"]) {
+      await open(`#${hash}&fields=60&head.motion=sine:10:0.5&at=700000000000`);
+      assert.equal(await text("error"), "");
+      const colours = await lit();
+      console.log(`   ${hash}: ${colours} colours`);
+      assert.ok(colours > 3);
+      assert.deepEqual(await otherPixels(), [true, 0]);
+    }
   },
   async "every pipeline shows something, on its display"() {
     await open();

@@ -113,6 +113,7 @@ export class Busy {
       context.fillText(name, LEFT - 8, top + high / 2);
       context.fillText("0", LEFT - 8, top + high - 6);
     });
+    Object.assign(canvas.dataset, all[0].at(-1));
     const beside = names.length > 1 ? ` (${nameOf(names[0])} as a line, ${nameOf(names[1])} with dashes)` : "";
     caption.textContent = `Error in the middle of the picture${beside}, and below it the speed with which the head turns`;
   }

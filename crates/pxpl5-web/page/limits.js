@@ -76,7 +76,7 @@ function regionLoads(regions) {
   return [make("figure", { className: "loads" }, canvas, make("figcaption", { textContent: about }))];
 }
 
-/** Shows the waits of the last pictures the use of the boards and the load of the regions, for each machine. */
+/** Shows the waits of the last pictures, the use of the boards and the load of the regions, for each machine. */
 export function drawLimits(place, machines, names) {
   place.replaceChildren(...machines.map(({ limits: { path, utilisation, regions } }, n) =>
     make("div", {}, ...(machines.length > 1 ? [make("h3", { textContent: nameOf(names[n]) })] : []), ...pathPart(path), ...busyPart(utilisation), ...(names[n] === "rendering-control" ? regionLoads(regions) : []))));

@@ -14,8 +14,7 @@ pub(super) fn runs(files: &Files<'_>) -> Result<Vec<PageRun>, CliError> {
     match all["schema"].as_str() {
         Some("pxpl5-report/3") => Ok(vec![run(files, "", "", &all, &Value::Null)]),
         Some("pxpl5-demo/1") => {
-            let runs = all["runs"].as_array().map(Vec::as_slice).unwrap_or_default();
-            Ok(runs.iter().map(|entry| demo_run(files, entry)).collect())
+            Ok(all["runs"].as_array().into_iter().flatten().map(|entry| demo_run(files, entry)).collect())
         }
         found => Err(no_report(&path, &format!("schema {}", found.unwrap_or("missing")))),
     }
@@ -36,7 +35,8 @@ fn demo_run(files: &Files<'_>, entry: &Value) -> PageRun {
 fn run(files: &Files<'_>, name: &str, prefix: &str, report: &Value, published: &Value) -> PageRun {
     let read = |file: &str| files.read(&format!("{prefix}{file}"));
     let pictures = read("pictures.csv").and_then(|bytes| String::from_utf8(bytes).ok());
-    let own_name = format!("{}, {}", text(report, "pipeline"), text(report, "scene"));
+    let text = |key: &str| report[key].as_str().unwrap_or("?");
+    let own_name = format!("{}, {}", text("pipeline"), text("scene"));
     let name = if name.is_empty() { own_name } else { name.to_owned() };
     PageRun {
         name,
@@ -52,16 +52,10 @@ fn run(files: &Files<'_>, name: &str, prefix: &str, report: &Value, published: &
 fn pictures_of(files: &Files<'_>, prefix: &str) -> Vec<PagePicture> {
     let names = files.names().filter_map(|name| Some((name, name.strip_prefix(prefix)?.strip_suffix(".png")?)));
     let pictures = names.filter_map(|(name, surface)| {
-        let (surface, caption) = match surface.strip_suffix(INCOMPLETE) {
-            Some(surface) => (surface, ": not complete in time"),
-            None => (surface, ""),
-        };
+        let incomplete = surface.strip_suffix(INCOMPLETE).map(|surface| (surface, ": not complete in time"));
+        let (surface, caption) = incomplete.unwrap_or((surface, ""));
         let eye = if ["left", "right"].contains(&surface) { " eye" } else { "" };
         Some(PagePicture { label: format!("{surface}{eye}{caption}"), png: files.read(name)? })
     });
     pictures.collect()
-}
-
-fn text<'a>(report: &'a Value, key: &str) -> &'a str {
-    report[key].as_str().unwrap_or("?")
 }

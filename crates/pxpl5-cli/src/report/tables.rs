@@ -22,40 +22,53 @@ pub(super) fn of(files: &Files<'_>) -> Result<Option<Vec<PageTable>>, CliError> 
 
 fn sweep(results: &ResultRows) -> PageTable {
     let shown = results.rows.len().min(MAX_ROWS);
-    let flat: Vec<Vec<(String, String)>> = results.rows[..shown].iter().map(cells).collect();
     let points = results.about.get("points").and_then(Value::as_u64).unwrap_or_default();
     let mut about = vec![format!("{} of {points} points.", results.rows.len())];
     if shown < results.rows.len() {
         about.push(format!("The first {shown} are shown; {ROWS_FILE} and results.csv hold all."));
     }
-    about.extend(results.about.get("settings").map(|settings| format!("All points: {}", pairs(settings))));
+    let settings = results.about.get("settings").and_then(Value::as_object);
+    about.extend(settings.map(|all| format!("All points: {}", pairs(all))));
     let title = results.about.get("title").and_then(Value::as_str).unwrap_or("Sweep");
-    tabular(title, about, &flat)
+    tabular(title, about, &results.rows[..shown])
 }
 
-/// Returns the table of a comparison with one row for each pipeline. Columns with numbers come before columns with
-/// text.
+/// Returns the table of a comparison with one row for each pipeline, below its answer and its settings. Columns with
+/// numbers come before columns with text.
 fn comparison(results: &ResultRows) -> PageTable {
-    let flat: Vec<Vec<(String, String)>> = results.rows.iter().map(numbers_first).collect();
+    let rows: Vec<Row> = results.rows.iter().map(numbers_first).collect();
     let around =
         results.about.iter().filter(|(key, value)| *key != "schema" && !value.is_array() && !value.is_object());
-    let about = around.map(|(key, value)| format!("{key}: {}", shown(value))).collect::<Vec<_>>().join(", ");
-    tabular("Comparison", vec![about], &flat)
+    tabular("Comparison", answer(results).into_iter().chain([pairs(around)]).collect(), &rows)
 }
 
-fn cells(row: &Row) -> Vec<(String, String)> {
-    row.iter().map(|(key, value)| (key.clone(), shown(value))).collect()
+/// Returns a sentence about the row with the least mean error, and one about the next row, with the interval of the
+/// difference. `None` if the comparison has not ended, or if no row showed every picture.
+fn answer(results: &ResultRows) -> Option<String> {
+    let px = |row: &Row, name: &str| rows::value(row, name).and_then(Value::as_f64);
+    let mut ranked: Vec<(f64, &Row)> =
+        results.rows.iter().filter_map(|row| Some((px(row, "above_best_px.mean")?, row))).collect();
+    ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let name = |row| cell(row, "pipeline");
+    let (_, best) = ranked.first()?;
+    let least = format!("{} has the least error, {:.2} px in the mean", name(best), px(best, "error.mean_px.mean")?);
+    let Some((above, next)) = ranked.get(1) else { return Some(format!("{least}. No other row is ranked.")) };
+    let more = format!("{least}. {} has {above:.2} px more", name(next));
+    let ends = px(next, "above_best_px.low").zip(px(next, "above_best_px.high"));
+    let Some((low, high)) = ends else { return Some(format!("{more}, which may be chance: there is no interval.")) };
+    let verdict = if low > 0.0 { "a significant difference" } else { "a difference that may be chance" };
+    let confidence = results.about.get("confidence").map_or_else(dash, shown);
+    Some(format!("{more}, from {low:.2} to {high:.2} at a confidence of {confidence}: {verdict}."))
 }
 
-fn numbers_first(row: &Row) -> Vec<(String, String)> {
-    let (texts, numbers): (Vec<_>, Vec<_>) =
-        cells(row).into_iter().partition(|(key, _)| key.ends_with("definition") || key == "failure");
-    numbers.into_iter().chain(texts).collect()
+fn numbers_first(row: &Row) -> Row {
+    let is_text = |(key, _): &(String, Value)| key.ends_with("definition") || key == "failure";
+    let (texts, numbers): (Row, Row) = row.iter().cloned().partition(is_text);
+    [numbers, texts].concat()
 }
 
-/// Returns a table. Each row is a list of pairs of a column name and the text of a cell. The columns have the order in
-/// which their names first occur.
-fn tabular(name: &str, about: Vec<String>, rows: &[Vec<(String, String)>]) -> PageTable {
+/// Returns a table with the columns in the order in which their names first occur.
+fn tabular(name: &str, about: Vec<String>, rows: &[Row]) -> PageTable {
     let mut columns: Vec<String> = Vec::new();
     for (key, _) in rows.iter().flatten() {
         if !columns.contains(key) {
@@ -66,8 +79,8 @@ fn tabular(name: &str, about: Vec<String>, rows: &[Vec<(String, String)>]) -> Pa
     PageTable { name: name.to_owned(), about, columns, rows, ..PageTable::default() }
 }
 
-fn cell(row: &[(String, String)], column: &str) -> String {
-    row.iter().find(|(key, _)| key == column).map_or_else(dash, |(_, text)| text.clone())
+fn cell(row: &Row, column: &str) -> String {
+    rows::value(row, column).map_or_else(dash, shown)
 }
 
 /// Formats a value as a cell: "-" for null, and floating-point numbers with at most four decimals.
@@ -83,9 +96,8 @@ fn shown(value: &Value) -> String {
     }
 }
 
-fn pairs(settings: &Value) -> String {
-    let all = settings.as_object().into_iter().flatten();
-    all.map(|(key, value)| format!("{key} = {}", shown(value))).collect::<Vec<_>>().join(", ")
+fn pairs<'a>(all: impl IntoIterator<Item = (&'a String, &'a Value)>) -> String {
+    all.into_iter().map(|(key, value)| format!("{key} = {}", shown(value))).collect::<Vec<_>>().join(", ")
 }
 
 /// Adds the charts and pictures in the manifest to a table, sorted by name.
