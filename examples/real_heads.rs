@@ -5,8 +5,7 @@
 //! time into pictures/real-heads.svg. Each predictor is tuned on the other recording. Each cell of an error is a row of
 //! a comparison, so `pxpl5 compare` repeats it.
 //!
-//! A comparison takes 40 to 50 s of CPU time in the development profile, and all 18 take about 14 minutes, so seven on two
-//! idle cores.
+//! Each of the ten comparisons takes 40 to 50 s of CPU time in the development profile.
 
 use pxpl5::compare::{CompareQuery, Comparison, ComparisonRow, MeanInterval, RowChoice};
 use pxpl5::lab::motion;
