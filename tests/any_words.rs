@@ -84,7 +84,7 @@ fn read_display(display: &dyn Display, now: Time) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::support::sample_or_all(12, 96), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn any_message_at_any_port_is_accepted_or_a_fault(messages in prop::collection::vec(message(), 1..60)) {

@@ -22,8 +22,8 @@ pub enum CodeVersion {
     /// Code like the output of a good compiler of about 1990. The code of Slats in 1994 and 1995 was not
     /// optimized for the instruction cache (I3D95), and is assumed to be of this kind.
     Compiled,
-    /// Code that is scheduled by hand in dual-instruction mode and fits in the instruction cache. Optimized PPHIGS
-    /// fitted in the cache too, which made it about 3 times faster (I3D95).
+    /// Code that `i860::linear` schedules for dual-instruction mode, and that fits in the instruction cache. Optimized
+    /// PPHIGS fitted in the cache too, which made it about 3 times faster (I3D95).
     Scheduled,
 }
 

@@ -131,7 +131,7 @@ impl GpTiming {
         }
     }
 
-    /// Returns this timing table with the times of triangles and spheres in PPHIGS: code scheduled by hand, Phong
+    /// Returns this timing table with the times of triangles and spheres in PPHIGS: scheduled code, Phong
     /// triangles, whole frames, and commands in bins.
     #[must_use]
     pub const fn of_scheduled_phong(self) -> Self {
@@ -169,7 +169,7 @@ impl GpTiming {
         }
     }
 
-    /// Returns this timing table with the times of triangles and spheres in Slats: code scheduled by hand, fields, and
+    /// Returns this timing table with the times of triangles and spheres in Slats: scheduled code, fields, and
     /// precomputed vertex colours. Triangles are sent in clumps.
     #[must_use]
     pub const fn of_scheduled_precomputed(self) -> Self {
@@ -206,8 +206,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this timing table with the times of Slats in code scheduled by hand, which sends commands only to the
-    /// touched regions. Otherwise, the program is that of [`Self::of_compiled_touched`].
+    /// Returns this timing table with the times of Slats in scheduled code that sends commands only to the touched
+    /// regions. Otherwise, the program is that of [`Self::of_compiled_touched`].
     #[must_use]
     pub const fn of_scheduled_touched(self) -> Self {
         Self {

@@ -2,7 +2,7 @@
 //!
 //! The gain is measured by the benchmark groups `lanes/Portable` and `lanes/Avx2` (`cargo bench -p pxpl5-benches --bench
 //! pixels`).
-#![allow(unsafe_code)] // In one macro: the proof that a processor has a unit is taken, not carried.
+#![allow(unsafe_code)] // One macro makes vectors without a check, because `PresentVectors` has checked their unit.
 
 use fearless_simd::{Simd, i32x8, mask32x8, prelude::*, u32x8, u64x4};
 #[cfg(target_arch = "x86_64")]

@@ -40,7 +40,7 @@ fn composition(all: &Experiments) -> Vec<FigureRow> {
 }
 
 /// Compares statement A8 of the papers on priority rendering with the limits of size for spheres. The statement gives a
-/// size of "about ten times the distance". The distance of a sphere is measured to its nearest point.
+/// size of "around ten times the distance". The distance of a sphere is measured to its nearest point.
 fn sizes(all: &Experiments) -> Vec<FigureRow> {
     let limits = all.size_limits.iter().map(|limit| limit.of_nearest);
     let [least, most] = [limits.clone().fold(f64::INFINITY, f64::min), limits.fold(0.0, f64::max)];

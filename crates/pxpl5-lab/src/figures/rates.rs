@@ -83,7 +83,7 @@ pub(super) const FIGURES: &[Measurement] = &[
     Measurement {
         reason: OF_RATES,
         varied: OF_PHONG,
-        cause: "F89's rate is a round goal, for triangles of unnamed size. In the model, 16 renderers draw 20 regions, so 12 wait while four draw a second one",
+        cause: "F89's rate is a round goal, for triangles of unnamed size",
         ..figure(
             ("R3", ("F89", "design goal"), 1e6, "triangles/s"),
             "Phong triangles a second on 32 processors and 16 renderers",
