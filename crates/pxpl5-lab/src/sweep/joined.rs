@@ -50,14 +50,11 @@ impl Joined {
         Ok(joined)
     }
 
-    /// Builds the index of the rows in one file, for the sweep of `header`. The file may be missing. Also returns the length
+    /// Builds the index of the rows in one file, for the sweep of `header`. The file may be empty. Also returns the length
     /// in bytes up to the end of the last complete line.
     pub(super) fn of_file(path: &Path, header: &Header) -> Result<(Self, u64), FileError> {
         let mut joined = Self::new(header.clone());
         joined.files.push(RowBlocks::of(path.to_owned()));
-        if matches!(path.try_exists(), Ok(false)) {
-            return Ok((joined, 0));
-        }
         let mut scan = Scan::open(path)?;
         if let Some(found) = &scan.header {
             header.check(path, found)?;
@@ -65,7 +62,7 @@ impl Joined {
         while let Some((row, byte)) = scan.next()? {
             joined.add(&row, byte)?;
         }
-        Ok((joined, scan.whole_bytes))
+        Ok((joined, scan.whole_bytes()))
     }
 
     fn new(header: Header) -> Self {
