@@ -45,7 +45,7 @@ const COMMON: &[Key] = &[
     Key::new("title", "title of the experiment, for readers", KeyValues::ANY),
     Key::new(
         "scene",
-        "a built-in scene or a model file (.ply, .obj, .stl, .pdb, .gltf, .glb), relative to the experiment file",
+        "a built-in scene (`pxpl5 scenes` lists them) or a model file (.ply, .obj, .stl, .pdb, .gltf, .glb); in a file, relative to it",
         KeyValues::ANY,
     ),
     Key::new(
@@ -82,8 +82,9 @@ const COMMON: &[Key] = &[
     Key::new(
         "head.motion",
         "motion of a tracked head from the start pose of head.path on: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, \
-         pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, recorded:NAME, or a recording (.csv, .txt, \
-         .tum, .jsonl), relative to the experiment file",
+         pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, a real head \
+         (recorded:vive-tracked, recorded:vive-dev), or a recording (.csv, .txt, .tum, .jsonl: time_s,x,y,z,qw,qx,qy,qz, EuRoC, TUM, a \
+         pose log, or any table with head.columns); in a file, relative to it",
         KeyValues::ANY,
     ),
     Key::new(
@@ -101,16 +102,17 @@ const COMMON: &[Key] = &[
     .with_default("keep, with a warning"),
     Key::new("head.train", "motion on which the predictor is tuned: any head.motion that is not along a path", KeyValues::ANY)
         .with_default("another synthetic motion; head.motion itself for all others"),
-    Key::new("head.tracker", crate::head_parts::TRACKERS, KeyValues::ANY),
+    Key::new("head.tracker", crate::head_parts::TRACKERS, KeyValues::ANY).with_default("optical"),
     Key::new("head.added_latency", "time added to the latency of the tracker", KeyValues::Real(0.0, 1000.0))
         .with_unit("ms")
         .with_default("0"),
-    Key::new("head.predict", "none, velocity, acceleration or kalman", KeyValues::ANY),
+    Key::new("head.predict", "none, velocity, acceleration or kalman", KeyValues::ANY).with_default("kalman"),
     Key::new(
         "head.aim",
         "instant for which a view is predicted, within the time in which it is shown",
         KeyValues::Names(&const { names(&Aim::ALL) }),
-    ),
+    )
+    .with_default("middle"),
     Key::new(
         "head.place",
         "what the poses of head.motion count from: scene (the motion begins where the scene's own motion begins), world \
@@ -136,7 +138,8 @@ const COMMON: &[Key] = &[
         "plain, vdrt (the raster is shifted by the error of the pose), or a device that moves pictures to the newest pose \
          by shift, rotation (timewarp) or depth",
         KeyValues::Names(&["plain", "vdrt", "shift", "rotation", "depth"]),
-    ),
+    )
+    .with_default("plain"),
     Key::new(
         super::reprojection::EVERY,
         "how often a device takes the newest pose: field, strip of 128 lines, or line",
@@ -181,7 +184,8 @@ const COMMON: &[Key] = &[
         "goal of the quantity triangles_possible: at most this mean latency, in fields",
         KeyValues::Real(1e-3, 1e6),
     ),
-    Key::new("machine.preset", "a preset of `pxpl5 machines`", KeyValues::ANY),
+    Key::new("machine.preset", "a preset of `pxpl5 machines`", KeyValues::ANY)
+        .with_default("the machine of the pipeline's paper"),
     Key::new(
         "machine.code",
         "i860 code that the processors run at the cycle level, or none (the table's times)",
