@@ -1,7 +1,7 @@
 //! Command line options that set one key of an experiment file each. Their help is that of the keys.
 
 use crate::error::CliError;
-use clap::{Arg, ArgMatches, Command};
+use clap::{Arg, ArgAction, ArgMatches, Command};
 use pxpl5::{ExperimentFile, KeyValues, Registry};
 use std::sync::{Arc, OnceLock};
 
@@ -78,7 +78,9 @@ fn options() -> Vec<(Arg, &'static str)> {
     let option = |name: &str, path: &str| Arg::new(name.to_owned()).long(name.to_owned()).help(help(path));
     let values =
         OPTIONS.map(|(name, key, value)| (option(name, key).value_name(value).allow_negative_numbers(true), key));
-    let flags = FLAGS.map(|(name, key, value)| (option(name, key).num_args(0).default_missing_value(value), key));
+    let flags = FLAGS.map(|(name, key, value)| {
+        (option(name, key).action(ArgAction::Set).num_args(0).default_missing_value(value), key)
+    });
     // With a separate heading, the help lists these options after the options of all pipelines.
     const HEADING: &str = "Settings of single pipelines";
     // Each key of a registered pipeline becomes an option whose syntax depends on the type of its values.
