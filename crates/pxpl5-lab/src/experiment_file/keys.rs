@@ -5,10 +5,13 @@ use super::head::COLUMNS;
 use super::hmd;
 use super::motion::PathChoice;
 use super::origin;
+use super::text::toml_value;
 use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Aim, Every, FIELDS_RANGE, HeadPlace, Level, Pixels, Registry, Reprojection};
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, names};
+use std::collections::BTreeMap;
+use toml::Value;
 use tracking::motion::{Axes, Columns, End, Jumps};
 
 /// A key of an experiment file, with an explanation for the user.
@@ -215,7 +218,21 @@ pub(super) fn common(name: &str) -> Option<&'static Key> {
     COMMON.iter().chain(&origin::KEYS).chain(hmd::KEYS.iter().map(|(key, ..)| key)).find(|key| key.name == name)
 }
 
+/// Beginnings of the keys whose values a plan writes as they were given. A value that is the default is left out.
+const WRITTEN: [&str; 9] =
+    ["title", "triangles", "fit", "cull", "model.", "head.distance", "head.sway", "limit.", "published."];
+
 impl ExperimentFile {
+    /// Returns the given values that a plan writes without a change.
+    pub(super) fn given(&self) -> Result<BTreeMap<String, Value>, SettingError> {
+        let mut given = BTreeMap::new();
+        for key in COMMON.iter().filter(|key| WRITTEN.iter().any(|start| key.name.starts_with(start))) {
+            let value = self.value(key)?.map(toml_value).filter(|value| value.to_string() != key.default);
+            given.extend(value.map(|value| (key.name.to_owned(), value)));
+        }
+        Ok(given)
+    }
+
     fn common(&self, name: &str) -> Result<Option<KeyValue>, SettingError> {
         common(name).map_or(Ok(None), |key| self.value(key))
     }
@@ -282,7 +299,8 @@ fn parameters(registry: &Registry) -> Vec<String> {
     machine(registry).settings().into_iter().map(|(path, _)| path).collect()
 }
 
-fn machine(registry: &Registry) -> MachineConfig {
+/// Returns a machine that has every display of the registry.
+pub(super) fn machine(registry: &Registry) -> MachineConfig {
     let all_displays = registry.displays().iter().map(|entry| (entry.config)()).collect();
     MachineConfig { displays: all_displays, ..registry.machine_of(MachineConfig::small_hmd()) }
 }
