@@ -1,6 +1,7 @@
 //! Reader of the result rows that `pxpl5 sweep` and `pxpl5 compare` write into a folder.
 
 use crate::error::CliError;
+use crate::settings::text_of_file;
 use pxpl5::compare::ROWS_FOLDER;
 use pxpl5::lab::manifest::Manifest;
 use pxpl5::sweep::ROWS_FILE;
@@ -57,8 +58,7 @@ fn unfinished(folder: &Path) -> Result<Option<ResultRows>, CliError> {
         return Ok(None);
     }
     let problem = |what: String| CliError::usage(format!("{}: {what}", path.display()));
-    let bytes = fs::read(&path).map_err(|error| problem(error.to_string()))?;
-    stored_comparison(text_of(&bytes).map_err(|error| problem(error.to_string()))?).map(Some).map_err(problem)
+    stored_comparison(&text_of_file(&path)?).map(Some).map_err(problem)
 }
 
 /// Returns the folder of a results file, or the path itself if it is a folder.

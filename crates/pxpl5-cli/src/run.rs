@@ -11,7 +11,7 @@ use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::simulate::{How, Simulated, simulate};
 use crate::table::{Comparison, percentiles, table};
-use crate::terminal::{print, warn};
+use crate::terminal::{json_text, print, warn};
 use clap::Args;
 use pxpl5::lab::near_edges;
 use pxpl5::tracking::predict::Training;
@@ -103,7 +103,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
         .map(|question| Progress::new("resources", args.quiet).run(&question))
         .transpose()?;
     if args.json {
-        print(&format!("{}\n", with_more(report, more.as_deref())?))?;
+        print(&with_more(report, more.as_deref())?)?;
     } else if !args.quiet {
         print(&text((&plan, &results, report), args.explain, written))?;
         print(&picture.map(|times| one_picture::text(outcome, report, times)).unwrap_or_default())?;
@@ -136,10 +136,10 @@ fn more_text(more: &[WhatIf]) -> String {
 }
 
 fn with_more(report: &Report, more: Option<&[WhatIf]>) -> Result<String, CliError> {
-    let Some(more) = more else { return json(report) };
+    let Some(more) = more else { return json_text(report) };
     let mut value = serde_json::to_value(report).map_err(CliError::failure)?;
     value["what_if"] = serde_json::to_value(more).map_err(CliError::failure)?;
-    serde_json::to_string_pretty(&value).map_err(CliError::failure)
+    json_text(&value)
 }
 
 /// Returns the error for a run in which every picture missed its deadline. A longer run would not help.
@@ -273,10 +273,6 @@ fn no_events() -> CliError {
     CliError::usage("level: a run needs transaction or cycle; the analytic level has no events and is for sweeps")
 }
 
-pub(crate) fn json(report: &Report) -> Result<String, CliError> {
-    serde_json::to_string_pretty(report).map_err(CliError::failure)
-}
-
 pub(crate) fn comparison(plan: &Plan, results: &Results) -> Option<Comparison> {
     let published = plan.published.as_ref()?;
     let source = published.source.clone().unwrap_or_default();
@@ -297,7 +293,7 @@ fn write(
 ) -> Result<PathBuf, CliError> {
     let Some((outcome, report)) = &results.run else { return Err(no_events()) };
     // The experiment file reproduces the run from any folder.
-    folder.put("report.json", format!("{}\n", json(report)?).as_bytes())?;
+    folder.put("report.json", json_text(report)?.as_bytes())?;
     folder.put(
         "experiment.toml",
         format!("{}{}", origin_lines(report, "# "), plan.settings_in(folder.path(), outcome.experiment())).as_bytes(),

@@ -4,7 +4,8 @@ use crate::error::CliError;
 use crate::options::{KeyOptions, registry};
 use clap::Args;
 use pxpl5::ExperimentFile;
-use std::path::PathBuf;
+use pxpl5_sim::parameters::text_of;
+use std::path::{Path, PathBuf};
 
 /// An experiment file and the options that override its keys.
 #[derive(Args, Debug, Default)]
@@ -53,4 +54,18 @@ impl SettingArgs {
         }
         Ok(file)
     }
+}
+
+/// Reads a text file. An error names the file.
+pub(crate) fn text_of_file(path: &Path) -> Result<String, CliError> {
+    let place = path.display();
+    let bytes = std::fs::read(path).map_err(|error| CliError::usage(format!("{place}: cannot be read: {error}")))?;
+    Ok(text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?.to_owned())
+}
+
+/// Reads a TOML file of settings by path. Also returns its name, for error messages.
+pub(crate) fn table_of(path: &Path) -> Result<(toml::Table, String), CliError> {
+    let place = path.display().to_string();
+    let table = toml::from_str(&text_of_file(path)?).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+    Ok((table, place))
 }
