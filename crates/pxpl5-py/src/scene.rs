@@ -219,21 +219,16 @@ fn points(array: ArrayView2<'_, f64>) -> Vec<Vec3> {
 }
 
 fn indices(array: ArrayView2<'_, i64>, vertices: usize) -> PyResult<Vec<[u32; 3]>> {
-    let mut all = Vec::with_capacity(array.nrows());
-    for (number, row) in array.rows().into_iter().enumerate() {
-        let mut corners = [0; 3];
-        for (corner, found) in corners.iter_mut().zip(row) {
-            // An index that is negative or has no vertex is an error.
-            let index = u32::try_from(*found).ok().filter(|index| (*index as usize) < vertices);
-            *corner = index.ok_or_else(|| {
-                wrong_setting(format!(
-                    "triangle {number}: expected an index of one of {vertices} vertices, found {found}"
-                ))
-            })?;
-        }
-        all.push(corners);
-    }
-    Ok(all)
+    // An index that is negative or has no vertex is an error.
+    let corner = |number: usize, found: i64| {
+        let index = u32::try_from(found).ok().filter(|index| (*index as usize) < vertices);
+        index.ok_or_else(|| {
+            let expected = format!("an index of one of {vertices} vertices");
+            wrong_setting(format!("triangle {number}: expected {expected}, found {found}"))
+        })
+    };
+    let rows = array.rows().into_iter().enumerate();
+    rows.map(|(n, row)| Ok([corner(n, row[0])?, corner(n, row[1])?, corner(n, row[2])?])).collect()
 }
 
 /// Converts a row of x, y, z and radius to a sphere.
@@ -247,16 +242,12 @@ const GREY: [u8; 3] = [200, 200, 200];
 fn rgb(name: &str, array: Option<ArrayView2<'_, i64>>, expected: usize) -> PyResult<Vec<[u8; 3]>> {
     let Some(array) = array else { return Ok(vec![GREY; expected]) };
     same_length(name, array.nrows(), expected)?;
-    let mut all = Vec::with_capacity(expected);
-    for (number, row) in array.rows().into_iter().enumerate() {
-        let mut colour = [0; 3];
-        for (part, found) in colour.iter_mut().zip(row) {
-            *part = u8::try_from(*found)
-                .map_err(|_| wrong_setting(format!("{name}, row {number}: expected 0 to 255, found {found}")))?;
-        }
-        all.push(colour);
-    }
-    Ok(all)
+    let part = |number: usize, found: i64| {
+        u8::try_from(found)
+            .map_err(|_| wrong_setting(format!("{name}, row {number}: expected 0 to 255, found {found}")))
+    };
+    let rows = array.rows().into_iter().enumerate();
+    rows.map(|(n, row)| Ok([part(n, row[0])?, part(n, row[1])?, part(n, row[2])?])).collect()
 }
 
 /// Scales normals to unit length, or raises an exception for a normal without direction.
