@@ -79,7 +79,8 @@ fn options() -> Vec<(Arg, &'static str)> {
     let values =
         OPTIONS.map(|(name, key, value)| (option(name, key).value_name(value).allow_negative_numbers(true), key));
     let flags = FLAGS.map(|(name, key, value)| {
-        (option(name, key).action(ArgAction::Set).num_args(0).default_missing_value(value), key)
+        let help = format!("{key} = {value}; the key is: {}", help(key));
+        (option(name, key).help(help).action(ArgAction::Set).num_args(0).default_missing_value(value), key)
     });
     // With a separate heading, the help lists these options after the options of all pipelines.
     const HEADING: &str = "Settings of single pipelines";
