@@ -2,7 +2,7 @@
 
 use super::lines::Lines;
 use super::{Header, MAX_POINTS, SweepRow};
-use pxpl5_sim::parameters::{FileError, FileErrorKind};
+use pxpl5_sim::parameters::FileError;
 use std::path::Path;
 
 /// Name of the file of result rows: a header line, then one line for each point.
@@ -42,38 +42,5 @@ impl Scan {
 
     pub(super) const fn whole_bytes(&self) -> u64 {
         self.lines.whole_bytes
-    }
-}
-
-/// Creates the error of a point with two different rows. `first` and `second` name the files of these rows, and can be
-/// equal.
-pub(super) fn contradiction(point: u64, first: &str, second: &str) -> FileError {
-    let reason = format_args!("point {point} has different rows in {first} and {second}");
-    FileError::because(FileErrorKind::Damaged, reason)
-}
-
-/// A set of points of a sweep, with one bit for each point. Ten million points take 1.25 MB.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Points(Vec<u64>);
-
-impl Points {
-    pub(super) fn put(&mut self, point: u64) {
-        let word = (point / 64) as usize;
-        if self.0.len() <= word {
-            self.0.resize(word + 1, 0);
-        }
-        self.0[word] |= 1 << (point % 64);
-    }
-
-    pub(super) fn holds(&self, point: u64) -> bool {
-        self.0.get((point / 64) as usize).is_some_and(|word| word >> (point % 64) & 1 == 1)
-    }
-}
-
-impl FromIterator<u64> for Points {
-    fn from_iter<I: IntoIterator<Item = u64>>(numbers: I) -> Self {
-        let mut points = Self::default();
-        numbers.into_iter().for_each(|point| points.put(point));
-        points
     }
 }

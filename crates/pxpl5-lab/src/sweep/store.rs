@@ -4,7 +4,7 @@
 use super::joined::Joined;
 use super::lines::{LineFile, line_of};
 use super::replacement::Replacement;
-use super::rows::{Points, ROWS_FILE};
+use super::rows::ROWS_FILE;
 use super::shard::Shard;
 use super::table::Table;
 use super::{Header, SweepRow};
@@ -88,8 +88,9 @@ impl Store {
         self.rows.holds(point)
     }
 
-    pub(super) fn held(&self) -> Points {
-        self.rows.points().collect()
+    /// Returns true for each point with a row.
+    pub(super) fn held(&self) -> Vec<bool> {
+        (0..self.header.points).map(|point| self.rows.holds(point)).collect()
     }
 
     /// Returns the number of finished points in one shard (part of the sweep).
