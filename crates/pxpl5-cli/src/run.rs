@@ -270,10 +270,12 @@ pub(crate) fn comparison(plan: &Plan, results: &Results) -> Option<Comparison> {
     let published = plan.published.as_ref()?;
     let source = published.source.clone().unwrap_or_default();
     let figure = published.figure.map_or_else(String::new, |figure| format!("figure {figure}, "));
+    let simulated = published.quantity.of(results)?;
     Some(Comparison {
         quantity: published.quantity.name().to_owned(),
         published: published.value,
-        simulated: published.quantity.of(results)?,
+        simulated,
+        error_percent: (simulated / published.value - 1.0) * 100.0,
         source: format!("{figure}{source}"),
     })
 }
