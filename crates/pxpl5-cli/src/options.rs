@@ -66,8 +66,13 @@ impl KeyOptions {
     }
 }
 
-/// Returns all options with their keys.
-fn options() -> Vec<(Arg, &'static str)> {
+/// Returns all options with their keys. Many commands have them, so they are made once.
+fn options() -> &'static [(Arg, &'static str)] {
+    static ALL: OnceLock<Vec<(Arg, &'static str)>> = OnceLock::new();
+    ALL.get_or_init(all_options)
+}
+
+fn all_options() -> Vec<(Arg, &'static str)> {
     let registry = registry();
     let keys = ExperimentFile::keys_of(&registry);
     let help = |path: &str| match path {
@@ -102,7 +107,7 @@ fn options() -> Vec<(Arg, &'static str)> {
 
 impl clap::Args for KeyOptions {
     fn augment_args(command: Command) -> Command {
-        command.args(options().into_iter().map(|(arg, _)| arg))
+        command.args(options().iter().map(|(arg, _)| arg))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -112,9 +117,9 @@ impl clap::Args for KeyOptions {
 
 impl clap::FromArgMatches for KeyOptions {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let given = options().into_iter().filter_map(|(arg, key)| {
+        let given = options().iter().filter_map(|(arg, key)| {
             let name = arg.get_id().as_str();
-            Some((name.to_owned(), key, matches.get_one::<String>(name)?.clone()))
+            Some((name.to_owned(), *key, matches.get_one::<String>(name)?.clone()))
         });
         Ok(Self { given: given.collect() })
     }
