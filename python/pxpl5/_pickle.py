@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 Column = tuple[str, str, str, list[object]]
 
 
-def scene(arrays: dict[str, NDArray[np.generic]], rest: dict[str, object]) -> _native.Scene:
-    """Returns the scene with these arrays and other parts."""
-    return _native.scene_of_parts(arrays, rest)
+def scene(text: bytes, warnings: list[str]) -> _native.Scene:
+    """Returns the scene that a JSON text describes."""
+    return _native.scene_of_json(text, warnings)
 
 
 def recording(text: bytes, columns: Mapping[str, str], end: str | None, about: str) -> _native.Motion:

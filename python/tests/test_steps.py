@@ -38,7 +38,7 @@ def test_steps_change_no_result() -> None:
 
 def test_wrong_steps_are_refused() -> None:
     stepper = experiment().stepper()
-    with pytest.raises(pxpl5.SettingError, match="board: expected host, ring, gp N, renderer N or display N, found cpu"):
+    with pytest.raises(pxpl5.SettingError, match="board: expected host, ring, gp N, renderer N or display N, found \"cpu\""):
         stepper.step_event("cpu")
     with pytest.raises(pxpl5.SettingError, match="surface: expected left or right, found middle"):
         stepper.picture("middle")

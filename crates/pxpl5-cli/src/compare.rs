@@ -4,7 +4,6 @@ mod drawings;
 mod gallery;
 mod table;
 
-use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::interrupt;
 use crate::numbers::{confidence, count_of, whole};
@@ -12,7 +11,7 @@ use crate::output::OutputFolder;
 use crate::progress::Progress;
 use crate::run::MIN_COVERED;
 use crate::settings::SettingArgs;
-use crate::terminal::{self, answer, json_text};
+use crate::terminal::{self, AnswerArgs, json_text};
 use pxpl5::compare::{
     CONFIDENCE, CompareQuery, Comparison, ComparisonRow, MAX_SEEDS, MIN_SEEDS, Precision, ROWS_FOLDER, RecordedLength,
     RowChoice, UntilPrecise, edge_pictures,
@@ -89,13 +88,7 @@ pub(crate) struct CompareArgs {
     #[arg(long, default_value_t = 200.0, value_name = "DEG_PER_S", allow_negative_numbers = true, value_parser = pan)]
     edge_pan: f64,
     #[command(flatten)]
-    budget: BudgetArgs,
-    /// Print JSON: an object whose `pipelines` lists one row for each pipeline.
-    #[arg(long)]
-    json: bool,
-    /// Print nothing but errors and, with --json, the JSON object.
-    #[arg(long, short)]
-    quiet: bool,
+    answer: AnswerArgs,
 }
 
 const DEFAULTS: [(&str, &str); 4] =
@@ -121,16 +114,16 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let CompareArgs { causes, predictors, confidence, .. } = args;
     let mut query =
         CompareQuery { shared, only, seeds, limits, causes, predictors, pictures, confidence, until, store: None };
-    set_length(&mut query, args.quiet)?;
-    terminal::warn(query.changes()?.as_slice(), args.quiet);
-    args.budget.admit_study(&query, "simulate fewer fields")?;
+    set_length(&mut query, args.answer.quiet)?;
+    terminal::warn(query.changes()?.as_slice(), args.answer.quiet);
+    args.answer.budget.admit_study(&query, "simulate fewer fields")?;
     // The store keeps finished rows, so that an interruption loses only the rows in progress.
     if let Some(out) = &args.out {
         query.store = Some(Arc::new(query.open_store(&out.join(ROWS_FOLDER), args.resume)?));
     }
     let found = query.store.as_ref().map_or(0, |store| store.found());
     let (mut done, rows) = (found, query.rows()?.len());
-    let progress = Progress::new("runs", args.quiet).on_row(|bar, _, row| {
+    let progress = Progress::new("runs", args.answer.quiet).on_row(|bar, _, row| {
         done += 1;
         bar.line(&format!("pxpl5: row {done} of {rows}, {row}; {}\n", bar.left()));
     });
@@ -142,17 +135,17 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
         progress.line(&format!("pxpl5: {found} of {rows} rows were finished before\n"));
     }
     let comparison = progress.run(&query)?;
-    terminal::warn(&comparison.warnings, args.quiet);
-    terminal::warn(out_of_view(&comparison).as_slice(), args.quiet);
+    terminal::warn(&comparison.warnings, args.answer.quiet);
+    terminal::warn(out_of_view(&comparison).as_slice(), args.answer.quiet);
     let near = comparison
         .pipelines
         .iter()
         .flat_map(|row| row.near_edges.iter().map(|edge| format!("{}: {edge}", row.pipeline)));
-    terminal::warn(&near.collect::<Vec<_>>(), args.quiet);
+    terminal::warn(&near.collect::<Vec<_>>(), args.answer.quiet);
     // Write all files, then publish the folder in one step.
     let json = json_text(&comparison)?;
     if interrupt::flag().is_stopped() {
-        return answer(args.json, args.quiet, &json, || table::text(&comparison));
+        return args.answer.print(&json, || table::text(&comparison));
     }
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;
@@ -164,7 +157,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
         edges(&query, args.edge_pan, folder)?;
     }
     folder.map(OutputFolder::commit).transpose()?;
-    answer(args.json, args.quiet, &json, || table::text(&comparison))
+    args.answer.print(&json, || table::text(&comparison))
 }
 
 /// Returns a warning that names the rows in whose pictures the scene hardly appears.

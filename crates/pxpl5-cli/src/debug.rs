@@ -12,16 +12,14 @@ mod words;
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::scenes;
-use crate::settings::SettingArgs;
+use crate::settings::{SettingArgs, text_of_file};
 use crate::terminal::{print, warn};
 use crate::too_heavy::too_heavy;
 use clap::Args;
 use command::split;
 use pxpl5::Workstation;
 use pxpl5::lab::estimate::RunWork;
-use pxpl5_sim::parameters::text_of;
 use session::Session;
-use std::fmt::Display;
 use std::path::PathBuf;
 
 /// Run one experiment step by step and inspect its boards.
@@ -72,14 +70,7 @@ pub(crate) fn run(args: DebugArgs) -> Result<(), CliError> {
 
 /// Returns the debugger commands in `--do` or `--do-file`, or `None` for an interactive session.
 fn script(commands: Option<String>, file: Option<PathBuf>) -> Result<Option<Vec<String>>, CliError> {
-    let text = match file {
-        None => commands,
-        Some(path) => {
-            let failed = |error: &dyn Display| CliError::usage(format!("{}: {error}", path.display()));
-            let bytes = std::fs::read(&path).map_err(|error| failed(&error))?;
-            Some(text_of(&bytes).map_err(|error| failed(&error))?.to_owned())
-        }
-    };
+    let text = file.map_or(Ok(commands), |path| text_of_file(&path).map(Some))?;
     Ok(text.map(|text| split(&text)))
 }
 

@@ -136,21 +136,9 @@ fn write(mut folder: OutputFolder, runs: &[Run]) -> Result<(), CliError> {
         folder.put(&format!("{}-pictures.csv", run.name), pxpl5::views::results::csv(&run.outcome).as_bytes())?;
         folder.put(&format!("{}-timeline.svg", run.name), timeline(&run.outcome, &run.report, None).as_bytes())?;
     }
+    let entry = |run: &Run| json!({"name": run.name, "report": run.report, "published": run.comparison});
     let runs: Vec<Value> = runs.iter().map(entry).collect();
     let all = json!({"schema": "pxpl5-demo/1", "version": VERSION, "commit": commit(), "runs": runs});
     folder.put("report.json", format!("{all:#}\n").as_bytes())?;
     folder.commit()
-}
-
-fn entry(run: &Run) -> Value {
-    let published = run.comparison.as_ref().map(|c| {
-        json!({
-            "quantity": c.quantity,
-            "published": c.published,
-            "simulated": c.simulated,
-            "error_percent": c.error_percent(),
-            "source": c.source,
-        })
-    });
-    json!({"name": run.name, "report": run.report, "published": published})
 }

@@ -15,8 +15,9 @@ pub(crate) const INTERRUPTED: u8 = 130;
 /// later.
 pub(crate) const BUSY: u8 = 75;
 
+/// An error that ends a command.
 #[derive(Debug)]
-pub(crate) struct CliError {
+pub struct CliError {
     code: u8,
     message: String,
 }
@@ -38,34 +39,19 @@ impl CliError {
         &self.message
     }
 
-    pub(crate) fn exit_code(&self) -> u8 {
+    /// Returns the exit code of the command: 1 for a failure, 2 for a wrong command line or a wrong file.
+    pub const fn exit_code(&self) -> u8 {
         self.code
     }
 }
 
-#[derive(Debug)]
-pub struct CommandError(CliError);
-
-impl CommandError {
-    /// Returns the exit code of the command: 1 for a failure, 2 for a wrong command line or a wrong file.
-    pub const fn exit_code(&self) -> u8 {
-        self.0.code
-    }
-}
-
-impl fmt::Display for CommandError {
+impl fmt::Display for CliError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0.message)
+        f.write_str(&self.message)
     }
 }
 
-impl std::error::Error for CommandError {}
-
-impl From<CliError> for CommandError {
-    fn from(error: CliError) -> Self {
-        Self(error)
-    }
-}
+impl std::error::Error for CliError {}
 
 impl From<SettingError> for CliError {
     fn from(error: SettingError) -> Self {

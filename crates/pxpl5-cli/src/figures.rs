@@ -35,7 +35,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     if !args.only.is_empty() {
         return chosen(&args);
     }
-    let is_document = args.json || args.write.is_some() || args.check.is_some();
+    let is_document = args.answer.json || args.write.is_some() || args.check.is_some();
     // The plain table leaves out the intervals, because a reader waits for it.
     let intervals = is_document || args.chart.is_some() || args.intervals;
     let settings = FigureSettings::new(Level::Transaction);
@@ -45,12 +45,12 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     let file = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let chart_file = args.chart.as_deref().map(|path| OutputFile::open(path, "--chart")).transpose()?;
     // Rows are printed as they come, unless the output needs their intervals or is JSON.
-    let figures = measured(&query, args.quiet || intervals, args.quiet)?;
+    let figures = measured(&query, args.answer.quiet || intervals, args.answer.quiet)?;
     let rows: Vec<FigureRow> = figures.rows().cloned().collect();
     chart_file.map(|file| file.write(chart(&rows).svg().as_bytes())).transpose()?;
     // Only the documents and the JSON output have the figures under other assumptions.
     if is_document {
-        let progress = Progress::new("figures under other assumptions", args.quiet);
+        let progress = Progress::new("figures under other assumptions", args.answer.quiet);
         let alternatives = progress.run(&AlternativeQuery { settings })?;
         let texts = documents(&figures, &alternatives);
         file.map(|file| file.write(texts.accuracy.as_bytes())).transpose()?;
@@ -59,11 +59,11 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
         }
         // `--check` fails if a document of the repository is stale.
         args.check.as_deref().map(|path| fresh(path, &texts.accuracy, "figures")).transpose()?;
-        if args.json {
+        if args.answer.json {
             return print(&json_text(&figures, &alternatives));
         }
     }
-    if args.quiet {
+    if args.answer.quiet {
         return Ok(());
     }
     if intervals {
@@ -95,20 +95,20 @@ fn measured(query: &FigureQuery, is_silent: bool, is_quiet: bool) -> Result<Figu
 }
 
 fn admit(query: &FigureQuery, args: &FiguresArgs) -> Result<(), CliError> {
-    args.budget.admit_study(query, "measure some of them with --only")
+    args.answer.budget.admit_study(query, "measure some of them with --only")
 }
 
 /// Measures and prints figures without their intervals, and counts the misses.
 fn some(only: Vec<&'static Measurement>, args: &FiguresArgs) -> Result<(), CliError> {
     let query = FigureQuery { settings: FigureSettings::new(Level::Transaction), intervals: false, only };
     admit(&query, args)?;
-    let figures = measured(&query, args.json || args.quiet, args.quiet)?;
+    let figures = measured(&query, args.answer.json || args.answer.quiet, args.answer.quiet)?;
     let rows: Vec<&FigureRow> = figures.rows().collect();
-    if args.json {
+    if args.answer.json {
         return print(&format!("{:#}\n", json!({ "schema": SCHEMA, "figures": rows })));
     }
     let missed = rows.iter().filter(|row| !row.is_met).count();
-    if args.quiet { Ok(()) } else { print(&format!("\n{}, {missed} missed\n", count_of(rows.len(), "row"))) }
+    if args.answer.quiet { Ok(()) } else { print(&format!("\n{}, {missed} missed\n", count_of(rows.len(), "row"))) }
 }
 
 const WITHOUT_INTERVALS: &str =

@@ -53,28 +53,8 @@ enum Command {
         /// Address at which the first byte of the program lies.
         #[arg(long, default_value = "0x1000", value_parser = address)]
         base: u32,
-        /// First instruction: a label or an address; default: label `start`, or the first byte.
-        #[arg(long)]
-        entry: Option<String>,
-        /// Address at which the run stops: a label or an address; default: label `end`, or the end of the file.
-        #[arg(long)]
-        stop: Option<String>,
-        /// Maximum number of instructions to execute.
-        #[arg(long, default_value_t = 10_000_000)]
-        budget: u64,
-        /// Size of the memory in bytes, from address 0, at most 1 GiB.
-        #[arg(long, default_value = "0x800000", value_parser = memory)]
-        memory: u32,
-        /// Show the memory that begins at this place, PLACE or PLACE:WORDS; may be repeated; default: the words that
-        /// the run changed.
-        #[arg(long, value_name = "PLACE[:WORDS]")]
-        show: Vec<String>,
-        /// Print one JSON object.
-        #[arg(long)]
-        json: bool,
-        /// Omit the listing by address.
-        #[arg(long)]
-        quiet: bool,
+        #[command(flatten)]
+        options: RunOptions,
         #[command(flatten)]
         warnings: Warnings,
     },
@@ -112,10 +92,9 @@ pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     match args.command {
         Command::Asm { file, base, output, warnings } => asm(&file, base, output.as_deref(), &warnings),
         Command::Disasm { file, base } => print(&listing(base, &words_of(&read(&file).map_err(CliError::usage)?))),
-        Command::Run { file, base, entry, stop, budget, memory, show, json, quiet, warnings } => {
+        Command::Run { file, base, options, warnings } => {
             let program = load(&file, base).map_err(CliError::usage)?;
             warnings.print(&program);
-            let options = RunOptions { entry, stop, budget, memory, show, json, quiet };
             let (report, result) = execute(&program, &options).map_err(CliError::failure)?;
             // The report is printed even if the program did not reach its end.
             print(&report)?;
@@ -127,14 +106,6 @@ pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
             if failed == 0 { Ok(()) } else { Err(CliError::failure(format!("{failed} vectors failed"))) }
         }
     }
-}
-
-/// Parses the size of a memory: at most 1 GiB, because a run keeps a second copy of the memory.
-fn memory(text: &str) -> Result<u32, String> {
-    let most = 1 << 30;
-    Some(address(text)?)
-        .filter(|bytes| *bytes <= most)
-        .ok_or_else(|| format!("expected at most {most:#x}, found `{text}`"))
 }
 
 fn read(file: &Path) -> Result<Vec<u8>, String> {

@@ -1,11 +1,10 @@
 //! The command `pxpl5 interpretations`, which ranks interpretations of the papers on Rendering Control by their fit to
 //! the published figures.
 
-use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::numbers::whole;
 use crate::progress::Progress;
-use crate::terminal::{answer, json_text};
+use crate::terminal::{AnswerArgs, json_text};
 use clap::Args;
 use pxpl5::Level;
 use pxpl5::figures::FigureSettings;
@@ -36,22 +35,16 @@ pub(crate) struct InterpretationsArgs {
     /// Number of frames of each fly-through.
     #[arg(long, default_value_t = 150, value_name = "N", value_parser = whole::<u64>(10, 1_000))]
     frames: u64,
-    /// Print one JSON object.
-    #[arg(long)]
-    json: bool,
-    /// Print nothing but errors and, with --json, the JSON object.
-    #[arg(long, short)]
-    quiet: bool,
     #[command(flatten)]
-    budget: BudgetArgs,
+    answer: AnswerArgs,
 }
 
 pub(crate) fn run(args: InterpretationsArgs) -> Result<(), CliError> {
     let settings = FigureSettings::new(Level::Analytic).with_mig(args.seeds, args.frames);
     let study = InterpretationQuery { settings, best: args.best as usize };
-    let progress = Progress::new("interpretations", args.quiet);
-    let interpretations = progress.run_within(args.budget, "take fewer --seeds, --frames or --best", &study)?;
-    answer(args.json, args.quiet, &json_text(&interpretations)?, || text(&interpretations, args.rows))
+    let progress = Progress::new("interpretations", args.answer.quiet);
+    let interpretations = progress.run_within(args.answer.budget, "take fewer --seeds, --frames or --best", &study)?;
+    args.answer.print(&json_text(&interpretations)?, || text(&interpretations, args.rows))
 }
 
 fn text(interpretations: &Interpretations, rows: usize) -> String {

@@ -1,11 +1,10 @@
 //! The command `pxpl5 levels`, which compares the speed and accuracy of the analytic, transaction and cycle level.
 
-use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::numbers::dash;
 use crate::output::OutputFile;
 use crate::progress::Progress;
-use crate::terminal::{json_text, laid_out, print};
+use crate::terminal::{AnswerArgs, json_text, laid_out};
 use clap::Args;
 use pxpl5::levels::{LevelQuery, LevelRecord, LevelReport};
 use pxpl5::views::charts::{SpeedAndError, level_chart};
@@ -23,9 +22,6 @@ use std::path::{Path, PathBuf};
   pxpl5 levels --measure --write crates/pxpl5-cli/src/levels.json --chart levels.svg
   pxpl5 levels --measure --errors-only --experiments 1000           without speeds, which need an idle computer")]
 pub(crate) struct LevelsArgs {
-    /// Print one JSON object.
-    #[arg(long)]
-    json: bool,
     /// Measure errors and speeds now, instead of printing the recorded measurement.
     #[arg(long)]
     measure: bool,
@@ -42,7 +38,7 @@ pub(crate) struct LevelsArgs {
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
     #[command(flatten)]
-    budget: BudgetArgs,
+    answer: AnswerArgs,
 }
 
 const RECORD: &str = include_str!("levels.json");
@@ -60,13 +56,13 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
         let points: Vec<SpeedAndError> = record.levels.iter().flat_map(points).collect();
         file.write(level_chart(&points).as_bytes())?;
     }
-    print(&if args.json { json_text(&record)? } else { text(&record) })
+    args.answer.print(&json_text(&record)?, || text(&record))
 }
 
 fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
     let study = LevelQuery { experiments: args.experiments, speeds: !args.errors_only };
-    let progress = Progress::new("experiments and figures at all levels", false);
-    let record = progress.run_within(args.budget, "take fewer --experiments", &study)?;
+    let progress = Progress::new("experiments and figures at all levels", args.answer.quiet);
+    let record = progress.run_within(args.answer.budget, "take fewer --experiments", &study)?;
     // Speeds depend on the host, so the record describes the host.
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let host = format!("{}, {threads} threads", std::env::consts::ARCH);

@@ -56,7 +56,7 @@ mod volume;
 /// The emulator, re-exported so that a crate with its own pipelines needs no other dependency.
 pub use pxpl5;
 
-pub use error::CommandError;
+pub use error::CliError as CommandError;
 
 use clap::{Parser, Subcommand};
 use error::CliError;
@@ -174,7 +174,7 @@ pub fn try_arguments(
 ) -> Result<(), CommandError> {
     options::know(registry);
     let cli = Cli::try_parse_from(arguments).map_err(CliError::usage)?;
-    Ok(run(cli.command)?)
+    run(cli.command)
 }
 
 fn run(command: Option<Command>) -> Result<(), CliError> {

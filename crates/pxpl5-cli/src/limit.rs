@@ -2,11 +2,10 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::numbers::{count_of, were, whole};
-use crate::options::{PipelineOptions, option_of, registry};
+use crate::numbers::{count_of, were};
 use crate::progress::Progress;
 use crate::scenes;
-use crate::settings::set_within;
+use crate::settings::SettingArgs;
 use crate::terminal::{print, print_error, warn};
 use clap::Args;
 use pxpl5::limit::{CEILING, Limit, LimitQuery, OverLimit, OverQuery};
@@ -29,28 +28,12 @@ use serde_json::json;
   pxpl5 limit --pipeline rendering-control --scene head --machine large --over machine.n_gps --rate 15
   pxpl5 limit --pipeline rendering-control --scene mig --over machine.n_renderers --latency 6
 
-By default, the pipeline chooses the triangles and the condition of the limit. With --over KEY, the goal may hold above a value, below
+By default, the pipeline chooses the triangles, the condition of the limit and the length of the runs. The scenes full-screen and
+typical are the triangles of the papers; any other scene is decimated evenly. With --over KEY, the goal may hold above a value, below
 a value, or in a part of the range. The search first tries the ends of the range and three values between them.")]
 pub(crate) struct LimitArgs {
     #[command(flatten)]
-    pipeline: PipelineOptions,
-    /// Number of graphics processors.
-    #[arg(long, value_name = "N", value_parser = whole::<u64>(0, i64::MAX as u64))]
-    gps: Option<u64>,
-    /// Number of renderers.
-    #[arg(long, value_name = "N", value_parser = whole::<u64>(0, i64::MAX as u64))]
-    renderers: Option<u64>,
-    /// Preset of the machine; default: the machine on which the papers measured the pipeline.
-    #[arg(long, value_name = "PRESET")]
-    machine: Option<String>,
-    /// Display of the pipeline's pictures: ntsc, hires, oled-90, lcd-120 or panel.
-    #[arg(long)]
-    display: Option<String>,
-    /// Triangles to draw: full-screen, typical (small triangles that touch 1.3 regions on average), or a scene that is
-    /// decimated evenly (a built-in scene or a model file). Default: full-screen for pipelines that send all triangles
-    /// to every region, otherwise typical.
-    #[arg(long, value_name = "full-screen|typical|NAME|FILE")]
-    scene: Option<String>,
+    settings: SettingArgs,
     /// Setting to vary: triangles, or any numeric key of an experiment file, such as machine.n_gps; default triangles.
     /// The default pipeline is slats for triangles, and rendering-control for other settings.
     #[arg(long, value_name = "KEY")]
@@ -69,18 +52,6 @@ pub(crate) struct LimitArgs {
     /// Goal: at most this mean latency, in fields.
     #[arg(long, value_name = "FIELDS")]
     latency: Option<f64>,
-    /// Fields simulated for each number of triangles; default: enough to reach a steady state of the pipeline.
-    #[arg(long, value_name = "N", value_parser = whole::<u64>(0, 10_000_000))]
-    fields: Option<u64>,
-    /// Level of modelling: analytic, transaction, cycle or auto (the cheapest within a bound); default transaction.
-    #[arg(long)]
-    level: Option<String>,
-    /// Bound of --level auto, such as 2% or 2; default 5%.
-    #[arg(long, value_name = "PERCENT")]
-    within: Option<String>,
-    /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000; may be repeated.
-    #[arg(long = "set", value_name = "PATH=VALUE")]
-    sets: Vec<String>,
     #[command(flatten)]
     budget: BudgetArgs,
     /// Print one JSON object.
@@ -125,15 +96,16 @@ const MIN_FIELDS: u64 = 10;
 
 impl LimitArgs {
     fn query(&self) -> Result<LimitQuery, CliError> {
-        let plan = self.file()?.resolve()?;
+        let (file, has_scene) = self.file()?;
+        let plan = file.resolve()?;
         self.check_rate(&plan)?;
         warn(&plan.warnings(), self.quiet);
-        let fields = self.fields.unwrap_or(plan.limit.fields);
+        let fields = length(&file, &plan);
         if fields < MIN_FIELDS {
             return Err(CliError::usage(format!("--fields: expected at least {MIN_FIELDS}, found {fields}")));
         }
-        // Without --scene, the pipeline chooses the triangles.
-        let of = if self.scene.is_some() { LimitQuery::of_scene(&plan)? } else { LimitQuery::of_plan(&plan) };
+        // Without a scene, the pipeline chooses the triangles.
+        let of = if has_scene { LimitQuery::of_scene(&plan)? } else { LimitQuery::of_plan(&plan) };
         Ok(LimitQuery { criterion: LimitCriterion { fields, ..of.criterion }, ..of })
     }
 
@@ -158,17 +130,17 @@ impl LimitArgs {
 
     /// Returns the search over the values of the setting `key`, and the plan of the experiment at the greatest value.
     fn over_query(&self, key: &str) -> Result<(OverQuery, Plan), CliError> {
-        let mut file = self.file()?;
-        if let Some(scene) = self.test_scene() {
+        let (mut file, _) = self.file()?;
+        // The experiment without --over gives the defaults of length, range and goal.
+        let first = file.resolve()?;
+        if let Some(scene) = TestScene::ALL.into_iter().find(|scene| scene.name() == first.scene.name) {
             return Err(CliError::usage(format!(
                 "--scene: expected a number of triangles with --over {key}, such as {}:1000, found {}",
                 scene.name(),
                 scene.name()
             )));
         }
-        // The experiment without --over gives the defaults of length, range and goal.
-        let first = file.resolve()?;
-        let fields = self.fields.unwrap_or(first.limit.fields).max(MIN_FIELDS);
+        let fields = length(&file, &first).max(MIN_FIELDS);
         file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "--fields")?;
         // An unknown key is named as such, before its range is looked up.
         file.clone().set_text(&format!("{key}=1"), "--over")?;
@@ -183,45 +155,30 @@ impl LimitArgs {
         Ok((OverQuery { file, key: key.to_owned(), values, goal: first.limit.goal }, plan))
     }
 
-    /// Returns the papers' test scene with the name in `--scene`, or `None` if `--scene` names another scene.
-    fn test_scene(&self) -> Option<TestScene> {
-        TestScene::ALL.into_iter().find(|scene| self.scene.as_deref() == Some(scene.name()))
-    }
-
-    /// Returns the settings that all scene sizes share. Without `--scene`, these settings have a placeholder scene of one
-    /// triangle.
-    fn file(&self) -> Result<ExperimentFile, CliError> {
-        let mut file = ExperimentFile::with(registry());
+    /// Returns the settings that all scene sizes share, and true if they name a scene. Without a scene, they have a
+    /// placeholder of one triangle.
+    fn file(&self) -> Result<(ExperimentFile, bool), CliError> {
+        let mut file = self.settings.gather()?;
+        let has_scene = file.place_of("scene").is_some();
         // A search over triangles starts with the pipeline whose limit was published.
         let pipeline = if self.key().is_some() { "rendering-control" } else { "slats" };
-        file.set("pipeline", pipeline, "--pipeline")?;
-        file.set("scene", self.scene.as_deref().unwrap_or("full-screen:1"), "--scene")?;
-        // Options override the pipeline's defaults, and `--set` overrides options.
-        for (key, value) in &self.pipeline.given {
-            file.set_text(&format!("{key}={value}"), &format!("--{}", option_of(key)))?;
-        }
-        let texts = [
-            ("machine.preset", "--machine", &self.machine),
-            ("display", "--display", &self.display),
-            ("level", "--level", &self.level),
-        ];
-        for (key, option, value) in texts {
-            value.clone().map(|value| file.set(key, value, option)).transpose()?;
-        }
-        set_within(&mut file, self.within.as_deref())?;
-        let numbers = [("machine.n_gps", "--gps", self.gps), ("machine.n_renderers", "--renderers", self.renderers)];
-        for (key, option, value) in numbers {
-            value.map(|value| file.set(key, i64::try_from(value).unwrap_or(i64::MAX), option)).transpose()?;
+        for (key, value) in [("pipeline", pipeline), ("scene", "full-screen:1")] {
+            if file.place_of(key).is_none() {
+                file.set(key, value, "limit")?;
+            }
         }
         let goals = [("limit.rate_hz", "--rate", self.rate), ("limit.latency_fields", "--latency", self.latency)];
         for (key, option, value) in goals {
             value.map(|value| file.set(key, value, option)).transpose()?;
         }
-        for assignment in &self.sets {
-            file.set_text(assignment, "--set")?;
-        }
-        Ok(file)
+        Ok((file, has_scene))
     }
+}
+
+/// Returns the number of fields of each run. Without a number in the settings, it is enough to reach a steady state of
+/// the pipeline.
+fn length(file: &ExperimentFile, plan: &Plan) -> u64 {
+    if file.place_of("fields").is_some() { plan.fields } else { plan.limit.fields }
 }
 
 fn goal_text(goal: Goal) -> String {

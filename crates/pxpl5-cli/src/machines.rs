@@ -6,6 +6,7 @@ use crate::options::registry;
 use crate::terminal::print;
 use clap::Args;
 use pxpl5::{MachineConfig, PRESETS, Parameter, Preset, SettingError, Suitability, suitability, tracking_parameters};
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -33,61 +34,50 @@ pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
     print(&if args.json { all_json(&machines) } else { all_text(&machines) })
 }
 
+/// A built-in machine, and the pipelines that it can and cannot run.
+#[derive(Serialize)]
 struct Listed {
-    preset: &'static Preset,
-    machine: MachineConfig,
-    pipelines: Vec<Suitability>,
+    name: &'static str,
+    about: &'static str,
+    n_gps: usize,
+    n_renderers: usize,
+    pipelines: Vec<&'static str>,
+    /// Reason for each pipeline that the machine cannot run.
+    cannot_run: Map<String, Value>,
 }
 
 impl Listed {
-    fn new(preset: &'static Preset) -> Result<Self, SettingError> {
+    fn new(preset: &Preset) -> Result<Self, SettingError> {
         let machine = MachineConfig::preset(preset.name)?;
-        let pipelines = suitability(&registry(), &machine);
-        Ok(Self { preset, machine, pipelines })
-    }
-
-    fn runs(&self) -> Vec<&'static str> {
-        self.pipelines.iter().filter(|one| one.lacks.is_none()).map(|one| one.pipeline).collect()
-    }
-
-    fn lacks(&self) -> Map<String, Value> {
-        let lacking =
-            self.pipelines.iter().filter_map(|one| Some((one.pipeline.to_owned(), json!(one.lacks.as_ref()?))));
-        lacking.collect()
-    }
-
-    fn about_pipelines(&self) -> String {
-        let runs = self.runs();
-        match runs.len() {
-            all if all == self.pipelines.len() => "runs every pipeline".to_owned(),
-            0 => "runs no pipeline".to_owned(),
-            _ => format!("runs {}", runs.join(", ")),
-        }
+        let all = suitability(&registry(), &machine);
+        let (runs, lacking): (Vec<_>, Vec<_>) = all.into_iter().partition(|one| one.lacks.is_none());
+        Ok(Self {
+            name: preset.name,
+            about: preset.about,
+            n_gps: machine.n_gps,
+            n_renderers: machine.n_renderers,
+            pipelines: runs.into_iter().map(|one| one.pipeline).collect(),
+            cannot_run: lacking.into_iter().map(|one| (one.pipeline.to_owned(), json!(one.lacks))).collect(),
+        })
     }
 }
 
 fn all_text(machines: &[Listed]) -> String {
     let mut text = format!("{:<16} {:>4} {:>10}  {}\n", "machine", "GPs", "renderers", "what it is");
-    for listed in machines {
-        let MachineConfig { n_gps, n_renderers, .. } = listed.machine;
-        let _ = writeln!(text, "{:<16} {n_gps:>4} {n_renderers:>10}  {}", listed.preset.name, listed.preset.about);
-        let _ = writeln!(text, "{:<32}  {}", "", listed.about_pipelines());
+    for Listed { name, about, n_gps, n_renderers, pipelines, cannot_run } in machines {
+        let runs = match (pipelines.len(), cannot_run.len()) {
+            (_, 0) => "every pipeline".to_owned(),
+            (0, _) => "no pipeline".to_owned(),
+            _ => pipelines.join(", "),
+        };
+        let _ = writeln!(text, "{name:<16} {n_gps:>4} {n_renderers:>10}  {about}");
+        let _ = writeln!(text, "{:<32}  runs {runs}", "");
     }
     text
 }
 
 fn all_json(machines: &[Listed]) -> String {
-    let machines = machines.iter().map(|listed| {
-        json!({
-            "name": listed.preset.name,
-            "about": listed.preset.about,
-            "n_gps": listed.machine.n_gps,
-            "n_renderers": listed.machine.n_renderers,
-            "pipelines": listed.runs(),
-            "cannot_run": listed.lacks(),
-        })
-    });
-    format!("{:#}\n", json!({"schema": "pxpl5-machines/1", "machines": machines.collect::<Vec<_>>()}))
+    format!("{:#}\n", json!({"schema": "pxpl5-machines/1", "machines": machines}))
 }
 
 fn one_json(machine: &MachineConfig) -> String {

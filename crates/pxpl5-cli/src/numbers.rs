@@ -8,11 +8,6 @@ pub(crate) fn whole<T: TryFrom<u64>>(low: u64, high: u64) -> impl Fn(&str) -> Re
     }
 }
 
-/// Parses a whole number. The experiment file checks the range of each key.
-pub(crate) fn signed(text: &str) -> Result<i64, String> {
-    text.parse().map_err(|_| format!("expected a whole number of at most {}, found {text}", i64::MAX))
-}
-
 /// Formats a count with its noun in singular or plural: `1 triangle`, `2 triangles`.
 pub(crate) fn count_of(count: impl TryInto<u64>, name: &str) -> String {
     let count = count.try_into().unwrap_or(u64::MAX);

@@ -5,13 +5,12 @@ mod formats;
 mod question;
 
 use crate::error::CliError;
-use crate::numbers::{are, confidence, count_of};
+use crate::numbers::{are, count_of};
 use crate::output::OutputFolder;
 use crate::rows::{self, ResultRows, RowsKind};
 use crate::terminal::{json_text, print, print_error};
 use crate::version::{VERSION, commit};
 use formats::Format;
-use pxpl5::compare::CONFIDENCE;
 use pxpl5::views::charts::AxisScale;
 use pxpl5::views::results::csv_table;
 use question::{Group, Question};
@@ -37,24 +36,8 @@ pub(crate) struct PlotArgs {
     /// Results of `pxpl5 sweep --out` or `pxpl5 compare --out`: the folder, or its rows.jsonl or comparison.json.
     #[arg(value_name = "DIR|FILE")]
     results: PathBuf,
-    /// Column for the x axis, with numbers or names.
-    #[arg(long, value_name = "COLUMN")]
-    x: String,
-    /// Column for the y axis, with numbers.
-    #[arg(long, value_name = "COLUMN")]
-    y: String,
-    /// Draw a separate curve for each value, or combination of values, of these columns.
-    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
-    by: Vec<String>,
-    /// Average over these columns, and draw the interval of the mean as a band.
-    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "seed")]
-    band: Vec<String>,
-    /// Use only rows with this value in this column; may be repeated.
-    #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = pair)]
-    only: Vec<(String, String)>,
-    /// Confidence of the intervals, between 0 and 1. Rows of a comparison keep the confidence of that comparison.
-    #[arg(long, value_name = "SHARE", default_value_t = CONFIDENCE, value_parser = confidence)]
-    confidence: f64,
+    #[command(flatten)]
+    question: Question,
     /// File of the figure: .svg; with the feature `print` also .png (300 dots per inch) and .pdf.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -110,21 +93,19 @@ fn width(text: &str) -> Result<f64, String> {
     found.ok_or(format!("expected {low} to {high} millimetres, found {text}"))
 }
 
-fn pair(text: &str) -> Result<(String, String), String> {
-    let (name, value) = text.split_once('=').ok_or(format!("expected COLUMN=VALUE, found {text}"))?;
-    Ok((name.to_owned(), value.to_owned()))
-}
-
-pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
+pub(crate) fn run(mut args: PlotArgs) -> Result<(), CliError> {
     let format = Format::of(&args.out)?;
     let folder = rows::folder_of(&args.results);
     let results = rows::of(folder)?.ok_or_else(|| no_rows(folder))?;
-    let question = args.question(results.kind);
+    if results.kind == RowsKind::Comparison && args.question.by.is_empty() {
+        args.question.by.push("pipeline".to_owned());
+    }
+    let question = &args.question;
     let groups = question.groups(&results)?;
     // Failed points have no number. Nothing is drawn if no point has one.
     let missing: usize = groups.iter().map(|group| group.missing).sum();
     if groups.iter().all(|group| group.n == 0) {
-        let y = &args.y;
+        let y = &question.y;
         return Err(CliError::failure(format!(
             "none of {} has a number in column {y}; nothing was drawn",
             count_of(missing, "row")
@@ -133,12 +114,15 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     // The SVG is drawn first; other formats are converted from it.
     let svg = drawing::chart(&args, &groups).svg();
     let figure = formats::bytes(&svg, format)?;
-    write(&args, &results, (&figure, &csv(&question, &groups)))?;
+    write(&args, &results, (&figure, &csv(question, &groups)))?;
     // Rows without a number are reported, because the means leave them out.
     if missing > 0 {
         let (have, are) = if missing == 1 { ("has", "is") } else { ("have", "are") };
         let rows = count_of(missing, "row");
-        print_error(&format!("pxpl5: {rows} {have} no number in column {} and {are} left out of the means\n", args.y));
+        print_error(&format!(
+            "pxpl5: {rows} {have} no number in column {} and {are} left out of the means\n",
+            question.y
+        ));
     }
     if args.quiet {
         return Ok(());
@@ -154,17 +138,6 @@ fn no_rows(folder: &Path) -> CliError {
     ))
 }
 
-impl PlotArgs {
-    fn question(&self, kind: RowsKind) -> Question {
-        let mut by = self.by.clone();
-        if kind == RowsKind::Comparison && by.is_empty() {
-            by.push("pipeline".to_owned());
-        }
-        let (x, y, band, only) = (self.x.clone(), self.y.clone(), self.band.clone(), self.only.clone());
-        Question { x, y, by, band, only, confidence: self.confidence }
-    }
-}
-
 fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) -> Result<(), CliError> {
     // The three files differ only in their extension.
     let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -175,13 +148,14 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
         return Err(CliError::usage(format!("{} is no file name", args.out.display())));
     };
     // FIG.json repeats the question and the settings of the results, so that the figure can be reproduced.
-    let only: Vec<String> = args.only.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    let Question { x, y, by, band, only, .. } = &args.question;
+    let only: Vec<String> = only.iter().map(|(name, value)| format!("{name}={value}")).collect();
     let origin = json!({
         "schema": "pxpl5-plot/1",
         "version": VERSION,
         "commit": commit(),
         "results": args.results.display().to_string(),
-        "x": args.x, "y": args.y, "by": args.by, "band": args.band, "where": only,
+        "x": x, "y": y, "by": by, "band": band, "where": only,
         "interval": interval(args, results.kind),
         "about": results.about,
     });
@@ -196,7 +170,10 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
 fn interval(args: &PlotArgs, kind: RowsKind) -> String {
     match kind {
         RowsKind::Sweep => {
-            format!("{} % of the mean, Student's t, of the logarithm if all are positive", args.confidence * 100.0)
+            format!(
+                "{} % of the mean, Student's t, of the logarithm if all are positive",
+                args.question.confidence * 100.0
+            )
         }
         RowsKind::Comparison => "as in the comparison: see `confidence` and each row's `method`".to_owned(),
     }

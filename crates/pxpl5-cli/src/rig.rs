@@ -1,12 +1,11 @@
 //! The command `pxpl5 rig`. A simulated pendulum measures the latency of a system from outside, as in the paper I3D95.
 //! The command compares this latency with the latency from time stamps inside the system.
 
-use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::numbers::whole;
 use crate::progress::Progress;
 use crate::settings::SettingArgs;
-use crate::terminal::{json_text, print};
+use crate::terminal::{AnswerArgs, json_text};
 use clap::Args;
 use pxpl5::Statistics;
 use pxpl5::rig::{PASSES, Rig, RigQuery, RigReport};
@@ -40,10 +39,7 @@ pub(crate) struct RigArgs {
     #[arg(long, value_name = "N")]
     line: Option<u32>,
     #[command(flatten)]
-    budget: BudgetArgs,
-    /// Print one JSON object.
-    #[arg(long)]
-    json: bool,
+    answer: AnswerArgs,
 }
 
 /// Keys with values from the command itself, which the user must not set.
@@ -63,10 +59,11 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     let mut rig = Rig { seed: plan.seed, passes: args.passes as usize, ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = args.line.unwrap_or(rig.rig.photodiode_line);
     let study = RigQuery { rig, machine: plan.machine.clone(), pipeline: plan.pipeline.clone() };
-    let report = Progress::new("fields", false).run_within(args.budget, "measure fewer --passes", &study)?;
+    let report =
+        Progress::new("fields", args.answer.quiet).run_within(args.answer.budget, "measure fewer --passes", &study)?;
     let measured = &report.measured;
     // The result is printed even if both sides disagree.
-    print(&if args.json { json_text(&report)? } else { text(&report) })?;
+    args.answer.print(&json_text(&report)?, || text(&report))?;
     if report.agrees { Ok(()) } else { Err(CliError::failure(verdict(measured))) }
 }
 

@@ -1,6 +1,7 @@
 //! Reader of the result rows that `pxpl5 sweep` and `pxpl5 compare` write into a folder.
 
 use crate::error::CliError;
+use crate::settings::text_of_file;
 use pxpl5::compare::ROWS_FOLDER;
 use pxpl5::lab::manifest::Manifest;
 use pxpl5::sweep::ROWS_FILE;
@@ -57,8 +58,7 @@ fn unfinished(folder: &Path) -> Result<Option<ResultRows>, CliError> {
         return Ok(None);
     }
     let problem = |what: String| CliError::usage(format!("{}: {what}", path.display()));
-    let bytes = fs::read(&path).map_err(|error| problem(error.to_string()))?;
-    stored_comparison(text_of(&bytes).map_err(|error| problem(error.to_string()))?).map(Some).map_err(problem)
+    stored_comparison(&text_of_file(&path)?).map(Some).map_err(problem)
 }
 
 /// Returns the folder of a results file, or the path itself if it is a folder.
@@ -82,14 +82,22 @@ fn expect_schema(object: &Map<String, Value>, expected: &str) -> Result<(), Stri
     if is_expected { Ok(()) } else { Err(format!("schema: expected {expected}, found {found}")) }
 }
 
-/// Returns the header and rows of a sweep. Drops an incomplete last line, which an interrupted sweep leaves.
-fn sweep(text: &str) -> Result<ResultRows, String> {
+/// Returns the header and rows of a file of JSON lines. Drops an incomplete last line, which an interruption leaves.
+fn stored(
+    text: &str,
+    (schema, kind): (&str, RowsKind),
+    row: fn(Map<String, Value>) -> Row,
+) -> Result<ResultRows, String> {
     let mut lines = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
     let about = parsed(lines.next().unwrap_or_default(), "line 1")?;
-    expect_schema(&about, "pxpl5-sweep")?;
-    let row = |(n, line): (usize, &str)| parsed(line, &format!("line {}", n + 2)).map(of_point);
+    expect_schema(&about, schema)?;
+    let row = |(n, line): (usize, &str)| parsed(line, &format!("line {}", n + 2)).map(row);
     let rows = lines.enumerate().map(row).collect::<Result<_, _>>()?;
-    Ok(ResultRows { kind: RowsKind::Sweep, about, rows })
+    Ok(ResultRows { kind, about, rows })
+}
+
+fn sweep(text: &str) -> Result<ResultRows, String> {
+    stored(text, ("pxpl5-sweep", RowsKind::Sweep), of_point)
 }
 
 /// Returns a row with the index of the point, its parameters, the measured values, and an error if the point failed.
@@ -105,17 +113,10 @@ fn of_point(mut point: Map<String, Value>) -> Row {
     row
 }
 
-/// Returns the header and rows of an unfinished comparison. Drops an incomplete last line.
+/// Returns the header and rows of an unfinished comparison.
 fn stored_comparison(text: &str) -> Result<ResultRows, String> {
-    let mut lines = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
-    let about = parsed(lines.next().unwrap_or_default(), "line 1")?;
-    expect_schema(&about, "pxpl5-comparison-rows")?;
-    let row = |(n, line): (usize, &str)| {
-        let mut line = parsed(line, &format!("line {}", n + 2))?;
-        Ok::<_, String>(flat(line.remove("row").unwrap_or_default()))
-    };
-    let rows = lines.enumerate().map(row).collect::<Result<_, _>>()?;
-    Ok(ResultRows { kind: RowsKind::Comparison, rows, about })
+    let row = |mut line: Map<String, Value>| flat(line.remove("row").unwrap_or_default());
+    stored(text, ("pxpl5-comparison-rows", RowsKind::Comparison), row)
 }
 
 fn comparison(text: &str) -> Result<ResultRows, String> {

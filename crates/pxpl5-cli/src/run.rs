@@ -1,6 +1,5 @@
 //! The command `pxpl5 run`, which runs one experiment and reports the results.
 
-use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::interrupt;
 use crate::numbers::{count_of, number, whole};
@@ -11,7 +10,7 @@ use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::simulate::{How, Simulated, simulate};
 use crate::table::{Comparison, percentiles, table};
-use crate::terminal::{print, warn};
+use crate::terminal::{AnswerArgs, json_text, print, warn};
 use clap::Args;
 use pxpl5::lab::near_edges;
 use pxpl5::tracking::predict::Training;
@@ -52,8 +51,6 @@ pub(crate) struct RunArgs {
     /// folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    #[command(flatten)]
-    budget: BudgetArgs,
     /// Also print the effect of 10 % more of each resource, from seven more runs.
     #[arg(long)]
     what_if: bool,
@@ -63,25 +60,21 @@ pub(crate) struct RunArgs {
     /// Also print the definitions of latency and of a picture that is due.
     #[arg(long)]
     explain: bool,
-    /// Print the report as one JSON object.
-    #[arg(long)]
-    json: bool,
-    /// Print nothing but errors and, with --json, the JSON object.
-    #[arg(long, short)]
-    quiet: bool,
+    #[command(flatten)]
+    answer: AnswerArgs,
 }
 
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.settings.gather()?)?;
-    warn(&plan.warnings(), args.quiet);
+    warn(&plan.warnings(), args.answer.quiet);
     // Open the output first, so that a bad path fails before the run.
     let folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "run")).transpose()?;
     // Files list every picture. The report alone needs only statistics, whose size does not grow with the run.
     let keep =
         if folder.is_some() || args.picture.is_some() { KeptRecords::Everything } else { KeptRecords::Statistics };
-    let (without, budget, quiet) = (&args.without[..], args.budget, args.quiet);
+    let (without, budget, quiet) = (&args.without[..], args.answer.budget, args.answer.quiet);
     let question = if args.what_if { Some(question(&plan)?) } else { None };
-    question.iter().try_for_each(|question| args.budget.admit_study(question, "simulate fewer fields"))?;
+    question.iter().try_for_each(|question| args.answer.budget.admit_study(question, "simulate fewer fields"))?;
     let how = How { threads: args.threads, without, keep, budget, quiet, ..How::default() };
     let Simulated { outcome, too_short } = simulate(&plan, how)?;
     let results = Results::of_run(outcome);
@@ -90,9 +83,9 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let is_whole = !interrupt::flag().is_stopped();
     // A file from a folder of results says whether the run repeats those results.
     let changes = plan.origin.changes(&Origin::of(outcome.experiment())).filter(|_| is_whole);
-    warn(changes.as_slice(), args.quiet);
-    warn(out_of_view(report).as_slice(), args.quiet);
-    warn(&near_edges(outcome), args.quiet);
+    warn(changes.as_slice(), args.answer.quiet);
+    warn(out_of_view(report).as_slice(), args.answer.quiet);
+    warn(&near_edges(outcome), args.answer.quiet);
     // A run without a latency still writes its files and its report, and then ends with an error.
     let picture = args.picture.filter(|_| is_whole).map(|number| one_picture::find(outcome, number));
     let drawn = picture.as_ref().and_then(|found| found.as_ref().ok().copied());
@@ -100,11 +93,11 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let picture = picture.transpose()?;
     let more = question
         .filter(|_| is_whole)
-        .map(|question| Progress::new("resources", args.quiet).run(&question))
+        .map(|question| Progress::new("resources", args.answer.quiet).run(&question))
         .transpose()?;
-    if args.json {
-        print(&format!("{}\n", with_more(report, more.as_deref())?))?;
-    } else if !args.quiet {
+    if args.answer.json {
+        print(&with_more(report, more.as_deref())?)?;
+    } else if !args.answer.quiet {
         print(&text((&plan, &results, report), args.explain, written))?;
         print(&picture.map(|times| one_picture::text(outcome, report, times)).unwrap_or_default())?;
         print(&more.map(|more| more_text(&more)).unwrap_or_default())?;
@@ -136,10 +129,10 @@ fn more_text(more: &[WhatIf]) -> String {
 }
 
 fn with_more(report: &Report, more: Option<&[WhatIf]>) -> Result<String, CliError> {
-    let Some(more) = more else { return json(report) };
+    let Some(more) = more else { return json_text(report) };
     let mut value = serde_json::to_value(report).map_err(CliError::failure)?;
     value["what_if"] = serde_json::to_value(more).map_err(CliError::failure)?;
-    serde_json::to_string_pretty(&value).map_err(CliError::failure)
+    json_text(&value)
 }
 
 /// Returns the error for a run in which every picture missed its deadline. A longer run would not help.
@@ -273,18 +266,16 @@ fn no_events() -> CliError {
     CliError::usage("level: a run needs transaction or cycle; the analytic level has no events and is for sweeps")
 }
 
-pub(crate) fn json(report: &Report) -> Result<String, CliError> {
-    serde_json::to_string_pretty(report).map_err(CliError::failure)
-}
-
 pub(crate) fn comparison(plan: &Plan, results: &Results) -> Option<Comparison> {
     let published = plan.published.as_ref()?;
     let source = published.source.clone().unwrap_or_default();
     let figure = published.figure.map_or_else(String::new, |figure| format!("figure {figure}, "));
+    let simulated = published.quantity.of(results)?;
     Some(Comparison {
         quantity: published.quantity.name().to_owned(),
         published: published.value,
-        simulated: published.quantity.of(results)?,
+        simulated,
+        error_percent: (simulated / published.value - 1.0) * 100.0,
         source: format!("{figure}{source}"),
     })
 }
@@ -297,7 +288,7 @@ fn write(
 ) -> Result<PathBuf, CliError> {
     let Some((outcome, report)) = &results.run else { return Err(no_events()) };
     // The experiment file reproduces the run from any folder.
-    folder.put("report.json", format!("{}\n", json(report)?).as_bytes())?;
+    folder.put("report.json", json_text(report)?.as_bytes())?;
     folder.put(
         "experiment.toml",
         format!("{}{}", origin_lines(report, "# "), plan.settings_in(folder.path(), outcome.experiment())).as_bytes(),

@@ -3,20 +3,17 @@
 use crate::numbers::{count_of, dash};
 use crate::terminal::laid_out;
 use pxpl5::{DuePictures, Percentiles, Report, Statistics};
+use serde::Serialize;
 
-#[derive(Clone, Debug)]
+/// A simulated value beside the published one.
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct Comparison {
     /// Name of the quantity, with its unit.
     pub(crate) quantity: String,
     pub(crate) published: f64,
     pub(crate) simulated: f64,
+    pub(crate) error_percent: f64,
     pub(crate) source: String,
-}
-
-impl Comparison {
-    pub(crate) fn error_percent(&self) -> f64 {
-        (self.simulated / self.published - 1.0) * 100.0
-    }
 }
 
 type TableRow = (&'static str, fn(&Report) -> String);
@@ -54,7 +51,7 @@ fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, V
         ("published", comparison_cells(runs, |c| format!("{} {}", c.published, c.quantity))),
         ("  where", comparison_cells(runs, |c| c.source.clone())),
         ("  simulated", comparison_cells(runs, |c| format!("{:.4}", c.simulated))),
-        ("  error", comparison_cells(runs, |c| format!("{:+.1} %", c.error_percent()))),
+        ("  error", comparison_cells(runs, |c| format!("{:+.1} %", c.error_percent))),
     ]
 }
 

@@ -1,5 +1,6 @@
 //! Printer of results to standard output and of messages to standard error.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -22,6 +23,26 @@ fn printable(text: &str) -> Cow<'_, str> {
 /// Formats a value as JSON for readers, with a line end.
 pub(crate) fn json_text(value: &impl Serialize) -> Result<String, CliError> {
     Ok(serde_json::to_string_pretty(value).map_err(CliError::failure)? + "\n")
+}
+
+/// Options of a command that answers a question: the budget of its runs, and the form of the answer.
+#[derive(clap::Args, Clone, Copy, Debug, Default)]
+pub(crate) struct AnswerArgs {
+    #[command(flatten)]
+    pub(crate) budget: BudgetArgs,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing but errors and, with --json, the JSON object.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+impl AnswerArgs {
+    /// Prints the answer, as [`answer`].
+    pub(crate) fn print(&self, json: &str, text: impl FnOnce() -> String) -> Result<(), CliError> {
+        answer(self.json, self.quiet, json, text)
+    }
 }
 
 /// Prints `json` with the option --json, else `text` without the option --quiet.

@@ -2,16 +2,16 @@
 //!
 //! Budgets, sweeps and Slurm jobs use these estimates.
 //!
-//! Memory in bytes: `BASE + PICTURES + GP gps + PRIMITIVE primitives + WAITING batch + kept`
+//! Memory in bytes: `BASE + GP gps + PRIMITIVE primitives + WAITING batch + kept (FIELD + BLOCK blocks)`
 //!
-//! - `PICTURES` counts only for a run that computes all pixels.
-//! - A run that keeps all observations has `kept = fields (FIELD + COPY blocks)`. A run that keeps statistics and its
-//!   last pictures has `kept = fields STATISTICS + min(fields, WINDOW) BLOCK blocks`.
-//! - A tracked head adds `min(fields, EVALUATED_FIELDS) ERRORS` to `kept`.
-//! - `batch` is the number of blocks of pixels drawn with one head pose. `blocks` is the greatest number of blocks that
-//!   the ring can carry in a field. `batch` and `blocks` are 0 except in frameless rendering.
+//! - `kept` is the number of fields whose observations are in memory: all fields, or the last `KEPT_FIELDS` of a run that
+//!   keeps statistics.
+//! - A tracked head adds `min(fields, EVALUATED_FIELDS) ERRORS`.
+//! - `batch` is the number of blocks of pixels drawn with one head pose. `blocks` is the number of blocks that the
+//!   processors of the experiment can send in a field. Both are 0 except in frameless rendering.
 //!
-//! The constants of memory come from the measured peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
+//! The constants of memory come from the measured peaks of 23 runs of all pipelines, rounded up (docs/hardening.md). A
+//! test compares the formula with twelve of them: it is at most a factor of two off.
 //!
 //! Time in seconds on one core: `runs (FIELD_S fields + pictures eyes (PICTURE_S + GP_S gps) + BLOCK_S blocks fields) +
 //! LOAD_S eyes primitives + EVALUATED_FIELD_S fields`
@@ -19,8 +19,7 @@
 //! - `runs` is `RUNS_OF_HEAD` for a tracked head, otherwise 1.
 //! - `LOAD_S` counts only if a closed form gives the times of pictures. At the cycle level, the time of a picture also
 //!   contains `PRIMITIVE_AS_CODE_S primitives`.
-//! - `BLOCK_S` counts only for pipelines that draw blocks. Here `blocks` is the number of blocks that the processors of
-//!   the experiment can send in a field.
+//! - `BLOCK_S` counts only for pipelines that draw blocks.
 //! - `EVALUATED_FIELD_S` counts only for a tracked head.
 //!
 //! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and
@@ -29,7 +28,7 @@
 //! cost also depends on the visible part of a scene and on repeated head poses, which no formula predicts. An estimate
 //! is good enough to distinguish minutes from weeks. Running experiments are monitored as well.
 
-use pxpl5_run::{Experiment, KeyValue, Level, Pixels};
+use pxpl5_run::{Experiment, KeyValue, Level};
 
 /// Quantities of an experiment that determine its memory and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,8 +56,6 @@ pub struct RunWork {
     pub keeps_everything: bool,
     /// True if the experiment has a tracked head.
     pub is_tracked: bool,
-    /// True if the run computes all pixels.
-    pub computes_all_pixels: bool,
 }
 
 /// Estimated cost of a computation.
@@ -72,25 +69,19 @@ pub struct Estimate {
 
 /// Bytes of the process with a small machine.
 pub const BASE: f64 = 15e6;
-/// Bytes of the pictures in a run that computes all pixels.
-const PICTURES: f64 = 10e6;
 /// Bytes for one graphics processor.
 const GP: f64 = 60e3;
 /// Bytes for one primitive, including its entries in all lists.
 pub const PRIMITIVE: f64 = 200.0;
 /// Bytes for each block of pixels that is drawn with one head pose.
 const WAITING: f64 = 5.5e3;
-/// Bytes for each field in a run that keeps all observations.
+/// Bytes for the observations of a field.
 const FIELD: f64 = 4e3;
-/// Bytes for each block of pixels in a field, in a run that keeps all observations.
-const COPY: f64 = 350.0;
-/// Bytes for each field in a run that keeps only statistics.
-const STATISTICS: f64 = 10.0;
-/// Bytes for each block of pixels in a field, in a run that keeps only statistics.
-const BLOCK: f64 = 100.0;
-/// A run that keeps only statistics still stores the blocks of pixels of the most recent fields. This constant is the
-/// number of these fields.
-const WINDOW: f64 = 240.0;
+/// Bytes for the observations of a block of pixels.
+const BLOCK: f64 = 350.0;
+/// Number of the most recent fields whose observations a run keeps that keeps statistics. Derived: it stores blocks of 240
+/// fields, each in 100 bytes.
+const KEPT_FIELDS: f64 = 70.0;
 /// Bytes for the pixel errors of one display field.
 const ERRORS: f64 = 1e3;
 /// Maximum number of display fields for which a run stores separate pixel errors.
@@ -126,9 +117,6 @@ const TRANSFORM_S: f64 = 21.7e-6;
 const BLOCK_WORDS: f64 = 16.0;
 /// Number of processors whose blocks of pixels fill the ring completely.
 const BLOCK_GPS: f64 = 20.0;
-/// Minimum time between two blocks of pixels in seconds, due to the messages of the processors. Derived: half of 12 us,
-/// because two blocks are sent at a time.
-const MIN_BLOCK_S: f64 = 6e-6;
 
 impl Estimate {
     /// Almost no memory and time.
@@ -168,7 +156,6 @@ impl RunWork {
             is_cycle_level: experiment.level == Level::Cycle,
             keeps_everything: keeps_everything || !pipeline.can_discard_records(),
             is_tracked: experiment.head.is_some(),
-            computes_all_pixels: experiment.pixels == Pixels::All,
         };
         // A pipeline shows at most one picture in a field, and fewer if TRANSFORM takes longer.
         work.pictures_a_field = (1.0 / work.fields_of_transform()).min(1.0);
@@ -181,19 +168,10 @@ impl RunWork {
         TRANSFORM_S * primitives / (NTSC_FIELD_S * self.gps.max(1) as f64)
     }
 
-    /// Returns the maximum number of blocks of pixels in a field, limited by the ring and by the messages of the
-    /// processors.
-    fn most_blocks(&self) -> f64 {
-        if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s().max(MIN_BLOCK_S) }
-    }
-
     /// Returns the number of blocks of pixels that the processors of the experiment can send in a field.
     fn blocks(&self) -> f64 {
-        if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s() * (self.gps as f64 / BLOCK_GPS).min(1.0) }
-    }
-
-    fn block_s(&self) -> f64 {
-        WORD_S * ((self.block * self.block) as f64 + BLOCK_WORDS)
+        let block_s = WORD_S * ((self.block * self.block) as f64 + BLOCK_WORDS);
+        if self.block == 0 { 0.0 } else { NTSC_FIELD_S / block_s * (self.gps as f64 / BLOCK_GPS).min(1.0) }
     }
 
     /// Estimates memory and time by the formulas in the documentation of [`crate::estimate`].
@@ -205,15 +183,11 @@ impl RunWork {
     pub fn bytes(&self) -> f64 {
         let fields = self.fields as f64;
         // In long runs, observations take most of the memory. In large scenes, lists take most of the memory.
-        let kept = if self.keeps_everything {
-            fields * (FIELD + COPY * self.most_blocks())
-        } else {
-            fields * STATISTICS + fields.min(WINDOW) * BLOCK * self.most_blocks()
-        };
+        let kept = if self.keeps_everything { fields } else { fields.min(KEPT_FIELDS) };
+        let observations = kept * (FIELD + BLOCK * self.blocks());
         let errors = if self.is_tracked { fields.min(EVALUATED_FIELDS) * ERRORS } else { 0.0 };
-        let pictures = if self.computes_all_pixels { PICTURES } else { 0.0 };
         let lists = PRIMITIVE * self.primitives as f64 + WAITING * self.batch as f64;
-        BASE + pictures + GP * self.gps as f64 + lists + kept + errors
+        BASE + GP * self.gps as f64 + lists + observations + errors
     }
 
     /// Estimates the run time in seconds on one idle core.
@@ -245,7 +219,6 @@ mod tests {
         is_cycle_level: false,
         keeps_everything: false,
         is_tracked: false,
-        computes_all_pixels: false,
     };
 
     /// Measured runs: the work, and the peak memory in MB as `/usr/bin/time` reports it.

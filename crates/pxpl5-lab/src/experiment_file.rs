@@ -178,20 +178,20 @@ impl ExperimentFile {
     fn parse_in(mut self, text: &str, name: &str, folder: &Path) -> Result<Self, SettingError> {
         let spans = DeTable::parse(text).map_err(|error| not_toml(&error, text, name))?;
         let values: toml::Table = toml::from_str(text).map_err(|error| not_toml(&error, text, name))?;
+        let starts = starts("", spans.get_ref()).into_iter();
+        let places: BTreeMap<String, String> =
+            starts.map(|(path, start)| (path, format!("{name}, line {}", line(text, start)))).collect();
+        let place = |path: &str| places.get(path).cloned().unwrap_or_default();
         for (key, value) in values {
-            let at = spans.get_ref().get_key_value(key.as_str());
-            let start = at.map_or(0, |(key, _)| key.span().start);
             // The table of a sweep is kept as a whole and checked later.
             if key == "sweep" {
-                self.sweep = Some(Setting { value, place: place(text, name, start), folder: folder.to_owned() });
-                let inner = at.map_or_else(Vec::new, |(_, value)| starts("sweep", value.get_ref()));
-                let places = inner.into_iter().map(|(path, start)| (path, place(text, name, start)));
-                self.sweep_places = places.collect();
+                self.sweep = Some(Setting { value, place: place(&key), folder: folder.to_owned() });
+                let inner = places.iter().filter(|(path, _)| path.starts_with("sweep."));
+                self.sweep_places = inner.map(|(path, place)| (path.clone(), place.clone())).collect();
                 continue;
             }
-            let spans = at.map(|(_, value)| value.get_ref());
-            for (path, value, start) in flat(key, value, spans, start) {
-                self.put(&path, value, place(text, name, start), folder)?;
+            for (path, value) in flat(key, value) {
+                self.put(&path, value, place(&path), folder)?;
             }
         }
         Ok(self)
@@ -320,47 +320,31 @@ impl Default for ExperimentFile {
     }
 }
 
-/// Returns the values of a nested TOML table with their paths and byte positions. An empty table counts as a value and
-/// is not lost.
-fn flat(
-    path: String,
-    value: Value,
-    spans: Option<&toml::de::DeValue<'_>>,
-    start: usize,
-) -> Vec<(String, Value, usize)> {
-    // A value that is no table is a leaf.
-    let table = match value {
-        Value::Table(table) if !table.is_empty() => table,
-        leaf => return vec![(path, leaf, start)],
-    };
-    let spans = spans.and_then(toml::de::DeValue::as_table);
-    let entries = table.into_iter().flat_map(|(key, value)| {
-        let at = spans.and_then(|spans| spans.get_key_value(key.as_str()));
-        let start = at.map_or(start, |(key, _)| key.span().start);
-        flat(format!("{path}.{key}"), value, at.map(|(_, value)| value.get_ref()), start)
-    });
-    entries.collect()
+/// Returns the values of a nested TOML table with their paths. An empty table counts as a value and is not lost.
+fn flat(path: String, value: Value) -> Vec<(String, Value)> {
+    match value {
+        Value::Table(table) if !table.is_empty() => {
+            table.into_iter().flat_map(|(key, value)| flat(format!("{path}.{key}"), value)).collect()
+        }
+        leaf => vec![(path, leaf)],
+    }
 }
 
-/// Returns the byte position of every key within a TOML table, by the path of the key.
-fn starts(path: &str, table: &toml::de::DeValue<'_>) -> Vec<(String, usize)> {
-    let entries = table.as_table().into_iter().flatten();
-    let nested = entries.flat_map(|(key, value)| {
-        let path = format!("{path}.{}", key.get_ref());
-        let inner = starts(&path, value.get_ref());
+/// Returns the byte position of every key within a TOML table, by the path of the key. `prefix` is the path of the
+/// table with a final dot.
+fn starts(prefix: &str, table: &DeTable<'_>) -> Vec<(String, usize)> {
+    let nested = table.iter().flat_map(|(key, value)| {
+        let path = format!("{prefix}{}", key.get_ref());
+        let inner = value.get_ref().as_table().map_or_else(Vec::new, |table| starts(&format!("{path}."), table));
         std::iter::once((path, key.span().start)).chain(inner)
     });
     nested.collect()
 }
 
-fn place(text: &str, name: &str, at: usize) -> String {
-    format!("{name}, line {}", line(text, at))
-}
-
 /// Converts an error of the TOML parser to a [`SettingError`] with file name and line.
 fn not_toml(error: &toml::de::Error, text: &str, name: &str) -> SettingError {
     let at = error.span().map_or(0, |span| span.start);
-    invalid(&place(text, name, at), error.message())
+    invalid(&format!("{name}, line {}", line(text, at)), error.message())
 }
 
 fn invalid(place: &str, reason: impl Display) -> SettingError {

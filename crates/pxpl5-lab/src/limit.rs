@@ -174,12 +174,6 @@ impl LimitQuery {
         Ok(query)
     }
 
-    /// Returns the largest number of triangles that reaches the goal, or `None` if [`CEILING`] triangles reach it.
-    pub(crate) fn possible(&self, stop: &StopFlag) -> Result<Option<f64>, StudyError> {
-        let limit = self.run(&mut stop.clone())?;
-        Ok(limit.has_limit().then_some(f64::from(limit.triangles)))
-    }
-
     /// Creates a query with the pipeline's own criterion.
     ///
     /// # Errors

@@ -29,6 +29,7 @@ mod cost;
 mod header;
 mod inputs;
 mod joined;
+mod lines;
 mod merge;
 mod point;
 mod replacement;
@@ -42,7 +43,8 @@ mod store;
 mod table;
 
 pub(crate) use inputs::inputs_of;
-pub(crate) use store::{line_of, lock, opened};
+pub(crate) use lines::{LineFile, line_of};
+pub(crate) use store::lock;
 
 pub use header::Header;
 pub use inputs::hash_of_model;

@@ -52,11 +52,7 @@ const KNOBS: [Knob; 6] = [
 impl Knob {
     fn value(&self, config: &MachineConfig) -> Option<u64> {
         let path = self.key.strip_prefix("machine.")?;
-        match path {
-            "n_gps" => Some(config.n_gps as u64),
-            "n_renderers" => Some(config.n_renderers as u64),
-            _ => config.parameters().into_iter().find(|parameter| parameter.path == path)?.value.whole(),
-        }
+        config.settings().into_iter().find(|(own, _)| own == path)?.1.whole()
     }
 
     /// Returns the old value of the setting, the new value, and the machine with 10 % more of the resource. Returns

@@ -186,3 +186,14 @@ fn reprojection_settings_without_a_device_and_depth_reprojection_of_faces_are_re
     let vdrt = "pipeline = \"jitp-scanline\"\nscene = \"gallery\"\nhead.motion = \"pan:10\"\nhead.raster = \"vdrt\"\n";
     assert!(refusal(vdrt).contains("head.raster = vdrt does not apply to the pipeline jitp-scanline"));
 }
+
+/// Tests the form in which Python pickles a scene.
+#[test]
+fn the_parts_of_a_scene_are_the_same_after_json() {
+    for name in ["mig", "molecules", "gallery", "typical:50"] {
+        let parts = pxpl5_scene::builtin(name).expect("built in").into_parts();
+        let text = serde_json::to_vec(&parts).expect("data");
+        let again: pxpl5_scene::SceneParts = serde_json::from_slice(&text).expect("as written");
+        assert!(again == parts, "{name}");
+    }
+}

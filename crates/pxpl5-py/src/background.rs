@@ -31,7 +31,7 @@ impl Progress {
     }
 }
 
-pub(crate) const POLL_INTERVAL: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 impl Watcher for &Progress {
     fn progress(&mut self, done: u64, of: u64) {
@@ -59,15 +59,14 @@ pub(crate) fn in_background<T: Send + 'static>(
     let progress = Arc::new(Progress::default());
     let (sender, mut results) = sync_channel(1);
     let watch = Arc::clone(&progress);
-    let worker = std::thread::Builder::new().name("pxpl5".to_owned()).stack_size(STACK_BYTES).spawn(move || {
+    spawn("pxpl5", move || {
         // After an early return of the caller the receiver no longer exists, so an error is ignored.
         let _ = sender.send(work(watch));
-    });
-    worker.map_err(|error| failed_run(format!("no thread can be started: {error}")))?;
+    })?;
     let mut watch = None;
     loop {
         // Wait without the interpreter's lock, then check for Ctrl-C and report progress.
-        let result = py.detach(|| wait(&mut results));
+        let result = py.detach(|| recv(&mut results));
         let checked = py.check_signals().and_then(|()| tell(callback, &progress, &mut watch));
         if let Err(error) = checked {
             // Ask the work to stop, and raise the exception.
@@ -98,11 +97,18 @@ pub(crate) fn study<S: Study<Report: Send + 'static> + Send + 'static>(
 
 /// Stack size of the worker thread in bytes, equal to the stack of a main thread. The emulator has not been tested with
 /// a smaller stack.
-pub(crate) const STACK_BYTES: usize = 8 << 20;
+const STACK_BYTES: usize = 8 << 20;
+
+/// Starts a thread with a stack of [`STACK_BYTES`].
+pub(crate) fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> PyResult<()> {
+    let started = std::thread::Builder::new().name(name.to_owned()).stack_size(STACK_BYTES).spawn(work);
+    started.map(drop).map_err(|error| failed_run(format!("no thread can be started: {error}")))
+}
 
 // The receiver is borrowed mutably. It can be sent to another thread, but threads cannot share it.
 
-fn wait<T>(results: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
+/// Waits a short time for a result of another thread.
+pub(crate) fn recv<T>(results: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
     results.recv_timeout(POLL_INTERVAL)
 }
 

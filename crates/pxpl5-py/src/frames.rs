@@ -1,6 +1,6 @@
 //! All pictures of a run, one for each display period, as an iterator.
 
-use crate::background::{Progress, STACK_BYTES};
+use crate::background::{Progress, recv, spawn};
 use crate::errors::{failed_run, wrong_setting};
 use crate::picture::Picture;
 use crate::policy::PythonFunctions;
@@ -11,7 +11,6 @@ use pxpl5::views::{Film, PictureError};
 use pyo3::prelude::*;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
 
 /// Maximum number of computed pictures that wait for Python.
 const WAITING: usize = 4;
@@ -28,15 +27,13 @@ impl Frames {
     /// Starts a thread that runs the experiment of a film and sends the pictures to this iterator.
     pub(crate) fn start(film: Film, progress: Arc<Progress>, checks: PythonFunctions) -> PyResult<Self> {
         let (sender, pictures) = sync_channel(WAITING);
-        let thread = std::thread::Builder::new().name("pxpl5-frames".to_owned()).stack_size(STACK_BYTES);
-        let started = thread.spawn(move || {
+        spawn("pxpl5-frames", move || {
             // The run ends when the receiver of the pictures no longer exists.
             let result = film.each(|_, picture| sender.send(Ok(picture)).is_ok());
             if let Err(error) = result {
                 let _ = sender.send(Err(error));
             }
-        });
-        started.map_err(|error| failed_run(format!("no thread can be started: {error}")))?;
+        })?;
         Ok(Self { pictures: Mutex::new(Some(pictures)), progress, checks })
     }
 }
@@ -54,7 +51,7 @@ impl Frames {
         };
         let mut pictures = pictures;
         loop {
-            let found = py.detach(|| next(&mut pictures));
+            let found = py.detach(|| recv(&mut pictures));
             // Ctrl-C drops the receiver, which ends the run. A caller such as `list` checks for Ctrl-C nowhere else.
             py.check_signals().inspect_err(|_| self.progress.stop())?;
             match found {
@@ -78,11 +75,6 @@ impl Frames {
     }
 }
 
-// The receiver is borrowed mutably. It can be sent to another thread, but threads cannot share it.
-fn next<T>(pictures: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
-    pictures.recv_timeout(Duration::from_millis(50))
-}
-
 pub(crate) fn film_bytes(
     py: Python<'_>,
     film: Film,
@@ -91,13 +83,11 @@ pub(crate) fn film_bytes(
     checks: &PythonFunctions,
 ) -> PyResult<Vec<u8>> {
     let (sender, result) = sync_channel(1);
-    let thread = std::thread::Builder::new().name("pxpl5-film".to_owned()).stack_size(STACK_BYTES);
-    let started = thread.spawn(move || {
+    spawn("pxpl5-film", move || {
         let texts: Vec<(&str, String)> = texts.iter().map(|(key, text)| (key.as_str(), text.clone())).collect();
         let mut bytes = Vec::new();
         let _ = sender.send(film.write(&texts, &mut bytes).map(|()| bytes));
-    });
-    started.map_err(|error| failed_run(format!("no thread can be started: {error}")))?;
+    })?;
     let result = wait(py, result, &progress.stop_flag());
     checks.check()?;
     result?.map_err(exception)

@@ -65,7 +65,7 @@ mod _native {
     #[pymodule_export]
     use crate::processor::{Processor, Program, assemble, disassemble};
     #[pymodule_export]
-    use crate::scene::{Scene, scene_of_parts};
+    use crate::scene::{Scene, scene_of_json};
     #[pymodule_export]
     use crate::settings::Settings;
     #[pymodule_export]

@@ -13,7 +13,7 @@ use pxpl5::views::page::{PagePicture, PageRun, html};
 use pxpl5::views::png_bytes;
 use pxpl5::views::results::{columns, origin, rows};
 use pxpl5::views::timeline::{TimelineOptions, svg};
-use pxpl5::{ExperimentError, Eye, ObservedEvent, PeriodNumber, QUANTITIES, Report, Results, SurfaceId};
+use pxpl5::{ExperimentError, Eye, ObservedEvent, PeriodNumber, QUANTITIES, Record, Report, Results, SurfaceId};
 use pxpl5::{Measure, Measured, side_by_side};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -67,17 +67,20 @@ impl Outcome {
     }
 
     fn surface(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceId> {
-        let (outcome, _) = self.run(py)?;
-        let all: Vec<(SurfaceId, &str)> =
-            outcome.record().surfaces().map(|(id, surface)| (id, surface.label)).collect();
-        let found = all.iter().find(|(id, label)| *label == name || id.0.to_string() == name).map(|(id, _)| *id);
-        let labels: Vec<&str> = all.iter().map(|(_, label)| *label).collect();
-        found.ok_or_else(|| wrong_setting(format!("surface: expected {}, found {name}", labels.join(" or "))))
+        surface_named(self.run(py)?.0.record(), name).map_err(wrong_setting)
     }
 
     fn texts(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, String)>> {
         Ok(origin(self.run(py)?.1))
     }
+}
+
+/// Returns the surface with a label or a number.
+pub(crate) fn surface_named(record: &Record, name: &str) -> Result<SurfaceId, String> {
+    let all: Vec<(SurfaceId, &str)> = record.surfaces().map(|(id, surface)| (id, surface.label)).collect();
+    let found = all.iter().find(|(id, label)| *label == name || id.0.to_string() == name).map(|(id, _)| *id);
+    let labels: Vec<&str> = all.iter().map(|(_, label)| *label).collect();
+    found.ok_or_else(|| format!("surface: expected {}, found {name}", labels.join(" or ")))
 }
 
 pub(crate) fn outcome_of_run(
@@ -216,39 +219,36 @@ impl Outcome {
     fn pictures(&self, py: Python<'_>) -> PyResult<Table> {
         let (outcome, _) = self.run(py)?;
         let (columns, rows) = py.detach(|| (columns(), rows(outcome)));
-        Table::of(columns.iter().enumerate().map(|(i, column)| column_of(i, column, &rows)).collect())
+        let values = |i: usize| rows.iter().map(move |row| row[i].map(u64::cast_signed));
+        let column =
+            |(i, of): (usize, &pxpl5::views::results::Column)| Column::whole(&of.name, &of.definition, values(i));
+        Table::of(columns.iter().enumerate().map(column).collect())
     }
 
     /// Returns a table with one row for each processing stage of each picture.
     fn stages(&self, py: Python<'_>) -> PyResult<Table> {
         let (outcome, _) = self.run(py)?;
-        let record = outcome.record();
         let stages = outcome.stages();
-        let ps = |time: pxpl5::Time| time.0.cast_signed();
         // A stage that belongs to all surfaces has no surface label.
-        let label = |id: SurfaceId| record.surface(id).map(|surface| surface.label.to_owned());
+        let label = |id: SurfaceId| outcome.record().surface(id).map(|surface| surface.label.to_owned());
         Table::of(vec![
-            Column::whole(
-                "picture",
-                "number of the picture in its pipeline's own count",
-                numbers(&stages, |s| Some(s.picture.0.cast_signed())),
-            ),
+            Column::whole("picture", PICTURE, stages.iter().map(|stage| Some(stage.picture.0.cast_signed()))),
             Column::text(
                 "stage",
                 "SAMPLE to SWAP, in lower case",
-                stages.iter().map(|s| Some(format!("{:?}", s.stage).to_lowercase())).collect(),
+                stages.iter().map(|stage| Some(format!("{:?}", stage.stage).to_lowercase())),
             ),
             Column::text(
                 "surface",
                 "the eye, of stages that take one at a time",
-                stages.iter().map(|s| s.surface.and_then(label)).collect(),
+                stages.iter().map(|stage| stage.surface.and_then(label)),
             ),
             Column::whole(
                 "begin_ps",
                 "when the first board began, picoseconds",
-                numbers(&stages, |s| Some(ps(s.begin))),
+                stages.iter().map(|s| Some(ps(s.begin))),
             ),
-            Column::whole("end_ps", "when the last board ended, picoseconds", numbers(&stages, |s| s.end.map(ps))),
+            Column::whole("end_ps", "when the last board ended, picoseconds", stages.iter().map(|s| s.end.map(ps))),
         ])
     }
 
@@ -258,26 +258,14 @@ impl Outcome {
         let (outcome, _) = self.run(py)?;
         let events: Vec<ObservedEvent> = py.detach(|| outcome.events().collect());
         Table::of(vec![
-            Column::whole(
-                "time_ps",
-                "when the event happened, picoseconds",
-                events.iter().map(|event| Some(event.time.0.cast_signed())).collect(),
-            ),
-            Column::text(
-                "board",
-                "name of the board",
-                events.iter().map(|event| Some(event.board.to_string())).collect(),
-            ),
+            Column::whole("time_ps", "when the event happened, picoseconds", events.iter().map(|e| Some(ps(e.time)))),
+            Column::text("board", "name of the board", events.iter().map(|event| Some(event.board.to_string()))),
             Column::whole(
                 "picture",
-                "number of the picture in its pipeline's own count",
-                events.iter().map(|event| event.kind.picture().map(|number| number.0.cast_signed())).collect(),
+                PICTURE,
+                events.iter().map(|event| event.kind.picture().map(|number| number.0.cast_signed())),
             ),
-            Column::text(
-                "event",
-                "the event in words",
-                events.iter().map(|event| Some(event.kind.to_string())).collect(),
-            ),
+            Column::text("event", "the event in words", events.iter().map(|event| Some(event.kind.to_string()))),
         ])
     }
 
@@ -379,13 +367,10 @@ impl Outcome {
     }
 }
 
-fn column_of(i: usize, column: &pxpl5::views::results::Column, rows: &[Vec<Option<u64>>]) -> Column {
-    let values = rows.iter().map(|row| row[i].map(u64::cast_signed)).collect();
-    Column::whole(&column.name, &column.definition, values)
-}
+const PICTURE: &str = "number of the picture in its pipeline's own count";
 
-fn numbers(stages: &[pxpl5::StageSpan], of: impl Fn(&pxpl5::StageSpan) -> Option<i64>) -> Vec<Option<i64>> {
-    stages.iter().map(of).collect()
+const fn ps(time: pxpl5::Time) -> i64 {
+    time.0.cast_signed()
 }
 
 const BITS: usize = 208;

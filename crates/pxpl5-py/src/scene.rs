@@ -1,17 +1,14 @@
 //! Scenes for Python: built-in scenes, model files and arrays.
 
 use crate::arrays::{Count, reals2, wholes2};
-use crate::catalogue::python;
 use crate::errors::wrong_setting;
 use crate::table::escaped;
 use glam::Vec3;
 use numpy::ndarray::{Array2, ArrayView1, ArrayView2};
 use numpy::{PyArray2, PyReadonlyArray2};
-use pxpl5::scene::{self, Frame, HeadMotion, Hinge, Lighting, Placement, SceneParts, Sphere, Structure, Vertex};
+use pxpl5::scene::{self, HeadMotion, Placement, SceneParts, Sphere, Vertex};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
-use pythonize::depythonize;
-use serde::{Deserialize, Serialize};
+use pyo3::types::{PyBytes, PyTuple};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -82,15 +79,16 @@ impl Scene {
         let colours = colours.map(|colours| wholes2("colours", colours, 3)).transpose()?;
         let spheres = spheres.map(|spheres| reals2("spheres", spheres, 4)).transpose()?;
         let sphere_colours = sphere_colours.map(|colours| wholes2("sphere_colours", colours, 3)).transpose()?;
-        let mut positions = points("vertices", vertices.as_array())?;
+        let mut positions = points(vertices.as_array());
         let triangles = indices(triangles.as_array(), positions.len())?;
-        let mut balls = balls(spheres.as_ref().map(PyReadonlyArray2::as_array))?;
+        let spheres = spheres.as_ref().map(PyReadonlyArray2::as_array);
+        let mut balls: Vec<(Vec3, f32)> = spheres.iter().flat_map(|spheres| spheres.rows()).map(ball).collect();
         if fit {
             fit_into_view(&mut positions, &mut balls);
         }
         // Compute missing normals, and fill in missing colours.
         let normals = match &normals {
-            Some(normals) => lengthened(points("normals", normals.as_array())?)?,
+            Some(normals) => lengthened(points(normals.as_array()))?,
             None => mean_normals(&positions, &triangles),
         };
         let colours = rgb("colours", colours.as_ref().map(PyReadonlyArray2::as_array), positions.len())?;
@@ -181,15 +179,9 @@ impl Scene {
 
     /// Returns the function and the arguments that make an equal scene, for the module ``pickle``.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let arrays = PyDict::new(py);
-        arrays.set_item("vertices", self.vertices(py))?;
-        arrays.set_item("normals", self.normals(py))?;
-        arrays.set_item("colours", self.colours(py))?;
-        arrays.set_item("triangles", self.triangles(py))?;
-        arrays.set_item("spheres", self.spheres(py))?;
-        arrays.set_item("sphere_colours", table(py, self.scene.spheres().iter().map(|sphere| sphere.colour)))?;
-        let rest = python(py, &Rest::of(&self.scene))?;
-        Ok((py.import("pxpl5._pickle")?.getattr("scene")?, (arrays, rest).into_pyobject(py)?))
+        let text = serde_json::to_vec(&scene::Scene::clone(&self.scene).into_parts()).map_err(wrong_setting)?;
+        let state = (PyBytes::new(py, &text), self.scene.warnings().to_vec());
+        Ok((py.import("pxpl5._pickle")?.getattr("scene")?, state.into_pyobject(py)?))
     }
 
     /// Returns a text that states the name of the scene and its numbers of triangles and spheres.
@@ -215,14 +207,6 @@ fn table<'py, T: numpy::Element + Copy + Default, const N: usize>(
     PyArray2::from_owned_array(py, array)
 }
 
-fn with_columns<T>(name: &str, array: &ArrayView2<'_, T>, columns: usize) -> PyResult<()> {
-    let (rows, found) = array.dim();
-    if found == columns {
-        return Ok(());
-    }
-    Err(wrong_setting(format!("{name}: expected shape (n, {columns}), found ({rows}, {found})")))
-}
-
 fn same_length(name: &str, found: usize, expected: usize) -> PyResult<()> {
     if found == expected {
         return Ok(());
@@ -230,32 +214,21 @@ fn same_length(name: &str, found: usize, expected: usize) -> PyResult<()> {
     Err(wrong_setting(format!("{name}: expected {expected} rows, one for each, found {found}")))
 }
 
-fn points(name: &str, array: ArrayView2<'_, f64>) -> PyResult<Vec<Vec3>> {
-    with_columns(name, &array, 3)?;
-    Ok(array.rows().into_iter().map(|row| Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32)).collect())
+fn points(array: ArrayView2<'_, f64>) -> Vec<Vec3> {
+    array.rows().into_iter().map(|row| Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32)).collect()
 }
 
 fn indices(array: ArrayView2<'_, i64>, vertices: usize) -> PyResult<Vec<[u32; 3]>> {
-    let mut all = Vec::with_capacity(array.nrows());
-    for (number, row) in array.rows().into_iter().enumerate() {
-        let mut corners = [0; 3];
-        for (corner, found) in corners.iter_mut().zip(row) {
-            // An index that is negative or has no vertex is an error.
-            let index = u32::try_from(*found).ok().filter(|index| (*index as usize) < vertices);
-            *corner = index.ok_or_else(|| {
-                wrong_setting(format!(
-                    "triangle {number}: expected an index of one of {vertices} vertices, found {found}"
-                ))
-            })?;
-        }
-        all.push(corners);
-    }
-    Ok(all)
-}
-
-fn balls(array: Option<ArrayView2<'_, f64>>) -> PyResult<Vec<(Vec3, f32)>> {
-    let Some(array) = array else { return Ok(Vec::new()) };
-    Ok(array.rows().into_iter().map(ball).collect())
+    // An index that is negative or has no vertex is an error.
+    let corner = |number: usize, found: i64| {
+        let index = u32::try_from(found).ok().filter(|index| (*index as usize) < vertices);
+        index.ok_or_else(|| {
+            let expected = format!("an index of one of {vertices} vertices");
+            wrong_setting(format!("triangle {number}: expected {expected}, found {found}"))
+        })
+    };
+    let rows = array.rows().into_iter().enumerate();
+    rows.map(|(n, row)| Ok([corner(n, row[0])?, corner(n, row[1])?, corner(n, row[2])?])).collect()
 }
 
 /// Converts a row of x, y, z and radius to a sphere.
@@ -269,16 +242,12 @@ const GREY: [u8; 3] = [200, 200, 200];
 fn rgb(name: &str, array: Option<ArrayView2<'_, i64>>, expected: usize) -> PyResult<Vec<[u8; 3]>> {
     let Some(array) = array else { return Ok(vec![GREY; expected]) };
     same_length(name, array.nrows(), expected)?;
-    let mut all = Vec::with_capacity(expected);
-    for (number, row) in array.rows().into_iter().enumerate() {
-        let mut colour = [0; 3];
-        for (part, found) in colour.iter_mut().zip(row) {
-            *part = u8::try_from(*found)
-                .map_err(|_| wrong_setting(format!("{name}, row {number}: expected 0 to 255, found {found}")))?;
-        }
-        all.push(colour);
-    }
-    Ok(all)
+    let part = |number: usize, found: i64| {
+        u8::try_from(found)
+            .map_err(|_| wrong_setting(format!("{name}, row {number}: expected 0 to 255, found {found}")))
+    };
+    let rows = array.rows().into_iter().enumerate();
+    rows.map(|(n, row)| Ok([part(n, row[0])?, part(n, row[1])?, part(n, row[2])?])).collect()
 }
 
 /// Scales normals to unit length, or raises an exception for a normal without direction.
@@ -329,132 +298,11 @@ fn fit_into_view(positions: &mut [Vec3], balls: &mut [(Vec3, f32)]) {
     }
 }
 
-/// The parts of a scene that are not arrays, as `pickle` stores them.
-#[derive(Serialize, Deserialize)]
-struct Rest {
-    name: String,
-    structures: Vec<StructureState>,
-    towards_light: [f32; 3],
-    ambient: f32,
-    diffuse: f32,
-    background: [u8; 3],
-    motion: HeadMotion,
-    path: Vec<[f32; 3]>,
-    warnings: Vec<String>,
-}
-
-/// A structure of a scene, as `pickle` stores it. A range is a pair of the first index and the index after the last
-/// index.
-#[derive(Serialize, Deserialize)]
-struct StructureState {
-    name: String,
-    vertices: [usize; 2],
-    triangles: [usize; 2],
-    spheres: [usize; 2],
-    moves_with_head: bool,
-    hinge: Option<HingeState>,
-    culls_back_faces: bool,
-}
-
-/// A hinge (axis of rotation) of a structure, as `pickle` stores it. The units are those of [`Hinge`].
-#[derive(Serialize, Deserialize)]
-struct HingeState {
-    point: [f32; 3],
-    axis: [f32; 3],
-    amplitude_deg: f64,
-    period_ps: u64,
-    phase_turns: f64,
-}
-
-impl Rest {
-    fn of(scene: &scene::Scene) -> Self {
-        let lighting = scene.lighting();
-        let ends = |range: &std::ops::Range<usize>| [range.start, range.end];
-        let structures = scene.structures().iter().map(|structure| StructureState {
-            name: structure.name.clone(),
-            vertices: ends(&structure.vertices),
-            triangles: ends(&structure.triangles),
-            spheres: ends(&structure.spheres),
-            moves_with_head: structure.frame == Frame::Head,
-            hinge: structure.hinge.map(|hinge| HingeState {
-                point: hinge.point.to_array(),
-                axis: hinge.axis.to_array(),
-                amplitude_deg: hinge.amplitude_deg,
-                period_ps: hinge.period_ps,
-                phase_turns: hinge.phase_turns,
-            }),
-            culls_back_faces: structure.culls_back_faces,
-        });
-        Self {
-            name: scene.name().to_owned(),
-            structures: structures.collect(),
-            towards_light: lighting.towards_light.to_array(),
-            ambient: lighting.ambient,
-            diffuse: lighting.diffuse,
-            background: lighting.background,
-            motion: *scene.motion(),
-            path: scene.path().iter().map(|corner| corner.to_array()).collect(),
-            warnings: scene.warnings().to_vec(),
-        }
-    }
-}
-
-impl StructureState {
-    fn structure(self) -> Structure {
-        let range = |[start, end]: [usize; 2]| start..end;
-        Structure {
-            name: self.name,
-            vertices: range(self.vertices),
-            triangles: range(self.triangles),
-            spheres: range(self.spheres),
-            frame: if self.moves_with_head { Frame::Head } else { Frame::World },
-            hinge: self.hinge.map(|hinge| Hinge {
-                point: Vec3::from_array(hinge.point),
-                axis: Vec3::from_array(hinge.axis),
-                amplitude_deg: hinge.amplitude_deg,
-                period_ps: hinge.period_ps,
-                phase_turns: hinge.phase_turns,
-            }),
-            culls_back_faces: self.culls_back_faces,
-        }
-    }
-}
-
-/// Rebuilds a scene from the parts that `Scene.__reduce__` returned, for the module `pickle`.
+/// Rebuilds a scene from the JSON text that `Scene.__reduce__` returned, for the module `pickle`.
 ///
-/// Raises :class:`pxpl5.SettingError` for parts that are not the parts of a valid scene.
+/// Raises :class:`pxpl5.SettingError` for text that does not describe a valid scene.
 #[pyfunction]
-pub(crate) fn scene_of_parts(arrays: &Bound<'_, PyDict>, rest: &Bound<'_, PyAny>) -> PyResult<Scene> {
-    let array = |name: &str| arrays.get_item(name)?.ok_or_else(|| wrong_setting(format!("a scene: {name} is missing")));
-    let rest: Rest = depythonize(rest).map_err(wrong_setting)?;
-    let positions = points("vertices", reals2("vertices", &array("vertices")?, 3)?.as_array())?;
-    let normals = points("normals", reals2("normals", &array("normals")?, 3)?.as_array())?;
-    let colours = rgb("colours", Some(wholes2("colours", &array("colours")?, 3)?.as_array()), positions.len())?;
-    same_length("normals", normals.len(), positions.len())?;
-    let balls = balls(Some(reals2("spheres", &array("spheres")?, 4)?.as_array()))?;
-    let of_spheres = wholes2("sphere_colours", &array("sphere_colours")?, 3)?;
-    let of_spheres = rgb("sphere_colours", Some(of_spheres.as_array()), balls.len())?;
-    let corners = positions.iter().zip(&normals).zip(&colours);
-    let parts = SceneParts {
-        name: rest.name,
-        vertices: corners
-            .map(|((position, normal), colour)| Vertex { position: *position, normal: *normal, colour: *colour })
-            .collect(),
-        triangles: indices(wholes2("triangles", &array("triangles")?, 3)?.as_array(), positions.len())?,
-        spheres: balls
-            .iter()
-            .zip(&of_spheres)
-            .map(|((centre, radius), colour)| Sphere { centre: *centre, radius: *radius, colour: *colour })
-            .collect(),
-        structures: rest.structures.into_iter().map(StructureState::structure).collect(),
-        lighting: Lighting {
-            towards_light: Vec3::from_array(rest.towards_light),
-            ambient: rest.ambient,
-            diffuse: rest.diffuse,
-            background: rest.background,
-        },
-        motion: rest.motion,
-        path: rest.path.into_iter().map(Vec3::from_array).collect(),
-    };
-    Ok(Scene::of(scene::Scene::new(parts).map_err(wrong_setting)?.with_warnings(rest.warnings)))
+pub(crate) fn scene_of_json(text: &[u8], warnings: Vec<String>) -> PyResult<Scene> {
+    let parts: SceneParts = serde_json::from_slice(text).map_err(wrong_setting)?;
+    Ok(Scene::of(scene::Scene::new(parts).map_err(wrong_setting)?.with_warnings(warnings)))
 }

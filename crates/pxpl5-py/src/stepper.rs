@@ -3,13 +3,13 @@
 //! The machine belongs to a thread of its own, because its programs cannot move to another thread. Python sends jobs to
 //! this thread and waits for the results without the interpreter's lock.
 
-use crate::background::{POLL_INTERVAL, STACK_BYTES};
+use crate::background::{recv, spawn};
 use crate::catalogue::python;
 use crate::errors::{failed_run, wrong_setting};
-use crate::outcome::outcome_of_run;
+use crate::outcome::{outcome_of_run, surface_named};
 use crate::picture::Picture;
 use crate::policy::PythonFunctions;
-use pxpl5::{Board, ExperimentError, Pause, PeriodNumber, Stepper as Native, StopFlag, SurfaceId, Time};
+use pxpl5::{Board, ExperimentError, Pause, PeriodNumber, SettingError, Stepper as Native, StopFlag, Time};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel, sync_channel};
@@ -32,8 +32,7 @@ impl MachineThread {
     ) -> PyResult<Result<Self, ExperimentError>> {
         let (jobs, received) = channel::<Job>();
         let (sender, begun) = sync_channel(1);
-        let thread = std::thread::Builder::new().name("pxpl5-stepper".to_owned()).stack_size(STACK_BYTES);
-        let started = thread.spawn(move || {
+        spawn("pxpl5-stepper", move || {
             let mut stepper = match experiment.stepper() {
                 Ok(stepper) => Some(stepper),
                 Err(error) => {
@@ -44,8 +43,7 @@ impl MachineThread {
             // If the caller no longer waits, the loop ends at once.
             let _ = sender.send(Ok(()));
             received.iter().for_each(|job: Job| job(&mut stepper));
-        });
-        started.map_err(|error| failed_run(format!("no thread can be started: {error}")))?;
+        })?;
         let begun = wait(py, begun, &stop)?;
         Ok(begun.map(|()| Self { jobs: Mutex::new(jobs), stop }))
     }
@@ -98,11 +96,6 @@ pub(crate) fn wait<T: Send>(py: Python<'_>, mut results: Receiver<T>, stop: &Sto
     }
 }
 
-// The receiver is borrowed mutably. It can be sent to another thread, but threads cannot share it.
-fn recv<T>(results: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
-    results.recv_timeout(POLL_INTERVAL)
-}
-
 /// Runs the machine to an instant in steps of one field, so that the flag `stop` takes effect soon.
 fn run_to(stepper: &mut Native, time: Time, stop: &StopFlag) -> Pause {
     loop {
@@ -125,15 +118,7 @@ fn pause_text(pause: &Pause) -> String {
 
 /// Parses the name of a board, such as `host`, `gp 3`, `renderer 0`, `display 0` or `ring`.
 fn board_named(name: &str) -> PyResult<Board> {
-    let (kind, number) = name.rsplit_once(' ').map_or((name, None), |(kind, number)| (kind, number.parse().ok()));
-    match (kind.to_lowercase().as_str(), number) {
-        ("host", None) => Ok(Board::Host),
-        ("ring", None) => Ok(Board::Ring),
-        ("gp", Some(number)) => Ok(Board::Gp(number)),
-        ("renderer", Some(number)) => Ok(Board::Renderer(number)),
-        ("display", Some(number)) => Ok(Board::Display(number)),
-        _ => Err(wrong_setting(format!("board: expected host, ring, gp N, renderer N or display N, found {name}"))),
-    }
+    name.parse().map_err(|error: SettingError| wrong_setting(error.at("board")))
 }
 
 /// A running experiment that advances on request.
@@ -261,16 +246,9 @@ impl Stepper {
     /// if no pixels are computed, or if the surface does not exist.
     fn picture(&self, py: Python<'_>, surface: &str) -> PyResult<Option<Picture>> {
         let name = surface.to_owned();
-        let picture = self.thread.execute(py, move |stepper, _| {
-            let all: Vec<(SurfaceId, &str)> =
-                stepper.record().surfaces().map(|(id, surface)| (id, surface.label)).collect();
-            let found = all.iter().find(|(id, label)| *label == name || id.0.to_string() == name);
-            let labels = all.iter().map(|(_, label)| *label).collect::<Vec<_>>().join(" or ");
-            match found {
-                Some((id, _)) => Ok(stepper.seen(*id)),
-                None => Err(format!("surface: expected {labels}, found {name}")),
-            }
-        })?;
+        let picture = self
+            .thread
+            .execute(py, move |stepper, _| surface_named(stepper.record(), &name).map(|id| stepper.seen(id)))?;
         picture.map_err(wrong_setting)?.map(|picture| Picture::of(py, picture, Vec::new())).transpose()
     }
 

@@ -6,12 +6,12 @@ use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::{
     Array, ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, RecordBatchIterator, StringArray,
 };
-use arrow_schema::{DataType, Field, Schema};
+use arrow_schema::{Field, Schema};
 use numpy::PyArray1;
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyDict, PyList, PySlice, PyTuple, PyType};
-use pythonize::pythonize;
 use serde_json::{Map, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -24,12 +24,12 @@ pub(crate) struct Column {
 }
 
 impl Column {
-    pub(crate) fn whole(name: &str, about: &str, values: Vec<Option<i64>>) -> Self {
-        Self { name: name.to_owned(), about: about.to_owned(), values: Arc::new(Int64Array::from(values)) }
+    pub(crate) fn whole(name: &str, about: &str, values: impl Iterator<Item = Option<i64>>) -> Self {
+        Self { name: name.to_owned(), about: about.to_owned(), values: Arc::new(values.collect::<Int64Array>()) }
     }
 
-    pub(crate) fn text(name: &str, about: &str, values: Vec<Option<String>>) -> Self {
-        Self { name: name.to_owned(), about: about.to_owned(), values: Arc::new(StringArray::from(values)) }
+    pub(crate) fn text(name: &str, about: &str, values: impl Iterator<Item = Option<String>>) -> Self {
+        Self { name: name.to_owned(), about: about.to_owned(), values: Arc::new(values.collect::<StringArray>()) }
     }
 }
 
@@ -400,19 +400,9 @@ fn cell<'py>(py: Python<'py>, column: &ArrayRef, row: usize) -> PyResult<Bound<'
         return Ok(py.None().into_bound(py));
     }
     let any = column.as_any();
-    let value = match column.data_type() {
-        DataType::Int64 => any.downcast_ref::<Int64Array>().map(|values| Value::from(values.value(row))),
-        // A float may be NaN, which JSON values cannot hold, so it is converted directly.
-        DataType::Float64 => {
-            return any
-                .downcast_ref::<Float64Array>()
-                .map_or(f64::NAN, |values| values.value(row))
-                .into_pyobject(py)
-                .map(|value| value.into_any())
-                .map_err(Into::into);
-        }
-        DataType::Boolean => any.downcast_ref::<BooleanArray>().map(|values| Value::from(values.value(row))),
-        _ => any.downcast_ref::<StringArray>().map(|values| Value::from(values.value(row))),
-    };
-    Ok(pythonize(py, &value)?)
+    let real = any.downcast_ref::<Float64Array>().map(|values| values.value(row).into_bound_py_any(py));
+    let whole = any.downcast_ref::<Int64Array>().map(|values| values.value(row).into_bound_py_any(py));
+    let flag = any.downcast_ref::<BooleanArray>().map(|values| values.value(row).into_bound_py_any(py));
+    let words = any.downcast_ref::<StringArray>().map(|values| values.value(row).into_bound_py_any(py));
+    real.or(whole).or(flag).or(words).unwrap_or_else(|| Ok(py.None().into_bound(py)))
 }

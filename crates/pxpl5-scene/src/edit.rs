@@ -19,7 +19,7 @@ pub struct Edit {
 /// surface.
 ///
 /// The angle at time t is `amplitude_deg * sin(2 pi (t / period_ps + phase_turns))`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Hinge {
     /// A point on the axis of the swing, metres, in coordinates of the scene.
     pub point: Vec3,

@@ -10,7 +10,7 @@ use crate::motion::HeadMotion;
 use tracking::view::View;
 
 /// A corner of one or more triangles, with position, normal and colour.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Vertex {
     /// Position in the coordinates of the vertex's structure, metres.
     pub position: Vec3,
@@ -21,7 +21,7 @@ pub struct Vertex {
 }
 
 /// A sphere, which a renderer draws as one primitive.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sphere {
     /// Position of the centre in the coordinates of the sphere's structure, metres.
     pub centre: Vec3,
@@ -32,7 +32,7 @@ pub struct Sphere {
 }
 
 /// The coordinate system to which a structure is fixed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Frame {
     /// The room, through which the head moves.
     World,
@@ -51,7 +51,7 @@ impl Frame {
 }
 
 /// A part of a scene with a name and one model matrix: successive triangles and spheres.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Structure {
     /// Name of the structure for display. No result depends on the name.
     pub name: String,
@@ -71,7 +71,7 @@ pub struct Structure {
 }
 
 /// The lighting of a scene: one directional light and ambient light.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Lighting {
     /// Unit vector towards the light, world coordinates.
     pub towards_light: Vec3,
@@ -97,7 +97,7 @@ impl Lighting {
 }
 
 /// The contents of a scene before [`Scene::new`] checks them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SceneParts {
     /// Name of the scene, as it appears in reports.
     pub name: String,

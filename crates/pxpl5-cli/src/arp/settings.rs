@@ -5,6 +5,7 @@ use crate::error::CliError;
 use crate::numbers::plain;
 use crate::output::OutputFolder;
 use crate::scenes;
+use crate::settings::table_of;
 use crate::terminal::warn;
 use clap::Args;
 use pxpl5::arp::WalkPlan;
@@ -13,8 +14,8 @@ use pxpl5::arp::pictures::ArpPicture;
 use pxpl5::scene::{Placement, Scene};
 use pxpl5::sweep::leaves;
 use pxpl5::views::png_bytes;
-use pxpl5::{ModelPlace, MotionChoice, PathSettings, SceneChoice};
-use pxpl5_sim::parameters::{assignment_of, text_of};
+use pxpl5::{PathSettings, SceneChoice};
+use pxpl5_sim::parameters::assignment_of;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -91,7 +92,8 @@ impl WalkArgs {
         // Check all settings together before the scene is loaded.
         plan.settings()?;
         warn(&plan.warnings(), self.quiet);
-        let scene = load(self.scene.as_deref().unwrap_or(&scene))?;
+        let name = self.scene.clone().unwrap_or(scene);
+        let scene = SceneChoice { name, placement: Placement::AsInFile, ..SceneChoice::default() }.load()?;
         scenes::print_warnings(&scene, self.quiet);
         Ok((scene, plan))
     }
@@ -112,11 +114,7 @@ impl WalkArgs {
         let mut given = GivenSettings::new();
         let mut scene = "gallery".to_owned();
         if let Some(path) = &self.file {
-            let place = path.display().to_string();
-            let bytes =
-                std::fs::read(path).map_err(|error| CliError::usage(format!("{place}: cannot be read: {error}")))?;
-            let text = text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
-            let file = toml::from_str(text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+            let (file, place) = table_of(path)?;
             // Settings of the file come first, so that later settings override them.
             for (path, value) in leaves(file) {
                 match path.as_str() {
@@ -150,19 +148,6 @@ fn read_lens(path: &Path, plan: &WalkPlan) -> Result<Lens, CliError> {
     let failed = |error: &dyn std::fmt::Display| CliError::usage(format!("{}: {error}", path.display()));
     let file = File::open(path).map_err(|error| failed(&error))?;
     Lens::read(BufReader::new(file), &plan.picture()).map_err(|error| failed(&error))
-}
-
-fn load(name: &str) -> Result<Arc<Scene>, CliError> {
-    let choice = SceneChoice {
-        name: name.to_owned(),
-        placement: Placement::AsInFile,
-        triangles: None,
-        culled: false,
-        model: ModelPlace::default(),
-        motion: MotionChoice::default(),
-        contents: None,
-    };
-    Ok(choice.load()?)
 }
 
 /// Writes pictures as PNG files into a folder. Each file also holds the settings that reproduce the picture.

@@ -2,6 +2,7 @@
 
 use super::words::{board, number};
 use pxpl5::{Board, PictureNumber, Stepper};
+use std::cmp::Ordering::{self, Equal, Greater, Less};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Condition {
@@ -21,19 +22,11 @@ pub(super) enum Condition {
     Waits(Board, String),
 }
 
+/// A comparison with a bound, which holds if the order of a value and the bound is one of `orders`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Comparison {
-    relation: Relation,
+    orders: &'static [Ordering],
     bound: u64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Relation {
-    Less,
-    AtMost,
-    Equal,
-    AtLeast,
-    More,
 }
 
 /// Numbers of swaps and of arrived regions at the last stop of the run.
@@ -125,25 +118,19 @@ impl Comparison {
     fn parse(words: &[&str]) -> Result<Self, String> {
         let refused = || format!("expected <, <=, =, >= or > and a number, found `{}`", words.join(" "));
         let [relation, bound] = words else { return Err(refused()) };
-        let relation = match *relation {
-            "<" => Relation::Less,
-            "<=" => Relation::AtMost,
-            "=" | "==" => Relation::Equal,
-            ">=" => Relation::AtLeast,
-            ">" => Relation::More,
+        let orders: &[Ordering] = match *relation {
+            "<" => &[Less],
+            "<=" => &[Less, Equal],
+            "=" | "==" => &[Equal],
+            ">=" => &[Equal, Greater],
+            ">" => &[Greater],
             _ => return Err(refused()),
         };
-        Ok(Self { relation, bound: number("bound", bound)? })
+        Ok(Self { orders, bound: number("bound", bound)? })
     }
 
-    const fn holds(self, value: u64) -> bool {
-        match self.relation {
-            Relation::Less => value < self.bound,
-            Relation::AtMost => value <= self.bound,
-            Relation::Equal => value == self.bound,
-            Relation::AtLeast => value >= self.bound,
-            Relation::More => value > self.bound,
-        }
+    fn holds(self, value: u64) -> bool {
+        self.orders.contains(&value.cmp(&self.bound))
     }
 }
 

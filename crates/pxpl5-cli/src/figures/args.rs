@@ -1,6 +1,6 @@
 //! Arguments of `pxpl5 figures`.
 
-use crate::budget::BudgetArgs;
+use crate::terminal::AnswerArgs;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -22,9 +22,6 @@ pub(crate) struct FiguresArgs {
     /// address-recalculation or volumetric. The last two have documents and pictures of their own.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["only", "chart", "intervals", "pages"])]
     pub(crate) group: Option<String>,
-    /// Print one JSON object.
-    #[arg(long)]
-    pub(crate) json: bool,
     /// Write the document with all figures (ACCURACY.md) to this file.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     pub(crate) write: Option<PathBuf>,
@@ -47,11 +44,8 @@ pub(crate) struct FiguresArgs {
     /// Measure only these figures, separated by commas. Each row is printed as soon as it is measured.
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with_all = ["write", "check", "json", "chart", "intervals"])]
     pub(crate) only: Vec<String>,
-    /// Print nothing but errors and, with --json, the JSON object.
-    #[arg(long, short)]
-    pub(crate) quiet: bool,
     #[command(flatten)]
-    pub(crate) budget: BudgetArgs,
+    pub(crate) answer: AnswerArgs,
 }
 
 /// Group of the papers on address recalculation.

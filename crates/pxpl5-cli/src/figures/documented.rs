@@ -6,7 +6,7 @@ use crate::arp::settings::put;
 use crate::error::CliError;
 use crate::output::{OutputFile, OutputFolder};
 use crate::progress::Progress;
-use crate::terminal::{answer, json_text, print};
+use crate::terminal::{json_text, print};
 use crate::volume::settings::load;
 use pxpl5::arp::{figures as walks, pictures};
 use pxpl5::lab::volumes::VolumeFigureQuery;
@@ -43,7 +43,7 @@ pub(super) fn run(name: &str, args: &FiguresArgs) -> Result<(), CliError> {
     if let Some(path) = &args.check {
         fresh(path, &group.markdown, &format!("figures --group {name}"))?;
     }
-    answer(args.json, args.quiet, &group.json, || group.text)
+    args.answer.print(&group.json, || group.text)
 }
 
 fn address_recalculation() -> Result<Measured, CliError> {
@@ -63,7 +63,7 @@ fn address_recalculation() -> Result<Measured, CliError> {
 const SCENES: [&str; 3] = ["mig", "head", "molecules"];
 
 fn volumetric(args: &FiguresArgs) -> Result<Measured, CliError> {
-    let (scenes, figures) = volumes(args.quiet)?;
+    let (scenes, figures) = volumes(args.answer.quiet)?;
     Ok(Measured {
         markdown: markdown(&figures),
         json: json_text(&figures)?,

@@ -4,13 +4,29 @@ use ::i860::{AddressProfile, Config, Cpu, Program, Ram, RunEnd, disassemble};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
+#[derive(clap::Args, Debug)]
 pub(super) struct RunOptions {
+    /// First instruction: a label or an address; default: label `start`, or the first byte.
+    #[arg(long)]
     pub(super) entry: Option<String>,
+    /// Address at which the run stops: a label or an address; default: label `end`, or the end of the file.
+    #[arg(long)]
     pub(super) stop: Option<String>,
+    /// Maximum number of instructions to execute.
+    #[arg(long, default_value_t = 10_000_000)]
     pub(super) budget: u64,
+    /// Size of the memory in bytes, from address 0, at most 1 GiB.
+    #[arg(long, default_value = "0x800000", value_parser = memory)]
     pub(super) memory: u32,
+    /// Show the memory that begins at this place, PLACE or PLACE:WORDS; may be repeated; default: the words that
+    /// the run changed.
+    #[arg(long, value_name = "PLACE[:WORDS]")]
     pub(super) show: Vec<String>,
+    /// Print one JSON object.
+    #[arg(long)]
     pub(super) json: bool,
+    /// Omit the listing by address.
+    #[arg(long)]
     pub(super) quiet: bool,
 }
 
@@ -258,6 +274,14 @@ fn cycle_listing(program: &Program, cpu: &Cpu) -> String {
         let _ = writeln!(text, "{labels}{visits:>11} {clocks:>11}  {pc:08x}  {word:08x}  {what}");
     }
     text
+}
+
+/// Parses the size of a memory: at most 1 GiB, because a run keeps a second copy of the memory.
+fn memory(text: &str) -> Result<u32, String> {
+    let most = 1 << 30;
+    Some(address(text)?)
+        .filter(|bytes| *bytes <= most)
+        .ok_or_else(|| format!("expected at most {most:#x}, found `{text}`"))
 }
 
 /// Parses a 32-bit number, decimal or hexadecimal with `0x`.

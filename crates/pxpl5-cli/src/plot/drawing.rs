@@ -16,8 +16,8 @@ pub(super) fn chart(args: &PlotArgs, groups: &[Group]) -> Chart {
     let series = curves.iter().map(|by| series_of(by, groups, names.as_deref())).filter(has_a_point).collect();
     let axes = ChartAxes {
         title: args.title.clone(),
-        across: args.x_label.clone().unwrap_or_else(|| args.x.clone()),
-        up: args.y_label.clone().unwrap_or_else(|| args.y.clone()),
+        across: args.x_label.clone().unwrap_or_else(|| args.question.x.clone()),
+        up: args.y_label.clone().unwrap_or_else(|| args.question.y.clone()),
     };
     let across = names.map_or_else(|| args.x_scale.scale(), AxisScale::Names);
     Chart { axes, across, up: args.y_scale.scale(), series, size: ChartSize::Column { width_mm: args.width } }

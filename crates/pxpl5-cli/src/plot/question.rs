@@ -1,24 +1,40 @@
 //! The columns to plot, and the groups of rows, each of which becomes one point of the plot.
 
 use crate::error::CliError;
+use crate::numbers::confidence;
 use crate::rows::{ResultRows, Row, RowsKind, value};
-use pxpl5::compare::MeanInterval;
+use pxpl5::compare::{CONFIDENCE, MeanInterval};
 use pxpl5::{Measure, Statistics};
 use pxpl5_sim::parameters::nearest;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-#[derive(Clone, Debug)]
+/// The columns to plot.
+#[derive(clap::Args, Clone, Debug)]
 pub(super) struct Question {
+    /// Column for the x axis, with numbers or names.
+    #[arg(long, value_name = "COLUMN")]
     pub(super) x: String,
+    /// Column for the y axis, with numbers.
+    #[arg(long, value_name = "COLUMN")]
     pub(super) y: String,
-    /// Columns that define the curves. Each combination of their values gives one curve.
+    /// Draw a separate curve for each value, or combination of values, of these columns.
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
     pub(super) by: Vec<String>,
-    /// Columns whose rows are combined into one mean.
+    /// Average over these columns, and draw the interval of the mean as a band.
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "seed")]
     pub(super) band: Vec<String>,
-    /// Filters: the name of a column and the required value as text.
+    /// Use only rows with this value in this column; may be repeated.
+    #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = pair)]
     pub(super) only: Vec<(String, String)>,
+    /// Confidence of the intervals, between 0 and 1. Rows of a comparison keep the confidence of that comparison.
+    #[arg(long, value_name = "SHARE", default_value_t = CONFIDENCE, value_parser = confidence)]
     pub(super) confidence: f64,
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or(format!("expected COLUMN=VALUE, found {text}"))?;
+    Ok((name.to_owned(), value.to_owned()))
 }
 
 #[derive(Clone, Debug)]

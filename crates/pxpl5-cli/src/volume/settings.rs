@@ -11,12 +11,12 @@ use crate::version::{VERSION, commit_text};
 use clap::Args;
 use image::RgbImage;
 use pxpl5::lab::volumes::VolumeQuery;
-use pxpl5::scene::{Placement, Scene};
+use pxpl5::scene::Scene;
 use pxpl5::views::png_bytes;
 use pxpl5::volume::pixel_planes::supported;
 use pxpl5::volume::spatialgl::Threads;
 use pxpl5::volume::{RendererKind, Volume, VolumeSettings};
-use pxpl5::{ModelPlace, MotionChoice, PathSettings, SceneChoice};
+use pxpl5::{PathSettings, SceneChoice};
 use std::num::NonZero;
 use std::sync::Arc;
 
@@ -138,15 +138,8 @@ pub(crate) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, Cli
 
 /// Returns the settings of a scene that is scaled to fit into the display. `name` is a built-in scene or a file.
 pub(super) fn scene_choice(name: &str, triangles: Option<u64>) -> SceneChoice {
-    SceneChoice {
-        name: name.to_owned(),
-        placement: Placement::Fitted,
-        triangles: triangles.map(|triangles| triangles as usize),
-        culled: false,
-        model: ModelPlace::default(),
-        motion: MotionChoice::default(),
-        contents: None,
-    }
+    let triangles = triangles.map(|triangles| triangles as usize);
+    SceneChoice { name: name.to_owned(), triangles, ..SceneChoice::default() }
 }
 
 pub(super) fn png(picture: &RgbImage, volume: &Volume) -> Result<Vec<u8>, CliError> {

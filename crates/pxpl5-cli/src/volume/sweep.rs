@@ -5,6 +5,7 @@ use super::settings::{SMALLER, scene_choice};
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::numbers::{plain, whole};
+use crate::settings::table_of;
 use crate::sweep::{SweepCommand, SweepFolderArgs};
 use crate::version::VERSION;
 use clap::Args;
@@ -14,12 +15,11 @@ use pxpl5::sweep::{Header, PointResults, SceneCache, Shard, SweepSpace, Swept, l
 use pxpl5::volume::spatialgl::{CommandBuffer, OneThread, Threads};
 use pxpl5::volume::{Volume, VolumeSettings};
 use pxpl5::{Fingerprint, SettingError, StopFlag, Study, StudyError};
-use pxpl5_sim::parameters::{PathSettings, assignment_of, text_of};
+use pxpl5_sim::parameters::{PathSettings, assignment_of};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::path::Path;
-use toml::Table;
 
 /// Draw a volume at every point of a parameter space.
 ///
@@ -81,11 +81,7 @@ impl VolumeSweep {
     /// Reads an experiment file with a sweep of volumes. The settings in `sets` come from the command line and replace
     /// settings of the file.
     fn load(path: &Path, sets: &[String], threads: Threads, budget: BudgetArgs) -> Result<Self, CliError> {
-        let place = path.display().to_string();
-        let bytes =
-            std::fs::read(path).map_err(|error| CliError::usage(format!("{place}: cannot be read: {error}")))?;
-        let text = text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
-        let mut file: Table = toml::from_str(text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+        let (mut file, place) = table_of(path)?;
         let title = file.remove("title").map(|title| plain(&title));
         let measure = measure(file.remove("measure"), &place)?;
         let sweep = file.remove("sweep");

@@ -151,7 +151,7 @@ impl Study for CompareQuery {
     fn run(&self, watcher: &mut dyn Watcher) -> Result<Comparison, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         // The first row serves to check the settings that all rows share.
-        let any = self.any_plan(&compared_pipelines)?;
+        let any = self.any_plan()?;
         let scene = any.load_scene()?;
         let held =
             |compared: &ComparedPipeline| self.store.as_deref().and_then(|store| store.row(compared.name)).cloned();
@@ -260,9 +260,8 @@ impl CompareQuery {
 
     /// Returns the checked settings of the first row with the first seed, and the names of all rows.
     pub(super) fn identity(&self) -> Result<(Plan, Vec<String>), StudyError> {
-        let rows = self.compared_pipelines()?;
-        let plan = self.any_plan(&rows)?;
-        Ok((plan, rows.iter().map(|row| row.name.to_owned()).collect()))
+        let rows = self.compared_pipelines()?.iter().map(|row| row.name.to_owned()).collect();
+        Ok((self.any_plan()?, rows))
     }
 
     /// Returns the checked settings of each row with the first seed, for an estimate of the cost of the comparison.
@@ -272,9 +271,8 @@ impl CompareQuery {
     ///
     /// Fails in the same cases as [`Study::run`].
     pub fn plans(&self) -> Result<Vec<Plan>, StudyError> {
-        let compared_pipelines = self.compared_pipelines()?;
-        let seed = self.any_plan(&compared_pipelines)?.seed;
-        Ok(compared_pipelines.iter().filter_map(|compared| compared.plan(&self.shared, seed).ok()).collect())
+        let seed = self.any_plan()?.seed;
+        Ok(self.compared_pipelines()?.iter().filter_map(|compared| compared.plan(&self.shared, seed).ok()).collect())
     }
 
     /// Returns a warning if the shared settings come from the folder of another comparison, and its results will differ.
@@ -319,21 +317,16 @@ impl CompareQuery {
 
     /// Returns the checked settings of the first row with the first seed. The number of fields is not checked.
     pub(super) fn first_plan(&self) -> Result<Plan, StudyError> {
-        self.plan_of_first(&self.compared_pipelines()?)
-    }
-
-    fn plan_of_first(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, StudyError> {
         let seed = *self.seeds.first().ok_or_else(|| SettingError::value("seeds", "at least one", "none"))?;
-        let first = compared_pipelines
-            .first()
-            .ok_or_else(|| SettingError::value("", "a registry with a pipeline that is compared", "none"))?;
-        Ok(first.plan(&self.shared, seed)?)
+        let rows = self.compared_pipelines()?;
+        let none = || SettingError::value("", "a registry with a pipeline that is compared", "none");
+        Ok(rows.first().ok_or_else(none)?.plan(&self.shared, seed)?)
     }
 
     /// Checks the settings that all rows share: the head, the seeds and the number of fields. Returns the checked
     /// settings of the first row with the first seed.
-    fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, StudyError> {
-        let plan = self.plan_of_first(compared_pipelines)?;
+    fn any_plan(&self) -> Result<Plan, StudyError> {
+        let plan = self.first_plan()?;
         if plan.head.is_none() {
             let found = "none: without a head there is no error to compare";
             return Err(SettingError::value("", "a head.motion", found).into());

@@ -11,14 +11,13 @@
 use super::gallery::LastPicture;
 use super::row::ComparisonRow;
 use crate::error::StudyError;
-use crate::sweep::{ROWS_FILE, line_of, lock, opened};
+use crate::sweep::{LineFile, ROWS_FILE, line_of, lock};
 use image::RgbImage;
 use pxpl5_measure::FieldMisregistration;
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -55,20 +54,14 @@ struct PictureFiles {
     is_complete: bool,
 }
 
-#[derive(Debug)]
-struct Rows {
-    file: File,
-    count: usize,
-    end: u64,
-}
-
 /// The finished rows of a comparison, stored in one folder.
 #[derive(Debug)]
 pub struct CompareStore {
     folder: PathBuf,
     /// Finished rows of an earlier process.
     found: Vec<ComparisonRow>,
-    rows: Mutex<Rows>,
+    /// File of the rows, and the number of its rows.
+    rows: Mutex<(LineFile, usize)>,
     /// Lock of the folder. No other process can open the folder while this object exists.
     _lock: File,
 }
@@ -79,31 +72,31 @@ impl CompareStore {
         // The folder is locked before any change.
         let lock = lock(folder)?;
         let path = folder.join(ROWS_FILE);
-        let text = whole_lines(&path)?;
-        let mut lines = (1..).zip(text.split_inclusive(|byte| *byte == b'\n'));
-        let before: Option<Header> = lines.next().map(|(number, line)| parsed(&path, number, line)).transpose()?;
-        let mut end = text.len() as u64;
+        let mut file = LineFile::open(path.clone())?;
+        let mut lines = file.lines("a row of a comparison")?;
+        let before: Option<Header> = lines.next()?;
+        let mut found = Vec::new();
         // Rows are read only if they are kept, because another version may have written them.
-        let found: Vec<ComparisonRow> = if resume {
+        if resume {
             header.check(&path, before.as_ref())?;
-            let row = |(number, line)| parsed::<Line>(&path, number, line)?.row_in(folder);
-            lines.map(row).collect::<Result<_, _>>()?
+            while let Some(line) = lines.next::<Line>()? {
+                found.push(line.row_in(folder)?);
+            }
         } else {
-            let (rows, of) = (lines.count(), before.map_or(0, |before| before.rows.len()));
+            let (mut rows, of) = (0, before.map_or(0, |before| before.rows.len()));
+            while lines.read()? {
+                rows += 1;
+            }
             if rows > 0 && rows < of {
                 let reason = format_args!(
                     "{rows} of {of} rows of an interrupted comparison are here; resume the comparison, or choose another folder"
                 );
                 return Err(FileError::because(FileErrorKind::Unfinished, reason).in_file(path.display()).into());
             }
-            end = 0;
-            Vec::new()
-        };
-        let mut rows = Rows { file: opened(&path, end)?, count: found.len(), end };
-        if end == 0 {
-            rows.put(&path, &line_of(header))?;
         }
-        Ok(Self { folder: folder.to_owned(), found, rows: Mutex::new(rows), _lock: lock })
+        file.cut(if resume { lines.whole_bytes } else { 0 }, header)?;
+        let rows = Mutex::new((file, found.len()));
+        Ok(Self { folder: folder.to_owned(), found, rows, _lock: lock })
     }
 
     /// Returns the number of finished rows of an earlier process.
@@ -119,14 +112,16 @@ impl CompareStore {
     /// Appends a finished row. Returns the row as read back from the file, so that an interruption changes no result.
     pub(super) fn append(&self, row: ComparisonRow) -> Result<ComparisonRow, StudyError> {
         let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
-        let number = rows.count + 1;
+        let (file, count) = &mut *rows;
+        *count += 1;
         // The pictures are stored first, because the line of the row names them.
-        let picture = row.picture.as_ref().map(|picture| self.put_picture(number, picture)).transpose()?;
+        let picture = row.picture.as_ref().map(|picture| self.put_picture(*count, picture)).transpose()?;
         let text = line_of(&Line { by_field: row.by_field.clone(), picture, row });
-        let path = self.folder.join(ROWS_FILE);
-        rows.put(&path, &text)?;
-        rows.count = number;
-        parsed::<Line>(&path, number + 1, text.as_bytes())?.row_in(&self.folder)
+        file.put(&text)?;
+        let line: Line = serde_json::from_str(&text)
+            .map_err(std::io::Error::from)
+            .map_err(FileError::io(&self.folder, "cannot be read"))?;
+        line.row_in(&self.folder)
     }
 
     fn put_picture(&self, number: usize, picture: &LastPicture) -> Result<PictureFiles, StudyError> {
@@ -180,36 +175,5 @@ impl Line {
             Ok::<_, StudyError>(LastPicture { seen: read(&files.seen)?, should_be, is_complete: files.is_complete })
         });
         Ok(ComparisonRow { by_field: self.by_field, picture: picture.transpose()?, ..self.row })
-    }
-}
-
-/// Returns the complete lines of a file, or nothing if the file does not exist.
-fn whole_lines(path: &Path) -> Result<Vec<u8>, StudyError> {
-    let mut bytes = match fs::read(path) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-        bytes => bytes.map_err(FileError::io(path, "cannot be read"))?,
-    };
-    let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
-    bytes.truncate(whole);
-    Ok(bytes)
-}
-
-fn parsed<T: serde::de::DeserializeOwned>(path: &Path, line: usize, text: &[u8]) -> Result<T, StudyError> {
-    serde_json::from_slice(text).map_err(|error| {
-        let file = format!("{}, line {line}", path.display());
-        FileError::new(FileErrorKind::Damaged, "a row of a comparison", error).in_file(file).into()
-    })
-}
-
-impl Rows {
-    /// Appends a line. An incompletely written line is removed, so that all earlier lines stay readable.
-    fn put(&mut self, path: &Path, line: &str) -> Result<(), StudyError> {
-        if let Err(error) = self.file.write_all(line.as_bytes()) {
-            // Only the first error is reported.
-            let _ = self.file.set_len(self.end);
-            return Err(FileError::io(path, "cannot be written")(error).into());
-        }
-        self.end += line.len() as u64;
-        Ok(())
     }
 }

@@ -46,33 +46,31 @@ const KEYS: [NumberKey; 11] = [
         KeyValues::Names(&["down", "up", "right", "left"]),
         "direction",
     ),
-    NumberKey {
-        per_unit: 1e3,
-        ..number(
-            "display.active",
-            "",
-            "part of the period in which pixels light; a global display lights at its end",
-            "active_permille",
-        )
-    },
-    NumberKey {
-        per_unit: 1e3,
-        ..number(
-            "display.persistence_ms",
-            "ms",
-            "time for which a pixel shines in each scan, at most a period",
-            "persistence_us",
-        )
-    },
-    NumberKey {
-        per_unit: 1e3,
-        ..number("display.response_ms", "ms", "time constant of a pixel's brightness", "response_us")
-    },
+    number(
+        "display.active",
+        "",
+        "part of the period in which pixels light; a global display lights at its end",
+        "active_permille",
+    )
+    .in_thousandths(),
+    number(
+        "display.persistence_ms",
+        "ms",
+        "time for which a pixel shines in each scan, at most a period",
+        "persistence_us",
+    )
+    .in_thousandths(),
+    number("display.response_ms", "ms", "time constant of a pixel's brightness", "response_us").in_thousandths(),
     number("display.ports", "", "ports of a board on the ring", "ports"),
     number("display.bits", "", "bits of a pixel's colour", "bits"),
 ];
 
 impl NumberKey {
+    /// Returns the key of a number that the display's table has in thousandths of the unit.
+    const fn in_thousandths(self) -> Self {
+        Self { per_unit: 1e3, ..self }
+    }
+
     /// Returns the range of the parameter in a display's table, in the unit of the experiment file.
     fn limits(&self, table: &dyn ParameterTable) -> KeyValues {
         let info = table.infos().iter().find(|info| info.name == self.parameter);

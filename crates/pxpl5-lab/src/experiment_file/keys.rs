@@ -5,10 +5,13 @@ use super::head::COLUMNS;
 use super::hmd;
 use super::motion::PathChoice;
 use super::origin;
+use super::text::toml_value;
 use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Aim, Every, FIELDS_RANGE, HeadPlace, Level, Pixels, Registry, Reprojection};
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, names};
+use std::collections::BTreeMap;
+use toml::Value;
 use tracking::motion::{Axes, Columns, End, Jumps};
 
 /// A key of an experiment file, with an explanation for the user.
@@ -45,7 +48,7 @@ const COMMON: &[Key] = &[
     Key::new("title", "title of the experiment, for readers", KeyValues::ANY),
     Key::new(
         "scene",
-        "a built-in scene or a model file (.ply, .obj, .stl, .pdb, .gltf, .glb), relative to the experiment file",
+        "a built-in scene (`pxpl5 scenes` lists them) or a model file (.ply, .obj, .stl, .pdb, .gltf, .glb); in a file, relative to it",
         KeyValues::ANY,
     ),
     Key::new(
@@ -82,8 +85,9 @@ const COMMON: &[Key] = &[
     Key::new(
         "head.motion",
         "motion of a tracked head from the start pose of head.path on: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, \
-         pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, recorded:NAME, or a recording (.csv, .txt, \
-         .tum, .jsonl), relative to the experiment file",
+         pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, a real head \
+         (recorded:vive-tracked, recorded:vive-dev), or a recording (.csv, .txt, .tum, .jsonl: time_s,x,y,z,qw,qx,qy,qz, EuRoC, TUM, a \
+         pose log, or any table with head.columns); in a file, relative to it",
         KeyValues::ANY,
     ),
     Key::new(
@@ -101,16 +105,17 @@ const COMMON: &[Key] = &[
     .with_default("keep, with a warning"),
     Key::new("head.train", "motion on which the predictor is tuned: any head.motion that is not along a path", KeyValues::ANY)
         .with_default("another synthetic motion; head.motion itself for all others"),
-    Key::new("head.tracker", crate::head_parts::TRACKERS, KeyValues::ANY),
+    Key::new("head.tracker", crate::head_parts::TRACKERS, KeyValues::ANY).with_default("optical"),
     Key::new("head.added_latency", "time added to the latency of the tracker", KeyValues::Real(0.0, 1000.0))
         .with_unit("ms")
         .with_default("0"),
-    Key::new("head.predict", "none, velocity, acceleration or kalman", KeyValues::ANY),
+    Key::new("head.predict", "none, velocity, acceleration or kalman", KeyValues::ANY).with_default("kalman"),
     Key::new(
         "head.aim",
         "instant for which a view is predicted, within the time in which it is shown",
         KeyValues::Names(&const { names(&Aim::ALL) }),
-    ),
+    )
+    .with_default("middle"),
     Key::new(
         "head.place",
         "what the poses of head.motion count from: scene (the motion begins where the scene's own motion begins), world \
@@ -136,7 +141,8 @@ const COMMON: &[Key] = &[
         "plain, vdrt (the raster is shifted by the error of the pose), or a device that moves pictures to the newest pose \
          by shift, rotation (timewarp) or depth",
         KeyValues::Names(&["plain", "vdrt", "shift", "rotation", "depth"]),
-    ),
+    )
+    .with_default("plain"),
     Key::new(
         super::reprojection::EVERY,
         "how often a device takes the newest pose: field, strip of 128 lines, or line",
@@ -181,7 +187,8 @@ const COMMON: &[Key] = &[
         "goal of the quantity triangles_possible: at most this mean latency, in fields",
         KeyValues::Real(1e-3, 1e6),
     ),
-    Key::new("machine.preset", "a preset of `pxpl5 machines`", KeyValues::ANY),
+    Key::new("machine.preset", "a preset of `pxpl5 machines`", KeyValues::ANY)
+        .with_default("the machine of the pipeline's paper"),
     Key::new(
         "machine.code",
         "i860 code that the processors run at the cycle level, or none (the table's times)",
@@ -211,7 +218,21 @@ pub(super) fn common(name: &str) -> Option<&'static Key> {
     COMMON.iter().chain(&origin::KEYS).chain(hmd::KEYS.iter().map(|(key, ..)| key)).find(|key| key.name == name)
 }
 
+/// Beginnings of the keys whose values a plan writes as they were given. A value that is the default is left out.
+const WRITTEN: [&str; 9] =
+    ["title", "triangles", "fit", "cull", "model.", "head.distance", "head.sway", "limit.", "published."];
+
 impl ExperimentFile {
+    /// Returns the given values that a plan writes without a change.
+    pub(super) fn given(&self) -> Result<BTreeMap<String, Value>, SettingError> {
+        let mut given = BTreeMap::new();
+        for key in COMMON.iter().filter(|key| WRITTEN.iter().any(|start| key.name.starts_with(start))) {
+            let value = self.value(key)?.map(toml_value).filter(|value| value.to_string() != key.default);
+            given.extend(value.map(|value| (key.name.to_owned(), value)));
+        }
+        Ok(given)
+    }
+
     fn common(&self, name: &str) -> Result<Option<KeyValue>, SettingError> {
         common(name).map_or(Ok(None), |key| self.value(key))
     }
@@ -278,7 +299,8 @@ fn parameters(registry: &Registry) -> Vec<String> {
     machine(registry).settings().into_iter().map(|(path, _)| path).collect()
 }
 
-fn machine(registry: &Registry) -> MachineConfig {
+/// Returns a machine that has every display of the registry.
+pub(super) fn machine(registry: &Registry) -> MachineConfig {
     let all_displays = registry.displays().iter().map(|entry| (entry.config)()).collect();
     MachineConfig { displays: all_displays, ..registry.machine_of(MachineConfig::small_hmd()) }
 }

@@ -6,7 +6,6 @@ use glam::Vec3;
 use pxpl5_scene::config::{FIT_DISTANCE_RADII, MEAN_HEAD_SPEED_DEG_PER_S};
 use pxpl5_scene::{HeadMotion, HeadPath, Scene, Sway};
 use pxpl5_sim::parameters::SettingError;
-use toml::Value;
 
 /// A path of the head relative to the scene's centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,13 +72,6 @@ impl MotionChoice {
         }
         let deg_per_s = file.number(RATE)?.or(takes_rate.then_some(MEAN_HEAD_SPEED_DEG_PER_S));
         Ok(Self { path, distance: file.number(DISTANCE)?, deg_per_s, sway: file.number(SWAY)? })
-    }
-
-    pub(super) fn settings(&self) -> Vec<(&'static str, Value)> {
-        let Self { path, distance, deg_per_s, sway } = *self;
-        let numbers = [(DISTANCE, distance), (RATE, deg_per_s), (SWAY, sway)];
-        let numbers = numbers.into_iter().filter_map(|(key, value)| Some((key, value?.into())));
-        std::iter::once((PATH, path.to_string().into())).chain(numbers).collect()
     }
 
     pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, SettingError> {

@@ -19,7 +19,9 @@ use pxpl5_scene::{Hmd, Scene};
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{Parameter, SettingError, Value as Number};
 use pxpl5_wire::NodeId;
+use std::collections::BTreeMap;
 use std::sync::Arc;
+use toml::Value;
 
 /// Files that a run writes in addition to its report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,8 +76,6 @@ pub struct Plan {
     pub pipeline: Arc<dyn Pipeline>,
     /// Criterion of a search for the largest number of triangles that are drawn in time.
     pub limit: LimitCriterion,
-    /// Goal that replaces the pipeline's own goal in `limit`, if the keys `limit.*` give one.
-    pub goal: Option<Goal>,
     /// Machine: a preset, adapted to the pipeline, with the parameters in the file.
     pub machine: MachineConfig,
     /// Scene by name and settings, not yet loaded.
@@ -102,6 +102,8 @@ pub struct Plan {
     pub published: Option<Published>,
     /// Origin of the results beside the experiment file, if a command wrote the file with its results.
     pub origin: Origin,
+    /// Values that are written as they were given.
+    pub(super) given: BTreeMap<String, Value>,
 }
 
 /// Name of the level that the program chooses.
@@ -135,7 +137,6 @@ impl ExperimentFile {
             level: self.level(entry, head.is_some())?.unwrap_or(Level::Transaction),
             within_percent: self.within()?,
             limit: LimitCriterion { goal: goal.unwrap_or(own.goal), ..own },
-            goal,
             hmd: hmd::read(self, pipeline.as_ref())?,
             pipeline,
             head,
@@ -148,6 +149,7 @@ impl ExperimentFile {
             },
             published: Published::read(self)?,
             origin: Origin::read(self)?,
+            given: self.given()?,
         })
     }
 

@@ -6,11 +6,10 @@ use pxpl5_scene::{Edit, Format, Placement, Scene};
 use pxpl5_sim::parameters::SettingError;
 use std::path::Path;
 use std::sync::Arc;
-use toml::Value;
 
 /// The scene of an experiment: its name or file, its number of primitives, and the motion of the head in front of the
 /// scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneChoice {
     /// Name of a built-in scene, or path of a model file.
     pub name: String,
@@ -59,13 +58,6 @@ impl ModelPlace {
             turn_deg: number("model.turn")?,
             in_room: file.flag("model.room")?.unwrap_or(false),
         })
-    }
-
-    pub(super) fn settings(&self) -> Vec<(&'static str, Value)> {
-        let numbers = [self.at_m[0], self.at_m[1], self.at_m[2], self.size_m, self.turn_deg];
-        let keys = [AT[0], AT[1], AT[2], "model.size", "model.turn"];
-        let given = keys.into_iter().zip(numbers).filter_map(|(key, number)| Some((key, Value::from(number?))));
-        given.chain(self.in_room.then_some(("model.room", Value::from(true)))).collect()
     }
 
     fn of(&self, scene: Arc<Scene>) -> Result<Arc<Scene>, SettingError> {

@@ -6,8 +6,7 @@ use super::scene::is_file;
 use super::{ExperimentFile, hmd};
 use crate::head_parts::is_recorded_file;
 use pxpl5_machine::MachineConfig;
-use pxpl5_run::{Experiment, Fingerprint, Goal, KeyValue};
-use pxpl5_scene::Placement;
+use pxpl5_run::{Experiment, Fingerprint, KeyValue};
 use pxpl5_sim::parameters::Parameter;
 use pxpl5_sim::parameters::Value as Number;
 use std::collections::BTreeMap;
@@ -38,12 +37,13 @@ impl Plan {
 
     /// Returns the effective value of each setting, including defaults.
     pub fn settings(&self) -> Settings {
-        let mut all = Settings { values: BTreeMap::new(), remarks: BTreeMap::new() };
-        if let Some(title) = &self.title {
-            all.put("title", title.clone());
-        }
-        self.pipeline_settings(&mut all);
-        self.scene_settings(&mut all);
+        let mut all = Settings { values: self.given.clone(), remarks: BTreeMap::new() };
+        all.put("pipeline", self.pipeline.name());
+        self.pipeline.settings().into_iter().for_each(|(key, value)| all.put(key, toml_value(value)));
+        all.put("display", self.display());
+        all.put("scene", self.scene.name.clone());
+        all.put("head.path", self.scene.motion.path.to_string());
+        self.scene.motion.deg_per_s.into_iter().for_each(|rate| all.put("head.deg_per_s", rate));
         // Without a tracked head, tracking parameters have no effect and are left out.
         if let Some(head) = &self.head {
             head.settings().into_iter().for_each(|(path, value)| all.put(&path, value));
@@ -56,15 +56,9 @@ impl Plan {
         all.put("level", self.level_name());
         self.within_percent.into_iter().for_each(|bound| all.put("within", bound));
         all.put("measure", self.measure.iter().map(|m| Value::from(m.name())).collect::<Vec<_>>());
-        match self.goal {
-            Some(Goal::RateHz(hz)) => all.put("limit.rate_hz", hz),
-            Some(Goal::LatencyFields(fields)) => all.put("limit.latency_fields", fields),
-            _ => {}
-        }
         all.put("output.pictures", self.output.pictures);
         all.put("output.timeline", self.output.timeline);
         all.put("output.csv", self.output.csv);
-        self.published_settings(&mut all);
         all.machine(&self.machine);
         all
     }
@@ -92,48 +86,6 @@ impl Plan {
         let inside = settings.values.iter().filter(|(path, _)| !outside.iter().any(|o| path.starts_with(o)));
         let text: String = inside.map(|(path, value)| format!("{path}={value}\n")).collect();
         Fingerprint::of(text.as_bytes())
-    }
-
-    fn pipeline_settings(&self, all: &mut Settings) {
-        all.put("pipeline", self.pipeline.name());
-        for (key, value) in self.pipeline.settings() {
-            match value {
-                KeyValue::Flag(flag) => all.put(key, flag),
-                KeyValue::Whole(number) => all.put(key, number.cast_signed()),
-                KeyValue::Real(number) => all.put(key, number),
-                KeyValue::Name(name) => all.put(key, name),
-                KeyValue::Text(text) => all.put(key, text.to_string()),
-            }
-        }
-        all.put("display", self.display());
-    }
-
-    fn scene_settings(&self, all: &mut Settings) {
-        all.put("scene", self.scene.name.clone());
-        // `fit` and `cull` are written only if they differ from their defaults.
-        if self.scene.placement == Placement::AsInFile {
-            all.put("fit", false);
-        }
-        if self.scene.culled {
-            all.put("cull", true);
-        }
-        if let Some(triangles) = self.scene.triangles {
-            all.put("triangles", triangles as i64);
-        }
-        self.scene.model.settings().into_iter().for_each(|(path, value)| all.put(path, value));
-        self.scene.motion.settings().into_iter().for_each(|(path, value)| all.put(path, value));
-    }
-
-    fn published_settings(&self, all: &mut Settings) {
-        let Some(published) = &self.published else { return };
-        if let Some(figure) = published.figure {
-            all.put("published.figure", figure as i64);
-        }
-        if let Some(source) = &published.source {
-            all.put("published.source", source.clone());
-        }
-        all.put("published.quantity", published.quantity.name());
-        all.put("published.value", published.value);
     }
 }
 
@@ -229,6 +181,16 @@ fn relative(file: &Path, folder: &Path) -> Option<String> {
     let up = folder.components().skip(common).map(|_| Component::ParentDir);
     let way: PathBuf = up.chain(file.components().skip(common)).collect();
     Some(way.display().to_string())
+}
+
+pub(super) fn toml_value(value: KeyValue) -> Value {
+    match value {
+        KeyValue::Flag(flag) => Value::from(flag),
+        KeyValue::Whole(number) => Value::from(number.cast_signed()),
+        KeyValue::Real(number) => Value::from(number),
+        KeyValue::Name(name) => Value::from(name),
+        KeyValue::Text(text) => Value::from(&*text),
+    }
 }
 
 fn toml_number(value: Number) -> Value {

@@ -5,7 +5,6 @@
 
 use super::tracking_numbers::tracking_parameters;
 use super::{display, keys};
-use pxpl5_machine::MachineConfig;
 use pxpl5_run::Registry;
 use pxpl5_sim::parameters::Parameter;
 use toml::Value;
@@ -75,11 +74,7 @@ fn unit_of(registry: &Registry, key: &str) -> Option<String> {
         parameters.into_iter().find(|parameter| parameter.path == path).map(|parameter| parameter.info.unit.to_owned())
     };
     match key.strip_prefix("machine.") {
-        Some(path) => {
-            let displays = registry.displays().iter().map(|entry| (entry.config)()).collect();
-            let machine = MachineConfig { displays, ..registry.machine_of(MachineConfig::small_hmd()) };
-            unit(machine.parameters(), path)
-        }
+        Some(path) => unit(keys::machine(registry).parameters(), path),
         None => unit(tracking_parameters(), key),
     }
 }

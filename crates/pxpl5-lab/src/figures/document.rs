@@ -12,7 +12,7 @@ use crate::interpretations::{ALIKE, FigureFit, Fit, Interpretations, figures as 
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
 use pxpl5_sim::figures::column::{PROVENANCE, PUBLISHED, SIMULATED, error};
-use pxpl5_sim::figures::{filled, four, lines, range};
+use pxpl5_sim::figures::{filled, four, range};
 
 /// The texts of both documents.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -113,16 +113,17 @@ fn edges(rows: &[&FigureRow]) -> String {
         ])
     };
     let headings = ["#", "simulated", "a retrace later after", "effect", "a retrace earlier before"];
-    rows_of(headings, rows.iter().filter_map(near))
+    rows_of(&headings, rows.iter().filter_map(near))
 }
 
 /// Duration of an NTSC field in ms.
 const FIELD_MS: f64 = 1001.0 / 60.0;
 
 /// Returns a Markdown table from its headings and the cells of its rows.
-fn rows_of<const N: usize>(headings: [&str; N], rows: impl IntoIterator<Item = [String; N]>) -> String {
-    let head = lines([headings.map(str::to_owned)]) + &format!("|{}\n", "---|".repeat(N));
-    head + &lines(rows)
+fn rows_of(headings: &[&str], rows: impl IntoIterator<Item = impl AsRef<[String]>>) -> String {
+    let line = |cells: String| format!("| {cells} |\n");
+    let rows: String = rows.into_iter().map(|row| line(row.as_ref().join(" | "))).collect();
+    format!("{}|{}\n{rows}", line(headings.join(" | ")), "---|".repeat(headings.len()))
 }
 
 fn headline(figures: &Figures) -> String {
@@ -185,7 +186,7 @@ fn tables(figures: &Figures) -> String {
             ]
         });
         let headings = ["#", "figure", "published", "simulated", "error", "interval", "provenance"];
-        text += &format!("## {}\n\n{}\n", group.title, rows_of(headings, rows));
+        text += &format!("## {}\n\n{}\n", group.title, rows_of(&headings, rows));
     }
     text
 }
@@ -207,7 +208,7 @@ fn fields(rows: &[&FigureRow]) -> String {
         ])
     };
     rows_of(
-        ["#", "published (sd)", "exact fields (sd)", "error", "whole fields (sd)", "error"],
+        &["#", "published (sd)", "exact fields (sd)", "error", "whole fields (sd)", "error"],
         all().filter_map(of_fly_through),
     )
 }
@@ -247,7 +248,7 @@ fn definitions() -> String {
             None => rows.push(new),
         }
     }
-    rows_of(["rows", "from", "to", "eyes, statistic", "what the paper says"], rows)
+    rows_of(&["rows", "from", "to", "eyes, statistic", "what the paper says"], rows)
 }
 
 /// Least change of a figure, in percent, for which a document lists what changes it: the times of i860 code instead of
@@ -261,7 +262,7 @@ fn moved_by_code(rows: &[&FigureRow], of_code: &[&FigureRow]) -> String {
         let of_code = if code.simulated.is_finite() { error(code) } else { "-100.0 %".to_owned() };
         [table.id.to_owned(), PUBLISHED.1(table), four(table.simulated), error(table), four(code.simulated), of_code]
     });
-    rows_of(["#", "published", "table", "error", "code", "error"], cells)
+    rows_of(&["#", "published", "table", "error", "code", "error"], cells)
 }
 
 fn other(group: &FigureGroup) -> String {
@@ -301,17 +302,14 @@ fn ranked(ranking: &Interpretations) -> String {
     let differs = |column: &usize| shown.iter().any(|(_, _, values)| values[*column] != shown[0].2[*column]);
     let columns: Vec<usize> = (0..ranked_figures().count()).filter(differs).collect();
     let ids: Vec<&str> = ranked_figures().map(|figure| figure.id).collect();
-    let headings: Vec<&str> = columns.iter().map(|column| ids[*column]).collect();
-    let mut text = format!(
-        "| rank | log L | {} | interpretation |\n|---|---|{}---|\n",
-        headings.join(" | "),
-        "---|".repeat(columns.len())
-    );
-    for (rank, fit, values) in &shown {
-        let values: Vec<&str> = columns.iter().map(|column| values[*column].as_str()).collect();
-        text += &format!("| {rank} | {:.1} | {} | {} |\n", fit.log_likelihood, values.join(" | "), fit.words);
-    }
-    text
+    let figures = columns.iter().map(|column| ids[*column]);
+    let headings: Vec<&str> = ["rank", "log L"].into_iter().chain(figures).chain(["interpretation"]).collect();
+    let cells = |(rank, fit, values): &(String, &Fit, Vec<String>)| {
+        let values = columns.iter().map(|column| values[*column].clone());
+        let first = [rank.clone(), format!("{:.1}", fit.log_likelihood)];
+        first.into_iter().chain(values).chain([fit.words.clone()]).collect::<Vec<_>>()
+    };
+    rows_of(&headings, shown.iter().map(cells))
 }
 
 fn cell(fit: &Fit, figure: &FigureFit) -> String {
@@ -336,7 +334,7 @@ fn confidence(ranking: &Interpretations) -> String {
 fn left_out(ranking: &Interpretations) -> String {
     let rows = ranking.left_out.iter();
     let cells = grouped(rows.map(|one| (format!("{} ({:+.1} %)", one.id, one.error_percent), one.words.clone())));
-    rows_of(["figures and their errors", "chosen by the others"], cells)
+    rows_of(&["figures and their errors", "chosen by the others"], cells)
 }
 
 /// Joins the names that have the same text.
@@ -353,7 +351,7 @@ fn grouped(rows: impl IntoIterator<Item = (String, String)>) -> Vec<[String; 2]>
 
 /// Returns a table with one line for each different text.
 fn by_text(heading: &str, rows: impl IntoIterator<Item = (&'static str, String)>) -> String {
-    rows_of(["#", heading], grouped(rows.into_iter().map(|(id, text)| (id.to_owned(), text))))
+    rows_of(&["#", heading], grouped(rows.into_iter().map(|(id, text)| (id.to_owned(), text))))
 }
 
 fn of_application(effects: &[Effect]) -> String {
@@ -371,13 +369,9 @@ fn of_application(effects: &[Effect]) -> String {
         let times = effect.changes.iter().map(|(_, ns)| format!("{} ms", ns / 1_000_000));
         times.chain(effect.figures.iter().copied().map(cell)).collect::<Vec<_>>()
     });
-    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-    let ids: Vec<&str> = fly_throughs.iter().map(|figure| figure.id).collect();
-    format!(
-        "| mean of the application | evenly spread by +- | {} |\n|---|---|{}\n",
-        ids.join(" | "),
-        "---|".repeat(ids.len())
-    ) + &std::iter::once(first).chain(rows).map(line).collect::<String>()
+    let ids = fly_throughs.iter().map(|figure| figure.id);
+    let headings: Vec<&str> = ["mean of the application", "evenly spread by +-"].into_iter().chain(ids).collect();
+    rows_of(&headings, std::iter::once(first).chain(rows))
 }
 
 fn host(effects: &[Effect]) -> String {
@@ -385,20 +379,16 @@ fn host(effects: &[Effect]) -> String {
         let ((path, value), (_, latency, _)) = (effect.changes.first()?, effect.figures.first()?);
         Some((format!("{} ms: {} ms", four(*value as f64 / 1e6), four(*latency)), format!("`{path}`")))
     });
-    rows_of(["value, and row 17 with it", "parameter"], grouped(cells))
+    rows_of(&["value, and row 17 with it", "parameter"], grouped(cells))
 }
 
 fn fifo(effects: &[Effect]) -> String {
-    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-    let ids = effects
-        .first()
-        .map_or_else(Vec::new, |effect| effect.figures.iter().map(|(id, ..)| (*id).to_owned()).collect());
-    let head = format!("| words {}|{}\n", line(ids.clone()), "---|".repeat(ids.len() + 1));
+    let ids = effects.first().into_iter().flat_map(|effect| effect.figures.iter().map(|(id, ..)| *id));
     let row = |effect: &Effect| {
         let words = effect.changes.iter().map(|(_, words)| words.to_string());
-        line(words.chain(effect.figures.iter().map(|(_, value, _)| four(*value))).collect())
+        words.chain(effect.figures.iter().map(|(_, value, _)| four(*value))).collect::<Vec<_>>()
     };
-    head + &effects.iter().map(row).collect::<String>()
+    rows_of(&["words"].into_iter().chain(ids).collect::<Vec<_>>(), effects.iter().map(row))
 }
 
 /// Maximum number of parameters that the document lists for each figure.
@@ -416,7 +406,7 @@ fn sensitivity(intervals: &[Interval]) -> String {
         let band = if i.likely[0] < i.likely[1] { range(i.likely) } else { "-".to_owned() };
         [i.id.to_owned(), band, joined(effects.collect()), joined(rules.collect())]
     });
-    rows_of(["#", "5 % to 95 %", "moved by", "rules"], cells)
+    rows_of(&["#", "5 % to 95 %", "moved by", "rules"], cells)
 }
 
 /// Returns the effects of parameters that move a figure by at least half a percent.

@@ -5,7 +5,7 @@ use crate::error::StudyError;
 use crate::estimate::{Estimate, RunWork};
 use crate::experiment_file::{ExperimentFile, Plan};
 use crate::study::{Study, check};
-use pxpl5_machine::PRESETS;
+use pxpl5_machine::{MachineConfig, PRESETS};
 use pxpl5_measure::{CriticalPath, Resource, Shares, Utilisation};
 use pxpl5_run::{Experiment, ExperimentError, Goal, KeptRecords, Level, Outcome, Pixels};
 use pxpl5_scene::Scene;
@@ -206,22 +206,18 @@ impl OverQuery {
     }
 
     fn default_values(plan: &Plan, key: &str) -> Result<Values, SettingError> {
-        // The largest preset is the largest machine with a source.
-        let largest = |boards: fn(&pxpl5_machine::MachineConfig) -> usize| {
-            let presets = PRESETS.iter().filter_map(|preset| pxpl5_machine::MachineConfig::preset(preset.name).ok());
-            presets.map(|config| boards(&config) as u64).max().unwrap_or(1)
-        };
-        let found = match key {
-            "machine.n_gps" => Values::whole(1, largest(|config| config.n_gps)),
-            "machine.n_renderers" => Values::whole(1, largest(|config| config.n_renderers)),
-            _ => {
-                let path = key.strip_prefix("machine.").unwrap_or(key);
-                let parameter = plan.parameters().into_iter().find(|parameter| parameter.path == path);
-                parameter.and_then(|parameter| match parameter.info.range {
-                    (Value::Whole(low), Value::Whole(high)) => Values::whole(low, high),
-                    (low, high) => Values::real(low.real(), high.real()),
-                })
-            }
+        let path = key.strip_prefix("machine.").unwrap_or(key);
+        let found = if ["n_gps", "n_renderers"].contains(&path) {
+            // The largest preset is the largest machine with a source.
+            let presets = PRESETS.iter().filter_map(|preset| MachineConfig::preset(preset.name).ok());
+            let boards = presets.flat_map(|machine| machine.settings()).filter(|(own, _)| own == path);
+            Values::whole(1, boards.filter_map(|(_, boards)| boards.whole()).max().unwrap_or(1))
+        } else {
+            let parameter = plan.parameters().into_iter().find(|parameter| parameter.path == path);
+            parameter.and_then(|parameter| match parameter.info.range {
+                (Value::Whole(low), Value::Whole(high)) => Values::whole(low, high),
+                (low, high) => Values::real(low.real(), high.real()),
+            })
         };
         found.ok_or_else(|| {
             SettingError::missing("range", format_args!("the least and the greatest value of {key} that is tried"))

@@ -1,10 +1,10 @@
 //! Reader of the rows in many files through one index of points.
 //!
-//! The index takes 12 bytes for each point and [`BLOCK`] bytes for each file. Only one file is open at a time. A
-//! thousand shards of a million points take 28 MB. A separate table for each file would take 8 GB and exceed the number
+//! The index takes 13 bytes for each point and [`BLOCK`] bytes for each file. Only one file is open at a time. A
+//! thousand shards of a million points take 29 MB. A separate table for each file would take 8 GB and exceed the number
 //! of files that a process may open.
 
-use super::rows::{Points, ROWS_FILE, Scan, contradiction};
+use super::rows::{ROWS_FILE, Scan};
 use super::{Header, Status, SweepRow};
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::fs::File;
@@ -23,7 +23,8 @@ pub(super) struct Joined {
     /// Number of the file with the row of each point, counted from 1. 0 means that the point has no row.
     holders: Vec<u32>,
     places: Vec<u64>,
-    failed: Points,
+    /// True for each point that could not be simulated.
+    failed: Vec<bool>,
     duplicates: Vec<u64>,
 }
 
@@ -50,14 +51,11 @@ impl Joined {
         Ok(joined)
     }
 
-    /// Builds the index of the rows in one file, for the sweep of `header`. The file may be missing. Also returns the length
+    /// Builds the index of the rows in one file, for the sweep of `header`. The file may be empty. Also returns the length
     /// in bytes up to the end of the last complete line.
     pub(super) fn of_file(path: &Path, header: &Header) -> Result<(Self, u64), FileError> {
         let mut joined = Self::new(header.clone());
         joined.files.push(RowBlocks::of(path.to_owned()));
-        if matches!(path.try_exists(), Ok(false)) {
-            return Ok((joined, 0));
-        }
         let mut scan = Scan::open(path)?;
         if let Some(found) = &scan.header {
             header.check(path, found)?;
@@ -65,13 +63,14 @@ impl Joined {
         while let Some((row, byte)) = scan.next()? {
             joined.add(&row, byte)?;
         }
-        Ok((joined, scan.whole_bytes))
+        Ok((joined, scan.whole_bytes()))
     }
 
     fn new(header: Header) -> Self {
         let points = usize::try_from(header.points).unwrap_or(usize::MAX);
-        let (files, failed, duplicates) = (Vec::new(), Points::default(), Vec::new());
-        Self { holders: vec![0; points], places: vec![0; points], header, files, failed, duplicates }
+        let (files, duplicates) = (Vec::new(), Vec::new());
+        let (holders, places, failed) = (vec![0; points], vec![0; points], vec![false; points]);
+        Self { header, files, holders, places, failed, duplicates }
     }
 
     /// Adds a row of the last added file to the index. `byte` is the byte position of the row in the file.
@@ -82,16 +81,15 @@ impl Joined {
             if first != *row {
                 let [first, second] = [self.holders[point] as usize, self.files.len()]
                     .map(|number| self.files[number - 1].path.display().to_string());
-                return Err(contradiction(row.point, &first, &second));
+                let reason = format_args!("point {point} has different rows in {first} and {second}");
+                return Err(FileError::because(FileErrorKind::Damaged, reason));
             }
             self.duplicates.push(row.point);
             return Ok(());
         }
         self.holders[point] = self.files.len() as u32;
         self.places[point] = byte;
-        if row.status == Status::Failed {
-            self.failed.put(row.point);
-        }
+        self.failed[point] = row.status == Status::Failed;
         Ok(())
     }
 
@@ -114,7 +112,7 @@ impl Joined {
 
     /// Returns the points that could not be simulated, in ascending order.
     pub(super) fn failed(&self) -> impl Iterator<Item = u64> {
-        (0..self.header.points).filter(|point| self.failed.holds(*point))
+        (0..self.header.points).filter(|point| self.failed[*point as usize])
     }
 
     pub(super) fn duplicates(&self) -> &[u64] {

@@ -2,8 +2,9 @@
 
 use super::TIMES_FILE;
 use super::joined::{Joined, missing_points};
+use super::lines::line_of;
 use super::replacement::Replacement;
-use super::store::{check_command, line_of, renew_manifest, write_all};
+use super::store::{check_command, renew_manifest, write_all};
 use pxpl5_sim::parameters::FileError;
 use std::fs::File;
 use std::io::{BufRead, BufReader};

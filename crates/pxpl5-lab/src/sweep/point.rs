@@ -6,6 +6,7 @@ use crate::StudyError;
 use crate::estimate::Estimate;
 use crate::experiment_file::Plan;
 use crate::limit::LimitQuery;
+use crate::study::Study;
 use pxpl5_measure::Measure;
 use pxpl5_run::BareHost;
 use pxpl5_scene::Scene;
@@ -135,9 +136,12 @@ impl Swept for Sweep {
         let is_run = is_run(&plan);
         let results =
             is_run.then(|| plan.results_of(experiment.host(BareHost).stopped_by(stop.clone()))).transpose()?;
-        let value = |m: &Measure| match &results {
-            _ if m.name() == Measure::TRIANGLES => LimitQuery::of_scene(&plan)?.possible(stop),
-            results => Ok(results.as_ref().and_then(|results| m.of(results))),
+        let value = |m: &Measure| -> Result<Option<f64>, StudyError> {
+            if m.name() != Measure::TRIANGLES {
+                return Ok(results.as_ref().and_then(|results| m.of(results)));
+            }
+            let limit = LimitQuery::of_scene(&plan)?.run(&mut stop.clone())?;
+            Ok(limit.has_limit().then_some(f64::from(limit.triangles)))
         };
         let level = choice.filter(|_| is_run).map(|choice| choice.to_string());
         let named = |m: Measure| Ok((m.name().to_owned(), value(&m)?));

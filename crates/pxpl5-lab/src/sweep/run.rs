@@ -1,7 +1,6 @@
 //! Parallel simulation of the points of a sweep.
 
 use super::point::row;
-use super::rows::Points;
 use super::shard::Shard;
 use super::{Store, SweepRow, Swept};
 use crate::error::StudyError;
@@ -96,8 +95,8 @@ impl<S: Swept> Study for SweepQuery<'_, S> {
 struct Work<'a, S> {
     sweep: &'a S,
     shard: Shard,
-    /// Points that were finished before this run of the sweep.
-    finished: Points,
+    /// True for each point that was finished before this run of the sweep.
+    finished: Vec<bool>,
     next: AtomicU64,
     /// True after a row could not be written, so that no further row can be written.
     ended: AtomicBool,
@@ -125,6 +124,6 @@ impl<S: Swept> Work<'_, S> {
         let all = self.sweep.space().points();
         let mut taken =
             std::iter::from_fn(|| Some(self.next.fetch_add(1, Ordering::Relaxed)).filter(|point| *point < all));
-        taken.find(|point| self.shard.holds(*point) && !self.finished.holds(*point))
+        taken.find(|point| self.shard.holds(*point) && !self.finished[*point as usize])
     }
 }

@@ -2,16 +2,16 @@
 //! finished rows survive a crash at any moment.
 
 use super::joined::Joined;
+use super::lines::{LineFile, line_of};
 use super::replacement::Replacement;
-use super::rows::{Points, ROWS_FILE};
+use super::rows::ROWS_FILE;
 use super::shard::Shard;
 use super::table::Table;
 use super::{Header, SweepRow};
 use crate::manifest::{MANIFEST_FILE, Manifest, is_temporary};
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use serde::Serialize;
-use std::fs::{self, File, OpenOptions};
-use std::io::{BufRead, BufReader, Write};
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 /// Name of the file of durations: the header line, then one line for each point with its computing time.
@@ -26,10 +26,8 @@ pub struct Store {
     folder: PathBuf,
     header: Header,
     rows: Joined,
-    /// Byte position at which the next row is written.
-    end: u64,
-    rows_file: File,
-    times_file: File,
+    rows_file: LineFile,
+    times_file: LineFile,
     /// True after this process has appended a row, and has removed the plots and pages that were made from fewer rows.
     is_renewed: bool,
     /// Lock of the folder. No other process can open the folder while this object exists. The operating system releases
@@ -62,6 +60,7 @@ impl Store {
         let lock = lock(folder)?;
         remove_leftover_files(folder);
         let path = folder.join(ROWS_FILE);
+        let mut rows_file = LineFile::open(path.clone())?;
         let (rows, end) = Joined::of_file(&path, &header)?;
         // Without `resume`, existing rows are never extended by accident.
         let points = rows.points().count();
@@ -72,25 +71,16 @@ impl Store {
             return Err(FileError::because(FileErrorKind::Unfinished, reason).in_file(folder.display()));
         }
         // Both files continue after their last complete line; a new file starts with the header.
-        let rows_file = opened(&path, end)?;
-        let times_path = folder.join(TIMES_FILE);
-        let times_end = whole_lines(&times_path);
-        let times_file = opened(&times_path, times_end)?;
+        rows_file.cut(end, &header)?;
+        let mut times_file = LineFile::open(folder.join(TIMES_FILE))?;
+        let mut times = times_file.lines("a time of a sweep")?;
+        while times.read()? {}
+        times_file.cut(times.whole_bytes, &header)?;
         // The manifest marks the folder as a sweep's from the start.
         if Manifest::read(folder)?.is_none() {
             renew_manifest(folder)?;
         }
-        let is_renewed = false;
-        let mut store =
-            Self { folder: folder.to_owned(), header, rows, end, rows_file, times_file, is_renewed, _lock: lock };
-        let header = line_of(&store.header);
-        if end == 0 {
-            store.append_line(&header)?;
-        }
-        if times_end == 0 {
-            store.append_time(&header)?;
-        }
-        Ok(store)
+        Ok(Self { folder: folder.to_owned(), header, rows, rows_file, times_file, is_renewed: false, _lock: lock })
     }
 
     /// Returns true if the folder has a row for this point.
@@ -98,8 +88,9 @@ impl Store {
         self.rows.holds(point)
     }
 
-    pub(super) fn held(&self) -> Points {
-        self.rows.points().collect()
+    /// Returns true for each point with a row.
+    pub(super) fn held(&self) -> Vec<bool> {
+        (0..self.header.points).map(|point| self.rows.holds(point)).collect()
     }
 
     /// Returns the number of finished points in one shard (part of the sweep).
@@ -132,23 +123,10 @@ impl Store {
             renew_manifest(&self.folder)?;
             self.is_renewed = true;
         }
-        let begin = self.end;
-        self.append_line(&line_of(row))?;
-        self.append_time(&line_of(&PointTime { point: row.point, host_seconds }))?;
+        let begin = self.rows_file.end;
+        self.rows_file.put(&line_of(row))?;
+        self.times_file.put(&line_of(&PointTime { point: row.point, host_seconds }))?;
         self.rows.add(row, begin)
-    }
-
-    /// Appends a line to the file of rows by one write. After a crash, at most this line is incomplete.
-    fn append_line(&mut self, line: &str) -> Result<(), FileError> {
-        let path = self.folder.join(ROWS_FILE);
-        self.rows_file.write_all(line.as_bytes()).map_err(FileError::io(&path, "cannot be written"))?;
-        self.end += line.len() as u64;
-        Ok(())
-    }
-
-    fn append_time(&mut self, line: &str) -> Result<(), FileError> {
-        let path = self.folder.join(TIMES_FILE);
-        self.times_file.write_all(line.as_bytes()).map_err(FileError::io(&path, "cannot be written"))
     }
 
     /// Sorts the rows by the number of their point, and writes the table. The file of rows changes completely or not at
@@ -217,12 +195,6 @@ fn remove_leftover_files(folder: &Path) {
     }
 }
 
-pub(crate) fn line_of(value: &impl Serialize) -> String {
-    let mut line = serde_json::to_string(value).unwrap_or_default();
-    line.push('\n');
-    line
-}
-
 pub(crate) fn lock(folder: &Path) -> Result<File, FileError> {
     let path = folder.join(LOCK_FILE);
     let file = File::create(&path).map_err(FileError::io(&path, "cannot be written"))?;
@@ -234,27 +206,4 @@ pub(crate) fn lock(folder: &Path) -> Result<File, FileError> {
         // If the file system has no locks, the sweep continues without protection.
         _ => Ok(file),
     }
-}
-
-/// Opens a file for appending. Bytes after the first `keep` bytes are removed.
-pub(crate) fn opened(path: &Path, keep: u64) -> Result<File, FileError> {
-    let file = OpenOptions::new().create(true).append(true).open(path);
-    let cut = file.and_then(|file| {
-        file.set_len(keep)?;
-        Ok(file)
-    });
-    cut.map_err(FileError::io(path, "cannot be written"))
-}
-
-/// Returns the length in bytes up to the end of the last complete line, or 0 if the file cannot be read.
-fn whole_lines(path: &Path) -> u64 {
-    let Ok(file) = File::open(path) else { return 0 };
-    let mut file = BufReader::new(file);
-    let mut whole = 0;
-    let mut line = Vec::new();
-    while file.read_until(b'\n', &mut line).is_ok() && line.last() == Some(&b'\n') {
-        whole += line.len() as u64;
-        line.clear();
-    }
-    whole
 }
