@@ -40,11 +40,7 @@ fn rendering_control() -> Experiment {
 
 /// Returns the trace hash of a run, even if the run shows no picture after the warm-up.
 fn hash(experiment: &Experiment) -> TraceHash {
-    match experiment.run() {
-        Ok(outcome) => outcome.record().trace_hash(),
-        Err(ExperimentError::TooShort { partial, .. }) => partial.record().trace_hash(),
-        Err(error) => panic!("{error}"),
-    }
+    support::outcome(experiment.run(), "cycle level").record().trace_hash()
 }
 
 /// Returns the mean time of TRANSFORM after the first pictures, in microseconds.
@@ -101,25 +97,6 @@ fn scheduled_code_is_faster_than_compiled_code_and_compiled_code_faster_than_str
         ["slats", "slats-optimised"].map(|preset| machine_us(MachineConfig::preset(preset).expect("listed"), lit));
     let factor = compiled / scheduled;
     assert!((2.0..4.0).contains(&factor), "{compiled:.0} us and {scheduled:.0} us: a factor of {factor:.2}");
-}
-
-/// Returns the times of TRANSFORM for thirty triangles and two eyes, with two different times per triangle in the
-/// table.
-fn transforms_us(code: Option<CodeVersion>, triangle_ns: [u64; 2]) -> [f64; 2] {
-    triangle_ns.map(|triangle_ns| {
-        let mut machine = MachineConfig { code, ..MachineConfig::slats() };
-        machine.set("gp.triangle_ns", triangle_ns).expect("known");
-        let full = scene::builtin("full-screen:30").expect("built in");
-        let experiment = Experiment::new(machine, Slats::split(), full).fields(12).level(Level::Cycle);
-        transform_us(&experiment.pixels(Pixels::Off).run().expect("it runs"))
-    })
-}
-
-#[test]
-fn a_time_per_triangle_applies_where_no_code_runs() {
-    let us = transforms_us(None, [20_000, 21_000]);
-    // Thirty triangles for two eyes take 60 us more if each takes one microsecond more.
-    assert!((us[1] - us[0] - 60.0).abs() < 1e-6, "{us:?}");
 }
 
 /// All work is code: triangles, clipped triangles, spheres, edits, passes, tokens and messages. The table has no

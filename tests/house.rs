@@ -231,34 +231,9 @@ fn every_published_crate_has_the_metadata_of_a_registry() {
 }
 
 /// Functions whose results depend on the library of the host. Square roots are exact everywhere.
-const OF_THE_HOSTS_LIBRARY: [&str; 26] = [
-    ".sin()",
-    ".cos()",
-    ".tan()",
-    ".sin_cos()",
-    ".asin()",
-    ".acos()",
-    ".atan()",
-    ".atan2(",
-    ".sinh()",
-    ".cosh()",
-    ".tanh()",
-    ".exp()",
-    ".exp2()",
-    ".exp_m1()",
-    ".ln()",
-    ".ln_1p()",
-    ".log(",
-    ".log2()",
-    ".log10()",
-    ".powf(",
-    ".powi(",
-    ".cbrt()",
-    ".hypot(",
-    ".slerp(",
-    "::from_rotation_y(",
-    "::from_axis_angle(",
-];
+const OF_THE_HOSTS_LIBRARY: &str = ".sin() .cos() .tan() .sin_cos() .asin() .acos() .atan() .atan2( .sinh() .cosh() \
+    .tanh() .exp() .exp2() .exp_m1() .ln() .ln_1p() .log( .log2() .log10() .powf( .powi( .cbrt() .hypot( .slerp( \
+    ::from_rotation_y( ::from_axis_angle(";
 
 /// Places that may call such a function, because no simulated number depends on it.
 const ACCEPTED_PLACES: [(&str, &str, &str); 2] = [
@@ -285,7 +260,7 @@ fn nothing_simulated_calls_a_transcendental_function_of_the_host() {
     for member in members.iter().filter(|member| simulated.contains(&member.name)) {
         for file in member.files.iter().filter(|file| !file.path.contains("tests")) {
             let product = source::code(&source::product(&file.text));
-            for function in OF_THE_HOSTS_LIBRARY.iter().filter(|function| product.contains(**function)) {
+            for function in OF_THE_HOSTS_LIBRARY.split(' ').filter(|function| product.contains(*function)) {
                 let accepted =
                     ACCEPTED_PLACES.iter().any(|(name, end, _)| *name == member.name && file.path.ends_with(end));
                 if !accepted {

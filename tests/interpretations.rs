@@ -18,14 +18,6 @@ fn rules() -> Vec<(u64, FinishedRegions)> {
     [1, 2, 3, ROOM].into_iter().flat_map(|kept| FinishedRegions::ALL.map(|finished| (kept, finished))).collect()
 }
 
-#[test]
-fn with_stored_regions_and_a_master_that_does_not_wait_the_latency_is_three_fields() {
-    // TR94 derives the value: TRANSFORM begins when COPY of the third previous eye has ended, and COPY never pauses.
-    // This gives three times 15.6 ms of COPY, or 16.68 ms each at 30 Hz.
-    let theory = FigureSettings::new(Level::Transaction).measure("3").expect("it runs").value;
-    assert!((theory - 3.0 * FIELD_MS).abs() < 0.3, "{theory}");
-}
-
 /// Runs every third rule. `PXPL5_ALL_CASES=1` runs all rules.
 #[test]
 fn the_closed_form_agrees_with_the_simulation_under_every_rule_of_the_master() {

@@ -32,20 +32,8 @@ static SPLIT: LazyLock<Outcome> = LazyLock::new(|| run(Slats::split(), "full-scr
 /// A run with so many triangles that every field misses its retrace.
 static LATE: LazyLock<Outcome> = LazyLock::new(|| run(Slats::whole(), "full-screen:160", 30));
 
-fn stereo() -> &'static Outcome {
-    &STEREO
-}
-
-fn mono() -> &'static Outcome {
-    &MONO
-}
-
-fn split() -> &'static Outcome {
-    &SPLIT
-}
-
 fn all() -> [&'static Outcome; 4] {
-    [stereo(), mono(), split(), &LATE]
+    [&STEREO, &MONO, &SPLIT, &LATE]
 }
 
 #[test]
@@ -106,8 +94,8 @@ fn part(name: &str) -> usize {
 
 #[test]
 fn a_stage_is_the_time_between_its_two_marks() {
-    let outcome = stereo();
-    for (parts, times) in stereo().latency_parts().iter().zip(stereo().steady_pictures()) {
+    let outcome = &*STEREO;
+    for (parts, times) in STEREO.latency_parts().iter().zip(STEREO.steady_pictures()) {
         let copied_at = times.copied_at.expect("copied");
         assert_eq!(parts.spans[part("wait_for_retrace")], times.shown_at - copied_at);
         let rendered_at = end_of(outcome, Stage::Render, Some(Eye::Right.into()), times.picture);
@@ -127,7 +115,7 @@ fn mean_ms(report: &Report, of: &str, until: &str) -> f64 {
 
 #[test]
 fn the_latencies_of_the_eyes_equal_the_times_between_their_events() {
-    let outcome = stereo();
+    let outcome = &*STEREO;
     let report = outcome.report();
     // The latency of a frame is the latency of the pair: from its first TRANSFORM to the swap.
     assert!((mean_ms(&report, "pair", "swap") - report.latency_ms.statistics.mean).abs() < 1e-9);
@@ -140,7 +128,7 @@ fn the_latencies_of_the_eyes_equal_the_times_between_their_events() {
     let [at_swap, at_light] =
         ["swap", "light"].map(|until| mean_ms(&report, "left", until) - mean_ms(&report, "right", until));
     assert!(at_swap > 0.0 && (at_light - at_swap).abs() < 1e-9);
-    assert!(split().report().latency_by_eye_ms.is_empty());
+    assert!(SPLIT.report().latency_by_eye_ms.is_empty());
 }
 
 #[test]
@@ -183,11 +171,11 @@ fn parquet_equals_csv() {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
     let mut bytes = Vec::new();
-    pxpl5::views::results::parquet(stereo(), &mut bytes).expect("written");
+    pxpl5::views::results::parquet(&STEREO, &mut bytes).expect("written");
     let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).expect("Parquet");
     let metadata = reader.metadata().file_metadata().key_value_metadata().expect("there").clone();
     let hash = metadata.iter().find(|entry| entry.key == "pxpl5.config_hash").and_then(|entry| entry.value.clone());
-    assert_eq!(hash, Some(stereo().report().config_hash));
+    assert_eq!(hash, Some(STEREO.report().config_hash));
     let found: Vec<BTreeMap<String, Option<u64>>> = reader
         .get_row_iter(None)
         .expect("rows")
@@ -196,7 +184,7 @@ fn parquet_equals_csv() {
             row.expect("a row").get_column_iter().map(|(name, field)| (name.clone(), value(field))).collect()
         })
         .collect();
-    assert_eq!(found, rows(&csv(stereo())));
+    assert_eq!(found, rows(&csv(&STEREO)));
 }
 
 /// Returns all slices of a trace that are part of a flow, with the id and the step of the flow.
@@ -207,10 +195,10 @@ fn flow_slices(trace: &Trace) -> Vec<(u64, Step, &Slice)> {
 
 #[test]
 fn a_trace_has_an_instant_at_every_retrace() {
-    let trace = Trace::of(split());
+    let trace = Trace::of(&SPLIT);
     let track = trace.tracks.iter().find(|track| track.name == "retraces").expect("a track");
     let Events::Instants(retraces) = &track.events else { panic!("{:?}", track.events) };
-    assert_eq!(retraces.len() as u64, split().fields() + 1);
+    assert_eq!(retraces.len() as u64, SPLIT.fields() + 1);
     for (n, (time, name)) in (0..).zip(retraces) {
         // The period of 1001/60000 s is rounded down to picoseconds.
         assert_eq!((time.0, name.clone()), (n * 1_001_000_000_000_000 / 60_000, format!("retrace {n}")));
@@ -279,8 +267,8 @@ fn recorded_messages_equal_the_counters_of_the_boards() {
 #[test]
 fn recording_traffic_changes_no_result() {
     let quiet = experiment(Slats::split(), "full-screen:100", 30).pixels(Pixels::Off).run().expect("runs");
-    assert_eq!(quiet.record().trace_hash(), split().record().trace_hash());
-    assert!(has_messages(split()));
+    assert_eq!(quiet.record().trace_hash(), SPLIT.record().trace_hash());
+    assert!(has_messages(&SPLIT));
     assert!(!has_messages(&quiet));
 }
 
@@ -359,14 +347,6 @@ fn a_film_shows_every_field_at_the_true_rate() {
         });
         assert!(frame == side_by_side(&left, &right).into_raw(), "field {field}");
     }
-}
-
-#[test]
-fn a_film_without_a_field_is_refused() {
-    let (experiment, _) = remembered();
-    let film = Film::new(experiment, PeriodNumber::FIRST, 0, FilmSurfaces::One(Eye::Left.into()));
-    let error = film.write(&[], Vec::new()).expect_err("no period").to_string();
-    assert!(error.starts_with("a film has 1 to ") && error.ends_with("found 0"), "{error}");
 }
 
 /// Returns some pixels of a row.

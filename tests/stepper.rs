@@ -1,11 +1,11 @@
 //! Tests that a run in pieces equals an uninterrupted run. Neither the division into pieces nor the reading of state
 //! changes the trace or a picture.
 
-use crate::support;
+use crate::support::{self, outcome};
 use pxpl5::Board;
 use pxpl5::{
-    DisplayEntry, Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber,
-    PipelineEntry, Slats, Span, SurfaceId, Time, registry, scene,
+    DisplayEntry, Experiment, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber, PipelineEntry, Slats,
+    Span, SurfaceId, Time, registry, scene,
 };
 use pxpl5::{Pause, Stepper};
 use pxpl5_renderer::PixelArray;
@@ -19,15 +19,6 @@ fn experiment(settings: &[&str]) -> Option<Experiment> {
     let plan = file.resolve().ok()?;
     let experiment = plan.experiment(plan.load_scene().expect("built in")).record_traffic(true);
     experiment.build().is_ok().then_some(experiment)
-}
-
-/// Returns the outcome, also of a run that is too short for statistics.
-fn outcome(result: Result<Outcome, ExperimentError>) -> Outcome {
-    match result {
-        Ok(outcome) => outcome,
-        Err(ExperimentError::TooShort { partial, .. }) => *partial,
-        Err(error) => panic!("{error}"),
-    }
 }
 
 /// A generator of random numbers (xorshift).
@@ -85,7 +76,7 @@ fn in_pieces(experiment: &Experiment, seed: u64) -> Outcome {
         step(&mut stepper, &mut dice);
         read_snapshots(&stepper, &mut dice);
     }
-    outcome(stepper.finish())
+    outcome(stepper.finish(), "stepped")
 }
 
 fn assert_same(whole: &Outcome, pieces: &Outcome, name: &str) {
@@ -111,8 +102,8 @@ fn a_stepped_run_equals_an_uninterrupted_run_for_every_pipeline_on_every_display
         let display = format!("display={}", display.name);
         let settings = [pipeline.as_str(), display.as_str(), "scene=full-screen:2", "fields=7"];
         let experiment = experiment(&settings)?;
-        let whole = outcome(experiment.run());
-        let plain = outcome(experiment.clone().record_traffic(false).run());
+        let whole = outcome(experiment.run(), "stepped");
+        let plain = outcome(experiment.clone().record_traffic(false).run(), "stepped");
         assert_eq!(plain.record().trace_hash(), whole.record().trace_hash(), "{settings:?}");
         assert_eq!(plain.pictures(), whole.pictures(), "{settings:?}");
         assert!(plain.record().events() <= whole.record().events(), "{settings:?}");
@@ -131,7 +122,7 @@ fn a_stepped_run_equals_an_uninterrupted_run_for_every_pipeline_on_every_display
 fn a_stepped_run_equals_an_uninterrupted_run_for_a_tracked_head_with_prediction() {
     let settings = ["pipeline=slats", "scene=full-screen:2", "fields=7", "head.motion=synthetic:3"];
     let experiment = experiment(&settings).expect("it can be built");
-    assert_same(&outcome(experiment.run()), &in_pieces(&experiment, 9), "head");
+    assert_same(&outcome(experiment.run(), "stepped"), &in_pieces(&experiment, 9), "head");
 }
 
 fn slats() -> Experiment {
@@ -171,7 +162,7 @@ fn a_stepped_event_has_its_own_time_and_the_name_of_its_board() {
 /// The picture at an instant has all pixels that the beam has drawn by then, and none that it draws later.
 #[test]
 fn partial_pictures_equal_those_of_the_whole_run() {
-    let whole = outcome(slats().run());
+    let whole = outcome(slats().run(), "stepped");
     let mut stepper = slats().stepper().expect("it can be built");
     let mut lit = 0;
     for us in (30_000..82_000).step_by(6_131) {
@@ -190,7 +181,7 @@ fn partial_pictures_equal_those_of_the_whole_run() {
 /// The levels of a FIFO are compared with the record of traffic, whose sums cover the whole run.
 #[test]
 fn the_contents_of_a_fifo_agree_with_the_record_of_traffic() {
-    let whole = outcome(slats().run());
+    let whole = outcome(slats().run(), "stepped");
     let traffic = whole.record().observation().traffic.as_deref().expect("it was recorded");
     let courses: Vec<_> = (0..4).map(|renderer| traffic.fifo_words(renderer)).collect();
     let mut stepper = slats().stepper().expect("it can be built");
@@ -225,24 +216,10 @@ fn the_array_shows_all_sent_commands_when_the_last_command_has_started() {
 }
 
 #[test]
-fn pixels_appear_in_an_array_command_by_command() {
-    let mut stepper = slats().stepper().expect("it can be built");
-    stepper.run_to(stepper.record().tick(PeriodNumber(4)));
-    let mut enabled = BTreeSet::new();
-    let renderers = stepper.record().renderers().len();
-    for _ in 0..60 {
-        stepper.run_to(stepper.now() + Span::from_us(100));
-        let arrays = (0..renderers).filter_map(|renderer| stepper.array(renderer));
-        enabled.extend(arrays.map(|array| array.enable().iter().map(|word| word.count_ones()).sum::<u32>()));
-    }
-    assert!(enabled.len() > 3, "each triangle enables its own pixels: {enabled:?}");
-}
-
-#[test]
 fn breakpoints_show_registers_and_change_no_trace() {
     let settings = ["pipeline=slats", "scene=mig", "triangles=12", "fields=6", "level=cycle", "pixels=off"];
     let experiment = experiment(&settings).expect("it can be built");
-    let whole = outcome(experiment.run());
+    let whole = outcome(experiment.run(), "stepped");
     let mut stepper = experiment.stepper().expect("it can be built");
     let kernel = |stepper: &Stepper, gp: usize| {
         let board = stepper.machine().board(Board::Gp(gp))?;
@@ -258,7 +235,7 @@ fn breakpoints_show_registers_and_change_no_trace() {
         met += hits.len();
     }
     assert!(met > 10, "{met}");
-    assert_eq!(outcome(stepper.finish()).record().trace_hash(), whole.record().trace_hash());
+    assert_eq!(outcome(stepper.finish(), "stepped").record().trace_hash(), whole.record().trace_hash());
 }
 
 #[test]

@@ -13,8 +13,8 @@ use pxpl5::oracle::IdealPicture;
 use pxpl5::scene::config::FIT_DISTANCE_RADII;
 use pxpl5::scene::{self, HeadMotion, HeadPath, Scene, Sway};
 use pxpl5::{
-    Experiment, ExperimentError, KeyValue, Level, MachineConfig, Measured, Outcome, PipelineEntry, PipelineSettings,
-    Report, SurfaceId, Time, registry,
+    Experiment, KeyValue, Level, MachineConfig, Measured, Outcome, PipelineEntry, PipelineSettings, SurfaceId, Time,
+    registry,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -124,11 +124,8 @@ fn run_at(
     fields: u64,
 ) -> Outcome {
     let pipeline = (entry.build)(&settings(entry, lines));
-    match Experiment::with(machine(entry, size), pipeline, Arc::clone(scene)).fields(fields).level(level).run() {
-        Ok(outcome) => outcome,
-        Err(ExperimentError::TooShort { partial, .. }) => *partial,
-        Err(error) => panic!("{} on {size:?} with {}: {error}", entry.name, scene.name()),
-    }
+    let experiment = Experiment::with(machine(entry, size), pipeline, Arc::clone(scene)).fields(fields).level(level);
+    support::outcome(experiment.run(), format!("{} on {size:?} with {}", entry.name, scene.name()))
 }
 
 /// Ideal pictures by pipeline and scene, number of primitives, and eye.
@@ -165,7 +162,6 @@ fn faults(entry: &PipelineEntry, size: (usize, usize), whole: &Scene) -> Vec<Str
             picture.save(format!("{folder}/{name}.png")).expect("writable");
             ideal.image().save(format!("{folder}/{name}-ideal.png")).expect("writable");
         }
-        println!("{name}: {} ties, {} wrong", ideal.ties().len(), wrong.len());
         if let Some([x, y]) = wrong.first() {
             faults.push(format!("{name}: {} pixels, the first at {x}, {y}", wrong.len()));
         }
@@ -222,7 +218,6 @@ fn every_pipeline_shows_the_same_pictures_at_the_cycle_level() {
         let size = if entry.family == "slats" { (1, 5) } else { (2, 20) };
         let (most, fields) = load(entry.name, size, false);
         let scene = Arc::new(still(&molecules, most.min(AT_BOTH_LEVELS)));
-        let began = std::time::Instant::now();
         let drawn = (entry, LINES_AT_BOTH_LEVELS);
         let [table, code] =
             [Level::Transaction, Level::Cycle].map(|level| run_at(level, drawn, size, &scene, fields.min(60)));
@@ -234,7 +229,6 @@ fn every_pipeline_shows_the_same_pictures_at_the_cycle_level() {
             let other = expected.pixels().zip(found.pixels()).filter(|(a, b)| a != b).count();
             assert_eq!(other, 0, "{}: pixels of surface {}", entry.name, surface.index());
         }
-        println!("{} {:?}", entry.name, began.elapsed());
     }
 }
 
@@ -265,27 +259,17 @@ fn no_pipeline_overwrites_lines_before_they_are_shown() {
             for strip_rows in [1, 8, 128] {
                 let settings = with_strips(strip_rows);
                 let experiment = Experiment::with(machine(entry, size), (entry.build)(&settings), Arc::clone(&full));
-                let outcome = experiment.fields(fields).pixels(pxpl5::Pixels::Off).run();
-                let report = match outcome {
-                    Ok(outcome) => outcome.report(),
-                    Err(ExperimentError::TooShort { partial, .. }) => partial.report(),
-                    Err(error) => panic!("{}: {error}", entry.name),
-                };
-                check_never_shown(&report, &format!("{} on {size:?}, strips of {strip_rows}", entry.name));
+                let what = format!("{} on {size:?}, strips of {strip_rows}", entry.name);
+                let run = experiment.fields(fields).pixels(pxpl5::Pixels::Off).run();
+                let report = support::outcome(run, &what).report();
+                // A line that arrived after its beam is never shown.
+                let never_shown = report.lines_never_shown().expect("NTSC counts them");
+                assert!(report.late_regions > 0 || never_shown == 0, "{what}: {never_shown}");
                 if entry.family != "jitp" {
                     break;
                 }
             }
         }
-    }
-}
-
-/// Checks that a line that arrived after its beam is never shown.
-fn check_never_shown(report: &Report, what: &str) {
-    let never_shown = report.lines_never_shown().expect("NTSC counts them");
-    println!("{what}: {never_shown} lines never shown, {} regions late", report.late_regions);
-    if report.late_regions == 0 {
-        assert_eq!(never_shown, 0, "{what}");
     }
 }
 

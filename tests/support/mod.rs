@@ -1,6 +1,6 @@
 //! Functions that several tests share.
 
-use pxpl5::{NtscDisplay, Outcome, Record};
+use pxpl5::{ExperimentError, NtscDisplay, Outcome, Record};
 use pxpl5_framebuffer::{FrameBuffer, Video};
 
 /// Returns true if campaigns run all cases instead of a sample, as in scripts/nightly.
@@ -26,4 +26,13 @@ pub(crate) fn video(outcome: &Outcome) -> &Video {
 /// Returns the frame buffers of a run: left, right.
 pub(crate) fn boards(outcome: &Outcome) -> &[FrameBuffer] {
     ntsc(outcome.record()).boards()
+}
+
+/// Returns the outcome of a run, also of one that is too short for statistics. `what` names the run if it fails.
+pub(crate) fn outcome(run: Result<Outcome, ExperimentError>, what: impl std::fmt::Display) -> Outcome {
+    match run {
+        Ok(outcome) => outcome,
+        Err(ExperimentError::TooShort { partial, .. }) => *partial,
+        Err(error) => panic!("{what}: {error}"),
+    }
 }

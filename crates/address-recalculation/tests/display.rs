@@ -277,20 +277,6 @@ fn coloured(bench: &mut Bench) {
 
 const QUARTER: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
 
-/// Checks a rotation of the head by 90 degrees to the left, about +y. A head that looked along -z then looks along -x
-/// (face 1).
-#[test]
-fn a_head_rotation_is_shown_without_an_update() {
-    let mut bench = Bench::new(&CONFIG);
-    coloured(&mut bench);
-    bench.tick(1);
-    let at = bench.display.tick(PeriodNumber(2));
-    bench.arp_mut().load_orientation(Eye::Left, QUARTER, at).expect("a rotation");
-    (2..5).for_each(|field| bench.tick(field));
-    assert_eq!([bench.pixel(2, 320, 240), bench.pixel(3, 320, 241)], [0x20, 0x20]);
-    assert_eq!(bench.arp().memories(Eye::Left)[0].stats().swaps, 1);
-}
-
 #[test]
 fn the_display_latches_an_orientation_at_the_predicted_picosecond() {
     for (latch, x, y) in [(Latch::Field, 0, 0), (Latch::Line, 0, 100), (Latch::Pixel, 7, 200)] {

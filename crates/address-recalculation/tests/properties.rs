@@ -248,21 +248,6 @@ fn a_snapshot_does_not_depend_on_earlier_snapshots() {
     }
 }
 
-#[test]
-fn the_background_memory_shows_only_behind_empty_texels() {
-    let timing = ArpTiming { face_texels: 128, ..ArpTiming::PAPERS };
-    let config = ArpConfig { timing, background: 0x99, has_background_memory: true, ..ArpConfig::MACHINE };
-    let mut behind = painted(&config, 0, |_| 0x0B_0B_0B);
-    let mut near: Vec<FaceSet> = (0..4).map(|_| FaceSet::new(128, config.format())).collect();
-    near[3] = painted(&config, DEPTH_FARTHEST - 1, |direction| if direction[1] > 0.02 { 0x44 } else { 0x55 });
-    let upper_half = |pixels: &[u32]| (pixels[640 * 20 + 300], pixels[640 * 470 + 300]);
-    assert_eq!(upper_half(&displayed(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x44, 0x55));
-    near[3] = FaceSet::new(128, config.format());
-    assert_eq!(upper_half(&displayed(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x0B_0B_0B, 0x0B_0B_0B));
-    behind = FaceSet::new(128, config.format());
-    assert_eq!(upper_half(&displayed(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x99, 0x99));
-}
-
 /// Checks experiment E2. Objects distributed over several memories, all drawn from one position, give the same bits as
 /// a single memory with all objects.
 #[test]

@@ -233,21 +233,6 @@ fn row_5_loads_and_stores_wait_until_a_line_fill_ends() {
     }
 }
 
-/// Row 6 of Intel's list, destination of ld, ld.c, call, calli, fxfr used by the next instruction: "1".
-#[test]
-fn row_6_only_the_instruction_right_after_a_load_waits_for_the_loaded_value() {
-    for (load, user) in [
-        ("ld.l 0(r4), r5", "adds r5, r0, r6"),
-        ("ld.c psr, r5", "adds r5, r0, r6"),
-        ("fxfr f8, r5", "adds r5, r0, r6"),
-        ("call f\nadds r1, r0, r6\nf: nop", "nop"),
-    ] {
-        assert_eq!(cost(Freeze::LoadUse, &format!("{load}\n{user}")), 1, "{load}");
-    }
-    assert_eq!(cost(Freeze::LoadUse, "ld.l 0(r4), r5\nnop\nadds r5, r0, r6"), 0);
-    assert_eq!(cost(Freeze::LoadUse, "ld.l 0(r4), r5\nadds r7, r0, r6"), 0);
-}
-
 /// Row 7 of Intel's list, destination of fld, pfld, ixfr used within the next two instructions: "2 in the 1st, 1 in the
 /// 2nd".
 #[test]
@@ -275,17 +260,6 @@ fn row_8_a_branch_waits_for_a_condition_just_set() {
     assert_eq!(clocks_with(rules, "and 1, r5, r5\nbnc end"), 3);
 }
 
-/// Row 9 of Intel's list, multiplier operation whose fsrc1 is the result of the operation before: "1".
-#[test]
-fn row_9_a_multiply_waits_if_its_first_source_is_the_result_of_the_previous_operation() {
-    let row = Freeze::MultiplierFirstSource;
-    assert_eq!(cost(row, "pfadd.ss f8, f9, f10\npfmul.ss f10, f9, f11"), 1);
-    assert_eq!(cost(row, "pfadd.ss f8, f9, f10\npfmul.ss f9, f10, f11"), 0, "the second source does not");
-    assert_eq!(cost(row, "pfadd.ss f8, f9, f10\nnop\npfmul.ss f10, f9, f11"), 0);
-    assert_eq!(cost(row, "pfadd.ss f8, f9, f10\nm12apm.ss f10, f9, f11"), 1);
-    assert_eq!(cost(row, "pfadd.ss f8, f9, f10\nr2p1.ss f10, f9, f11"), 0, "r2p1 sends it to the adder");
-}
-
 /// Row 10 of Intel's list, operation while a scalar one is in flight: "2 - instructions since".
 #[test]
 fn row_10_a_scalar_operation_occupies_the_floating_point_unit_for_two_more_clocks() {
@@ -298,15 +272,6 @@ fn row_10_a_scalar_operation_occupies_the_floating_point_unit_for_two_more_clock
         }
     }
     assert_eq!(cost(Freeze::ScalarBusy, "frcp.ss f8, f10\nfadd.ss f2, f3, f4"), 0);
-}
-
-/// Row 10 of Intel's list: "fmul.dd 3 - instructions since".
-#[test]
-fn row_10b_a_scalar_double_multiply_occupies_the_floating_point_unit_for_three_more_clocks() {
-    let row = Freeze::ScalarDoubleMultiplyBusy;
-    assert_eq!(cost(row, "fmul.dd f8, f10, f12\nfadd.dd f2, f4, f6"), 3);
-    assert_eq!(cost(row, "fmul.dd f8, f10, f12\nnop\nnop\nfadd.dd f2, f4, f6"), 1);
-    assert_eq!(cost(row, "fmul.dd f8, f10, f12\nnop\nnop\nnop\nfadd.dd f2, f4, f6"), 0);
 }
 
 /// Row 10 of Intel's list: "+1 if precision changes; +1 if the new operation is pipelined with destination other than
@@ -322,17 +287,6 @@ fn rows_10c_and_10d_only_lengthen_existing_waits() {
         let source = apart("fadd.ss f8,f9,f10", 0, next);
         assert_eq!(cost_beside(busy, Freeze::ScalarThenPipelined, &source), expected, "{next}");
     }
-}
-
-/// Row 11 of Intel's list, multiplier operation after a double-precision multiply: "1". The 60 MFLOPS in double
-/// precision at 40 MHz in the data sheet mean one multiplication every second clock and one addition every clock.
-#[test]
-fn row_11_the_multiplier_starts_a_double_multiply_at_most_every_second_clock() {
-    let row = Freeze::DoubleMultiply;
-    assert_eq!(cost(row, "pfmul.dd f8, f10, f12\npfmul.dd f8, f10, f12"), 1);
-    assert_eq!(cost(row, "pfmul.dd f8, f10, f12\npfadd.dd f8, f10, f12\npfmul.dd f8, f10, f12"), 0);
-    assert_eq!(cost(row, "pfmul.dd f8, f10, f12\npfadd.dd f8, f10, f12"), 0);
-    assert_eq!(cost(row, "pfmul.ss f8, f10, f12\npfmul.ss f8, f10, f12"), 0);
 }
 
 /// Row 12 of Intel's list, TLB miss: "5 + two reads".
@@ -389,87 +343,82 @@ fn row_16_a_fourth_bus_request_waits_until_the_first_request_ends() {
     assert_eq!(cost(Freeze::AddressPipeFull, &pipelined_loads(4)), 1 + t.first_miss - 4);
 }
 
-/// Row 17 of Intel's list, ld or fld right after a store that hit: "1".
+/// Rows of a constant number of clocks, each with the words of Intel's list, programs with this cost, and neighbouring
+/// programs without it.
 #[test]
-fn row_17_a_load_waits_right_after_a_store_that_hits_the_cache() {
-    let store = apart("ld.l 0(r4), r5", 30, "st.l r5, 4(r4)");
-    assert_eq!(cost_apart(Freeze::LoadAfterStoreHit, &store, 0, "ld.l 8(r4), r6"), 1);
-    assert_eq!(cost_apart(Freeze::LoadAfterStoreHit, &store, 1, "ld.l 8(r4), r6"), 0);
-    assert_eq!(cost(Freeze::LoadAfterStoreHit, "st.l r5, 4(r4)\nld.l 8(r4), r6"), 0, "the store missed");
-}
-
-/// Row 18 of Intel's list, delayed conditional branch not taken: "1". A taken branch takes only the clock of its delay
-/// slot. For example, the loop of a tree code of the period takes 106 clocks with such a branch (anchors.rs).
-#[test]
-fn row_18_a_delayed_branch_costs_one_clock_only_if_the_branch_is_not_taken() {
-    let row = Freeze::DelayedBranchNotTaken;
-    assert_eq!(cost(row, "bc.t end\nnop"), 1);
-    assert_eq!(cost(row, "bnc.t end\nnop"), 0);
-    assert_eq!(cost(row, "adds -1, r0, r5\nmov 9, r6\nbla r5, r6, end\nnop"), 1, "LCC was clear");
-    assert_eq!(cost(row, "adds -1, r0, r5\nmov 9, r6\nbla r5, r6, a\nnop\na: bla r5, r6, end\nnop"), 1, "then set");
-}
-
-/// Row 19 of Intel's list, branch without slot taken: "1 bc, bnc; 2 bte, btne".
-#[test]
-fn row_19_a_branch_without_delay_slot_costs_extra_clocks_only_if_the_branch_is_taken() {
-    assert_eq!(cost(Freeze::BranchTaken, "bnc end\nnop"), 1);
-    assert_eq!(cost(Freeze::BranchTaken, "bc end\nnop"), 0);
-    assert_eq!(cost(Freeze::CompareBranchTaken, "bte r0, r0, end\nnop"), 2);
-    assert_eq!(cost(Freeze::CompareBranchTaken, "btne r0, r0, end\nnop"), 0);
-}
-
-/// Row 20 of Intel's list, bri, calli: "1".
-#[test]
-fn row_20_a_branch_to_an_address_in_a_register_costs_one_extra_clock() {
-    assert_eq!(cost(Freeze::IndirectBranch, "mov end, r5\nbri r5\nnop"), 1);
-    assert_eq!(cost(Freeze::IndirectBranch, "mov end, r5\ncalli r5\nnop"), 1);
-    assert_eq!(cost(Freeze::IndirectBranch, "br end\nnop"), 0);
-}
-
-/// Row 21 of Intel's list, st.c: "2".
-#[test]
-fn row_21_a_write_to_a_control_register_costs_two_extra_clocks() {
-    assert_eq!(cost(Freeze::ControlStore, "st.c r0, fsr\nld.c fsr, r5"), 2);
-    assert_eq!(cost(Freeze::ControlStore, "ld.c fsr, r5"), 0);
-}
-
-/// Row 22 of Intel's list, graphics result used by the next adder or multiplier operation: "1"; by the next graphics
-/// operation: "1".
-#[test]
-fn row_22_the_result_of_a_graphics_instruction_is_one_clock_late_for_the_next_instruction() {
-    let first = "fiadd.ss f8, f9, f10";
-    assert_eq!(cost(Freeze::GraphicsToFloating, &format!("{first}\npfadd.ss f10, f2, f3")), 1);
-    assert_eq!(cost(Freeze::GraphicsToFloating, &format!("{first}\nnop\npfadd.ss f10, f2, f3")), 0);
-    assert_eq!(cost(Freeze::GraphicsToFloating, &format!("{first}\npfadd.ss f12, f2, f3")), 0);
-    assert_eq!(cost(Freeze::GraphicsToGraphics, &format!("{first}\nfiadd.ss f10, f2, f3")), 1);
-    assert_eq!(cost(Freeze::GraphicsToGraphics, &format!("{first}\npfadd.ss f10, f2, f3")), 0);
-}
-
-/// Row 23 of Intel's list, flush after flush: "2 - instructions between".
-#[test]
-fn row_23_a_flush_waits_for_the_previous_flush() {
-    for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
-        let found = cost_apart(Freeze::FlushAfterFlush, "flush 0(r4)", gap, "flush 32(r4)");
-        assert_eq!(found, expected, "{gap} between");
+fn rows_of_constant_clocks_cost_them_only_where_the_list_says() {
+    let hit = apart("ld.l 0(r4), r5", 30, "st.l r5, 4(r4)");
+    for (row, source, clocks) in [
+        // Row 6, destination of ld, ld.c, call, calli, fxfr used by the next instruction: "1".
+        (Freeze::LoadUse, "ld.l 0(r4), r5\nadds r5, r0, r6", 1),
+        (Freeze::LoadUse, "ld.c psr, r5\nadds r5, r0, r6", 1),
+        (Freeze::LoadUse, "fxfr f8, r5\nadds r5, r0, r6", 1),
+        (Freeze::LoadUse, "call f\nadds r1, r0, r6\nf: nop\nnop", 1),
+        (Freeze::LoadUse, "ld.l 0(r4), r5\nnop\nadds r5, r0, r6", 0),
+        (Freeze::LoadUse, "ld.l 0(r4), r5\nadds r7, r0, r6", 0),
+        // Row 9, multiplier operation whose fsrc1 is the result of the operation before: "1". The second source does
+        // not wait, and r2p1 sends the first one to the adder.
+        (Freeze::MultiplierFirstSource, "pfadd.ss f8, f9, f10\npfmul.ss f10, f9, f11", 1),
+        (Freeze::MultiplierFirstSource, "pfadd.ss f8, f9, f10\npfmul.ss f9, f10, f11", 0),
+        (Freeze::MultiplierFirstSource, "pfadd.ss f8, f9, f10\nnop\npfmul.ss f10, f9, f11", 0),
+        (Freeze::MultiplierFirstSource, "pfadd.ss f8, f9, f10\nm12apm.ss f10, f9, f11", 1),
+        (Freeze::MultiplierFirstSource, "pfadd.ss f8, f9, f10\nr2p1.ss f10, f9, f11", 0),
+        // Row 10: "fmul.dd 3 - instructions since".
+        (Freeze::ScalarDoubleMultiplyBusy, "fmul.dd f8, f10, f12\nfadd.dd f2, f4, f6", 3),
+        (Freeze::ScalarDoubleMultiplyBusy, "fmul.dd f8, f10, f12\nnop\nnop\nfadd.dd f2, f4, f6", 1),
+        (Freeze::ScalarDoubleMultiplyBusy, "fmul.dd f8, f10, f12\nnop\nnop\nnop\nfadd.dd f2, f4, f6", 0),
+        // Row 11, multiplier operation after a double-precision multiply: "1". The 60 MFLOPS in double precision at 40
+        // MHz in the data sheet mean one multiplication every second clock and one addition every clock.
+        (Freeze::DoubleMultiply, "pfmul.dd f8, f10, f12\npfmul.dd f8, f10, f12", 1),
+        (Freeze::DoubleMultiply, "pfmul.dd f8, f10, f12\npfadd.dd f8, f10, f12\npfmul.dd f8, f10, f12", 0),
+        (Freeze::DoubleMultiply, "pfmul.dd f8, f10, f12\npfadd.dd f8, f10, f12", 0),
+        (Freeze::DoubleMultiply, "pfmul.ss f8, f10, f12\npfmul.ss f8, f10, f12", 0),
+        // Row 17, ld or fld right after a store that hit: "1". The last store missed.
+        (Freeze::LoadAfterStoreHit, &apart(&hit, 0, "ld.l 8(r4), r6"), 1),
+        (Freeze::LoadAfterStoreHit, &apart(&hit, 1, "ld.l 8(r4), r6"), 0),
+        (Freeze::LoadAfterStoreHit, "st.l r5, 4(r4)\nld.l 8(r4), r6", 0),
+        // Row 18, delayed conditional branch not taken: "1". A taken branch takes only the clock of its delay slot. For
+        // example, the loop of a tree code of the period takes 106 clocks with such a branch (anchors.rs). The first
+        // bla finds LCC clear, and the branch at `a` finds it set.
+        (Freeze::DelayedBranchNotTaken, "bc.t end\nnop", 1),
+        (Freeze::DelayedBranchNotTaken, "bnc.t end\nnop", 0),
+        (Freeze::DelayedBranchNotTaken, "adds -1, r0, r5\nmov 9, r6\nbla r5, r6, end\nnop", 1),
+        (Freeze::DelayedBranchNotTaken, "adds -1, r0, r5\nmov 9, r6\nbla r5, r6, a\nnop\na: bla r5, r6, end\nnop", 1),
+        // Row 19, branch without slot taken: "1 bc, bnc; 2 bte, btne".
+        (Freeze::BranchTaken, "bnc end\nnop", 1),
+        (Freeze::BranchTaken, "bc end\nnop", 0),
+        (Freeze::CompareBranchTaken, "bte r0, r0, end\nnop", 2),
+        (Freeze::CompareBranchTaken, "btne r0, r0, end\nnop", 0),
+        // Row 20, bri, calli: "1".
+        (Freeze::IndirectBranch, "mov end, r5\nbri r5\nnop", 1),
+        (Freeze::IndirectBranch, "mov end, r5\ncalli r5\nnop", 1),
+        (Freeze::IndirectBranch, "br end\nnop", 0),
+        // Row 21, st.c: "2".
+        (Freeze::ControlStore, "st.c r0, fsr\nld.c fsr, r5", 2),
+        (Freeze::ControlStore, "ld.c fsr, r5", 0),
+        // Row 22, graphics result used by the next adder or multiplier operation: "1"; by the next graphics operation:
+        // "1".
+        (Freeze::GraphicsToFloating, "fiadd.ss f8, f9, f10\npfadd.ss f10, f2, f3", 1),
+        (Freeze::GraphicsToFloating, "fiadd.ss f8, f9, f10\nnop\npfadd.ss f10, f2, f3", 0),
+        (Freeze::GraphicsToFloating, "fiadd.ss f8, f9, f10\npfadd.ss f12, f2, f3", 0),
+        (Freeze::GraphicsToGraphics, "fiadd.ss f8, f9, f10\nfiadd.ss f10, f2, f3", 1),
+        (Freeze::GraphicsToGraphics, "fiadd.ss f8, f9, f10\npfadd.ss f10, f2, f3", 0),
+        // Row 23, flush after flush: "2 - instructions between".
+        (Freeze::FlushAfterFlush, "flush 0(r4)\nflush 32(r4)", 2),
+        (Freeze::FlushAfterFlush, "flush 0(r4)\nnop\nflush 32(r4)", 1),
+        (Freeze::FlushAfterFlush, "flush 0(r4)\nnop\nnop\nflush 32(r4)", 0),
+        // Row 24, fst, pst, then a pipelined operation that overwrites the stored register: "1".
+        (Freeze::StoreThenOverwrite, "fst.l f8, 0(r4)\npfadd.ss f2, f3, f8", 1),
+        (Freeze::StoreThenOverwrite, "fst.l f8, 0(r4)\nnop\npfadd.ss f2, f3, f8", 0),
+        (Freeze::StoreThenOverwrite, "fst.l f8, 0(r4)\npfadd.ss f2, f3, f9", 0),
+        (Freeze::StoreThenOverwrite, "fst.l f8, 0(r4)\nfadd.ss f2, f3, f8", 0),
+        // Intel's list has no row 25, because its row 10 does not include frcp and frsqr. A published code for three
+        // reciprocal roots in 39 clocks is possible if the result can be used two instructions later.
+        (Freeze::SeedUse, "frcp.ss f8, f9\nfmul.ss f9, f9, f10", 1),
+        (Freeze::SeedUse, "frcp.ss f8, f9\nnop\nfmul.ss f9, f9, f10", 0),
+    ] {
+        assert_eq!(cost(row, source), clocks, "{row:?}: {source}");
     }
-}
-
-/// Row 24 of Intel's list, fst, pst, then a pipelined operation that overwrites the stored register: "1".
-#[test]
-fn row_24_a_pipelined_result_waits_until_its_register_is_stored() {
-    let row = Freeze::StoreThenOverwrite;
-    assert_eq!(cost(row, "fst.l f8, 0(r4)\npfadd.ss f2, f3, f8"), 1);
-    assert_eq!(cost(row, "fst.l f8, 0(r4)\nnop\npfadd.ss f2, f3, f8"), 0);
-    assert_eq!(cost(row, "fst.l f8, 0(r4)\npfadd.ss f2, f3, f9"), 0);
-    assert_eq!(cost(row, "fst.l f8, 0(r4)\nfadd.ss f2, f3, f8"), 0);
-}
-
-/// Intel's list has no such row, because its row 10 does not include frcp and frsqr. A published code for three
-/// reciprocal roots in 39 clocks is possible if the result can be used two instructions later.
-#[test]
-fn row_25_the_seed_of_a_reciprocal_is_one_clock_late_for_the_next_instruction() {
-    assert_eq!(cost(Freeze::SeedUse, "frcp.ss f8, f9\nfmul.ss f9, f9, f10"), 1);
-    assert_eq!(cost(Freeze::SeedUse, "frcp.ss f8, f9\nnop\nfmul.ss f9, f9, f10"), 0);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Tests of the code that sends a bin. The messages and words must equal the messages and words of the native firmware.
 
+use crate::numbers::Numbers;
 use glam::{Mat4, Vec3};
 use pphigs::{
     BinHandoffWork, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Pass, Picture, RegionBinning,
@@ -18,26 +19,22 @@ use std::sync::Arc;
 /// belongs to the program.
 const PROGRAMS_END: Word = 1 << 20;
 
-fn vector(numbers: &mut SplitMix64, size: f32) -> Vec3 {
-    Vec3::new(numbers.unit() - 0.5, numbers.unit() - 0.5, numbers.unit() - 0.5) * (2.0 * size)
-}
-
 /// Returns small triangles and spheres in front of the eye. Most primitives are near the middle, so that some bins fill
 /// several messages.
 fn share(triangles: u32, spheres: usize) -> Share {
-    let mut numbers = SplitMix64::new(3);
+    let mut numbers = Numbers(SplitMix64::new(3));
     let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.2, diffuse: 0.8, ..DisplayList::default() };
     for number in 0..triangles {
-        let centre = Vec3::new(0.0, 0.0, -6.0) + vector(&mut numbers, if number % 3 == 0 { 1.5 } else { 0.3 });
+        let centre = Vec3::new(0.0, 0.0, -6.0) + numbers.vector(if number % 3 == 0 { 1.5 } else { 0.3 });
         for corner in 0..3 {
-            list.positions.push(centre + vector(&mut numbers, 0.1));
+            list.positions.push(centre + numbers.vector(0.1));
             list.normals.push(Vec3::Z);
             list.colours.push([corner * 100; 3]);
         }
         list.triangles.push([3 * number, 3 * number + 1, 3 * number + 2]);
     }
     let sphere =
-        |_| WorldSphere { centre: Vec3::new(0.0, 0.0, -6.0) + vector(&mut numbers, 0.8), radius: 0.05, colour: [9; 3] };
+        |_| WorldSphere { centre: Vec3::new(0.0, 0.0, -6.0) + numbers.vector(0.8), radius: 0.05, colour: [9; 3] };
     list.spheres = (0..spheres).map(sphere).collect();
     let (frame, culling) = (ModelFrame::World, Culling::None);
     list.structures = vec![DisplayStructure { triangles: 0..triangles as usize, spheres: 0..spheres, frame, culling }];

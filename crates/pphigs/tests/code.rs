@@ -2,6 +2,7 @@
 //! the time of the code.
 
 use crate::native::native;
+use crate::numbers::Numbers;
 use glam::{Mat4, Vec3};
 use pphigs::{
     DisplayList, DisplayStructure, EyeView, FrameView, KernelOutput, ModelEdit, ModelFrame, Pass, Picture,
@@ -17,19 +18,6 @@ use std::sync::Arc;
 const MEMORY: u64 = 8 << 20;
 const VERSIONS: [CodeVersion; 3] = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
 
-/// A generator of numbers from 0 to 1. It gives the same numbers on every host.
-struct Numbers(SplitMix64);
-
-impl Numbers {
-    fn next(&mut self) -> f32 {
-        self.0.unit()
-    }
-
-    fn vector(&mut self, size: f32) -> Vec3 {
-        Vec3::new(self.next() - 0.5, self.next() - 0.5, self.next() - 0.5) * (2.0 * size)
-    }
-}
-
 /// Returns triangles in front of the eye in two structures, one of them fixed to the head.
 fn list(triangles: u32) -> Arc<DisplayList> {
     let mut numbers = Numbers(SplitMix64::new(7));
@@ -41,7 +29,7 @@ fn list(triangles: u32) -> Arc<DisplayList> {
         for _ in 0..3 {
             list.positions.push(centre + numbers.vector(0.3));
             list.normals.push(numbers.vector(1.0));
-            list.colours.push([0; 3].map(|_| (numbers.next() * 255.0) as u8));
+            list.colours.push([0; 3].map(|_| (numbers.0.unit() * 255.0) as u8));
         }
         list.triangles.push([3 * number, 3 * number + 1, 3 * number + 2]);
     }

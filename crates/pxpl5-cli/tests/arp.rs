@@ -23,12 +23,12 @@ fn arp<'a>(command: &'a str, arguments: &[&'a str]) -> Vec<&'a str> {
 }
 
 fn picture(folder: &Folder, name: &str) -> RgbImage {
-    image::open(folder.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}")).to_rgb8()
+    image::open(folder.path.join(name)).unwrap_or_else(|error| panic!("{name}: {error}")).to_rgb8()
 }
 
 #[test]
 fn run_prints_one_json_object_and_writes_the_same_with_all_pictures() {
-    let folder = Folder::new("arp-run");
+    let folder = Folder::new();
     let report = json(&folder.run(&arp("run", &["--warp", "none", "--json", "--out", "a/b"])));
     assert_eq!(report["schema"], "pxpl5-arp/1");
     assert_eq!((&report["scene"], &report["frames"]), (&Value::from("gallery"), &Value::from(120)));
@@ -39,7 +39,7 @@ fn run_prints_one_json_object_and_writes_the_same_with_all_pictures() {
     assert_eq!(report["memories"].as_array().map(Vec::len), Some(4));
     assert_eq!(report["memories"][0]["updates_hz"], 60.0);
     assert!(report["tears_texels"]["after"]["max"].as_f64() > Some(0.0), "{report}");
-    let written = folder.0.join("a/b");
+    let written = folder.path.join("a/b");
     assert_eq!(
         names(&written),
         [
@@ -80,7 +80,7 @@ fn run_prints_one_json_object_and_writes_the_same_with_all_pictures() {
 
 #[test]
 fn run_prints_a_table_and_with_quiet_prints_nothing() {
-    let folder = Folder::new("arp-text");
+    let folder = Folder::new();
     let text = out(&folder.run(&arp("run", &["--policy", "objects"])));
     for part in ["policy objects", "updates/s", "objects that changed memory", "new assignments of cells      -"] {
         assert!(text.contains(part), "{part}: {text}");
@@ -90,7 +90,7 @@ fn run_prints_a_table_and_with_quiet_prints_nothing() {
 
 #[test]
 fn a_warped_walk_has_no_tear_and_a_slow_renderer_misses_retraces() {
-    let folder = Folder::new("arp-warped");
+    let folder = Folder::new();
     let warped = json(&folder.run(&arp("run", &["--json"])));
     assert!(warped["tears_texels"]["after"]["max"].as_f64() < Some(1e-6), "{warped}");
     assert!(warped["tears_texels"]["before"]["max"].as_f64() > Some(0.1), "{warped}");
@@ -100,7 +100,7 @@ fn a_warped_walk_has_no_tear_and_a_slow_renderer_misses_retraces() {
 
 #[test]
 fn options_override_the_file_and_set_overrides_options() {
-    let folder = Folder::new("arp-file");
+    let folder = Folder::new();
     folder.file(
         "walk.toml",
         "scene = \"gallery\"\npolicy = \"objects\"\n[priority]\ncell_m = 6.0\nmemories = 3\n[walk]\nm_per_s = 0.5\n",
@@ -114,7 +114,7 @@ fn options_override_the_file_and_set_overrides_options() {
 
 #[test]
 fn compare_lists_every_policy_and_warp_and_writes_its_files() {
-    let folder = Folder::new("arp-compare");
+    let folder = Folder::new();
     let comparison = json(&folder.run(&arp("compare", &["--json", "--out", "o"])));
     assert_eq!(comparison["schema"], "pxpl5-arp-comparison/1");
     let rows = comparison["rows"].as_array().expect("a list");
@@ -124,14 +124,14 @@ fn compare_lists_every_policy_and_warp_and_writes_its_files() {
     assert!(row("cells, torn")["draws_per_s"].as_f64() < row("cells, uncut")["draws_per_s"].as_f64());
     assert!(row("cells, warped")["tears"]["max"].as_f64() < row("cells, torn")["tears"]["max"].as_f64());
     assert!(row("objects")["tears"].is_null());
-    assert_eq!(names(&folder.0.join("o")), ["comparison.json", "manifest.json", "rows.csv"]);
+    assert_eq!(names(&folder.path.join("o")), ["comparison.json", "manifest.json", "rows.csv"]);
     let text = out(&folder.run(&arp("compare", &[])));
     assert!(text.contains("cells, smoothstep") && text.contains("stretch, texels"), "{text}");
 }
 
 #[test]
 fn errors_name_the_setting_and_the_expected_and_found_values() {
-    let folder = Folder::new("arp-wrong");
+    let folder = Folder::new();
     folder.file("bad.toml", "polcy = \"cells\"\n");
     for (arguments, parts) in [
         (vec!["arp", "run", "--set", "priority.cel_m=5"], vec!["--set", "`priority.cel_m`", "`priority.cell_m`"]),
@@ -160,19 +160,19 @@ fn errors_name_the_setting_and_the_expected_and_found_values() {
 
 #[test]
 fn a_lens_too_wide_for_a_plane_still_has_pictures() {
-    let folder = Folder::new("arp-wide");
+    let folder = Folder::new();
     let wide = ["--lens", "equidistant", "--set", "arp.horizontal_deg=200", "--json"];
     let alone = json(&folder.run(&arp("run", &wide)));
     let written = json(&folder.run(&arp("run", &[&wide[..], &["--out", "o"]].concat())));
     assert_eq!(alone, written);
-    let names = names(&folder.0.join("o"));
+    let names = names(&folder.path.join("o"));
     assert!(names.contains(&"eye.png".to_owned()) && !names.contains(&"eye-flat.png".to_owned()), "{names:?}");
 }
 
 /// Tests the default lens, which is flat. The views through the lens and without a lens must be equal.
 #[test]
 fn the_default_lens_shows_the_same_picture_as_no_lens() {
-    let folder = Folder::new("arp-flat");
+    let folder = Folder::new();
     json(&folder.run(&arp("run", &["--json", "--out", "o"])));
     assert!(picture(&folder, "o/eye.png") == picture(&folder, "o/eye-flat.png"));
 }
@@ -180,7 +180,7 @@ fn the_default_lens_shows_the_same_picture_as_no_lens() {
 /// Tests the example pixel of the guide: upper left, head 30 degrees to the left, faces of 512 texels.
 #[test]
 fn texel_prints_the_face_and_the_texels_of_a_pixel() {
-    let folder = Folder::new("arp-texel");
+    let folder = Folder::new();
     let found = json(&folder.run(&["arp", "texel", "0", "0", "--yaw", "30", "--json"]));
     assert_eq!(found["texels"][0]["face"], "NegX");
     let texels = found["texels"].as_array().expect("four").iter();

@@ -5,43 +5,13 @@ use std::path::Path;
 use std::process::Stdio;
 
 const SLATS: [&str; 7] = ["run", "--pipeline", "slats", "--scene", "full-screen:10", "--fields", "12"];
-const RC: [&str; 7] = ["run", "--pipeline", "rendering-control", "--scene", "full-screen:12", "--fields", "24"];
-
 fn with<'a>(first: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
     [first, more].concat()
 }
 
-/// Asserts that a command is refused with the exit code `code`, and that standard error contains all texts in `says`.
-fn refused(args: &[&str], code: i32, says: &[&str]) {
-    let folder = Folder::new(&format!(
-        "refused-{:x}",
-        args.join(" ").bytes().fold(7u64, |h, b| h * 31 % 0xFFFF_FFFB + u64::from(b))
-    ));
-    let output = folder.run(args);
-    let text = err(&output);
-    assert_eq!(output.status.code(), Some(code), "{args:?}: {text}");
-    says.iter().for_each(|part| assert!(text.contains(part), "{args:?} should say {part:?}: {text}"));
-    assert!(!text.contains("panicked"), "{text}");
-    assert_eq!(out(&output), "", "{args:?}");
-    assert!(folder.names().is_empty(), "{args:?} left {:?}", folder.names());
-}
-
-/// Command line of a run whose machine needs many seconds for a frame. Its slaves have room for the bins of both eyes.
-const FULL: [&str; 9] = [
-    "run",
-    "--pipeline",
-    "rendering-control",
-    "--scene",
-    "full-screen:20000",
-    "--pixels",
-    "off",
-    "--set",
-    "gp.bin_bytes=400000",
-];
-
 #[test]
 fn a_run_prints_one_object_with_units_in_its_names() {
-    let folder = Folder::new("json");
+    let folder = Folder::new();
     let report = json(&folder.run(&with(&SLATS, &["--json", "--seed", "7"])));
     assert_eq!(report["schema"], "pxpl5-report/3");
     assert_eq!((&report["pipeline"], &report["machine"]), (&"slats".into(), &"slats".into()));
@@ -64,7 +34,7 @@ fn a_run_prints_one_object_with_units_in_its_names() {
 #[test]
 fn a_run_that_shows_nothing_fails_with_a_message() {
     // Slats shows every field, and none of these fields is complete in time.
-    let folder = Folder::new("always-late");
+    let folder = Folder::new();
     let late = ["run", "--pipeline", "slats", "--scene", "full-screen:1000", "--fields", "60", "--pixels", "off"];
     let output = folder.run(&with(&late, &["--json"]));
     assert_eq!(output.status.code(), Some(1));
@@ -72,22 +42,15 @@ fn a_run_that_shows_nothing_fails_with_a_message() {
     let report = json_of(&output);
     assert_eq!((&report["shown"], &report["updates_hz"]), (&0.into(), &serde_json::Value::Null));
     assert!(report["too_heavy"]["primitives_in_time"].as_u64() > Some(100));
+    assert_eq!(report["ends_complete"], false);
 }
 
 #[test]
 fn a_run_that_is_too_short_prints_its_partial_results() {
-    let folder = Folder::new("too-short");
-    let short = with(&FULL, &["--fields", "60"]);
-    let output = folder.run(&with(&short, &["--json"]));
-    assert_eq!(output.status.code(), Some(1));
-    // A frame of 20,000 triangles takes at least 70 fields, and the first four frames are discarded.
-    assert!(err(&output).contains("simulate more fields: the next one is shown after about"), "{}", err(&output));
-    let report = json_of(&output);
-    for key in ["mean", "sd", "min", "max"] {
-        assert_eq!(report["latency_ms"][key], serde_json::Value::Null);
-    }
-    assert_eq!((&report["latency_ms"]["n"], &report["updates_hz"]), (&0.into(), &serde_json::Value::Null));
-    let text = folder.run(&short);
+    let folder = Folder::new();
+    let short = "run --pipeline rendering-control --scene full-screen:20000 --pixels off --fields 60";
+    // The slaves have room for the bins of both eyes.
+    let text = folder.run(&short.split(' ').chain(["--set", "gp.bin_bytes=400000"]).collect::<Vec<_>>());
     assert_eq!(text.status.code(), Some(1));
     let words = out(&text).split_whitespace().collect::<Vec<_>>().join(" ");
     for part in ["fields simulated 60", "latency, fields: mean - ", "not shown in time", "TOO HEAVY"] {
@@ -106,24 +69,13 @@ fn read(folder: &Path, name: &str) -> Vec<u8> {
 
 #[test]
 fn result_files_state_their_origin_and_tables_begin_with_column_names() {
-    let folder = Folder::new("files");
+    let folder = Folder::new();
     let report = json(&folder.run(&with(&SLATS, &["--json", "--out", "a/b", "--set", "gp.triangle_ns=31000"])));
     // With the feature `parquet` there is also a Parquet file.
-    let names: Vec<String> = names(&folder.0.join("a/b")).into_iter().filter(|n| !n.ends_with(".parquet")).collect();
-    assert_eq!(
-        names,
-        [
-            "experiment.toml",
-            "left.png",
-            "manifest.json",
-            "pictures.csv",
-            "report.json",
-            "results.csv",
-            "right.png",
-            "timeline.svg"
-        ]
-    );
-    let written = folder.0.join("a/b");
+    let names: Vec<String> = names(&folder.path.join("a/b")).into_iter().filter(|n| !n.ends_with(".parquet")).collect();
+    let tables = "experiment.toml left.png manifest.json pictures.csv report.json results.csv right.png timeline.svg";
+    assert_eq!(names.join(" "), tables);
+    let written = folder.path.join("a/b");
     let hash = report["config_hash"].as_str().expect("a hash");
     let text = |name: &str| String::from_utf8(read(&written, name)).expect("text");
     let config_hash = format!("# config_hash: {hash}");
@@ -146,7 +98,7 @@ fn result_files_state_their_origin_and_tables_begin_with_column_names() {
 
 #[test]
 fn run_prints_a_table_to_standard_output_and_with_quiet_prints_nothing() {
-    let folder = Folder::new("table");
+    let folder = Folder::new();
     let output = folder.run(&SLATS);
     assert!(output.status.success() && err(&output).is_empty());
     let text = out(&output);
@@ -160,7 +112,7 @@ fn run_prints_a_table_to_standard_output_and_with_quiet_prints_nothing() {
 
 #[test]
 fn lists_name_all_built_in_items() {
-    let folder = Folder::new("lists");
+    let folder = Folder::new();
     let scenes = json(&folder.run(&["scenes", "--json"]));
     let names: Vec<_> = scenes["scenes"].as_array().expect("a list").iter().map(|scene| &scene["name"]).collect();
     let of_one_size = ["aircraft", "mig", "molecules", "head", "room", "gallery", "gallery:full"];
@@ -178,68 +130,8 @@ fn lists_name_all_built_in_items() {
 }
 
 #[test]
-fn a_flag_of_another_pipeline_is_refused() {
-    refused(&with(&SLATS, &["--mono"]), 2, &["--mono", "does not apply to the pipeline slats"]);
-    for (flag, value) in [("--copy", "whole"), ("--code", "1994"), ("--binning", "all")] {
-        refused(&with(&RC, &[flag, value]), 2, &[flag, "does not apply to the pipeline rendering-control"]);
-    }
-    let conflict = with(&SLATS, &["--code", "1995", "--set", "gp.triangle_ns=1000"]);
-    refused(&conflict, 2, &["machine.gp.triangle_ns", "code = 1995", "leave one out"]);
-}
-
-#[test]
-fn unknown_names_are_refused_and_the_error_suggests_the_nearest_name() {
-    refused(&with(&SLATS, &["--machine", "slat"]), 2, &["--machine", "`slat`", "`slats`"]);
-    refused(&with(&SLATS, &["--set", "gp.triangel_ns=1"]), 2, &["--set", "`gp.triangle_ns`"]);
-    refused(&with(&SLATS, &["--copy", "splitt"]), 2, &["--copy", "whole, split", "did you mean `split`?"]);
-    refused(
-        &["run", "--pipeline", "slat", "--scene", "mig"],
-        2,
-        &["rendering-control, slats", "did you mean `slats`?"],
-    );
-    refused(&["run", "--pipeline", "slats", "--scene", "mgi"], 2, &["`mgi`", "did you mean `mig`?"]);
-    refused(&["run", "--pipeline", "slats"], 2, &["scene is missing", "pxpl5 scenes"]);
-    refused(&["run", "--scene", "mig"], 2, &["pipeline is missing"]);
-    refused(&["rum"], 2, &["rum", "run"]);
-}
-
-#[test]
-fn impossible_numbers_are_refused() {
-    refused(&with(&SLATS, &["--renderers", "0"]), 2, &["n_renderers must be 1 to 1000, found 0"]);
-    refused(&with(&SLATS, &["--gps", "-1"]), 2, &["--gps", "whole number", "found -1"]);
-    refused(&with(&RC, &["--gps", "1"]), 2, &["n_gps of Rendering Control"]);
-    for fields in ["0", "-3", "10000001", "9223372036854775807"] {
-        let args = ["run", "--pipeline", "slats", "--scene", "mig", "--fields", fields];
-        refused(&args, 2, &["--fields", "from 1 to 10000000", fields]);
-    }
-    refused(&with(&SLATS, &["--triangles", "0"]), 2, &["--triangles", "from 1 to"]);
-    refused(&with(&SLATS, &["--threads", "1025"]), 2, &["--threads", "1025"]);
-    refused(&with(&SLATS, &["--threads", "-1"]), 2, &["--threads"]);
-    refused(&["run", "--pipeline", "slats", "--scene", "full-screen:0"], 2, &["from 1 to 1000000"]);
-}
-
-#[test]
-fn a_million_triangles_do_not_fit_and_the_error_names_options_that_help() {
-    let args = ["run", "--pipeline", "slats", "--scene", "full-screen:1000000", "--pixels", "off"];
-    refused(&args, 1, &["GP 0", "bytes", "--gps", "--triangles"]);
-}
-
-#[test]
-fn a_folder_that_cannot_be_written_is_refused_before_anything_is_computed() {
-    let folder = Folder::new("no-folder");
-    let file = folder.file("file", "");
-    let below = file.join("below");
-    // A run of this length would take hours.
-    let args = ["run", "--pipeline", "slats", "--scene", "mig", "--fields", "10000000", "--out"];
-    for path in [file.to_str(), below.to_str(), Some("/proc/pxpl5")] {
-        let path = path.expect("text");
-        refused(&with(&args, &[path]), 1, &[path, "cannot be written", "--out"]);
-    }
-}
-
-#[test]
-fn an_experiment_file_reaches_every_setting_and_its_errors_name_the_line() {
-    let folder = Folder::new("toml");
+fn an_experiment_file_reaches_every_setting() {
+    let folder = Folder::new();
     folder.file(
         "e.toml",
         "pipeline = \"slats\"\nscene = \"mig\"\ntriangles = 50\nfields = 12\n[machine]\ngp.triangle_ns = 20_000\n",
@@ -248,14 +140,11 @@ fn an_experiment_file_reaches_every_setting_and_its_errors_name_the_line() {
     assert_eq!((&report["triangles"], &report["fields"]), (&50.into(), &14.into()));
     assert!(report["variant"].as_str().expect("text").contains("copy=whole"));
     assert_eq!(report["overrides"]["gp.triangle_ns"], 20_000);
-    let path = folder.file("bad.toml", "pipeline = \"slats\"\nsceen = \"mig\"");
-    refused(&["run", path.to_str().expect("text")], 2, &["bad.toml", "line 2", "did you mean `scene`"]);
-    refused(&["run", "missing.toml"], 2, &["missing.toml", "readable experiment file"]);
 }
 
 #[test]
 fn check_prints_an_equivalent_file() {
-    let folder = Folder::new("check");
+    let folder = Folder::new();
     let args = ["--pipeline", "rendering-control", "--scene", "mig", "--mono", "--set", "ring.hop_ns=100"];
     let once = out(&folder.run(&with(&["check"], &args)));
     assert!(once.contains("ring.hop_ns = 100  # ns, assumed; the preset has 50"), "{once}");
@@ -279,7 +168,7 @@ fn a_closed_pipe_is_no_error() {
 
 #[test]
 fn help_shows_examples_and_completions_have_the_options() {
-    let folder = Folder::new("help");
+    let folder = Folder::new();
     for args in
         [&["--help"][..], &["run", "--help"], &["check", "--help"], &["demo", "--help"], &["machines", "--help"]]
     {
@@ -293,34 +182,25 @@ fn help_shows_examples_and_completions_have_the_options() {
 
 #[test]
 fn without_arguments_the_command_runs_both_pipelines_and_writes_pictures() {
-    let folder = Folder::new("demo");
+    let folder = Folder::new();
     let output = folder.run(&[]);
     assert!(output.status.success(), "{}", err(&output));
     let text = out(&output);
-    for part in [
-        "rendering-control",
-        "slats",
-        "full-screen:12",
-        "mig",
-        "417 triangles",
-        "aircraft",
-        "100 triangles",
-        "56.5",
-        "76.91",
-    ] {
+    for part in "rendering-control|slats|full-screen:12|mig|417 triangles|aircraft|100 triangles|56.5|76.91".split('|')
+    {
         assert!(text.contains(part), "{part}: {text}");
     }
     let report: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(folder.0.join("out/report.json")).expect("written")).expect("JSON");
+        serde_json::from_slice(&std::fs::read(folder.path.join("out/report.json")).expect("written")).expect("JSON");
     assert_eq!(report["runs"][0]["name"], "rendering-control-mig", "the scene first, the plain rectangle last");
     for run in report["runs"].as_array().expect("a list") {
         assert!(run["report"]["fields"].as_u64().expect("a number") >= 120);
         assert_agrees_with_accuracy(&run["published"]);
         let timeline = format!("out/{}-timeline.svg", run["name"].as_str().expect("text"));
-        assert!(std::fs::read_to_string(folder.0.join(timeline)).expect("written").contains("</svg>"));
+        assert!(std::fs::read_to_string(folder.path.join(timeline)).expect("written").contains("</svg>"));
         for eye in ["left", "right"] {
             let name = format!("out/{}-{eye}.png", run["name"].as_str().expect("text"));
-            let picture = image::open(folder.0.join(&name)).expect("a picture").to_rgb8();
+            let picture = image::open(folder.path.join(&name)).expect("a picture").to_rgb8();
             assert_eq!((picture.width(), picture.height()), (640, 480), "{name}");
             // Background colours of the two scenes. Twelve triangles cover the screen, and an aircraft covers part of
             // the sky.
@@ -331,7 +211,7 @@ fn without_arguments_the_command_runs_both_pipelines_and_writes_pictures() {
         }
     }
     assert!(folder.run(&["report", "out", "--quiet", "--write", "page.html"]).status.success());
-    let page = String::from_utf8(read(&folder.0, "page.html")).expect("text");
+    let page = String::from_utf8(read(&folder.path, "page.html")).expect("text");
     assert_eq!((page.matches("<h2>").count(), page.matches("data:image/png;base64,").count()), (3, 6));
     assert!(page.contains("figure 9, TR94, I3D95"));
 }
@@ -409,7 +289,7 @@ fn the_files_of_figures_agree_with_accuracy_md_or_state_the_reason() {
 /// Tests a scene that needs only one update: a still ball in front of a still head, on a display that turns cube faces.
 #[test]
 fn a_scene_that_is_drawn_once_counts_as_shown_and_has_no_update_rate() {
-    let folder = Folder::new("drawn-once");
+    let folder = Folder::new();
     let still = ["--scene", "sphere:1000", "--set", "head.path=still", "--set", "head.sway=0"];
     for pipeline in ["arp-priority", "arp-cells"] {
         for fields in ["60", "200"] {

@@ -3,25 +3,13 @@
 use crate::support::{Folder, err};
 use serde_json::Value;
 
-const SHORT: [&str; 10] = [
-    "compare",
-    "--scene",
-    "full-screen:2",
-    "--fields",
-    "24",
-    "--seeds",
-    "2",
-    "--only",
-    "slats,jitp-field,ideal",
-    "--json",
-];
-
 fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    [&SHORT, more].concat()
+    let short = "compare --scene full-screen:2 --fields 24 --seeds 2 --only slats,jitp-field,ideal --json";
+    short.split(' ').chain(more.iter().copied()).collect()
 }
 
 fn read(folder: &Folder, name: &str) -> String {
-    std::fs::read_to_string(folder.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    std::fs::read_to_string(folder.path.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// Returns the comparison of a folder without the times on the host.
@@ -40,13 +28,13 @@ fn interrupt(folder: &Folder, out: &str) -> String {
     assert_eq!(lines.len(), 4, "a header and three rows");
     let kept = [lines[0], lines[1], &lines[2][..lines[2].len() / 2]].concat();
     folder.file(&format!("{out}/rows/rows.jsonl"), kept);
-    std::fs::remove_file(folder.0.join(out).join("comparison.json")).expect("written before");
+    std::fs::remove_file(folder.path.join(out).join("comparison.json")).expect("written before");
     lines[1].to_owned()
 }
 
 #[test]
 fn an_interrupted_comparison_resumes_and_writes_the_same_files() {
-    let folder = Folder::new("compare-resume");
+    let folder = Folder::new();
     let whole = folder.run(&with(&["--out", "whole"]));
     assert!(whole.status.success(), "{}", err(&whole));
     assert!(err(&whole).contains("row 3 of 3, ") && err(&whole).contains(" s to go"), "{}", err(&whole));
@@ -76,7 +64,7 @@ fn an_interrupted_comparison_resumes_and_writes_the_same_files() {
 
 #[test]
 fn resuming_a_comparison_with_other_settings_is_refused_with_the_changed_key() {
-    let folder = Folder::new("compare-foreign");
+    let folder = Folder::new();
     assert!(folder.run(&with(&["--out", "o"])).status.success());
     interrupt(&folder, "o");
     for (more, key) in [
@@ -118,7 +106,7 @@ fn recording(folder: &Folder, name: &str, hundredths: u32) {
 /// Two seconds are too short for an interval, and thirty seconds are more than ten blocks of the swinging head.
 #[test]
 fn a_recording_determines_the_number_of_fields_and_a_long_recording_gives_an_interval() {
-    let folder = Folder::new("compare-recording");
+    let folder = Folder::new();
     recording(&folder, "head.csv", 200);
     recording(&folder, "long.csv", 3_000);
     let usual =
@@ -157,7 +145,7 @@ fn a_recording_determines_the_number_of_fields_and_a_long_recording_gives_an_int
 
 #[test]
 fn seeds_are_added_until_the_interval_is_narrow_or_the_maximum_is_reached() {
-    let folder = Folder::new("compare-precision");
+    let folder = Folder::new();
     let usual = ["compare", "--scene", "full-screen:2", "--fields", "24", "--seeds", "2", "--only", "slats", "--json"];
     let run = |more: &[&str]| {
         let output = folder.run(&[&usual, more].concat());
@@ -178,7 +166,7 @@ fn seeds_are_added_until_the_interval_is_narrow_or_the_maximum_is_reached() {
 /// move says so.
 #[test]
 fn rows_show_their_pictures_through_the_device_of_the_settings() {
-    let folder = Folder::new("compare-raster");
+    let folder = Folder::new();
     let run = |more: &[&str]| {
         let shared = ["compare", "--only", "slats,arp-full,ideal", "--seeds", "1", "--fields", "60", "--json"];
         let ran = folder.run(&[&shared[..], &["--head", "recorded:vive-dev", "--predict", "none"], more].concat());
@@ -203,9 +191,9 @@ fn rows_show_their_pictures_through_the_device_of_the_settings() {
 /// same comparison again, and after a change of the model it says so.
 #[test]
 fn the_folder_of_a_comparison_makes_it_again_and_says_when_the_model_has_changed() {
-    let folder = Folder::new("compare-again");
+    let folder = Folder::new();
     let model = |z: f32| format!("v -1 0 {z}\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    std::fs::create_dir(folder.0.join("models")).expect("a folder");
+    std::fs::create_dir(folder.path.join("models")).expect("a folder");
     folder.file("models/tri.obj", model(0.0));
     let run = |more: &[&str]| {
         let shared = ["compare", "--only", "slats", "--seeds", "1", "--json"];

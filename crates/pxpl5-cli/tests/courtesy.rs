@@ -13,7 +13,7 @@ fn with<'a>(first: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
 
 #[test]
 fn a_value_outside_its_range_causes_one_warning_with_range_and_source() {
-    let folder = Folder::new("warnings");
+    let folder = Folder::new();
     for (wrong, expected) in [
         (
             &["--set", "gp.triangle_ns=3"][..],
@@ -43,7 +43,7 @@ fn a_value_outside_its_range_causes_one_warning_with_range_and_source() {
 /// Tests that the output attributes times to executed code only if code ran.
 #[test]
 fn times_of_the_timing_table_at_the_cycle_level_cause_a_warning() {
-    let folder = Folder::new("times-of-the-table");
+    let folder = Folder::new();
     let run = |pipeline: &[&str], level: &str| {
         // Pictures of the high-resolution display need more time.
         let fields = if pipeline.contains(&"hires") { "90" } else { "30" };
@@ -78,7 +78,7 @@ fn times_of_the_timing_table_at_the_cycle_level_cause_a_warning() {
 #[cfg(unix)]
 fn interrupted(folder: &Folder, args: &[&str], is_begun: impl Fn() -> bool) -> std::process::Output {
     let mut child = command(args);
-    let child = child.current_dir(&folder.0).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let child = child.current_dir(&folder.path).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let child = child.expect("the command starts");
     let started = Instant::now();
     while started.elapsed() < Duration::from_secs(2) || !is_begun() {
@@ -95,12 +95,12 @@ fn interrupted(folder: &Folder, args: &[&str], is_begun: impl Fn() -> bool) -> s
 #[cfg(unix)]
 #[test]
 fn ctrl_c_of_a_sweep_prints_a_command_that_resumes_the_sweep() {
-    let folder = Folder::new("ctrl-c");
+    let folder = Folder::new();
     folder.file(
         "s.toml",
         "pipeline = \"slats\"\nscene = \"mig\"\nfields = 60\n[sweep.grid]\ntriangles = { from = 1, to = 100 }\nseed = { from = 1, to = 9 }\n",
     );
-    let rows = folder.0.join("o/rows.jsonl");
+    let rows = folder.path.join("o/rows.jsonl");
     let output = interrupted(&folder, &["sweep", "s.toml", "--out", "o", "--threads", "1"], || {
         std::fs::read_to_string(&rows).unwrap_or_default().lines().count() >= 3
     });
@@ -114,7 +114,7 @@ fn ctrl_c_of_a_sweep_prints_a_command_that_resumes_the_sweep() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_reports_the_fields_so_far_and_a_search_says_how_far_it_came() {
-    let folder = Folder::new("interrupted-run");
+    let folder = Folder::new();
     for level in ["transaction", "cycle"] {
         let run = |fields| {
             ["run", "--pipeline", "slats", "--scene", "full-screen:9", "--level", level, "--json", "--fields", fields]
@@ -136,23 +136,20 @@ fn an_interrupted_run_reports_the_fields_so_far_and_a_search_says_how_far_it_cam
 
 #[test]
 fn without_fit_a_model_stays_where_its_file_places_it() {
-    let folder = Folder::new("no-fit");
+    let folder = Folder::new();
     folder.file("m.obj", "v -1 -1 -5\nv 1 -1 -5\nv 0 1 -5\nf 1 2 3\n");
     let checked = out(&folder.run(&["check", "--pipeline", "slats", "--scene", "m.obj", "--no-fit"]));
     assert!(checked.contains("fit = false"), "{checked}");
     let hash = |text: &str| text.lines().find(|line| line.contains("config_hash")).map(str::to_owned);
     let fitted = out(&folder.run(&["check", "--pipeline", "slats", "--scene", "m.obj"]));
     assert!(!fitted.contains("fit =") && hash(&fitted) != hash(&checked), "{fitted}");
-    let refused = folder.run(&["check", "--pipeline", "slats", "--scene", "mig", "--no-fit"]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(err(&refused).contains("--no-fit"), "{}", err(&refused));
 }
 
 /// Tests that every command that computes adds up its cost before it starts: before it allocates memory, and before the
 /// first of many runs. The limit that a command exceeds is its last option but one.
 #[test]
 fn every_command_that_computes_is_estimated_before_it_starts() {
-    let folder = Folder::new("budgets");
+    let folder = Folder::new();
     let file = "pipeline = \"slats\"\nscene = \"mig\"\nfields = 100000\n[sweep.grid]\nseed = { from = 1, to = 1000 }\n";
     folder.file("s.toml", file);
     folder.file("v.toml", "[sweep.grid]\ndisplay.slices = [4096]\ndisplay.height = [4096]\ndisplay.width = [4096]\n");
@@ -198,7 +195,7 @@ fn every_command_that_computes_is_estimated_before_it_starts() {
 
 #[test]
 fn a_scene_too_heavy_to_be_shown_is_reported_before_the_run() {
-    let folder = Folder::new("too-heavy");
+    let folder = Folder::new();
     let heavy = |pipeline: &str, scene: &str, fields: &str| {
         let args = ["run", "--pipeline", pipeline, "--scene", scene, "--fields", fields, "--pixels", "off"];
         let output = folder.run(&[&args[..], &["--max-seconds", "1000", "--set", "gp.bin_bytes=1000000"]].concat());
@@ -222,52 +219,9 @@ fn a_scene_too_heavy_to_be_shown_is_reported_before_the_run() {
     }
 }
 
-/// Tests two error messages. A number that is too large must give the maximum, and a byte that is not text must give
-/// its position.
-#[test]
-fn an_invalid_input_is_reported_with_its_limits_and_its_place() {
-    let folder = Folder::new("warnings");
-    folder.file("e.toml", b"pipeline = \"slats\"\nscene = \"mig\"\n# caf\xe9\n");
-    folder.file("w.toml", b"scene = \"caf\xe9\"\n");
-    folder.file("nop.s", "nop\nnop 5\n");
-    folder.file("h.csv", b"time_s,x,y,z\n\xe9");
-    folder.file("c.txt", b"show time\n\xe9\n");
-    let mig = ["run", "--pipeline", "slats", "--scene", "mig"];
-    let debug = ["debug", "--pipeline", "slats", "--scene", "mig", "--do-file", "c.txt"];
-    let cases: [(&[&str], &[&str]); 19] = [
-        (&["--fields", "99999999999999999999"], &["--fields", "from 1 to 10000000"]),
-        (&["--seed", "9223372036854775808"], &["--seed", "from 0 to 9223372036854775807"]),
-        (&["--set", "gp.triangle_ns=9223372036854775808"], &["from 0 to 9223372036854775807"]),
-        (&["--threads", "99999999999999999999"], &["from 0 to 1024"]),
-        (&["--max-memory", "0"], &["from 1 to 1000000000"]),
-        (&["--set", "gp=3"], &["did you mean `gp."]),
-        (&["--set", "gp.tri=3"], &["did you mean `gp.triangle_ns`"]),
-        (&["--set", "machine.gp=3"], &["did you mean `machine.gp."]),
-        (&["--head", "h.csv"], &["h.csv", "line 1: expected the columns time_s,x,y,z,qw,qx,qy,qz"]),
-        (&["limit", "--fields", "99999999999999999999"], &["from 1 to 10000000"]),
-        (&["compare", "--seeds", "99999999999999999999"], &["from 1 to 1000"]),
-        (&["run", "e.toml"], &["e.toml", "line 3, byte 6", "0xe9"]),
-        (&["check", "e.toml"], &["e.toml", "line 3, byte 6"]),
-        (&["sweep", "e.toml", "--out", "o"], &["e.toml", "line 3, byte 6"]),
-        (&["volume", "sweep", "w.toml", "--out", "o"], &["w.toml", "line 1, byte 13"]),
-        (&["arp", "run", "w.toml"], &["w.toml", "line 1, byte 13"]),
-        (&["volume", "run", "--set", "gp=3"], &["did you mean `gpu."]),
-        (&["i860", "asm", "nop.s", "-o", "x"], &["nop.s:2", "`nop` takes no operand"]),
-        (&debug, &["c.txt", "line 2, byte 1"]),
-    ];
-    for (args, says) in cases {
-        let is_option = args[0].starts_with("--");
-        let args = if is_option { [&mig, args].concat() } else { args.to_vec() };
-        let output = folder.run(&args);
-        let text = err(&output);
-        assert!(matches!(output.status.code(), Some(1 | 2)), "{args:?}: {text}");
-        says.iter().for_each(|part| assert!(text.contains(part), "{args:?} should say {part}: {text}"));
-    }
-}
-
 #[test]
 fn a_request_for_more_triangles_than_a_scene_has_keeps_all_triangles() {
-    let folder = Folder::new("all-triangles");
+    let folder = Folder::new();
     let report = |more: &[&str]| json(&folder.run(&[&RUN[..], &["--json"], more].concat()));
     let (whole, more) = (report(&[]), report(&["--triangles", "60"]));
     assert_eq!((&more["triangles"], &more["trace_hash"]), (&4.into(), &whole["trace_hash"]));
@@ -277,27 +231,11 @@ fn a_request_for_more_triangles_than_a_scene_has_keeps_all_triangles() {
     );
 }
 
-/// Tests that constant values have no deviation, in JSON and in CSV.
-#[test]
-fn a_constant_has_no_deviation() {
-    let folder = Folder::new("constant");
-    folder.run(&["run", "--pipeline", "slats", "--scene", "full-screen:1", "--fields", "20", "--out", "o"]);
-    let read = |name: &str| std::fs::read_to_string(folder.0.join("o").join(name)).expect("written");
-    let report: serde_json::Value = serde_json::from_str(&read("report.json")).expect("JSON");
-    for latency in ["latency_fields", "latency_ms"] {
-        assert_eq!(report[latency]["sd"], 0.0, "Slats takes one field, always: {report}");
-        assert!(read("results.csv").contains(&format!("\n{latency}.sd,0,")), "{}", read("results.csv"));
-        let [least, mean, greatest] =
-            ["min", "mean", "max"].map(|key| report[latency][key].as_f64().expect("a number"));
-        assert!(least <= mean && mean <= greatest);
-    }
-}
-
 /// Tests that XML documents contain no control characters, wherever text of the user appears.
 #[cfg(unix)]
 #[test]
 fn labels_with_control_characters_give_valid_drawings() {
-    let folder = Folder::new("control");
+    let folder = Folder::new();
     folder.file("m\u{1}\u{7f}\u{85}.obj", "v -1 -1 -5\nv 1 -1 -5\nv 0 1 -5\nf 1 2 3\n");
     let run =
         ["run", "--pipeline", "slats", "--scene", "m\u{1}\u{7f}\u{85}.obj", "--fields", "12", "--quiet", "--out", "o"];
@@ -311,43 +249,25 @@ fn labels_with_control_characters_give_valid_drawings() {
     let output = folder.run(&[&plot[..], &["--x-label", "\u{1b}[1m", "--y-label", "\u{7f}\u{9f}"]].concat());
     assert!(output.status.success(), "{}", err(&output));
     for name in ["o/timeline.svg", "p/f.svg"] {
-        let svg = std::fs::read_to_string(folder.0.join(name)).expect("written");
+        let svg = std::fs::read_to_string(folder.path.join(name)).expect("written");
         let bad = svg.chars().find(|c| c.is_control() && !"\n\t".contains(*c));
         assert_eq!(bad, None, "{name}");
     }
 }
 
 #[test]
-fn settings_of_impossible_screens_are_refused_and_unusual_settings_run_without_a_panic() {
-    let folder = Folder::new("odd");
+fn unusual_settings_run_without_a_panic() {
+    let folder = Folder::new();
     let run = |pipeline: &str, set: &str| {
         let args =
             ["run", "--pipeline", pipeline, "--scene", "full-screen:4", "--fields", "12", "--quiet", "--set", set];
         let output = folder.run(&args);
         let text = err(&output);
         assert!(matches!(output.status.code(), Some(0..=2)) && !text.contains("panicked"), "{set}: {text}");
-        (output.status.code(), text)
     };
-    for set in ["video.line_pixels=9223372036854775807", "video.top_blanking=1000000", "gp.memory_bytes=1000000000000"]
-    {
-        let (code, text) = run("slats", set);
-        assert!(code == Some(2) && text.contains(set.split_once('=').expect("a setting").0), "{set}: {text}");
-    }
     run("slats", "video.pixel_ps=4294967295");
-    // The papers' pipelines for single fields draw 640 x 480 pixels on every screen.
-    for (pipeline, set) in [("slats", "video.visible_pixels=639"), ("frameless", "video.visible_lines=239")] {
-        let (code, text) = run(pipeline, set);
-        let number = set.split_once('=').expect("a setting").1;
-        assert!(code == Some(2) && text.contains("640 x 480") && text.contains(number), "{set}: {text}");
-    }
     for lines in [1, 6] {
         run("jitp-dual-screen", &format!("video.visible_lines={lines}"));
         run("jitp-dual-view", &format!("video.visible_lines={lines}"));
     }
-    for pan in ["nan", "inf", "1e308"] {
-        let output = folder.run(&["compare", &format!("--edge-pan={pan}"), "--fields", "30"]);
-        assert_eq!(output.status.code(), Some(2), "{pan}: {}", err(&output));
-    }
-    let output = folder.run(&["limit", "--pipeline", "slats", "--fields", "9"]);
-    assert!(output.status.code() == Some(2) && err(&output).contains("at least 10"), "{}", err(&output));
 }

@@ -6,6 +6,7 @@ mod courtesy;
 mod foreign;
 mod outputs;
 mod readers;
+mod refused;
 mod version;
 
 // One command each.

@@ -15,8 +15,8 @@ const ASSEMBLE: [&str; 4] = ["i860", "asm", "p.s", "-o"];
 /// Commands that write one file each, without the name of the file.
 const COMMANDS: [&[&str]; 3] = [&TRACE, &FILM, &ASSEMBLE];
 
-fn folder(name: &str) -> Folder {
-    let folder = Folder::new(name);
+fn folder() -> Folder {
+    let folder = Folder::new();
     folder.file("p.s", "start: adds 1, r5, r5\nend: nop\n");
     folder
 }
@@ -28,7 +28,7 @@ fn succeeds(folder: &Folder, args: &[&str], out: &str) {
 }
 
 fn read(folder: &Folder, name: &str) -> Vec<u8> {
-    fs::read(folder.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    fs::read(folder.path.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 fn is_link(path: &Path) -> bool {
@@ -42,25 +42,25 @@ fn null_device(path: &Path) -> bool {
 
 #[test]
 fn writing_to_a_device_does_not_replace_the_device_by_a_file() {
-    let folder = folder("device");
-    let device = folder.0.join("nul");
+    let folder = folder();
+    let device = folder.path.join("nul");
     let made = null_device(&device);
-    symlink("/dev/null", folder.0.join("link")).expect("ours");
+    symlink("/dev/null", folder.path.join("link")).expect("ours");
     for args in COMMANDS {
         if made {
             succeeds(&folder, args, "nul");
             assert!(fs::metadata(&device).expect("there").file_type().is_char_device(), "{args:?}");
         }
         succeeds(&folder, args, "link");
-        assert!(is_link(&folder.0.join("link")), "{args:?}");
+        assert!(is_link(&folder.path.join("link")), "{args:?}");
         assert!(fs::metadata("/dev/null").expect("there").file_type().is_char_device(), "{args:?}");
     }
 }
 
 #[test]
 fn a_pipe_gets_the_same_bytes_as_a_file() {
-    let folder = folder("pipe");
-    let pipe = folder.0.join("pipe");
+    let folder = folder();
+    let pipe = folder.path.join("pipe");
     assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo is there").success());
     for args in COMMANDS {
         succeeds(&folder, args, "file");
@@ -74,54 +74,54 @@ fn a_pipe_gets_the_same_bytes_as_a_file() {
 
 #[test]
 fn writing_through_a_link_keeps_the_link_even_if_its_target_is_missing() {
-    let folder = folder("links");
-    fs::create_dir(folder.0.join("else")).expect("ours");
-    symlink("else/where", folder.0.join("one")).expect("ours");
-    symlink("one", folder.0.join("two")).expect("ours");
+    let folder = folder();
+    fs::create_dir(folder.path.join("else")).expect("ours");
+    symlink("else/where", folder.path.join("one")).expect("ours");
+    symlink("one", folder.path.join("two")).expect("ours");
     for args in COMMANDS {
         succeeds(&folder, args, "plain");
-        let _ = fs::remove_file(folder.0.join("else/where"));
+        let _ = fs::remove_file(folder.path.join("else/where"));
         for round in ["none yet", "there"] {
             succeeds(&folder, args, "two");
-            assert!(is_link(&folder.0.join("one")) && is_link(&folder.0.join("two")), "{args:?}, {round}");
-            assert!(!is_link(&folder.0.join("else/where")), "{args:?}, {round}");
+            assert!(is_link(&folder.path.join("one")) && is_link(&folder.path.join("two")), "{args:?}, {round}");
+            assert!(!is_link(&folder.path.join("else/where")), "{args:?}, {round}");
             assert!(read(&folder, "else/where") == read(&folder, "plain"), "{args:?}, {round}");
         }
     }
-    symlink("circle", folder.0.join("circle")).expect("ours");
+    symlink("circle", folder.path.join("circle")).expect("ours");
     let output = folder.run(&[&TRACE[..], &["circle"]].concat());
     assert_eq!(output.status.code(), Some(1), "{}", err(&output));
-    assert_eq!(names(&folder.0.join("else")), ["where"]);
+    assert_eq!(names(&folder.path.join("else")), ["where"]);
 }
 
 #[test]
 fn writing_to_dev_stdout_puts_only_the_bytes_of_the_file_there() {
-    let folder = folder("stdout");
+    let folder = folder();
     for args in COMMANDS {
         succeeds(&folder, args, "file");
         let piped = folder.run(&[args, &["/dev/stdout"]].concat());
         assert!(piped.status.success() && piped.stdout == read(&folder, "file"), "{args:?}: {}", err(&piped));
-        let redirected = fs::File::create(folder.0.join("redirected")).expect("ours");
+        let redirected = fs::File::create(folder.path.join("redirected")).expect("ours");
         let mut child = command(&[args, &["/dev/stdout"]].concat());
-        assert!(child.current_dir(&folder.0).stdout(redirected).status().expect("it starts").success());
+        assert!(child.current_dir(&folder.path).stdout(redirected).status().expect("it starts").success());
         assert!(read(&folder, "redirected") == read(&folder, "file"), "{args:?}");
     }
 }
 
 #[test]
 fn writing_to_a_full_device_is_reported_as_an_error() {
-    let folder = folder("full");
+    let folder = folder();
     for args in COMMANDS {
         let output = folder.run(&[args, &["/dev/full"]].concat());
         assert_eq!(output.status.code(), Some(1), "{args:?}");
         assert!(err(&output).contains("/dev/full cannot be written"), "{}", err(&output));
     }
     let full = || fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has it");
-    fs::write(folder.0.join("v.jsonl"), "").expect("ours");
-    fs::write(folder.0.join("w.bin"), [0, 0, 0, 0xA0]).expect("ours");
+    fs::write(folder.path.join("v.jsonl"), "").expect("ours");
+    fs::write(folder.path.join("w.bin"), [0, 0, 0, 0xA0]).expect("ours");
     for args in [&["asm", "p.s"][..], &["disasm", "w.bin"], &["run", "p.s"], &["vectors", "v.jsonl"]] {
         let mut child = command(&[&["i860"], args].concat());
-        let output = child.current_dir(&folder.0).stdout(full()).output().expect("it starts");
+        let output = child.current_dir(&folder.path).stdout(full()).output().expect("it starts");
         assert_eq!(output.status.code(), Some(1), "{args:?}");
         assert!(err(&output).contains("standard output cannot be written"), "{args:?}: {}", err(&output));
     }
@@ -129,7 +129,7 @@ fn writing_to_a_full_device_is_reported_as_an_error() {
 
 #[test]
 fn a_replaced_file_keeps_its_permissions() {
-    let folder = folder("permissions");
+    let folder = folder();
     let path = folder.file("secret", "old");
     fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).expect("ours");
     succeeds(&folder, &TRACE, "secret");
@@ -141,46 +141,46 @@ const RUN: [&str; 9] = ["run", "--pipeline", "slats", "--scene", "full-screen:4"
 
 #[test]
 fn if_one_file_cannot_be_written_none_is_written() {
-    let folder = folder("one-of-many");
-    fs::create_dir_all(folder.0.join("r/left.png/inner")).expect("ours");
+    let folder = folder();
+    fs::create_dir_all(folder.path.join("r/left.png/inner")).expect("ours");
     folder.file("r/report.json", "old");
     let output = folder.run(&RUN);
     assert_eq!(output.status.code(), Some(1));
     assert!(err(&output).contains("left.png cannot be written: it is a folder"), "{}", err(&output));
-    assert_eq!(names(&folder.0.join("r")), ["left.png", "report.json"]);
+    assert_eq!(names(&folder.path.join("r")), ["left.png", "report.json"]);
     assert_eq!(read(&folder, "r/report.json"), b"old");
 }
 
 /// Tests a device that accepts no data. It must be written before any file gets its new name.
 #[test]
 fn a_file_keeps_its_content_if_a_device_cannot_be_written() {
-    let folder = folder("back");
-    fs::create_dir(folder.0.join("r")).expect("ours");
+    let folder = folder();
+    fs::create_dir(folder.path.join("r")).expect("ours");
     folder.file("r/report.json", "old");
-    symlink("/dev/full", folder.0.join("r/experiment.toml")).expect("ours");
+    symlink("/dev/full", folder.path.join("r/experiment.toml")).expect("ours");
     let output = folder.run(&RUN);
     assert_eq!(output.status.code(), Some(1));
-    assert_eq!(names(&folder.0.join("r")), ["experiment.toml", "report.json"]);
+    assert_eq!(names(&folder.path.join("r")), ["experiment.toml", "report.json"]);
     assert_eq!(read(&folder, "r/report.json"), b"old");
 }
 
 /// Tests that an experiment file written by a command still finds the model file, whatever the current folder is.
 #[test]
 fn a_written_experiment_runs_again_from_any_folder() {
-    let folder = folder("again");
-    fs::create_dir(folder.0.join("elsewhere")).expect("ours");
+    let folder = folder();
+    fs::create_dir(folder.path.join("elsewhere")).expect("ours");
     folder.file("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let args = ["run", "--pipeline", "slats", "--scene", "m.obj", "--fields", "12", "--json", "--out", "r"];
     let first = json(&folder.run(&args));
     let mut again = command(&["run", "../r/experiment.toml", "--json"]);
-    let second = json(&again.current_dir(folder.0.join("elsewhere")).output().expect("it starts"));
+    let second = json(&again.current_dir(folder.path.join("elsewhere")).output().expect("it starts"));
     assert_eq!((&first["trace_hash"], &first["config_hash"]), (&second["trace_hash"], &second["config_hash"]));
 }
 
 /// Tests two runs into the same folder. Only the files of the second run must remain.
 #[test]
 fn a_run_replaces_the_previous_run_as_a_whole() {
-    let folder = folder("replaced");
+    let folder = folder();
     let run = |pipeline: &str, more: &[&str]| {
         let args = ["run", "--pipeline", pipeline, "--scene", "full-screen:2", "--fields", "20", "--quiet"];
         let output = folder.run(&[&args[..], more, &["--out", "r"]].concat());
@@ -190,17 +190,17 @@ fn a_run_replaces_the_previous_run_as_a_whole() {
     folder.file("r/notes.txt", "mine");
     assert!(folder.run(&["report", "r", "--quiet"]).status.success());
     for name in ["right.png", "timeline.svg", "report.html"] {
-        assert!(folder.0.join("r").join(name).exists(), "{name}");
+        assert!(folder.path.join("r").join(name).exists(), "{name}");
     }
     // A single screen for both eyes has one picture. The timeline is turned off.
     run("jitp-field", &["--set", "output.timeline=false"]);
-    let alone = folder.0.join("alone");
+    let alone = folder.path.join("alone");
     let args = ["run", "--pipeline", "jitp-field", "--scene", "full-screen:2", "--fields", "20", "--quiet"];
     assert!(folder.run(&[&args[..], &["--set", "output.timeline=false", "--out", "alone"]].concat()).status.success());
     let mut expected = names(&alone);
     expected.push("notes.txt".to_owned());
     expected.sort();
-    assert_eq!(names(&folder.0.join("r")), expected);
+    assert_eq!(names(&folder.path.join("r")), expected);
     // A file that the user has changed since the run is kept.
     run("slats", &[]);
     folder.file("r/right.png", "mine");
@@ -213,7 +213,7 @@ fn a_run_replaces_the_previous_run_as_a_whole() {
 
 #[test]
 fn rows_of_a_sweep_are_not_replaced_and_a_sweep_replaces_no_run() {
-    let folder = folder("sweep-and-run");
+    let folder = folder();
     folder.file("s.toml", "pipeline = \"slats\"\nscene = \"full-screen:2\"\nfields = 12\n[sweep.grid]\nseed = [1]\n");
     assert!(folder.run(&["sweep", "s.toml", "--out", "r", "--quiet"]).status.success());
     for command in [&RUN[..], &["compare", "--fields", "20", "--out", "r"], &["volume", "run", "--out", "r"]] {
@@ -229,8 +229,8 @@ fn rows_of_a_sweep_are_not_replaced_and_a_sweep_replaces_no_run() {
 
 #[test]
 fn a_manifest_of_another_program_is_left_alone() {
-    let folder = folder("foreign");
-    fs::create_dir(folder.0.join("r")).expect("ours");
+    let folder = folder();
+    fs::create_dir(folder.path.join("r")).expect("ours");
     folder.file("r/manifest.json", "{\"name\": \"page\"}");
     let output = folder.run(&RUN);
     assert_eq!(output.status.code(), Some(2), "{}", err(&output));
@@ -240,10 +240,10 @@ fn a_manifest_of_another_program_is_left_alone() {
 
 #[test]
 fn a_trace_that_is_killed_leaves_no_file() {
-    let folder = folder("killed");
+    let folder = folder();
     let args = ["trace", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "100000", "--out", "a/b.json"];
     let mut child = command(&[&args[..], &["--quiet", "--max-memory", "1000000"]].concat());
-    let mut child = child.current_dir(&folder.0).stderr(Stdio::null()).spawn().expect("it starts");
+    let mut child = child.current_dir(&folder.path).stderr(Stdio::null()).spawn().expect("it starts");
     std::thread::sleep(std::time::Duration::from_secs(2));
     assert!(child.try_wait().expect("ours").is_none(), "it still runs");
     child.kill().expect("it is killed");
@@ -253,10 +253,11 @@ fn a_trace_that_is_killed_leaves_no_file() {
 
 #[test]
 fn an_error_names_the_file_and_the_option_that_were_given() {
-    let folder = folder("named");
-    fs::create_dir(folder.0.join("d")).expect("ours");
-    let read_only =
-        |is: bool| fs::set_permissions(folder.0.join("d"), fs::Permissions::from_mode(if is { 0o555 } else { 0o755 }));
+    let folder = folder();
+    fs::create_dir(folder.path.join("d")).expect("ours");
+    let read_only = |is: bool| {
+        fs::set_permissions(folder.path.join("d"), fs::Permissions::from_mode(if is { 0o555 } else { 0o755 }))
+    };
     for (args, option) in [
         (&["levels", "--chart"][..], "--chart"),
         (&FILM, "--out"),
@@ -270,7 +271,7 @@ fn an_error_names_the_file_and_the_option_that_were_given() {
     }
     read_only(true).expect("ours");
     // A process with permission to write everywhere gets no error.
-    if fs::write(folder.0.join("d/mine"), "").is_err() {
+    if fs::write(folder.path.join("d/mine"), "").is_err() {
         let output = folder.run(&[&FILM[..], &["d/s.png"]].concat());
         assert!(err(&output).contains("d/s.png cannot be written"), "{}", err(&output));
     }

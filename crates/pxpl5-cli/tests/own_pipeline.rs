@@ -15,7 +15,7 @@ fn program() -> PathBuf {
 }
 
 fn run(folder: &Folder, args: &[&str]) -> Output {
-    Command::new(program()).args(args).current_dir(&folder.0).output().expect("the example was built")
+    Command::new(program()).args(args).current_dir(&folder.path).output().expect("the example was built")
 }
 
 fn succeeded(output: &Output) -> String {
@@ -65,7 +65,7 @@ fn a_binary_with_a_pipeline_of_its_own_has_at_most_ten_lines() {
 
 #[test]
 fn the_latency_of_the_pipeline_is_the_sum_of_its_stages() {
-    let folder = Folder::new("own-run");
+    let folder = Folder::new();
     let args = ["run", "--pipeline", "one-at-a-time", "--scene", "mig", "--fields", "60", "--json", "--out", "out"];
     let report: serde_json::Value = serde_json::from_str(&succeeded(&run(&folder, &args))).expect("JSON");
     // TRANSFORM takes at least 417 x 21.7 us = 9.05 ms, and COPY at least 300 x 52 us = 15.6 ms, one after the other.
@@ -74,14 +74,14 @@ fn the_latency_of_the_pipeline_is_the_sum_of_its_stages() {
     assert!(report["latency_ms"]["min"].as_f64() >= Some(9.05 + 15.6));
     assert!((report["latency_fields"]["mean"].as_f64().expect("a number") - 2.0).abs() < 1e-4);
     assert_eq!(report["variant"], "shading=phong");
-    let picture = image::open(folder.0.join("out/left.png")).expect("a picture").into_rgb8();
+    let picture = image::open(folder.path.join("out/left.png")).expect("a picture").into_rgb8();
     assert!(picture.pixels().any(|pixel| pixel != picture.get_pixel(0, 0)), "the aircraft is there");
-    assert!(folder.0.join("out/timeline.svg").exists());
+    assert!(folder.path.join("out/timeline.svg").exists());
 }
 
 #[test]
 fn the_key_of_the_pipeline_is_an_option_and_other_keys_are_refused() {
-    let folder = Folder::new("own-keys");
+    let folder = Folder::new();
     let own = ["run", "--pipeline", "one-at-a-time", "--scene", "full-screen:4", "--fields", "40", "--json"];
     let gouraud = succeeded(&run(&folder, &[&own[..], &["--shading", "gouraud"]].concat()));
     assert!(gouraud.contains("\"variant\": \"shading=gouraud\""));
@@ -93,11 +93,11 @@ fn the_key_of_the_pipeline_is_an_option_and_other_keys_are_refused() {
 
 #[test]
 fn sweep_compare_and_limit_accept_the_pipeline() {
-    let folder = Folder::new("own-all");
+    let folder = Folder::new();
     let sweep = PAGE.split("```toml\n").nth(2).and_then(|rest| rest.split("```").next()).expect("the guide's sweep");
     folder.file("sweep.toml", sweep);
     succeeded(&run(&folder, &["sweep", "sweep.toml", "--out", "rows", "--quiet"]));
-    let rows = std::fs::read_to_string(folder.0.join("rows/rows.jsonl")).expect("written");
+    let rows = std::fs::read_to_string(folder.path.join("rows/rows.jsonl")).expect("written");
     assert_eq!(rows.matches("\"status\":\"done\"").count(), 2);
     let compared = ["compare", "--scene", "full-screen:4", "--fields", "30", "--only", "one-at-a-time", "--json"];
     assert!(succeeded(&run(&folder, &compared)).contains("\"pipeline\": \"one-at-a-time\""));

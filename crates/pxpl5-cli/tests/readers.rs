@@ -42,39 +42,13 @@ impl Numbers {
 }
 
 /// Words that are likely to cause trouble in some format.
-const WORDS: [&str; 31] = [
-    "null",
-    "1e999",
-    "[]",
-    "nan",
-    "inf",
-    "-inf",
-    "-1",
-    "0",
-    "1e308",
-    "1e-320",
-    "3e-162",
-    "4294967296",
-    "18446744073709551615",
-    "9223372036854775807",
-    "1000000000000",
-    "65536",
-    "\u{feff}",
-    "\r",
-    "\n",
-    "\0",
-    "\"",
-    "[[",
-    "{",
-    "}",
-    "=",
-    ",",
-    ".rept 99999999\n",
-    "\\x\\x",
-    "..",
-    "\u{e9}",
-    "#",
-];
+const WORDS: &str = "null 1e999 [] nan inf -inf -1 0 1e308 1e-320 3e-162 4294967296 18446744073709551615 \
+    9223372036854775807 1000000000000 65536 \u{feff} \r \n \0 \" [[ { } = , .rept\u{a0}99999999\n \\x\\x .. \u{e9} #";
+
+fn word(numbers: &mut Numbers) -> std::vec::IntoIter<u8> {
+    let words: Vec<&str> = WORDS.split(' ').collect();
+    words[numbers.below(words.len())].replace('\u{a0}', " ").into_bytes().into_iter()
+}
 
 fn noise(most: usize, numbers: &mut Numbers) -> Vec<u8> {
     (0..numbers.below(most)).map(|_| numbers.next() as u8).collect()
@@ -89,8 +63,8 @@ fn damaged(file: &[u8], others: &[(String, Vec<u8>)], numbers: &mut Numbers) -> 
         match numbers.below(9) {
             0 => bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte ^= 1 << numbers.below(8)),
             1 => drop(bytes.splice(at..end, [])),
-            2 => drop(bytes.splice(at..at, WORDS[numbers.below(WORDS.len())].bytes())),
-            3 => drop(bytes.splice(at..end, WORDS[numbers.below(WORDS.len())].bytes())),
+            2 => drop(bytes.splice(at..at, word(numbers))),
+            3 => drop(bytes.splice(at..end, word(numbers))),
             4 => bytes.extend_from_within(at..end),
             5 => bytes.truncate(at.max(bytes.len() / 2)),
             6 => bytes.truncate(at),

@@ -11,12 +11,12 @@ fn results(folder: &Folder) {
 
 #[test]
 fn a_report_page_contains_all_files_of_its_folder_and_loads_nothing_else() {
-    let folder = Folder::new("report-page");
+    let folder = Folder::new();
     results(&folder);
     let output = folder.run(&["report", "results"]);
     assert!(output.status.success(), "{}", err(&output));
     assert!(out(&output).contains("results/report.html"));
-    let page = std::fs::read_to_string(folder.0.join("results/report.html")).expect("written");
+    let page = std::fs::read_to_string(folder.path.join("results/report.html")).expect("written");
     // The page has a timeline and two pictures, a histogram and the stages of latency.
     assert_eq!(page.matches("data:image/svg+xml;base64,").count(), 1);
     assert_eq!(page.matches("data:image/png;base64,").count(), 2);
@@ -29,7 +29,7 @@ fn a_report_page_contains_all_files_of_its_folder_and_loads_nothing_else() {
 
 #[test]
 fn a_folder_without_a_report_is_refused_with_what_was_expected() {
-    let folder = Folder::new("report-none");
+    let folder = Folder::new();
     for (contents, expected) in [(None, "report.json"), (Some("{\"schema\""), "EOF"), (Some("{}"), "schema missing")] {
         if let Some(text) = contents {
             folder.file("report.json", text);
@@ -43,11 +43,11 @@ fn a_folder_without_a_report_is_refused_with_what_was_expected() {
 
 #[test]
 fn the_waveform_and_the_explanation_of_one_picture_agree() {
-    let folder = Folder::new("picture");
+    let folder = Folder::new();
     let run = ["--pipeline", "rendering-control", "--scene", "mig", "--triangles", "30", "--fields", "40"];
     let output = folder.run(&[&["trace"][..], &run, &["--picture", "5", "--out", "a.vcd"]].concat());
     assert!(output.status.success(), "{}", err(&output));
-    let text = std::fs::read_to_string(folder.0.join("a.vcd")).expect("written");
+    let text = std::fs::read_to_string(folder.path.join("a.vcd")).expect("written");
     let output = folder.run(&[&["run"][..], &run, &["--picture", "5"]].concat());
     assert!(output.status.success(), "{}", err(&output));
     // The waveform begins with the sampled pose.
@@ -63,18 +63,18 @@ fn the_waveform_and_the_explanation_of_one_picture_agree() {
 
 #[test]
 fn a_film_has_the_requested_fields() {
-    let folder = Folder::new("film");
+    let folder = Folder::new();
     let run = ["film", "--pipeline", "slats", "--scene", "mig", "--triangles", "30", "--length", "3", "--out", "f.png"];
     let output = folder.run(&run);
     assert!(output.status.success(), "{}", err(&output));
-    let file = std::fs::File::open(folder.0.join("f.png")).expect("written");
+    let file = std::fs::File::open(folder.path.join("f.png")).expect("written");
     let reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("PNG");
     assert_eq!(reader.info().animation_control().map(|control| control.num_frames), Some(3));
 }
 
 #[test]
 fn a_report_of_a_sweep_shows_its_complete_rows() {
-    let folder = Folder::new("report-sweep");
+    let folder = Folder::new();
     folder.file(
         "s.toml",
         "title = \"Two sizes\"\npipeline = \"slats\"\nscene = \"full-screen:8\"\nfields = 12\n[sweep.grid]\ntriangles = [1, 8]\n",
@@ -82,7 +82,7 @@ fn a_report_of_a_sweep_shows_its_complete_rows() {
     assert!(folder.run(&["sweep", "s.toml", "--out", "o", "--quiet"]).status.success());
     for results in ["o", "o/rows.jsonl"] {
         assert!(folder.run(&["report", results]).status.success());
-        let page = std::fs::read_to_string(folder.0.join("o/report.html")).expect("written");
+        let page = std::fs::read_to_string(folder.path.join("o/report.html")).expect("written");
         assert!(page.contains("<h2>Two sizes</h2>") && page.contains("2 of 2 points"), "{page}");
         assert_eq!(page.matches("<tr>").count(), 3);
         for column in ["triangles", "latency_ms.mean", "missed_retraces"] {
@@ -90,24 +90,24 @@ fn a_report_of_a_sweep_shows_its_complete_rows() {
         }
     }
     // After an interruption in the middle of a line, the page shows the complete lines.
-    let rows = std::fs::read_to_string(folder.0.join("o/rows.jsonl")).expect("written");
+    let rows = std::fs::read_to_string(folder.path.join("o/rows.jsonl")).expect("written");
     folder.file("o/rows.jsonl", &rows[..rows.len() - 9]);
     assert!(folder.run(&["report", "o", "--quiet"]).status.success());
-    assert!(std::fs::read_to_string(folder.0.join("o/report.html")).expect("written").contains("1 of 2 points"));
+    assert!(std::fs::read_to_string(folder.path.join("o/report.html")).expect("written").contains("1 of 2 points"));
 }
 
 #[test]
 fn a_report_of_a_comparison_has_a_row_for_each_pipeline_and_its_pictures() {
-    let folder = Folder::new("report-comparison");
+    let folder = Folder::new();
     let output = folder.run(&["compare", "--fields", "60", "-q", "--out", "c", "--only", "rendering-control,slats"]);
     assert!(output.status.success(), "{}", err(&output));
     assert!(folder.run(&["report", "c", "--quiet"]).status.success());
-    let page = std::fs::read_to_string(folder.0.join("c/report.html")).expect("written");
+    let page = std::fs::read_to_string(folder.path.join("c/report.html")).expect("written");
     for part in ["<td>rendering-control</td>", "pipeline</th>", "data:image/svg+xml;", "data:image/png;"] {
         assert!(page.contains(part), "{part}");
     }
     // The page begins with its answer. Two rows with equal seeds differ in the mean by the difference of their means.
-    let json = std::fs::read_to_string(folder.0.join("c/comparison.json")).expect("written");
+    let json = std::fs::read_to_string(folder.path.join("c/comparison.json")).expect("written");
     let all: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     let px = |row: usize| all["pipelines"][row]["error"]["mean_px"]["mean"].as_f64().expect("a mean");
     let [slats, above] = [px(1), px(0) - px(1)].map(|px| format!("{px:.2}"));
@@ -117,22 +117,22 @@ fn a_report_of_a_comparison_has_a_row_for_each_pipeline_and_its_pictures() {
 
 #[test]
 fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
-    let folder = Folder::new("report-manifest");
+    let folder = Folder::new();
     results(&folder);
     let pictures = |warned: bool| {
         let output = folder.run(&["report", "results"]);
         assert!(output.status.success() && err(&output).contains("left out") == warned, "{}", err(&output));
-        let page = std::fs::read_to_string(folder.0.join("results/report.html")).expect("written");
+        let page = std::fs::read_to_string(folder.path.join("results/report.html")).expect("written");
         page.matches("data:image/png;base64,").count()
     };
     assert_eq!(pictures(false), 2);
-    let right = std::fs::read(folder.0.join("results/right.png")).expect("written");
+    let right = std::fs::read(folder.path.join("results/right.png")).expect("written");
     folder.file("results/left-incomplete.png", &right);
     assert_eq!(pictures(false), 2, "a picture that no run of this folder wrote");
     folder.file("results/right.png", b"another one");
     assert_eq!(pictures(true), 1);
-    let manifest = std::fs::read(folder.0.join("results/manifest.json")).expect("written");
-    std::fs::remove_file(folder.0.join("results/manifest.json")).expect("there");
+    let manifest = std::fs::read(folder.path.join("results/manifest.json")).expect("written");
+    std::fs::remove_file(folder.path.join("results/manifest.json")).expect("there");
     assert_eq!(pictures(true), 0, "their run is not known");
     folder.file("results/manifest.json", &manifest);
     folder.file("results/report.json", "{}");
@@ -144,7 +144,7 @@ fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
 /// Tests a run of three pictures. It has a trace, a film and files, although no latency is known after the warm-up.
 #[test]
 fn runs_with_few_pictures_write_all_results() {
-    let folder = Folder::new("few-pictures");
+    let folder = Folder::new();
     let few = ["--pipeline", "rendering-control", "--scene", "full-screen:4", "--fields"];
     let output = folder.run(&[&["run"], &few[..], &["10", "--out", "o"]].concat());
     assert_eq!(output.status.code(), Some(1), "{}", err(&output));
@@ -152,7 +152,7 @@ fn runs_with_few_pictures_write_all_results() {
     assert!(message.contains("only ") && message.contains("the next one is shown after about "), "{message}");
     let needed: u64 =
         message.split("about ").nth(1).and_then(|rest| rest.trim().parse().ok()).unwrap_or_else(|| panic!("{message}"));
-    let read = |name: &str| std::fs::read_to_string(folder.0.join("o").join(name)).expect("written");
+    let read = |name: &str| std::fs::read_to_string(folder.path.join("o").join(name)).expect("written");
     let report: serde_json::Value = serde_json::from_str(&read("report.json")).expect("JSON");
     let shown = report["shown"].as_u64().expect("a number");
     assert!((1..=4).contains(&shown), "{shown}");
@@ -160,7 +160,7 @@ fn runs_with_few_pictures_write_all_results() {
     assert!(read("results.csv").contains("latency_ms.mean,,"), "{}", read("results.csv"));
     assert_eq!(read("pictures.csv").lines().count() as u64, 1 + shown);
     for name in ["left.png", "right.png", "timeline.svg", "experiment.toml", "manifest.json"] {
-        assert!(folder.0.join("o").join(name).exists(), "{name}");
+        assert!(folder.path.join("o").join(name).exists(), "{name}");
     }
     // The number of fields in the message is sufficient, and not much too large.
     for (fields, is_enough) in [(needed + 1, true), (needed - 4, false)] {
@@ -173,7 +173,7 @@ fn runs_with_few_pictures_write_all_results() {
     ] {
         let output = folder.run(&[args, &few[..], &["10"]].concat());
         assert_eq!(output.status.code(), Some(0), "{args:?}: {}", err(&output));
-        assert!(std::fs::metadata(folder.0.join(file)).is_ok_and(|found| found.len() > 1000), "{file}");
+        assert!(std::fs::metadata(folder.path.join(file)).is_ok_and(|found| found.len() > 1000), "{file}");
     }
     let output = folder.run(&[&["debug", "--do", "run"], &few[..], &["10"]].concat());
     assert!(output.status.success() && out(&output).contains("the run is over"), "{}", err(&output));
@@ -183,7 +183,7 @@ fn runs_with_few_pictures_write_all_results() {
 /// closed form, the estimate comes from the run's own pictures.
 #[test]
 fn every_pipeline_reports_how_many_fields_a_run_needs() {
-    let folder = Folder::new("fields-needed");
+    let folder = Folder::new();
     for pipeline in ["jitp-field", "frameless", "arp-full", "slats"] {
         let run = |fields: &str| {
             let args = ["run", "--pipeline", pipeline, "--scene", "full-screen:2", "--head", "pan:60", "--quiet"];
@@ -204,12 +204,12 @@ fn every_pipeline_reports_how_many_fields_a_run_needs() {
 /// runs.
 #[test]
 fn diff_compares_two_runs_and_ignores_files_beside_them() {
-    let folder = Folder::new("diff-manifest");
+    let folder = Folder::new();
     results(&folder);
     let other = ["run", "--pipeline", "slats", "--scene", "mig", "--triangles", "60", "--fields", "20", "--set"];
     let other = folder.run(&[&other[..], &["gp.triangle_ns=20000", "--out", "other"]].concat());
     assert!(other.status.success(), "{}", err(&other));
-    let right = std::fs::read(folder.0.join("results/right.png")).expect("written");
+    let right = std::fs::read(folder.path.join("results/right.png")).expect("written");
     ["results/stale.png", "other/stale.png"].iter().for_each(|name| {
         folder.file(name, &right);
     });

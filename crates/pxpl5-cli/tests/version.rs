@@ -17,7 +17,7 @@ fn commit_of_clone() -> Option<String> {
 
 #[test]
 fn the_version_names_the_commit_of_the_clone() {
-    let folder = Folder::new("version");
+    let folder = Folder::new();
     let expected = commit_of_clone();
     for args in [&["-V"][..], &["--version"], &["run", "--version"]] {
         let text = out(&folder.run(args));
@@ -32,10 +32,11 @@ fn the_version_names_the_commit_of_the_clone() {
 
 #[test]
 fn every_file_of_a_run_states_the_same_commit() {
-    let folder = Folder::new("commit");
+    let folder = Folder::new();
     let run = ["run", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "12", "--quiet", "--out", "r"];
     assert!(folder.run(&run).status.success());
-    let read = |name: &str| fs::read(folder.0.join("r").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let read =
+        |name: &str| fs::read(folder.path.join("r").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
     let value = |name: &str| -> serde_json::Value { serde_json::from_slice(&read(name)).expect("JSON") };
     let manifest = value("manifest.json");
     assert_eq!(manifest["version"], "0.1.0");
@@ -53,7 +54,7 @@ fn every_file_of_a_run_states_the_same_commit() {
 
 #[test]
 fn citations_can_be_printed_in_three_forms() {
-    let folder = Folder::new("cite");
+    let folder = Folder::new();
     let print = |args: &[&str]| out(&folder.run(args));
     assert!(print(&["cite"]).contains("Low Latency Rendering on Pixel-Planes 5"));
     assert!(print(&["cite", "--format", "bibtex"]).contains("@techreport{TR94,"));

@@ -107,22 +107,6 @@ fn rows_of_a_field_region_fill_the_lines_of_that_field() {
     assert_eq!(word(&board.device.seen(PeriodNumber(2)).expect("kept").picture(), 128, 120), 0);
 }
 
-#[test]
-fn two_fields_make_an_interlaced_frame_in_either_order() {
-    let mut board = painted();
-    let swap = board.device.video().retrace(PeriodNumber(2));
-    board.swap(swap, 1);
-    board.retraces(0..=4);
-    board.run();
-    let [even, odd] = [2, 3].map(|field| board.device.seen(PeriodNumber(field)).expect("kept"));
-    for frame in [even.interlaced_with(&odd), odd.interlaced_with(&even)] {
-        assert_eq!(frame.dimensions(), (640, 480));
-        assert_eq!([0, 1, 478, 479].map(|y| word(&frame, 639, y)), [RED, GREEN, RED, GREEN]);
-    }
-    let alone = even.interlaced_with(&even);
-    assert_eq!([0, 1].map(|y| word(&alone, 0, y)), [RED, 0]);
-}
-
 /// The last pixel of a message arrives at the time of the message. Message 0 of a field region ends with pixel 127 of
 /// row 7.
 #[test]
@@ -163,56 +147,9 @@ fn a_region_is_late_from_a_picosecond_after_its_first_pixel_was_scanned() {
 }
 
 #[test]
-fn all_lines_of_a_late_region_show_the_old_picture() {
-    let mut board = painted();
-    board.retraces(0..=3);
-    let end = board.device.video().retrace(PeriodNumber(3));
-    let top = field_target(0, FieldParity::Even, 0, 1);
-    board.region(Time(end.0 + MESSAGE.0), top, &colour(GREEN));
-    board.run();
-    let seen = board.device.seen(PeriodNumber(2)).expect("kept");
-    let listed = seen.late_regions();
-    assert_eq!((listed[0].lines, listed[0].arrived_at), (120, None));
-    // Message 0 arrived 13 message times before the end of the field, and its first word 1,023 word times earlier. This
-    // word has the greatest lateness, because words arrive faster than the beam moves.
-    let first_scan = board.device.video().reaches(&top, PeriodNumber(2)).expect("scanned");
-    assert_eq!(listed[0].lateness, end - first_scan - MESSAGE * 13 - WORD * 1_023);
-    assert!((0..120).all(|y| word(&seen.picture(), 64, y) == RED));
-    assert_eq!(word(&board.device.displayed_frame().picture(), 64, 0), GREEN);
-}
-
-#[test]
-fn two_boards_with_the_same_retraces_scan_in_lock_step() {
-    let mut boards = [painted(), painted()];
-    let swap = Time(20_000_000_000);
-    for board in &mut boards {
-        board.retraces(0..=6);
-        board.swap(swap, 1);
-        board.run();
-    }
-    let [left, right] = boards;
-    assert_eq!(swaps(&left), swaps(&right));
-    for field in 5..6 {
-        let [a, b] = [&left, &right].map(|board| board.device.seen(PeriodNumber(field)).expect("kept"));
-        assert_eq!((a.buffer(), a.parity(), a.picture()), (b.buffer(), b.parity(), b.picture()));
-    }
-    assert_eq!([left.device.faults().count, right.device.faults().count], [0, 0]);
-}
-
-#[test]
-fn retraces_do_not_drift_over_a_million_fields() {
+fn a_retrace_a_picosecond_late_is_a_fault() {
     let mut board = Board::new();
-    for field in 0..1_000_000 {
-        // The exact time is n x 1001/60000 s, rounded down.
-        let at = Time(field * 1_001_000_000_000 / 60);
-        board.feed(at, FrameBufferEvent::Retrace { field: PeriodNumber(field) });
-        if field % 1_000 == 0 {
-            board.run();
-        }
-    }
-    board.run();
-    assert_eq!((board.device.faults().count, board.device.stats().fields), (0, 1_000_000));
-    let field = PeriodNumber(1_000_000);
+    let field = PeriodNumber(1);
     board.feed(Time(board.device.video().retrace(field).0 + 1), FrameBufferEvent::Retrace { field });
     board.run();
     assert_eq!(board.device.faults().count, 1);
@@ -343,47 +280,6 @@ fn a_board_that_cannot_be_built_is_refused_with_the_reason() {
     let config = FrameBufferConfig { fields_kept: 0, ..FrameBufferConfig::NTSC };
     let error = FrameBuffer::new(config, NODE, WORD).expect_err("nothing kept");
     assert_eq!(error.to_string(), "frame buffer: fields_kept must be 1 to 1000, found 0");
-    assert_eq!(error.to_string(), "frame buffer: fields_kept must be 1 to 1000, found 0");
-}
-
-/// Writes region 0 of a field several times. The writes are complete at the given times. Returns the number of lines
-/// never shown.
-fn never_shown(parity: FieldParity, at: &[Time]) -> u64 {
-    let mut board = Board::new();
-    board.retraces(0..=8);
-    for (picture, last) in (0..).zip(at) {
-        board.region(*last, field_target(0, parity, 0, picture), &colour(RED));
-    }
-    board.run();
-    board.device.stats().lines_never_shown
-}
-
-#[test]
-fn lines_overwritten_before_their_scan_are_counted() {
-    let board = Board::new();
-    let video = board.device.video();
-    let beam = |row: u32, field| video.when(0, 2 * row, PeriodNumber(field)).expect("scanned");
-    let retrace = |field| video.retrace(PeriodNumber(field));
-    let span = MESSAGE * 15;
-    // No line is lost if each picture is shown in a field of its parity. The region may arrive early or late in the
-    // field of the other parity.
-    let shown = [retrace(1) + span, retrace(3) + span, retrace(5)];
-    assert_eq!(never_shown(FieldParity::Even, &shown), 0);
-    // Two pictures arrive between two fields of their parity, so all 120 lines of the first picture are lost.
-    let early = [retrace(1) + span, retrace(1) + span * 2, retrace(3) + span];
-    assert_eq!(never_shown(FieldParity::Even, &early), 120);
-    // A region is complete when the beam is at its row 60. The region has 15 messages of 8 rows each. Rows that arrived
-    // before the beam are shown. Rows that arrived after the beam are overwritten before the next field. Row k arrives
-    // at last - (119 - k) x 6.5 us, and the beam passes row k at begin + k x 63.556 us.
-    let last = beam(60, 2);
-    let late_rows = (0..120).filter(|row| {
-        let message_at = Time(last.0 - (MESSAGE * (14 - row / 8)).0);
-        let arrived = Time(message_at.0 - (WORD * (1023 - row % 8 * 128)).0);
-        arrived > beam(*row as u32, 2)
-    });
-    let late_rows = late_rows.count() as u64;
-    assert!((40..60).contains(&late_rows), "{late_rows}");
-    assert_eq!(never_shown(FieldParity::Even, &[Time::ZERO + span, last, retrace(3) + span]), late_rows);
 }
 
 #[test]

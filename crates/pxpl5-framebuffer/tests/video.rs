@@ -98,11 +98,6 @@ fn the_beam_reaches_a_region_at_the_first_pixel_of_the_region_in_that_field() {
 }
 
 #[test]
-fn every_preset_is_in_range() {
-    assert_eq!(VideoTiming::PAPERS.out_of_range(), []);
-}
-
-#[test]
 fn video_timings_that_cannot_be_scanned_are_refused_by_name() {
     for (name, value) in [
         ("pixel_ps", 0),

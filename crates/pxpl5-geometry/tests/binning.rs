@@ -147,27 +147,24 @@ proptest! {
     }
 }
 
+/// Region 6 has pixel centres from 128.5 to 255.5 px. The bounding box of the second triangle contains only the centre at
+/// (128.5, 128.5), which its hypotenuse passes on the outside; that of the third triangle passes it on the inside.
 #[test]
-fn a_triangle_inside_one_region_touches_only_this_region() {
-    let (outline, _) = screen(Viewport::FRAME, [[2080, 2080], [2240, 2080], [2080, 2240]]);
-    assert_eq!(outline.expect("it is on the screen").regions, RegionMask::only(RegionId(6)));
-}
-
-#[test]
-fn a_triangle_at_the_border_of_a_region_must_pass_the_edge_test() {
-    // Region 6 has pixel centres from 128.5 to 255.5 px. The bounding box contains only the centre at (128.5, 128.5).
-    // The hypotenuse passes this centre on the outside.
-    let (outline, stats) = screen(Viewport::FRAME, [[2049, 2067], [2067, 2049], [2050, 2050]]);
-    assert_eq!(outline.expect("the corner is inside").regions, RegionMask::only(RegionId(6)));
-    assert_eq!(stats.untouched, 0);
-    let (outline, stats) = screen(Viewport::FRAME, [[2049, 2057], [2057, 2049], [2050, 2050]]);
-    assert_eq!((outline, stats.untouched), (None, 1));
-}
-
-#[test]
-fn a_triangle_over_the_whole_screen_touches_all_twenty_regions() {
-    let (outline, _) = screen(Viewport::FRAME, [[-16_000, -160], [26_000, -160], [5_000, 30_000]]);
-    assert_eq!(outline.expect("it is on the screen").regions.len(), 20);
+fn triangles_touch_the_regions_of_the_pixel_centres_that_their_edges_enclose() {
+    let sixth = RegionMask::only(RegionId(6));
+    let all = (0..20).map(|n| RegionMask::only(RegionId(n))).fold(RegionMask::EMPTY, RegionMask::union);
+    for (points, regions) in [
+        ([[2080, 2080], [2240, 2080], [2080, 2240]], Some(sixth)),
+        ([[2049, 2067], [2067, 2049], [2050, 2050]], Some(sixth)),
+        ([[2049, 2057], [2057, 2049], [2050, 2050]], None),
+        // A triangle between pixel centres, and one that covers the screen.
+        ([[2057, 2057], [2070, 2058], [2060, 2069]], None),
+        ([[-16_000, -160], [26_000, -160], [5_000, 30_000]], Some(all)),
+    ] {
+        let (outline, stats) = screen(Viewport::FRAME, points);
+        assert_eq!(outline.map(|outline| outline.regions), regions, "{points:?}");
+        assert_eq!(stats.untouched, u64::from(regions.is_none()), "{points:?}");
+    }
 }
 
 #[test]
@@ -176,10 +173,4 @@ fn a_diagonal_triangle_skips_corner_regions_of_its_bounding_box() {
     let regions = outline.expect("it is on the screen").regions;
     assert!(regions.contains(RegionId(0)) && regions.contains(RegionId(19)));
     assert!(!regions.contains(RegionId(4)) && !regions.contains(RegionId(15)));
-}
-
-#[test]
-fn a_triangle_between_pixel_centres_touches_nothing() {
-    let (outline, stats) = screen(Viewport::FRAME, [[2057, 2057], [2070, 2058], [2060, 2069]]);
-    assert_eq!((outline, stats.untouched), (None, 1));
 }

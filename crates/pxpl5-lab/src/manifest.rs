@@ -219,16 +219,10 @@ fn is_unchanged(folder: &Path, entry: &ManifestEntry) -> bool {
 mod tests {
     use super::*;
 
-    fn folder(name: &str) -> PathBuf {
-        let path = std::env::temp_dir().join(format!("pxpl5-manifest-{}-{name}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).expect("the temporary directory can be written");
-        path
-    }
-
     #[test]
     fn a_manifest_is_read_as_written_and_finds_changed_files() {
-        let folder = folder("round");
+        let folder = tempfile::tempdir().expect("a folder");
+        let folder = folder.path();
         assert_eq!(Manifest::read(&folder).expect("no file is no error"), None);
         let mut manifest = Manifest::new("run");
         manifest.add("a", b"one");
@@ -242,12 +236,12 @@ mod tests {
         }
         assert!(manifest.read_file(&folder, "b").is_err(), "it is not there");
         assert_eq!(manifest.read_file(&folder, "c").ok().flatten(), None);
-        fs::remove_dir_all(folder).expect("ours");
     }
 
     #[test]
     fn files_not_written_again_are_removed_unless_the_user_changed_them() {
-        let folder = folder("gone");
+        let folder = tempfile::tempdir().expect("a folder");
+        let folder = folder.path();
         let mut before = Manifest::new("run");
         for name in ["kept", "changed", "gone", "absent"] {
             before.add(name, b"old");
@@ -265,12 +259,12 @@ mod tests {
         next.add("gone", b"old");
         let mut fourth = Manifest::new("run");
         assert_eq!(fourth.replace(&next, &folder), [folder.join("gone")], "the file is in both lists");
-        fs::remove_dir_all(folder).expect("ours");
     }
 
     #[test]
     fn a_name_that_leads_out_of_the_folder_is_refused() {
-        let folder = folder("out");
+        let folder = tempfile::tempdir().expect("a folder");
+        let folder = folder.path();
         for name in ["../a", "/etc/passwd", "a/b", "..", "", "manifest.json"] {
             let text = format!(
                 "{{\"schema\":\"{}\",\"version\":\"0\",\"command\":\"run\",\"files\":[{{\"name\":\"{name}\",\"contents\":null}}]}}",
@@ -279,6 +273,5 @@ mod tests {
             fs::write(folder.join(MANIFEST_FILE), text).expect("ours");
             assert_eq!(Manifest::read(&folder).expect_err(name).kind, FileErrorKind::Occupied, "{name}");
         }
-        fs::remove_dir_all(folder).expect("ours");
     }
 }

@@ -1,8 +1,9 @@
-//! Tests of counts for every pipeline. Each due picture ends in exactly one way, and rates depend on the load and not
-//! on the length of the run. A pipeline that fails at a load fails at every higher load.
+//! Tests of counts for every pipeline. Each due picture ends in exactly one way. A pipeline that fails at a load fails at
+//! every higher load.
 
-use pxpl5_lab::{ExperimentFile, registry};
-use pxpl5_measure::{ErrorCauses, Measured, Report, Showing};
+use crate::support;
+use pxpl5_lab::registry;
+use pxpl5_measure::{ErrorCauses, Measured, Showing};
 use pxpl5_run::{DuePictures, ExperimentError, Outcome, WARM_UP_PERIODS};
 
 /// Runs a pipeline with a number of triangles that cover the screen. Strips (groups of scan lines) have eight lines, so
@@ -12,8 +13,7 @@ fn run(pipeline: &str, triangles: u32, fields: u64) -> Result<Outcome, Experimen
     let text = format!(
         "pipeline = \"{pipeline}\"\nscene = \"full-screen:{triangles}\"\nfields = {fields}\npixels = \"off\"\n{strips}"
     );
-    let plan = ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect("valid");
-    plan.experiment(plan.load_scene().expect("built in")).run()
+    support::run(&support::plan(&text))
 }
 
 /// Returns the numbers of due, shown and missed pictures of a run, even if the run is too short.
@@ -78,63 +78,6 @@ fn every_picture_due_has_one_result_and_heavier_loads_never_miss_fewer() {
 }
 
 #[test]
-fn rates_do_not_depend_on_the_length_of_the_run() {
-    let cases: [(&str, &[u32]); 4] = [
-        ("rendering-control", &[12, 200, 800]),
-        ("slats", &[100, 150, 400]),
-        ("jitp-field", &[4, 100, 800]),
-        ("jitp-dual-screen-racing", &[4, 60]),
-    ];
-    for (pipeline, loads) in cases {
-        for triangles in loads {
-            let [short, long] = [400, 800].map(|fields| due(pipeline, *triangles, fields).expect("long enough"));
-            let expected = long.shown as f64 / long.due as f64 * short.due as f64;
-            let difference = (short.shown as f64 - expected).abs();
-            assert!(difference <= 1.0, "{pipeline}, {triangles} triangles: {short:?} {long:?}");
-        }
-    }
-}
-
-fn with_a_head(pipeline: &str, scene: &str) -> Report {
-    let text = format!(
-        "pipeline = \"{pipeline}\"\nscene = \"{scene}\"\nfields = 60\npixels = \"off\"\nhead.motion = \"pan:200\""
-    );
-    let plan = ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect("valid");
-    match plan.experiment(plan.load_scene().expect("built in")).run() {
-        Ok(outcome) => outcome.report(),
-        Err(ExperimentError::TooShort { partial, .. }) => partial.report(),
-        Err(error) => panic!("{error}"),
-    }
-}
-
-#[test]
-fn without_a_complete_picture_there_is_no_latency_update_or_error() {
-    for (pipeline, scene) in [("jitp-scanline-racing", "mig"), ("slats", "full-screen:1000")] {
-        let report = serde_json::to_value(with_a_head(pipeline, scene)).expect("JSON");
-        for path in [
-            "/latency_ms/mean",
-            "/latency_fields/mean",
-            "/updates_hz",
-            "/head/end_to_end/head_to_light_ms",
-            "/head/end_to_end/drawing_ms",
-            "/head/error/pixels/mean",
-            "/head/error/pixels/p99",
-            "/head/error/degrees/mean",
-            "/head/error/centre_px/max",
-        ] {
-            assert_eq!(report.pointer(path), Some(&serde_json::Value::Null), "{pipeline}: {path}");
-        }
-        for path in ["/latency_ms/n", "/head/end_to_end/n", "/head/error/pixels/n", "/head/error/evaluated"] {
-            assert_eq!(report.pointer(path), Some(&0.into()), "{pipeline}: {path}");
-        }
-        assert!(report["too_heavy"]["advice"].is_string() && report["ends_complete"] == false, "{pipeline}");
-        // With the aircraft, no line of just-in-time pixels arrives in time, and regions of Slats arrive late.
-        let not_evaluated = ["incomplete", "empty"].map(|key| report["head"]["error"][key].as_u64().expect("a number"));
-        assert!(not_evaluated.iter().sum::<u64>() > 0, "{pipeline}");
-    }
-}
-
-#[test]
 fn a_pipeline_without_a_closed_form_explains_how_its_limit_is_found() {
     let heavy = run("jitp-field", 3_000, 60).expect("fields are begun").report().too_heavy.expect("far too many");
     assert_eq!(heavy.primitives_in_time, None);
@@ -150,8 +93,7 @@ fn a_picture_of_start_up_that_stays_on_the_screen_has_no_error() {
             "pipeline = \"jitp-dual-screen\"\nscene = \"typical:500\"\nfields = {fields}\npixels = \"off\"\n\
              head.motion = \"pan:200\"\nmachine.n_gps = 3"
         );
-        let plan = ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect("valid");
-        let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("fields are begun");
+        let outcome = support::run(&support::plan(&text)).expect("fields are begun");
         let report = outcome.report();
         let due = report.due.expect("fields are due");
         assert_eq!((due.shown, due.due), (0, fields - WARM_UP_PERIODS), "{due:?}");

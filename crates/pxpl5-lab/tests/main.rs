@@ -1,5 +1,7 @@
 //! Tests of the studies.
 
+mod support;
+
 // Figures and levels.
 mod auto_level;
 mod code_times;

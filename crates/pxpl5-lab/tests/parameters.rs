@@ -1,5 +1,6 @@
 //! Tests that every listed parameter can be set by its path, within its limits, and has an effect.
 
+use crate::support;
 use pxpl5_lab::{ExperimentFile, Plan, tracking_parameters};
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::Measured;
@@ -119,8 +120,7 @@ fn memoised_and_counted_code_give_the_same_trace_for_any_memory_timing() {
 fn head_to_light_ms(latency_ms: u64) -> f64 {
     let latency = format!("tracking.optical.latency={latency_ms}");
     let plan = plan(&["head.motion=pan:40", "head.predict=none", "tracking.optical.rate=1000", "fields=60", &latency]);
-    let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("it is small");
-    outcome.report().head.expect("a head").end_to_end.total_ms
+    support::run(&plan).expect("it is small").report().head.expect("a head").end_to_end.total_ms
 }
 
 #[test]
@@ -133,8 +133,7 @@ fn a_later_tracker_lengthens_head_to_light_by_the_same_time() {
 fn tracking_ms(settings: &[&str]) -> f64 {
     let head = ["head.motion=pan:40", "head.predict=none", "fields=240"];
     let plan = plan(&[&head[..], settings].concat());
-    let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("it is small");
-    outcome.report().head.expect("a head").end_to_end.tracking_ms
+    support::run(&plan).expect("it is small").report().head.expect("a head").end_to_end.tracking_ms
 }
 
 /// Tests the wait for a poll. Reports wait for half a polling period on average. If one poll finds several reports, the
@@ -152,30 +151,19 @@ fn the_polling_of_the_operating_system_delays_the_fastrak() {
 
 #[test]
 fn an_impossible_tracker_parameter_is_refused_with_the_expected_range() {
-    for (settings, says) in [
-        (
-            &["head.motion=still", "tracking.optical.rate=0"][..],
-            "--set: tracking.optical.rate must be 1 to 10000, found 0",
-        ),
-        (&["head.motion=still", "tracking.optical.rate=60.5"], "--set: tracking.optical.rate must be a whole number"),
-        (&["head.motion=still", "tracking.filter.baseline=17"], "--set: tracking.filter.baseline must be 1 to 16"),
-        (
-            &["head.motion=still", "tracking.fastrak.rate=60"],
-            "tracking.fastrak.rate does not apply to head.tracker = optical",
-        ),
-        (
-            &["head.motion=still", "head.tracker=fastrak", "tracking.host.poll=20"],
-            "tracking.host.poll does not apply to head.tracker = fastrak, whose host is patched and does not poll; fastrak-polled",
-        ),
-        (
-            &["head.motion=still", "head.tracker=flock", "tracking.host.byte_bits=11"],
-            "tracking.host.byte_bits does not apply to head.tracker = flock, whose latency includes the cable",
-        ),
-        (&["tracking.optical.rate=60"], "head.motion is missing"),
-        (&["i860.dram.first_hit=1000001"], "i860.dram.first_hit must be 0 to 1000000, found 1000001"),
-    ] {
-        let found = refusal(settings);
-        assert!(found.contains(says), "{settings:?}: {found}");
+    let rows = "\
+head.motion=still tracking.optical.rate=0 | --set: tracking.optical.rate must be 1 to 10000, found 0
+head.motion=still tracking.optical.rate=60.5 | --set: tracking.optical.rate must be a whole number
+head.motion=still tracking.filter.baseline=17 | --set: tracking.filter.baseline must be 1 to 16
+head.motion=still tracking.fastrak.rate=60 | tracking.fastrak.rate does not apply to head.tracker = optical
+head.motion=still head.tracker=fastrak tracking.host.poll=20 | tracking.host.poll does not apply to head.tracker = fastrak, whose host is patched and does not poll; fastrak-polled
+head.motion=still head.tracker=flock tracking.host.byte_bits=11 | tracking.host.byte_bits does not apply to head.tracker = flock, whose latency includes the cable
+tracking.optical.rate=60 | head.motion is missing
+i860.dram.first_hit=1000001 | i860.dram.first_hit must be 0 to 1000000, found 1000001
+";
+    for (settings, says) in rows.lines().map(|row| row.split_once(" | ").expect(row)) {
+        let found = refusal(&settings.split(' ').collect::<Vec<_>>());
+        assert!(found.contains(says), "{settings}: {found}");
     }
     let error = ExperimentFile::new().set_text("tracking.optcal.rate=60", "--set").expect_err("misspelt").to_string();
     assert!(error.contains("did you mean `tracking.optical.rate`"), "{error}");
@@ -185,7 +173,7 @@ fn an_impossible_tracker_parameter_is_refused_with_the_expected_range() {
 fn a_written_file_has_the_parameters_of_its_tracker() {
     let first = plan(&["head.motion=pan:40", "head.tracker=fastrak", "tracking.host.byte_bits=11"]);
     let text = first.settings().to_string();
-    let second = ExperimentFile::parse(&text, "written").and_then(|file| file.resolve()).expect("it reads itself");
+    let second = support::plan(&text);
     assert_eq!((&first, first.fingerprint(), hash(&first)), (&second, second.fingerprint(), hash(&second)));
     let of_line = second.parameters().into_iter().find(|parameter| parameter.path == "tracking.host.byte_bits");
     assert_eq!(of_line.map(|parameter| parameter.value), Some(Value::Whole(11)));

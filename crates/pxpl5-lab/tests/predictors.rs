@@ -1,8 +1,8 @@
 //! Tests every predictor on one experiment, tuned for its pipeline. For a still head, the noise error with a predictor
 //! must not exceed the error without prediction.
 
+use crate::support;
 use pxpl5_lab::compare::{Predictors, predictors};
-use pxpl5_lab::{ExperimentFile, registry};
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::Measured;
 use pxpl5_run::{Experiment, Head, Pipeline, RenderingControl, Slats};
@@ -24,24 +24,6 @@ fn mean(all: &Predictors, kind: PredictorKind) -> f64 {
     all.of(kind).and_then(|one| one.error.as_ref()).expect("evaluated").pixels.mean
 }
 
-fn shown(name: &str, all: &Predictors) {
-    for one in &all.each {
-        let numbers = one.numbers.expect("it ran");
-        let training = one.training;
-        let interval_ms = training.map_or(0, |training| training.interval_ps / 1_000_000_000);
-        println!(
-            "{name} {:?}: {:.2} px; interval {interval_ms} ms, jerks {:.3e} {:.3e}, baselines {} {}",
-            one.kind,
-            mean(all, one.kind),
-            numbers.position_jerk,
-            numbers.orientation_jerk,
-            numbers.position_baseline,
-            numbers.orientation_baseline
-        );
-    }
-    println!("{name}: best {:?}, chosen {:?}", all.best, all.chosen);
-}
-
 #[test]
 fn on_a_still_head_a_tuned_filter_adds_no_error() {
     let still = || Still(Pose::IDENTITY);
@@ -50,7 +32,6 @@ fn on_a_still_head_a_tuned_filter_adds_no_error() {
         ("slats", experiment(Slats::split(), still())),
     ] {
         let all = predictors(&experiment).expect("there is a head");
-        shown(name, &all);
         let none = mean(&all, PredictorKind::None);
         let kalman = mean(&all, PredictorKind::Kalman);
         // Each picture shows one report, and 60 independent reports come each second. Without prediction, the standard
@@ -71,7 +52,6 @@ fn the_report_names_the_tuning_of_a_filter_and_uses_the_interval_of_the_pipeline
     let head = outcome.report().head.expect("there is a head");
     let training = head.training.expect("tuned");
     let interval_ms = training.interval_ps as f64 * 1e-9;
-    println!("interval {interval_ms} ms, budget {:?}", head.end_to_end);
     // A frame is visible for two fields and is predicted for the middle of both. This instant is half a field after the
     // light of the picture's middle.
     let expected_ms = head.end_to_end.total_ms + 1001.0 / 60.0 / 2.0;
@@ -85,16 +65,10 @@ fn the_report_names_the_tuning_of_a_filter_and_uses_the_interval_of_the_pipeline
 
 #[test]
 fn parameters_set_by_the_user_are_not_tuned() {
-    let file = |more: &str| {
-        let text = format!(
-            "pipeline = \"slats\"\nscene = \"room\"\nfields = 40\nhead.motion = \"pan:50\"\nhead.tracker = \"fastrak\"\n{more}"
-        );
-        ExperimentFile::with(registry()).and_parse(&text, "test.toml")
-    };
     let ran = |more: &str| {
-        let plan = file(more).expect("keys").resolve().expect("a plan");
-        let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("it runs");
-        outcome.report().head.expect("a head")
+        let head = "head.motion = \"pan:50\"\nhead.tracker = \"fastrak\"";
+        let plan = support::plan(&format!("pipeline = \"slats\"\nscene = \"room\"\nfields = 40\n{head}\n{more}"));
+        support::run(&plan).expect("it runs").report().head.expect("a head")
     };
     let given = ran("tracking.filter.orientation_jerk = 77.0\n");
     assert_eq!((given.prediction.orientation_jerk, given.training), (77.0, None));

@@ -1,7 +1,8 @@
 //! Tests of due pictures. They are counted in the display's own periods, over a stated part of the run. A run that
 //! shows no picture reports this fact.
 
-use pxpl5_lab::{ExperimentFile, registry};
+use crate::support;
+use pxpl5_lab::registry;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, Report};
 use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, RenderingControl, WARM_UP_PICTURES};
@@ -49,14 +50,10 @@ fn partial(error: ExperimentError) -> (Option<u64>, String, Box<Outcome>) {
 
 #[test]
 fn a_run_that_showed_nothing_keeps_its_results_and_names_the_length_needed() {
-    let plan = ExperimentFile::parse(
-        "pipeline = \"rendering-control\"\nscene = \"full-screen:12\"\npixels = \"off\"\nfields = 60",
-        "test",
-    );
-    let mut plan = plan.and_then(|file| file.resolve()).expect("valid");
+    let text = "pipeline = \"rendering-control\"\nscene = \"full-screen:12\"\npixels = \"off\"\nfields = 60";
+    let mut plan = support::plan(text);
     plan.machine = slow();
-    let scene = plan.load_scene().expect("built in");
-    let (needed, message, outcome) = partial(plan.experiment(scene.clone()).run().expect_err("too short"));
+    let (needed, message, outcome) = partial(support::run(&plan).expect_err("too short"));
     let needed = needed.expect("Rendering Control has a closed form");
     assert!(
         message.ends_with(&format!("simulate more fields: the next one is shown after about {needed}")),
@@ -69,7 +66,7 @@ fn a_run_that_showed_nothing_keeps_its_results_and_names_the_length_needed() {
     assert_eq!((due.due, due.missed, report.missed_retraces), (26, 26, Some(26)));
     // The closed form follows the simulation closely. A run that is a fifth longer shows pictures.
     plan.fields = needed + needed / 5;
-    let longer = plan.experiment(scene).run().expect("long enough");
+    let longer = support::run(&plan).expect("long enough");
     assert!(longer.shown() > WARM_UP_PICTURES as u64);
 }
 
@@ -101,13 +98,12 @@ fn a_frame_of_two_hundred_fields_counts_as_one_shown_picture() {
 
 #[test]
 fn if_slats_is_always_late_no_picture_is_shown_and_the_report_names_a_size_that_fits() {
-    let plan = ExperimentFile::parse(
-        "pipeline = \"slats\"\nscene = \"full-screen:1000\"\nfields = 60\npixels = \"off\"",
-        "test",
-    );
-    let plan = plan.and_then(|file| file.resolve()).expect("valid");
-    let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("late pictures are pictures");
-    let report = outcome.report();
+    let run = |triangles: u64| {
+        let scene = format!("scene = \"full-screen:{triangles}\"");
+        let plan = support::plan(&format!("pipeline = \"slats\"\n{scene}\nfields = 60\npixels = \"off\""));
+        support::run(&plan).expect("late pictures are pictures").report()
+    };
+    let report = run(1_000);
     assert_eq!((report.shown, report.updates_hz, report.latency_ms.statistics.n), (0, None, 0));
     let due = report.due.expect("fields are due");
     assert_eq!((due.due, due.shown, report.missed_retraces), (52, 0, Some(52)));
@@ -115,12 +111,7 @@ fn if_slats_is_always_late_no_picture_is_shown_and_the_report_names_a_size_that_
     let heavy = report.too_heavy.expect("nothing was shown");
     // The closed form is within 5 % of the limit by simulation (docs, and `BOUND_PERCENT` of tests/limits.rs).
     let would_do = heavy.primitives_in_time.expect("Slats has a closed form");
-    let missed = |percent: u64| {
-        let scene = format!("full-screen:{}", would_do * percent / 100);
-        let text = format!("pipeline = \"slats\"\nscene = \"{scene}\"\nfields = 60\npixels = \"off\"");
-        let plan = ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect("valid");
-        plan.experiment(plan.load_scene().expect("built in")).run().expect("it runs").report().missed_retraces
-    };
+    let missed = |percent: u64| run(would_do * percent / 100).missed_retraces;
     assert_eq!(missed(95), Some(0), "{heavy}");
     assert!(missed(106) > Some(0), "{heavy}");
     assert!(heavy.to_string().contains(&format!("triangles = {would_do}")), "{heavy}");

@@ -4,6 +4,7 @@
 //! scan-out: a pixel that is lit at time t and was drawn for time a is rotated by |v| |t - a|. For a sinusoid the
 //! prediction itself is wrong: a straight line through two of its points differs from the sinusoid.
 
+use crate::support::{LINE_S, beam, retrace};
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, PixelErrors, Showing};
 use pxpl5_run::{Aim, Cause, Experiment, Head, Outcome, PipelineSettings, Pixels, Registry, SampledPose};
@@ -19,23 +20,6 @@ use tracking::tracker::TrackerConfig;
 use tracking::{Pose, SettingSink};
 
 const FIELDS: u64 = 45;
-
-/// Duration of an NTSC line.
-///
-/// A line has 780 pixel periods, of which the last 640 are visible. A field has 262.5 lines, of which the first 22 are
-/// blanked, and half a line more in odd fields. All blanking precedes the visible part.
-const LINE_S: f64 = 4004.0 / 63.0 * 1e-6;
-
-/// Returns the time at which the beam begins a field.
-fn retrace(field: u64) -> f64 {
-    field as f64 * 262.5 * LINE_S
-}
-
-/// Returns the time at which the beam reaches a pixel of a field.
-fn beam(field: u64, row: u64, x: u64) -> f64 {
-    let half = (field % 2) as f64 / 2.0;
-    retrace(field) + (half + 22.0 + row as f64 + (140.0 + x as f64) / 780.0) * LINE_S
-}
 
 /// Returns the instant that an aim selects within a range of rows.
 fn aimed(aim: Aim, (first_field, first_row): (u64, u64), (last_field, last_row): (u64, u64)) -> f64 {
@@ -223,7 +207,6 @@ impl Run {
         assert_eq!((*empty, *incomplete), (0, 0), "{}", self.pipeline);
         let found = [pixels.mean, degrees.mean];
         let off = [found[0] / expected[0] - 1.0, found[1] / expected[1] - 1.0];
-        println!("{:24} {:12} {found:?} for {expected:?}: {off:?}", self.pipeline, self.aim.to_string());
         assert!(off.iter().all(|off| off.abs() < tolerance), "{} {}: {off:?}", self.pipeline, self.aim);
     }
 }
@@ -330,6 +313,5 @@ fn frameless_rendering_draws_blocks_for_the_middle_of_their_display_time() {
     let early = |(field, row, x)| beam(field, row, x) - run.content(field, row, x).drawn_for;
     let all: Vec<f64> = run.evaluated().map(early).collect();
     let mean_s = all.iter().sum::<f64>() / all.len() as f64;
-    println!("mean {:.3} ms of a pass of {:.3} ms", mean_s * 1e3, pass_s * 1e3);
     assert!(mean_s.abs() < pass_s * 0.1, "{mean_s} {pass_s}");
 }

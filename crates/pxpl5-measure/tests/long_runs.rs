@@ -76,6 +76,8 @@ fn short_experiments() -> Vec<(u64, Experiment)> {
         (500, slats(head(synthetic(), fastrak(), kalman))),
         (500, slats(head(Pan::at(60.0), TrackerConfig::flock_of_birds(), none).with_raster(Raster::Vdrt))),
         (500, slats(head(synthetic(), silent(5.0, 6.5), velocity))),
+        // Every field is late.
+        (500, experiment("slats", MachineConfig::slats(), scene("mig", 250)).head(head(synthetic(), fastrak(), none))),
         // The run lasts 18 seconds after the tracker's last report.
         (1_500, slats(head(synthetic(), silent(4.0, 22.0), velocity))),
         (500, control(head(synthetic(), fastrak(), velocity).with_aim(Aim::FirstPixel))),

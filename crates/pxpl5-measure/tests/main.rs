@@ -11,3 +11,5 @@ mod budget;
 mod long_runs;
 mod numbers;
 mod outcomes;
+
+mod support;

@@ -1,5 +1,6 @@
 //! Consistency of a report's numbers: a quantity has the same value in every place.
 
+use crate::support::experiment;
 use glam::DQuat;
 use image::{Rgb, RgbImage};
 use pxpl5_machine::MachineConfig;
@@ -7,8 +8,7 @@ use pxpl5_measure::{
     CriticalPath, LatencyCurve, Measure, Measured, QUANTITIES, Results, TooHeavy, Utilisation, side_by_side,
 };
 use pxpl5_run::{
-    DuePictures, Estimates, Experiment, FacePipeline, FacePolicy, FaceSource, Head, Outcome, Pipeline,
-    PipelineSettings, Pixels, Registry, Slats,
+    DuePictures, Estimates, Experiment, FacePipeline, FacePolicy, FaceSource, Head, Outcome, Pipeline, Pixels, Slats,
 };
 use pxpl5_scene::builtin;
 use pxpl5_wire::PeriodNumber;
@@ -25,11 +25,7 @@ fn head() -> Head {
 }
 
 fn run(pipeline: &str, scene: &str, fields: u64) -> Outcome {
-    let registry = Registry::of_papers();
-    let pipeline = (registry.pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
-    let scene = Arc::new(builtin(scene).expect("built in"));
-    let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head());
-    experiment.fields(fields).pixels(Pixels::Off).run().expect("it runs")
+    experiment(pipeline, scene).head(head()).fields(fields).run().expect("it runs")
 }
 
 fn value(results: &Results, name: &str) -> Option<f64> {
@@ -40,11 +36,7 @@ fn value(results: &Results, name: &str) -> Option<f64> {
 #[test]
 fn at_the_end_of_a_run_the_partial_shares_equal_the_shares_in_the_report() {
     for pipeline in ["rendering-control", "slats"] {
-        let registry = Registry::of_papers();
-        let pipeline = (registry.pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
-        let scene = Arc::new(builtin("sphere:10").expect("built in"));
-        let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).fields(60).pixels(Pixels::Off);
-        let mut stepper = experiment.stepper().expect("it fits");
+        let mut stepper = experiment(pipeline, "sphere:10").fields(60).stepper().expect("it fits");
         assert_eq!(Utilisation::so_far(&stepper), None, "no time has passed");
         assert_eq!(CriticalPath::so_far(&stepper.observed_run()), None, "no picture was shown");
         stepper.run_to(stepper.end());
@@ -205,18 +197,10 @@ fn the_hash_of_a_report_covers_events_and_settings() {
 #[test]
 fn a_single_update_has_no_rate() {
     for fields in [60, 200] {
-        let pipeline =
-            (Registry::of_papers().pipeline("arp-priority").expect("listed").build)(&PipelineSettings::default());
-        let config = pipeline.adapt(MachineConfig::small_hmd());
-        let scene = Arc::new(builtin("sphere:1000").expect("even"));
-        let still = Head::new(
-            Arc::new(tracking::motion::Still(Pose::IDENTITY)),
-            TrackerConfig::ideal(),
-            PredictorKind::None,
-            1,
-        );
-        let experiment = Experiment::with(config, pipeline, scene).fields(fields).head(still.expect("in range"));
-        let report = experiment.pixels(Pixels::Off).run().expect("it shows something").report();
+        let motion = Arc::new(tracking::motion::Still(Pose::IDENTITY));
+        let still = Head::new(motion, TrackerConfig::ideal(), PredictorKind::None, 1).expect("in range");
+        let run = experiment("arp-priority", "sphere:1000").fields(fields).head(still).run();
+        let report = run.expect("it shows something").report();
         let memories = report.arp.expect("faces").memories;
         let updates: Vec<u64> = memories.iter().map(|memory| memory.updates).collect();
         assert_eq!((updates, report.shown), (vec![0, 0, 0, 1], 1), "{fields}");

@@ -1,20 +1,14 @@
 //! Measurements of an outcome besides its report: parts of the latency, latencies by eye, and pictures.
 
+use crate::support::experiment;
 use pxpl5_gp::Stage;
-use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measure, Measured, Results, screen};
-use pxpl5_run::{Experiment, ExperimentError, Outcome, PipelineSettings, Pixels, Registry};
-use pxpl5_scene::builtin;
+use pxpl5_run::{ExperimentError, Outcome, Pixels};
 use pxpl5_wire::display::Counter;
 use pxpl5_wire::{Eye, PeriodNumber, SurfaceId};
-use std::sync::Arc;
 
 fn run(pipeline: &str, fields: u64, pixels: Pixels) -> Outcome {
-    let registry = Registry::of_papers();
-    let pipeline = (registry.pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
-    let scene = Arc::new(builtin("sphere:10").expect("built in"));
-    let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene);
-    match experiment.fields(fields).pixels(pixels).run() {
+    match experiment(pipeline, "sphere:10").fields(fields).pixels(pixels).run() {
         Ok(outcome) => outcome,
         Err(ExperimentError::TooShort { partial, .. }) => *partial,
         Err(error) => panic!("{error}"),

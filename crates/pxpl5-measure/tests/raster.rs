@@ -2,12 +2,11 @@
 //!
 //! A picture is drawn for the middle of its field, at time a. When the beam is at t, the shift is f tan(v (t - a)).
 
+use crate::support::{after, beam, experiment, focal_px, retrace};
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
-use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, PixelErrors, RasterOffsets, Showing};
-use pxpl5_run::{Aim, Experiment, Head, Outcome, PipelineSettings, Pixels, Raster, Registry, WARM_UP_PERIODS};
-use pxpl5_scene::builtin;
+use pxpl5_run::{Aim, Head, Outcome, Raster, WARM_UP_PERIODS};
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
 use tracking::Pose;
@@ -18,22 +17,6 @@ use tracking::tracker::TrackerConfig;
 
 const FIELDS: u64 = 30;
 
-/// Duration of an NTSC line.
-///
-/// A line has 780 pixel periods, of which the last 640 are visible. A field has 262.5 lines, of which the first 22 are
-/// blanked. An odd field begins with half a line.
-const LINE_S: f64 = 4004.0 / 63.0 * 1e-6;
-
-fn beam(field: u64, row: u64, x: u64) -> f64 {
-    let half = (field % 2) as f64 / 2.0;
-    (field as f64 * 262.5 + half + 22.0 + row as f64 + (140.0 + x as f64) / 780.0) * LINE_S
-}
-
-/// Returns the focal length of a picture with 640 pixels over 60 degrees, in pixels.
-fn focal_px() -> f64 {
-    320.0 / 30f64.to_radians().tan()
-}
-
 const RAD_PER_S: f64 = 2.0;
 
 /// Returns the motion of a head that rotates about an axis of the world: to the left about y, or upwards about x.
@@ -43,13 +26,9 @@ fn turning(axis: DVec3) -> impl Motion + Send + Sync + 'static {
 }
 
 fn run(axis: DVec3, raster: Raster) -> Outcome {
-    let registry = Registry::of_papers();
-    let pipeline = (registry.pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
     let head = Head::new(Arc::new(turning(axis)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
     let head = head.expect("in range").with_aim(Aim::Middle).with_raster(raster);
-    let scene = Arc::new(builtin("full-screen:2").expect("built in"));
-    let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
-    experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("two triangles")
+    experiment("jitp-field", "full-screen:2").head(head).fields(FIELDS).run().expect("two triangles")
 }
 
 /// Returns the angle of rotation since the instant for which a field's picture is drawn.
@@ -74,7 +53,7 @@ fn check(axis: DVec3, field: u64, from: impl Fn(u64, u64, f64) -> [f64; 2]) {
     for (row, x) in (0..240_u64).step_by(7).flat_map(|row| (0..640_u64).map(move |x| (row, x))) {
         let y = (2 * row + field % 2) as u32;
         assert_eq!(shifted.get_pixel(x as u32, y ^ 1), &Rgb([255; 3]), "the other field's rows stay");
-        let place = from(row, x, focal_px() * turned(field, row, x).tan());
+        let place = from(row, x, focal_px(640.0) * turned(field, row, x).tan());
         if place.iter().any(|place| (place - place.floor() - 0.5).abs() < 0.01) {
             continue;
         }
@@ -115,13 +94,6 @@ fn before_the_first_picture_rows_are_not_shifted_and_after_the_run_no_offset_exi
     assert!(RasterOffsets::of(&run(DVec3::Y, Raster::Plain)).is_none());
 }
 
-/// Returns the position of content after a rotation to the left, relative to the picture's middle.
-fn after(right: f64, up: f64, angle: f64) -> [f64; 2] {
-    let (sin, cos) = angle.sin_cos();
-    let depth = focal_px() * cos - right * sin;
-    [(right * cos + focal_px() * sin) * focal_px() / depth, up * focal_px() / depth]
-}
-
 /// Returns the mean error of the 25 evaluated pixels of each field.
 fn mean_px(drawn_at: impl Fn(f64, f64) -> f64) -> f64 {
     let grid = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
@@ -130,7 +102,7 @@ fn mean_px(drawn_at: impl Fn(f64, f64) -> f64) -> f64 {
     let errors = pixels.map(|(field, row, x)| {
         let [right, up] = [x as f64 + 0.5 - 320.0, 240.0 - ((2 * row + field % 2) as f64 + 0.5)];
         let angle = turned(field, row, x);
-        let [seen_right, seen_up] = after(drawn_at(right, angle), up, angle);
+        let [seen_right, seen_up] = after(drawn_at(right, angle), up, angle, focal_px(640.0));
         (seen_right - right).hypot(seen_up - up)
     });
     let errors: Vec<f64> = errors.collect();
@@ -140,7 +112,7 @@ fn mean_px(drawn_at: impl Fn(f64, f64) -> f64) -> f64 {
 #[test]
 fn a_shifted_raster_leaves_the_difference_between_shift_and_rotation() {
     let plain = mean_px(|right, _| right);
-    let shifted = mean_px(|right, angle| right - focal_px() * angle.tan());
+    let shifted = mean_px(|right, angle| right - focal_px(640.0) * angle.tan());
     assert!(shifted < plain / 5.0, "{shifted} of {plain}");
     for (raster, expected) in [(Raster::Plain, plain), (Raster::Vdrt, shifted)] {
         let outcome = run(DVec3::Y, raster);
@@ -163,11 +135,11 @@ fn every_evaluated_field_has_errors_of_all_its_pixels_and_the_time_of_its_retrac
     let fields: Vec<u64> = errors.by_field.iter().map(|error| error.field.0).collect();
     assert_eq!(fields, (WARM_UP_PERIODS..FIELDS).collect::<Vec<_>>());
     for error in &errors.by_field {
-        let retrace_s = error.field.0 as f64 * 262.5 * LINE_S;
+        let retrace_s = retrace(error.field.0);
         assert!((error.time_s - retrace_s).abs() < 1e-9, "{error:?}");
         let row = 240.0 + (error.field.0 % 2) as f64;
         let [right, up] = [320.5 - 320.0, 240.0 - (row + 0.5)];
-        let [seen_right, seen_up] = after(right, up, turned(error.field.0, 120, 320));
+        let [seen_right, seen_up] = after(right, up, turned(error.field.0, 120, 320), focal_px(640.0));
         assert!((error.centre_px - (seen_right - right).hypot(seen_up - up)).abs() < 1e-6, "{error:?}");
     }
     let mean = |of: fn(&pxpl5_measure::FieldMisregistration) -> f64| {
@@ -187,10 +159,7 @@ fn a_point_behind_the_eye_has_an_angle_and_the_diagonal_of_the_picture_as_its_er
     let fields = 45;
     let late = TrackerConfig::ideal().with_latency_ps(100 * PS_PER_MS);
     let head = Head::new(Arc::new(Pan::at(1_450.0)), late, PredictorKind::None, 1).expect("in range");
-    let pipeline = (Registry::of_papers().pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
-    let scene = Arc::new(builtin("full-screen:2").expect("built in"));
-    let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
-    let outcome = experiment.fields(fields).pixels(Pixels::Off).run().expect("two triangles");
+    let outcome = experiment("jitp-field", "full-screen:2").head(head).fields(fields).run().expect("two triangles");
     let errors = outcome.pixel_errors().expect("a head");
     let all = 25 * (fields - WARM_UP_PERIODS);
     assert_eq!((errors.evaluated, errors.outside, errors.behind), (all, all, all));

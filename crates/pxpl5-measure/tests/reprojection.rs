@@ -3,14 +3,14 @@
 //!
 //! The tracker is ideal and the predictor is exact for such motions, so only the instants of the poses cause errors.
 
+use crate::support::{after, beam, experiment, focal_px};
 use glam::DQuat;
 use image::RgbImage;
 use pxpl5_framebuffer::PanelConfig;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{EyeReport, Measured, PixelErrors, Showing, reproject};
 use pxpl5_run::{
-    Every, Experiment, Head, Outcome, PipelineSettings, Pixels, Raster, Registry, RenderingControl, Reprojection,
-    WARM_UP_PERIODS, Warp,
+    Every, Experiment, Head, Outcome, Pixels, Raster, RenderingControl, Reprojection, WARM_UP_PERIODS, Warp,
 };
 use pxpl5_scene::builtin;
 use pxpl5_sim::Time;
@@ -25,20 +25,6 @@ use tracking::view::Hmd;
 
 const FIELDS: u64 = 30;
 
-/// Time of an NTSC line: 780 pixel periods, of which the last 640 are visible. A field has 262.5 lines, and the first
-/// 22 are blanked. An odd field begins with half a line.
-const LINE_S: f64 = 4004.0 / 63.0 * 1e-6;
-
-fn beam(field: u64, row: u64, x: f64) -> f64 {
-    let half = (field % 2) as f64 / 2.0;
-    (field as f64 * 262.5 + half + 22.0 + row as f64 + (140.0 + x) / 780.0) * LINE_S
-}
-
-/// Returns the focal length, in pixels, of `width` pixels over 60 degrees.
-fn focal_px(width: f64) -> f64 {
-    width / 2.0 / 30f64.to_radians().tan()
-}
-
 /// Returns the motion of a head that rotates to the left at a constant rate, in radians per second.
 fn turning(rad_per_s: f64) -> impl Motion + Send + Sync + 'static {
     from_fn(move |seconds| Pose::facing(DQuat::from_rotation_y(rad_per_s * (seconds - 0.35))))
@@ -51,10 +37,7 @@ fn head(motion: impl Motion + Send + Sync + 'static) -> Head {
 
 /// Runs a pipeline that draws each field for one pose, at the instant at which its middle is displayed.
 fn fields(head: Head, scene: &str) -> Outcome {
-    let pipeline = (Registry::of_papers().pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
-    let scene = Arc::new(builtin(scene).expect("built in"));
-    let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
-    experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("it is small")
+    experiment("jitp-field", scene).head(head).fields(FIELDS).run().expect("it is small")
 }
 
 const fn device(by: Warp, every: Every) -> Showing {
@@ -63,7 +46,7 @@ const fn device(by: Warp, every: Every) -> Showing {
 
 /// Returns the instant for which the picture of a field is drawn, in seconds.
 fn aim(field: u64) -> f64 {
-    (beam(field, 0, 0.0) + beam(field, 239, 639.0)) / 2.0
+    (beam(field, 0, 0) + beam(field, 239, 639)) / 2.0
 }
 
 /// Returns the instant for which the pose of a part of a field is predicted, in seconds: halfway between the lighting
@@ -76,7 +59,7 @@ fn middle_of(every: Every, field: u64, row: u64) -> f64 {
         Every::Strip => [line / 128 * 64, (line / 128 * 64 + 63).min(239)],
         Every::Line => [row, row],
     };
-    (beam(field, from, 0.0) + beam(field, to, 639.0)) / 2.0
+    (beam(field, from, 0) + beam(field, to, 639)) / 2.0
 }
 
 /// Returns the pixels of a field at which errors are evaluated.
@@ -84,13 +67,6 @@ fn grid() -> impl Iterator<Item = (u64, u64, u64)> {
     let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
     let of_field = move |field| places(480).flat_map(move |y| places(640).map(move |x| (field, y / 2, x)));
     (WARM_UP_PERIODS..FIELDS).flat_map(of_field)
-}
-
-/// Returns the position of content after a rotation to the left, in pixels from the middle.
-fn after(right: f64, up: f64, angle: f64, f: f64) -> [f64; 2] {
-    let (sin, cos) = angle.sin_cos();
-    let depth = f * cos - right * sin;
-    [(right * cos + f * sin) * f / depth, up * f / depth]
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -103,7 +79,7 @@ fn turned_px(rate: f64, every: Every) -> f64 {
     let f = focal_px(640.0);
     mean(grid().map(|(field, row, x)| {
         let [right, up] = [x as f64 + 0.5 - 320.0, 240.0 - ((2 * row + field % 2) as f64 + 0.5)];
-        let angle = rate * (beam(field, row, x as f64) - middle_of(every, field, row));
+        let angle = rate * (beam(field, row, x) - middle_of(every, field, row));
         let [seen_right, seen_up] = after(right, up, angle, f);
         (seen_right - right).hypot(seen_up - up)
     }))
@@ -153,7 +129,6 @@ fn the_empty_share_is_the_part_rotated_in_from_beyond_the_edge() {
         for by in [Warp::Rotation, Warp::Depth] {
             let found = EyeReport::shown(&outcome, device(by, Every::Line)).expect("a device");
             let share = found.reprojection.expect("a device").empty_share.expect("checked");
-            println!("{rate} rad/s, {by:?}: {share:.5} of {beyond:.5}");
             let most = if by == Warp::Depth { 0.005 } else { 0.002 };
             assert!((share - beyond).abs() < most, "{rate} rad/s, {by:?}: {share} of {beyond}");
         }
@@ -182,7 +157,7 @@ fn without_depth_reprojection_leaves_the_error_of_a_translation_and_with_depth_o
     let outcome = fields(slide, "full-screen:2");
     let left = |pose_at: fn(u64, u64) -> f64| {
         let px_per_s = focal_px(640.0) * M_PER_S / DISTANCE_M;
-        mean(grid().map(|(field, row, x)| px_per_s * (beam(field, row, x as f64) - pose_at(field, row)).abs()))
+        mean(grid().map(|(field, row, x)| px_per_s * (beam(field, row, x) - pose_at(field, row)).abs()))
     };
     let rotation = PixelErrors::shown(&outcome, device(Warp::Rotation, Every::Line)).pixels.mean;
     let depth = PixelErrors::shown(&outcome, device(Warp::Depth, Every::Line)).pixels.mean;

@@ -166,7 +166,6 @@ fn if_fifos_leave_one_channel_free_no_order_of_events_causes_a_deadlock() {
         states += reached;
         searched += 1;
     }
-    println!("{searched} machines, {states} states");
     assert!(searched > 20 && states > 10_000, "{searched} machines, {states} states");
 }
 

@@ -1,13 +1,10 @@
-//! Tests of long runs. A run that keeps statistics only has the same results as one that keeps everything. Its number
-//! of records, and the work for them per field, do not grow with the length of the run.
+//! Tests of long runs that keep statistics only. The number of records, and the work for them per field, do not grow with
+//! the length of the run. tests/long_runs.rs of pxpl5-measure compares the results with those of a run that keeps
+//! everything.
 
-use pxpl5_machine::{LateRegion, MachineConfig};
-use pxpl5_run::{
-    Experiment, FacePipeline, FacePolicy, Frameless, Head, KeptRecords, Outcome, Pipeline, Pixels, RenderingControl,
-    Samples, Slats,
-};
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::{Experiment, Frameless, Head, KeptRecords, Pipeline, Pixels, RenderingControl, Slats};
 use pxpl5_scene::Scene;
-use rayon::prelude::*;
 use std::sync::Arc;
 use tracking::motion::Synthetic;
 use tracking::predict::PredictorKind;
@@ -36,64 +33,6 @@ fn experiment(machine: MachineConfig, pipeline: impl Pipeline, scene: Scene, fie
 fn tracked() -> Head {
     let motion = Arc::new(Synthetic::recorded_use(2));
     Head::new(motion, TrackerConfig::fastrak(), PredictorKind::Kalman, 1).expect("in range")
-}
-
-/// Returns experiments without a tracked head, each with so many fields that records are discarded several times.
-/// tests/long_runs.rs of pxpl5-measure runs every family with heads. `PXPL5_ALL_CASES=1` makes the runs longer.
-fn experiments() -> [(&'static str, Experiment); 4] {
-    let small = MachineConfig::small_hmd;
-    let long = sample_or_all(500, 2_500);
-    let one_eye = experiment(small(), RenderingControl::mono(), scene("mig", 60), sample_or_all(800, 4_000));
-    let too_much = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 250), long);
-    let faces = FacePipeline::new(FacePolicy::Objects);
-    [
-        ("one eye", one_eye),
-        ("slats with too much", too_much),
-        ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 150)),
-        ("faces by priority", experiment(small(), faces, scene("gallery", 0), sample_or_all(400, 1_600))),
-    ]
-}
-
-fn run(experiment: &Experiment, keep: KeptRecords) -> Outcome {
-    experiment.clone().keep(keep).run().expect("it runs")
-}
-
-/// Returns all results of a run that cover the whole run.
-fn results(outcome: &Outcome) -> Vec<String> {
-    let tally = outcome.tally();
-    let all: Vec<&Samples> =
-        [&tally.latency_ms, &tally.eye_ms, &tally.eye_swap_ms, &tally.eye_retraces, &tally.copy_begins_ms]
-            .into_iter()
-            .chain(&tally.parts_ms)
-            .chain(&tally.copy_ms)
-            .chain(tally.stage_ms.iter().map(|(_, samples)| samples))
-            .chain(tally.latencies_of_surfaces().map(|latency| latency.ms))
-            .collect();
-    let late: &[LateRegion] = &tally.first_late_regions;
-    let counts = [tally.pictures, tally.shown, tally.complete, tally.shown_in_a_row, tally.late_regions];
-    let mut results: Vec<String> = all.iter().map(|samples| format!("{:?}", samples.statistics())).collect();
-    results.push(format!("{counts:?} {late:?} {:?} {:?}", tally.region_copy_us(), outcome.due()));
-    results.push(format!("{:?} {} {}", outcome.updates_hz(), outcome.ends_complete(), outcome.record().trace_hash()));
-    results
-}
-
-#[test]
-fn discarding_records_changes_no_result() {
-    experiments().par_iter().for_each(|(name, experiment)| {
-        let everything = run(experiment, KeptRecords::Everything);
-        let statistics = run(experiment, KeptRecords::Statistics);
-        let passes = statistics.observation().discarded.passes;
-        assert_eq!(results(&everything), results(&statistics), "{name}");
-        let least_passes = if *name == "frameless" { 1 } else { 2 };
-        assert!(passes >= least_passes, "{name}: records were discarded {passes} times");
-        assert!(everything.tally().pictures > 100, "{name}: the run has results");
-        let all = everything.pictures();
-        assert_eq!(
-            statistics.pictures(),
-            &all[all.len() - statistics.pictures().len()..],
-            "{name}: the last ones are kept"
-        );
-    });
 }
 
 /// Returns counts of a run. The counts are the largest numbers of records and of pending events at any stop, all

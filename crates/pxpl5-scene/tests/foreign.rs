@@ -30,10 +30,10 @@ fn areas(scene: &Scene) -> Vec<DVec3> {
 
 const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
-// Lines that continue in the next line.
+// Order and continuation of lines.
 
 #[test]
-fn a_line_of_obj_that_ends_in_a_backslash_continues_on_the_next_line() {
+fn faces_of_obj_may_come_first_and_a_line_that_ends_in_a_backslash_continues_on_the_next_line() {
     let plain = obj(TETRAHEDRON);
     for (from, to) in [
         ("f 1 3 2\n", "f 1 3 \\\n2\n"),
@@ -50,28 +50,12 @@ fn a_line_of_obj_that_ends_in_a_backslash_continues_on_the_next_line() {
         assert_ne!(text, TETRAHEDRON);
         assert_eq!(obj(&text), plain, "{to:?}");
     }
-    assert_eq!(obj(TETRAHEDRON.replace("f 1 3 2\n", "f 1 3 \\\n2\n").replace('\n', "\r")), plain);
-}
-
-#[test]
-fn a_comment_of_obj_that_ends_in_a_backslash_does_not_continue() {
-    assert_eq!(obj(format!("# C:\\models\\\n{TETRAHEDRON}")), obj(TETRAHEDRON));
-}
-
-#[test]
-fn an_error_in_a_continued_line_names_its_first_line() {
-    let error = read(Format::Obj, "v 0 0 0\nv 1 \\\n two 0\nf 1 1 1\n").expect_err("no number").to_string();
-    assert_eq!(error, "test: line 2: expected a number for y, found \"two\"");
-    let error = read(Format::Obj, "v 0 0 0\nv \\\n0 0 1\nv 1 0 0\nf 1 2 \\\n9\n").expect_err("no point").to_string();
-    assert_eq!(error, "test: line 5: expected an index of one of 3 vertices, found 9");
-}
-
-// Order of elements.
-
-#[test]
-fn faces_may_precede_the_points_of_an_obj_file() {
+    // A comment does not continue.
+    assert_eq!(obj(format!("# C:\\models\\\n{TETRAHEDRON}")), plain);
+    // Faces may precede the points.
     let (points, faces) = TETRAHEDRON.split_at(TETRAHEDRON.find('f').expect("a face"));
-    assert_eq!(obj(format!("{faces}{points}")), obj(TETRAHEDRON));
+    assert_eq!(obj(format!("{faces}{points}")), plain);
+    assert_eq!(obj(TETRAHEDRON.replace("f 1 3 2\n", "f 1 3 \\\n2\n").replace('\n', "\r")), plain);
 }
 
 /// Header and rows of the two elements of a tetrahedron: vertices, then faces.
@@ -123,7 +107,7 @@ fn binary_faces_first(encoding: &str, word: fn(u32) -> [u8; 4]) -> Vec<u8> {
 }
 
 #[test]
-fn rows_of_ply_may_continue_on_the_next_line_and_blank_lines_and_zeros_mean_nothing() {
+fn line_ends_blank_lines_notations_of_numbers_and_types_of_indices_of_ply_change_nothing() {
     let text = ascii_ply(&ELEMENTS);
     let plain = ply(&text);
     for text in [
@@ -134,13 +118,45 @@ fn rows_of_ply_may_continue_on_the_next_line_and_blank_lines_and_zeros_mean_noth
         text.clone() + "\0\0\0\0",
         text.replace("vertex_indices", "indices"),
         text.replace("vertex_indices", "vertex_indexes").replace("3 0 2 1\n", "3 0 2 1 \n"),
+        text.replace('\n', "\r\n"),
+        text.replace('\n', "\r"),
+        format!("\u{feff}{text}"),
+        text.replace(' ', "\t"),
     ] {
         assert_eq!(ply(&text), plain, "{text}");
     }
-    let error = read(Format::Ply, text.replace("1 0 0\n", "1 0\n")).expect_err("a short row").to_string();
-    assert_eq!(error, "test: line 11: expected a row of \"vertex\" (x y z), found \"1 0\"");
-    let blank = text.replace("1.0\n", "1.0\n\n").replace("1 0 0\n", "1 q 0\n");
-    assert!(read(Format::Ply, blank).expect_err("no number").to_string().contains("line 12"));
+    for one in ["1.", "+1", "1e0", "1.0E+00", "10e-1", "0.1e1"] {
+        assert_eq!(ply(text.replace("1 0 0\n", &format!("{one} 0 0\n"))), plain, "{one}");
+    }
+    assert_eq!(ply(text.replace("1 0 0\n", "1 .0 -.0\n")).triangles(), plain.triangles());
+    for kinds in ["uint8 uint8", "char short", "int ushort", "uint uint", "uint16 int32"] {
+        assert_eq!(ply(text.replace("uchar int", kinds)), plain, "{kinds}");
+    }
+}
+
+#[test]
+fn errors_name_the_line_of_the_file_and_bytes_that_are_not_text() {
+    let message = |format, bytes: &[u8]| read(format, bytes).expect_err("damaged").to_string();
+    for (text, expected) in [
+        (&b"v 0 0 0\nv 1 \\\n two 0\nf 1 1 1\n"[..], "2: expected a number for y, found \"two\""),
+        (b"v 0 0 0\nv \\\n0 0 1\nv 1 0 0\nf 1 2 \\\n9\n", "5: expected an index of one of 3 vertices, found 9"),
+        (b"v 0 0 0\nv 0 \xe9 0\n", "2: expected a number for y, found \"\u{fffd}\""),
+    ] {
+        assert_eq!(message(Format::Obj, text), format!("test: line {expected}"));
+    }
+    let text = ascii_ply(&ELEMENTS);
+    let faces_first = ascii_ply(&[ELEMENTS[1], ELEMENTS[0]]);
+    for (text, expected) in [
+        (text.replace("1 0 0\n", "1 0\n"), "line 11: expected a row of \"vertex\" (x y z), found \"1 0\""),
+        (text.replace("1.0\n", "1.0\n\n").replace("1 0 0\n", "1 q 0\n"), "line 12: "),
+        (faces_first.replace("3 1 2 3\n", "3 1 2 4\n"), "line 12: expected an index of one of 4 vertices, found 4"),
+    ] {
+        assert!(message(Format::Ply, text.as_bytes()).starts_with(&format!("test: {expected}")), "{text}");
+    }
+    assert!(message(Format::Ply, &[text.as_bytes(), &[0xff]].concat()).starts_with("test: line 18: "));
+    let wide: Vec<u8> = "\u{feff}v 0 0 0\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let error = read(Format::Obj, wide).expect_err("UTF-16");
+    assert_eq!((error.kind, &*error.found), (FileErrorKind::NotText, "byte 0xff"));
 }
 
 #[test]
@@ -148,42 +164,6 @@ fn in_binary_ply_files_faces_may_precede_the_vertices() {
     let plain = ply(ascii_ply(&ELEMENTS));
     assert_eq!(ply(binary_faces_first("binary_little_endian", u32::to_le_bytes)), plain);
     assert_eq!(ply(binary_faces_first("binary_big_endian", u32::to_be_bytes)), plain);
-}
-
-#[test]
-fn an_error_in_faces_that_precede_the_vertices_names_the_line() {
-    let [vertices, faces] = ELEMENTS;
-    let text = ascii_ply(&[faces, vertices]).replace("3 1 2 3\n", "3 1 2 4\n");
-    let error = read(Format::Ply, text).expect_err("no such vertex").to_string();
-    assert_eq!(error, "test: line 12: expected an index of one of 4 vertices, found 4");
-}
-
-#[test]
-fn lines_of_ply_may_have_any_line_ending_and_a_byte_order_mark() {
-    let text = ascii_ply(&ELEMENTS);
-    let plain = ply(&text);
-    for text in
-        [text.replace('\n', "\r\n"), text.replace('\n', "\r"), format!("\u{feff}{text}"), text.replace(' ', "\t")]
-    {
-        assert_eq!(ply(text), plain);
-    }
-}
-
-#[test]
-fn numbers_of_ply_may_have_any_notation() {
-    let plain = ply(ascii_ply(&ELEMENTS));
-    for one in ["1.", "+1", "1e0", "1.0E+00", "10e-1", "0.1e1"] {
-        assert_eq!(ply(ascii_ply(&ELEMENTS).replace("1 0 0\n", &format!("{one} 0 0\n"))), plain, "{one}");
-    }
-    assert_eq!(ply(ascii_ply(&ELEMENTS).replace("1 0 0\n", "1 .0 -.0\n")).triangles(), plain.triangles());
-}
-
-#[test]
-fn indices_of_ply_may_have_any_type() {
-    let plain = ply(ascii_ply(&ELEMENTS));
-    for kinds in ["uint8 uint8", "char short", "int ushort", "uint uint", "uint16 int32"] {
-        assert_eq!(ply(ascii_ply(&ELEMENTS).replace("uchar int", kinds)), plain, "{kinds}");
-    }
 }
 
 // Encodings and line ends.
@@ -201,18 +181,6 @@ fn comments_and_names_in_any_encoding_are_accepted() {
     let atom = "ATOM      1  N   SER A   1      11.000  -2.000   0.500  1.00  0.00           N  \n";
     let pdb = read(Format::Pdb, latin(&format!("REMARK Universit\u{e9}\n{atom}"))).expect("an atom");
     assert_eq!(pdb.spheres().len(), 1);
-}
-
-#[test]
-fn bytes_that_are_not_text_in_place_of_a_number_are_refused_with_the_line() {
-    let error = read(Format::Obj, b"v 0 0 0\nv 0 \xe9 0\n").expect_err("no number").to_string();
-    assert_eq!(error, "test: line 2: expected a number for y, found \"\u{fffd}\"");
-    let mut text = ascii_ply(&ELEMENTS).into_bytes();
-    text.push(0xff);
-    assert!(read(Format::Ply, text).expect_err("too much").to_string().starts_with("test: line 18: "));
-    let wide: Vec<u8> = "\u{feff}v 0 0 0\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
-    let error = read(Format::Obj, wide).expect_err("UTF-16");
-    assert_eq!((error.kind, &*error.found), (FileErrorKind::NotText, "byte 0xff"));
 }
 
 // Polygons with more than three corners.
@@ -519,78 +487,54 @@ fn drawn(line: &str) -> (f32, [u8; 3]) {
 
 #[test]
 fn missing_element_columns_are_replaced_by_the_names_of_atoms() {
-    let (h, c, n, o, s) = (1.20, 1.70, 1.55, 1.52, 1.80);
-    for (record, name, residue, radius) in [
-        ("ATOM", "HG11", "VAL", h),
-        ("ATOM", "HD21", "LEU", h),
-        ("ATOM", "1HG1", "VAL", h),
-        ("ATOM", " HB2", "VAL", h),
-        ("ATOM", "HE21", "GLN", h),
-        ("ATOM", "HH11", "ARG", h),
-        ("ATOM", "HO5'", "DA", h),
-        ("ATOM", "H5''", "DA", h),
-        ("HETATM", "HN1 ", "LIG", h),
-        ("HETATM", "H101", "LIG", h),
-        ("ATOM", " D  ", "SER", h),
-        ("ATOM", "DG11", "VAL", h),
-        ("ATOM", " CA ", "VAL", c),
-        ("ATOM", "CA  ", "VAL", c),
-        ("ATOM", " CD1", "LEU", c),
-        ("ATOM", "CD1 ", "LEU", c),
-        ("HETATM", " CA ", "LIG", c),
-        ("HETATM", "C10A", "LIG", c),
-        ("HETATM", "CA1B", "LIG", c),
-        ("ATOM", " NE2", "GLN", n),
-        ("HETATM", " NA ", "HEM", n),
-        ("ATOM", " OE1", "GLU", o),
-        ("ATOM", " O  ", "HOH", o),
-        ("ATOM", " OXT", "GLY", o),
-        ("ATOM", " SD ", "MET", s),
-        ("ATOM", " P  ", "DA", 1.80),
-        ("HETATM", "SE  ", "MSE", 1.90),
-        ("HETATM", "FE  ", "HEM", 2.00),
-        ("HETATM", "CL  ", "CL", 1.75),
-        ("HETATM", "CL1 ", "LIG", 1.75),
-        ("HETATM", "CL12", "LIG", 1.75),
-        ("HETATM", "BR1 ", "LIG", 1.85),
-        ("HETATM", "CA  ", "CA", 2.00),
-        ("ATOM", "CA  ", "CA", 2.00),
-        ("HETATM", "NA  ", "NA", 2.27),
-        ("HETATM", "ZN  ", "ZN", 1.39),
-        ("HETATM", "MG  ", "MG", 1.73),
-        ("HETATM", " K  ", "K", 2.75),
-        ("HETATM", "MN  ", "MN", 2.00),
-        ("HETATM", " I1 ", "LIG", 1.98),
+    // Names of atoms with their residues, where an underscore is a blank.
+    for (record, radius, names) in [
+        (
+            "ATOM",
+            1.20,
+            "HG11 VAL, HD21 LEU, 1HG1 VAL, _HB2 VAL, HE21 GLN, HH11 ARG, HO5' DA, H5'' DA, _D__ SER, DG11 VAL",
+        ),
+        ("HETATM", 1.20, "HN1_ LIG, H101 LIG"),
+        ("ATOM", 1.70, "_CA_ VAL, CA__ VAL, _CD1 LEU, CD1_ LEU"),
+        ("HETATM", 1.70, "_CA_ LIG, C10A LIG, CA1B LIG"),
+        ("ATOM", 1.55, "_NE2 GLN"),
+        ("HETATM", 1.55, "_NA_ HEM"),
+        ("ATOM", 1.52, "_OE1 GLU, _O__ HOH, _OXT GLY"),
+        ("ATOM", 1.80, "_SD_ MET, _P__ DA"),
+        ("HETATM", 1.75, "CL__ CL, CL1_ LIG, CL12 LIG"),
+        ("HETATM", 1.90, "SE__ MSE"),
+        ("HETATM", 2.00, "FE__ HEM, CA__ CA, MN__ MN"),
+        ("ATOM", 2.00, "CA__ CA"),
+        ("HETATM", 1.85, "BR1_ LIG"),
+        ("HETATM", 2.27, "NA__ NA"),
+        ("HETATM", 1.39, "ZN__ ZN"),
+        ("HETATM", 1.73, "MG__ MG"),
+        ("HETATM", 2.75, "_K__ K"),
+        ("HETATM", 1.98, "_I1_ LIG"),
         // Ions, as simulation programs name them.
-        ("ATOM", "SOD ", "SOD", 2.27),
-        ("ATOM", " NA ", "SOD", 2.27),
-        ("ATOM", "POT ", "POT", 2.75),
-        ("ATOM", "CLA ", "CLA", 1.75),
-        ("ATOM", "CAL ", "CAL", 2.00),
-        ("HETATM", " CAL", "LIG", c),
-        ("ATOM", "LIT ", "LIT", 1.82),
-        ("ATOM", "RUB ", "RUB", 3.03),
-        ("ATOM", "CES ", "CES", 3.43),
-        ("ATOM", "ZN2 ", "ZN2", 1.39),
-        ("ATOM", "NA+ ", "NA+", 2.27),
-        ("ATOM", "Na+ ", "Na+", 2.27),
-        ("ATOM", "Cl- ", "Cl-", 1.75),
-        ("ATOM", "K+  ", "K+", 2.75),
+        ("ATOM", 2.27, "SOD_ SOD, _NA_ SOD, NA+_ NA+, Na+_ Na+"),
+        ("ATOM", 2.75, "POT_ POT, K+__ K+"),
+        ("ATOM", 1.75, "CLA_ CLA, Cl-_ Cl-"),
+        ("ATOM", 2.00, "CAL_ CAL"),
+        ("HETATM", 1.70, "_CAL LIG"),
+        ("ATOM", 1.82, "LIT_ LIT"),
+        ("ATOM", 3.03, "RUB_ RUB"),
+        ("ATOM", 3.43, "CES_ CES"),
+        ("ATOM", 1.39, "ZN2_ ZN2"),
         // Chlorophyll has the name of an ion.
-        ("HETATM", "MG  ", "CLA", 1.73),
-        ("HETATM", " NA ", "CLA", n),
+        ("HETATM", 1.73, "MG__ CLA"),
+        ("HETATM", 1.55, "_NA_ CLA"),
         // Names of residues in force fields, with names of atoms from column 13 on.
-        ("ATOM", "CA  ", "HSD", c),
-        ("ATOM", "NE2 ", "HIP", n),
-        ("ATOM", "CE  ", "LYN", c),
-        ("ATOM", "CE  ", "MSE", c),
-        ("ATOM", "OD2 ", "ASH", o),
+        ("ATOM", 1.70, "CA__ HSD, CE__ LYN, CE__ MSE"),
+        ("ATOM", 1.55, "NE2_ HIP"),
+        ("ATOM", 1.52, "OD2_ ASH"),
         // Copper and mercury are not in the table, so they are drawn as all other elements.
-        ("HETATM", "CU  ", "CU", 1.80),
-        ("HETATM", "HG  ", "HG", 1.80),
+        ("HETATM", 1.80, "CU__ CU, HG__ HG"),
     ] {
-        let found = drawn(&atom(record, name, residue)).0;
-        assert!((found - radius).abs() < 1e-4, "{record} {name:?} {residue}: {found} for {radius}");
+        for (name, residue) in names.split(", ").filter_map(|both| both.split_once(' ')) {
+            let found = drawn(&atom(record, &name.replace('_', " "), residue)).0;
+            assert!((found - radius).abs() < 1e-4, "{record} {name:?} {residue}: {found} for {radius}");
+        }
     }
     assert_eq!(drawn(&atom("HETATM", "CU  ", "CU")).1, [255, 20, 147], "copper is no sulphur");
 }

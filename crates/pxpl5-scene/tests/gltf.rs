@@ -386,10 +386,7 @@ fn unused_parts_of_a_file_may_have_any_form() {
         ("/accessors/0/name", json!({})),
         ("/extensionsUsed", Value::Null),
     ] {
-        let mut document = good.clone();
-        let (above, name) = part.rsplit_once('/').expect("a path");
-        document.pointer_mut(above).expect("a part")[name] = value;
-        assert_eq!(scene(&writer.binary(&document)), expected, "{part}");
+        assert_eq!(scene(&writer.binary(&changed(&good, json!({part: value})))), expected, "{part}");
     }
     // The default scene may be another one, and the first scene need not have nodes.
     let mut document = good.clone();
@@ -438,79 +435,70 @@ fn extensions_that_are_not_read_cause_a_warning_with_their_names() {
     assert!(scene(&writer.binary(&document)).vertices().iter().all(|vertex| vertex.colour == [255, 0, 0]));
 }
 
+/// Replaces parts of a document, or adds them.
+fn changed(document: &Value, changes: Value) -> Value {
+    let mut document = document.clone();
+    for (part, value) in changes.as_object().expect("parts") {
+        match document.pointer_mut(part) {
+            Some(there) => *there = value.clone(),
+            None => {
+                let (above, name) = part.rsplit_once('/').expect("a path");
+                document.pointer_mut(above).expect("a part")[name] = value.clone();
+            }
+        }
+    }
+    document
+}
+
 #[test]
 fn errors_name_the_part_of_the_file() {
     let (writer, good) = square();
-    let refused = |change: &dyn Fn(&mut Value), parts: &[&str]| {
-        let mut document = good.clone();
-        change(&mut document);
-        let error = message(&writer.binary(&document));
-        for part in parts {
-            assert!(error.contains(part), "{error:?} has no {part:?}");
-        }
+    let refused = |changes: Value, text: &str| {
+        let error = message(&writer.binary(&changed(&good, changes)));
+        text.split('|').for_each(|part| assert!(error.contains(part), "{error:?} has no {part:?}"));
     };
-    refused(&|d| d["meshes"] = json!([{"primitives": []}]), &["at least one triangle"]);
-    refused(&|d| d["scenes"] = json!([{"nodes": []}]), &["at least one triangle"]);
-    refused(&|d| d["meshes"][0]["primitives"][0]["mode"] = 0.into(), &["at least one triangle"]);
-    refused(&|d| d["buffers"] = json!([]), &["buffers[0]: expected a buffer with this index, found 0 buffers"]);
-    refused(&|d| d["buffers"][0]["byteLength"] = 4000.into(), &["buffers[0]: expected 4000 bytes, found 108"]);
+    refused(json!({"/meshes": [{"primitives": []}]}), "at least one triangle");
+    refused(json!({"/scenes": [{"nodes": []}]}), "at least one triangle");
+    refused(json!({"/meshes/0/primitives/0/mode": 0}), "at least one triangle");
+    refused(json!({"/buffers": []}), "buffers[0]: expected a buffer with this index, found 0 buffers");
+    refused(json!({"/buffers/0/byteLength": 4000}), "buffers[0]: expected 4000 bytes, found 108");
+    let no_view = json!({"componentType": 5126, "count": 4, "type": "VEC3"});
     for name in ["KHR_draco_mesh_compression", "EXT_meshopt_compression"] {
-        refused(
-            &|d| d["extensionsRequired"] = json!(["KHR_materials_unlit", name]),
-            &["extensionsRequired[1]: expected a mesh without compression", name],
-        );
-        refused(
-            &|d| {
-                d["extensionsUsed"] = json!([name]);
-                d["meshes"][0]["primitives"][0]["attributes"] = json!({});
-            },
-            &["meshes[0].primitives[0].attributes: expected POSITION, found none in a file that uses", name],
-        );
-        refused(
-            &|d| {
-                d["extensionsUsed"] = json!([name]);
-                d["accessors"][0].as_object_mut().expect("an object").remove("bufferView");
-            },
-            &["accessors[0].bufferView: expected a buffer view, found none in a file that uses", name],
-        );
+        let required = json!({"/extensionsRequired": ["KHR_materials_unlit", name]});
+        refused(required, &format!("extensionsRequired[1]: expected a mesh without compression|{name}"));
+        let found = format!("found none in a file that uses|{name}");
+        let no_positions = json!({"/extensionsUsed": [name], "/meshes/0/primitives/0/attributes": {}});
+        refused(no_positions, &format!("meshes[0].primitives[0].attributes: expected POSITION, {found}"));
+        let no_view = json!({"/extensionsUsed": [name], "/accessors/0": no_view});
+        refused(no_view, &format!("accessors[0].bufferView: expected a buffer view, {found}"));
     }
-    refused(&|d| d["extensionsRequired"] = json!(["VENDOR_x"]), &["extensionsRequired[0]", "VENDOR_x"]);
-    refused(&|d| d["asset"]["version"] = "1.0".into(), &["asset.version: expected glTF 2.0, found glTF \"1.0\""]);
+    refused(json!({"/extensionsRequired": ["VENDOR_x"]}), "extensionsRequired[0]|VENDOR_x");
+    refused(json!({"/asset/version": "1.0"}), "asset.version: expected glTF 2.0, found glTF \"1.0\"");
     for version in [json!("1.0"), json!(1.0), json!("1")] {
         // In glTF 1.0 the lists are objects.
-        refused(
-            &|d| {
-                d["asset"] = json!({"version": version});
-                d["nodes"] = json!({"a": {}});
-            },
-            &["asset.version: expected glTF 2.0, found glTF \"1"],
-        );
+        let old = json!({"/asset": {"version": version}, "/nodes": {"a": {}}});
+        refused(old, "asset.version: expected glTF 2.0, found glTF \"1");
     }
-    refused(&|d| d["asset"] = Value::Null, &["asset.version: expected glTF 2.0, found no version"]);
-    refused(&|d| d["nodes"][0]["mesh"] = json!(0.5), &["nodes[0]: expected the form of glTF 2.0, found", "0.5"]);
-    refused(&|d| d["scene"] = 7.into(), &["scene: expected a scene with the index 7, found 1 scenes"]);
-    refused(&|d| d["scenes"][0]["nodes"] = json!([9]), &["nodes[9]: expected a node with this index, found 1 nodes"]);
-    refused(
-        &|d| d["nodes"][0]["mesh"] = 3.into(),
-        &["meshes[3]: expected an item of meshes with this index, found 1 meshes"],
-    );
-    refused(&|d| d["nodes"][0]["children"] = json!([0]), &["nodes[0]: expected a node with at most one parent"]);
-    refused(&|d| d["nodes"][0]["rotation"] = json!([0, 0, 0, 0]), &["nodes[0].rotation"]);
-    let primitive = |d: &mut Value, key: &str, value: Value| d["meshes"][0]["primitives"][0][key] = value;
-    refused(&|d| primitive(d, "indices", 8.into()), &["accessors[8]: expected an item of accessors with this index"]);
-    refused(&|d| primitive(d, "material", 2.into()), &["meshes[0].primitives[0].material", "index 2, found 0"]);
-    refused(&|d| primitive(d, "mode", 7.into()), &["meshes[0].primitives[0].mode: expected 0 to 6"]);
-    refused(&|d| d["accessors"][2]["count"] = 5.into(), &["three corners for each triangle, found 5 corners"]);
-    refused(&|d| d["accessors"][0]["count"] = 3.into(), &["attributes.NORMAL: expected 3 items", "found 4"]);
-    refused(&|d| d["accessors"][0]["count"] = u64::MAX.into(), &["accessors[0]: expected", "items of 12 bytes"]);
-    refused(&|d| d["accessors"][0]["byteOffset"] = 4.into(), &["accessors[0]: expected 4 items of 12 bytes"]);
-    refused(&|d| d["accessors"][0]["bufferView"] = 6.into(), &["bufferViews[6]: expected an item of bufferViews"]);
-    refused(
-        &|d| d["accessors"][0]["type"] = "VEC2".into(),
-        &["accessors[0].type: expected one with [3] numbers, found"],
-    );
-    refused(&|d| d["accessors"][2]["componentType"] = 5126.into(), &["accessors[2].componentType", "F32"]);
-    refused(&|d| d["bufferViews"][1]["byteOffset"] = u64::MAX.into(), &["bufferViews[1]: expected 48 bytes at byte"]);
+    refused(json!({"/asset": null}), "asset.version: expected glTF 2.0, found no version");
+    refused(json!({"/nodes/0/mesh": 0.5}), "nodes[0]: expected the form of glTF 2.0, found|0.5");
+    refused(json!({"/scene": 7}), "scene: expected a scene with the index 7, found 1 scenes");
+    refused(json!({"/scenes/0/nodes": [9]}), "nodes[9]: expected a node with this index, found 1 nodes");
+    refused(json!({"/nodes/0/mesh": 3}), "meshes[3]: expected an item of meshes with this index, found 1 meshes");
+    refused(json!({"/nodes/0/children": [0]}), "nodes[0]: expected a node with at most one parent");
+    refused(json!({"/nodes/0/rotation": [0, 0, 0, 0]}), "nodes[0].rotation");
+    let primitive =
+        |key: &str, value: u32, text| refused(json!({format!("/meshes/0/primitives/0/{key}"): value}), text);
+    primitive("indices", 8, "accessors[8]: expected an item of accessors with this index");
+    primitive("material", 2, "meshes[0].primitives[0].material|index 2, found 0");
+    primitive("mode", 7, "meshes[0].primitives[0].mode: expected 0 to 6");
+    refused(json!({"/accessors/2/count": 5}), "three corners for each triangle, found 5 corners");
+    refused(json!({"/accessors/0/count": 3}), "attributes.NORMAL: expected 3 items|found 4");
+    refused(json!({"/accessors/0/count": u64::MAX}), "accessors[0]: expected|items of 12 bytes");
+    refused(json!({"/accessors/0/byteOffset": 4}), "accessors[0]: expected 4 items of 12 bytes");
+    refused(json!({"/accessors/0/bufferView": 6}), "bufferViews[6]: expected an item of bufferViews");
+    refused(json!({"/accessors/0/type": "VEC2"}), "accessors[0].type: expected one with [3] numbers, found");
+    refused(json!({"/accessors/2/componentType": 5126}), "accessors[2].componentType|F32");
+    refused(json!({"/bufferViews/1/byteOffset": u64::MAX}), "bufferViews[1]: expected 48 bytes at byte");
     // The vertices have the indices 0 to 3, but the file now contains the index 4.
     let mut writer = Writer::default();
     let positions = writer.vectors(&SQUARE);

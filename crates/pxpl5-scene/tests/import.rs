@@ -37,19 +37,17 @@ fn assert_square(scene: &Scene) {
 const SQUARE_OBJ: &str = "# a square, 5 right and 2 wide\no s\nv 4 -1 0\nv 6 -1 0\nv 6 1 0\nv 4 1 0\ng x\nusemtl m\n";
 
 #[test]
-fn a_quad_is_cut_into_a_fan_and_fitted_to_the_view() {
-    assert_square(&obj(&format!("{SQUARE_OBJ}f 1 2 3 4\n")));
-}
-
-#[test]
-fn negative_indices_count_back_from_the_last_vertex_so_far() {
-    assert_square(&obj(&format!("{SQUARE_OBJ}f -4 -3 -2 -1\nv 4.5 0 0\n")));
-}
-
-#[test]
-fn texture_coordinates_are_ignored_in_every_notation() {
-    assert_square(&obj(&format!("{SQUARE_OBJ}vt 0 0\nvn 0 0 2\nf 1/1 2/1/1 3//1 4\n")));
-    assert_square(&obj(&format!("{SQUARE_OBJ}vt 0 0\nf 1/1/ 2/1 3// 4 # comment\r\n")));
+fn quads_are_cut_into_fans_with_indices_in_every_notation_and_fitted_to_the_view() {
+    for faces in [
+        "f 1 2 3 4\n",
+        // Negative indices count back from the last vertex so far.
+        "f -4 -3 -2 -1\nv 4.5 0 0\n",
+        // Texture coordinates are ignored.
+        "vt 0 0\nvn 0 0 2\nf 1/1 2/1/1 3//1 4\n",
+        "vt 0 0\nf 1/1/ 2/1 3// 4 # comment\r\n",
+    ] {
+        assert_square(&obj(&format!("{SQUARE_OBJ}{faces}")));
+    }
 }
 
 #[test]
@@ -198,32 +196,20 @@ fn atoms_become_spheres_with_van_der_waals_radii_and_their_colours() {
 }
 
 #[test]
-fn an_empty_file_is_refused_in_every_format() {
-    for format in [Format::Ply, Format::Obj, Format::Pdb] {
-        for text in ["", " \r\n\n"] {
-            assert_eq!(kind(read(format, text)), FileErrorKind::Empty);
-        }
-    }
-}
-
-fn kind(answer: Result<Scene, FileError>) -> FileErrorKind {
-    answer.expect_err("an error").kind
-}
-
-/// Returns the kind of primitive that the error reports as missing.
-fn missing_primitive(format: Format, text: &str) -> String {
-    let error = read(format, text).expect_err("nothing to draw");
-    assert_eq!((error.kind, &*error.found), (FileErrorKind::Empty, "none"));
-    error.expected.strip_prefix("at least one ").expect("a primitive").to_owned()
-}
-
-#[test]
-fn a_file_with_nothing_to_draw_is_refused_with_the_missing_part() {
-    assert_eq!(missing_primitive(Format::Obj, "v 0 0 0\n"), "triangle");
-    let header =
+fn an_empty_file_and_a_file_with_nothing_to_draw_are_refused_in_every_format() {
+    let empty = |format, text: &str| {
+        let error = read(format, text).expect_err("nothing to draw");
+        assert_eq!(error.kind, FileErrorKind::Empty, "{text:?}");
+        error.expected.into_string()
+    };
+    let ply =
         "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-    assert_eq!(missing_primitive(Format::Ply, header), "triangle");
-    assert_eq!(missing_primitive(Format::Pdb, "HEADER\n"), "atom");
+    for (format, text, missing) in
+        [(Format::Ply, ply, "triangle"), (Format::Obj, "v 0 0 0\n", "triangle"), (Format::Pdb, "HEADER\n", "atom")]
+    {
+        ["", " \r\n\n"].iter().for_each(|text| drop(empty(format, text)));
+        assert_eq!(empty(format, text), format!("at least one {missing}"));
+    }
 }
 
 #[test]
@@ -238,20 +224,6 @@ fn a_coordinate_that_is_not_finite_is_refused() {
     let error = read(Format::Ply, file).expect_err("no place");
     let place = format!("byte {second_vertex}");
     assert_eq!((error.kind, &*error.place, &*error.found), (FileErrorKind::Number, &*place, "NaN"));
-}
-
-#[test]
-fn an_index_out_of_range_is_named_with_its_line() {
-    for (corner, found) in
-        [("5", 5), ("0", 0), ("-5", -5), ("99999999999", 99_999_999_999), ("-9223372036854775808", i64::MIN)]
-    {
-        let text = format!("{SQUARE_OBJ}f 1 2 {corner}\n");
-        let error = read(Format::Obj, text).expect_err(corner);
-        assert_eq!(error.kind, FileErrorKind::Index);
-        assert_eq!(error.to_string(), format!("test: line 9: expected an index of one of 4 vertices, found {found}"));
-    }
-    let error = read(Format::Obj, format!("{SQUARE_OBJ}f 1//1 2//1 3//1\n")).expect_err("no normals");
-    assert_eq!(error.to_string(), "test: line 9: expected an index of one of 0 normals, found 1");
 }
 
 #[test]
@@ -308,38 +280,42 @@ fn an_absurd_count_of_corners_is_refused_at_once() {
     assert!(matches!(answer, Err(ref error) if error.kind == FileErrorKind::Truncated), "{answer:?}");
 }
 
-fn message(format: Format, text: &str) -> String {
-    read(format, text).expect_err(text).to_string()
-}
-
 #[test]
 fn format_errors_name_line_expected_and_found() {
-    assert_eq!(message(Format::Obj, "v 1 two 3\n"), "test: line 1: expected a number for y, found \"two\"");
-    assert_eq!(message(Format::Obj, "v 1 2\n"), "test: line 1: expected a number for z, found \"\"");
-    assert_eq!(message(Format::Obj, "v 1 2 3\nf 1 x 1\n"), "test: line 2: expected an index of vertices, found \"x\"");
-    assert_eq!(
-        message(Format::Obj, "v 1 2 3\nf 1 1\n"),
-        "test: line 2: expected a face of at least 3 corners, found 2 in \"f 1 1\""
-    );
-    assert_eq!(
-        message(Format::Pdb, "ATOM      1  N   SER A   1      11.0x0\n"),
-        "test: line 1: expected a number for x in columns 31 to 38, found \"11.0x0\""
-    );
-    assert_eq!(message(Format::Ply, "plx\n"), "test: line 1: expected a line of a PLY header, found \"plx\"");
-    assert_eq!(
-        message(Format::Ply, "ply\nformat ascii 1.0\nelement vertex many\nend_header\n"),
-        "test: line 3: expected a line of a PLY header, found \"element vertex many\""
-    );
-    // Thirteen lines of header come before the rows.
+    // Eight lines come before a face of the square, and thirteen lines of header before the rows.
+    let face = |corners: &str| format!("{SQUARE_OBJ}f {corners}\n");
     let row = ascii_square().replace("6 1 0", "6 one 0");
-    assert_eq!(
-        message(Format::Ply, &row),
-        "test: line 16: expected a row of \"vertex\" (x y z red green blue), found \"6 one 0 10 20 30\""
-    );
     let list = ascii_square().replace("property float y\n", "property list uchar float y\n");
     let list = list.replace("4e0 -1 0", "4 1 -1 0");
-    let text = message(Format::Ply, &list);
-    assert!(text.starts_with("test: line 14: ") && text.contains("List(UChar, Float)"), "{text}");
+    for (format, text, expected) in [
+        (Format::Obj, "v 1 two 3\n", "1: expected a number for y, found \"two\""),
+        (Format::Obj, "v 1 2\n", "1: expected a number for z, found \"\""),
+        (Format::Obj, "v 1 2 3\nf 1 x 1\n", "2: expected an index of vertices, found \"x\""),
+        (Format::Obj, "v 1 2 3\nf 1 1\n", "2: expected a face of at least 3 corners, found 2 in \"f 1 1\""),
+        (Format::Obj, &face("1 2 5"), "9: expected an index of one of 4 vertices, found 5"),
+        (Format::Obj, &face("1 2 0"), "9: expected an index of one of 4 vertices, found 0"),
+        (Format::Obj, &face("1 2 -5"), "9: expected an index of one of 4 vertices, found -5"),
+        (Format::Obj, &face("1 2 99999999999"), "9: expected an index of one of 4 vertices, found 99999999999"),
+        (Format::Obj, &face(&format!("1 2 {}", i64::MIN)), "9: expected an index of one of 4 vertices, found -922"),
+        (Format::Obj, &face("1//1 2//1 3//1"), "9: expected an index of one of 0 normals, found 1"),
+        (
+            Format::Pdb,
+            "ATOM      1  N   SER A   1      11.0x0\n",
+            "1: expected a number for x in columns 31 to 38, found \"11.0x0\"",
+        ),
+        (Format::Ply, "plx\n", "1: expected a line of a PLY header, found \"plx\""),
+        (
+            Format::Ply,
+            "ply\nformat ascii 1.0\nelement vertex many\nend_header\n",
+            "3: expected a line of a PLY header, found \"element vertex many\"",
+        ),
+        (Format::Ply, &row, "16: expected a row of \"vertex\" (x y z red green blue), found \"6 one 0 10 20 30\""),
+        (Format::Ply, &list, "14: "),
+    ] {
+        let error = read(format, text).expect_err(text).to_string();
+        assert!(error.starts_with(&format!("test: line {expected}")), "{text}: {error}");
+    }
+    assert!(read(Format::Ply, list).expect_err("a list").to_string().contains("List(UChar, Float)"));
 }
 
 #[cfg(feature = "files")]

@@ -68,7 +68,6 @@ fn taken(name: &str, file: Vec<u8>) -> (f64, Result<usize, FileError>) {
     fs::remove_file(path).expect("it is there");
     assert!(most as u64 <= MEMORY_TIMES_FILE * size as u64 + MEMORY_FLOOR_BYTES, "{name}: {most} bytes for {size}");
     let times = most as f64 / size as f64;
-    println!("{name}: {:.1} MB, {times:.2} times, {read:?}", size as f64 / 1e6);
     (times, read)
 }
 

@@ -112,15 +112,6 @@ fn a_pan_of_90_degrees_per_second_looks_left_after_a_second() {
 }
 
 #[test]
-fn a_pan_turns_by_the_rate_times_the_time() {
-    // JITP: 200 deg/s give 3.3 deg in a sixtieth of a second.
-    let path = HeadPath::Pan { eye: Vec3::ZERO, deg_per_s: 200.0 };
-    let motion = HeadMotion::new(path, Sway::none()).expect("in range");
-    let turned = motion.pose(5 * SECOND).angle_deg(&motion.pose(5 * SECOND + SECOND / 60));
-    assert!((turned - 200.0 / 60.0).abs() < 1e-3, "{turned}");
-}
-
-#[test]
 fn an_orbit_faces_its_target_from_the_stated_distance() {
     let target = Vec3::new(1.0, 0.0, -2.0);
     let path = HeadPath::Orbit { target, distance: 3.0, height: 0.0, deg_per_s: 90.0 };
@@ -174,15 +165,6 @@ fn mig_varies_between_filling_the_view_and_being_small() {
     let shares: Vec<f32> = (0..80).map(|i| boxed_share(&mig, i * SECOND / 2)).collect();
     assert!(shares.iter().filter(|&&s| s > 0.9).count() >= 4, "{shares:?}");
     assert!(shares.iter().filter(|&&s| s < 0.1).count() >= 4, "{shares:?}");
-}
-
-#[test]
-fn the_head_fills_about_a_third_of_the_view_at_all_times() {
-    let head = builtin("head").expect("a built-in scene");
-    for i in 0..20 {
-        let share = boxed_share(&head, i * 37 * SECOND);
-        assert!((0.2..0.8).contains(&share), "{share}");
-    }
 }
 
 #[test]

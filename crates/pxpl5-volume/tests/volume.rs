@@ -27,49 +27,17 @@ fn drawn(settings: &VolumeSettings) -> Volume {
 }
 
 /// Fields that every report must have.
-const FIELDS: [&str; 35] = [
-    "display",
-    "clip",
-    "projection",
-    "seed",
-    "renderer",
-    "triangles",
-    "slices_rendered",
-    "passes",
-    "draws",
-    "draws_unbinned",
-    "bin_memberships",
-    "fragments_generated",
-    "fragments_accepted",
-    "slices_empty",
-    "tiles_occupied",
-    "tile_occupancy_percent",
-    "queries",
-    "stencil_clears",
-    "bytes_unpacked",
-    "bytes_packed",
-    "bytes_sent",
-    "waste_percent",
-    "lit_voxels",
-    "connected_percent",
-    "brightness_by_radius",
-    "dead_zone_radius_px",
-    "innermost_lit_px",
-    "model_ms",
-    "volumes_hz_serial",
-    "volumes_hz_overlapped",
-    "outside_volume",
-    "volume_hash",
-    "overrides",
-    "beyond_paper",
-    "host_seconds",
-];
+const FIELDS: &str = "display clip projection seed renderer triangles slices_rendered passes draws draws_unbinned \
+    bin_memberships fragments_generated fragments_accepted slices_empty tiles_occupied tile_occupancy_percent \
+    queries stencil_clears bytes_unpacked bytes_packed bytes_sent waste_percent lit_voxels connected_percent \
+    brightness_by_radius dead_zone_radius_px innermost_lit_px model_ms volumes_hz_serial volumes_hz_overlapped \
+    outside_volume volume_hash overrides beyond_paper host_seconds";
 
 #[test]
 fn the_report_has_every_field_of_the_specification() {
     let report = serde_json::to_value(drawn(&small()).report()).expect("JSON");
     assert_eq!(report["schema"], "pxpl5-volume/1");
-    for field in FIELDS {
+    for field in FIELDS.split(' ') {
         assert!(report.get(field).is_some(), "{field} is missing");
     }
     for part in ["cpu", "gpu", "bus"] {

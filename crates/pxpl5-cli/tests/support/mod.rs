@@ -2,42 +2,44 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::atomic::{AtomicU32, Ordering};
+use tempfile::TempDir;
 
 /// A temporary folder, which is removed when the value is dropped.
-pub(crate) struct Folder(pub(crate) PathBuf);
+pub(crate) struct Folder {
+    pub(crate) path: PathBuf,
+    _removed: TempDir,
+}
 
 impl Folder {
-    pub(crate) fn new(name: &str) -> Self {
-        // Tests of all modules run in one process, and some use the same name.
-        static NEXT: AtomicU32 = AtomicU32::new(0);
-        let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("pxpl5-test-{}-{number}-{name}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).expect("the temporary directory can be written");
-        Self(path)
+    pub(crate) fn new() -> Self {
+        let folder = tempfile::tempdir().expect("the temporary directory can be written");
+        Self { path: folder.path().to_owned(), _removed: folder }
     }
 
     pub(crate) fn file(&self, name: &str, contents: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.0.join(name);
+        let path = self.path.join(name);
         std::fs::write(&path, contents).expect("the temporary directory can be written");
         path
     }
 
     /// Returns the sorted names of all entries of the folder.
     pub(crate) fn names(&self) -> Vec<String> {
-        names(&self.0)
+        names(&self.path)
     }
 
     pub(crate) fn run(&self, args: &[&str]) -> Output {
-        command(args).current_dir(&self.0).output().expect("the command starts")
+        command(args).current_dir(&self.path).output().expect("the command starts")
     }
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+/// Splits a command line into words, and keeps quoted words together.
+pub(crate) fn words(line: &str) -> Vec<String> {
+    let parts = line.split('"').enumerate();
+    let words = parts.flat_map(|(n, part)| match n % 2 {
+        0 => part.split_whitespace().map(str::to_owned).collect(),
+        _ => vec![part.to_owned()],
+    });
+    words.collect()
 }
 
 pub(crate) fn names(path: &Path) -> Vec<String> {

@@ -71,11 +71,10 @@ mod tests {
             seeds: vec![1, 2],
             ..CompareQuery::new(ExperimentFile::parse(text, "test").expect("TOML"))
         };
-        let folder = std::env::temp_dir().join(format!("pxpl5-compare-{}-stopped", std::process::id()));
-        let _ = std::fs::remove_dir_all(&folder);
+        let folder = tempfile::tempdir().expect("a folder");
         // The first finished run stops the comparison, so each row has at least one run without a result.
         let mut watcher = StopsAfter { parts: 1, ..StopsAfter::default() };
-        let opened = || query.open_store(&folder, true).map(Arc::new).expect("a folder");
+        let opened = || query.open_store(folder.path(), true).map(Arc::new).expect("a folder");
         let stopped = CompareQuery { store: Some(opened()), ..query.clone() }.run(&mut watcher);
         assert!(matches!(stopped, Err(StudyError::Experiment(pxpl5_run::ExperimentError::Stopped(_)))), "{stopped:?}");
         assert_eq!(watcher.rows, 0);
@@ -83,6 +82,5 @@ mod tests {
         assert_eq!(store.found(), 0);
         let resumed = CompareQuery { store: Some(store), ..query.clone() }.run(&mut ()).expect("it runs");
         assert_eq!(resumed.pipelines.len(), 2);
-        let _ = std::fs::remove_dir_all(&folder);
     }
 }

@@ -51,16 +51,14 @@ mod tests {
     #[test]
     fn rows_of_selected_points_equal_the_rows_of_the_whole_sweep() {
         let sweep = sweep(SPACE);
-        let folder = std::env::temp_dir().join(format!("pxpl5-chunk-{}", std::process::id()));
-        let mut store = Store::open(&folder, sweep.header().expect("a header"), true).expect("a folder");
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut store = Store::open(folder.path(), sweep.header().expect("a header"), true).expect("a folder");
         let options = RunOptions { shard: Shard::ALL, threads: 2 };
         SweepQuery::new(&sweep, &mut store, options).run(&mut ()).expect("it can be written");
         for (row, seconds) in sweep.rows(&[2, 0, 1], Duration::MAX) {
             assert_eq!(store.row(row.point).expect("readable"), Some(row.clone()));
             assert!(seconds >= 0.0 && row.is_done() == (row.point != 2), "{row:?}");
         }
-        drop(store);
-        std::fs::remove_dir_all(folder).expect("it is ours");
     }
 
     #[test]

@@ -3,7 +3,7 @@ use crate::experiment_file::ExperimentFile;
 use crate::study::Study;
 use crate::study::tests::StopsAfter;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use tempfile::tempdir;
 
 const BASE: &str =
     "pipeline = \"slats\"\nscene = \"full-screen:4\"\nfields = 10\nmeasure = [\"latency_ms.mean\", \"last_copy_ms\"]\n";
@@ -15,12 +15,6 @@ fn sweep(space: &str) -> Sweep {
 fn refusal(space: &str) -> String {
     let file = ExperimentFile::parse(&format!("{BASE}{space}"), "test").expect("TOML");
     Sweep::new(file).expect_err("no sweep").to_string()
-}
-
-fn folder(name: &str) -> PathBuf {
-    let path = std::env::temp_dir().join(format!("pxpl5-sweep-{}-{name}", std::process::id()));
-    let _ = std::fs::remove_dir_all(&path);
-    path
 }
 
 fn rows(store: &mut Store, points: u64) -> Vec<SweepRow> {
@@ -125,8 +119,8 @@ fn shards_are_disjoint_and_cover_all_points() {
 fn a_failed_point_is_recorded_and_the_others_continue() {
     // Slats binds 20 regions, four to a renderer. Fewer than five renderers cannot hold them.
     let sweep = sweep("[sweep.grid]\nmachine.n_renderers = [0, 4, 5]\n");
-    let path = folder("fails");
-    let mut store = Store::open(&path, sweep.header().expect("a valid point"), false).expect("writable");
+    let path = tempdir().expect("a folder");
+    let mut store = Store::open(path.path(), sweep.header().expect("a valid point"), false).expect("writable");
     all(&sweep, &mut store);
     let rows = rows(&mut store, 3);
     let statuses: Vec<Status> = rows.iter().map(|row| row.status).collect();
@@ -136,94 +130,81 @@ fn a_failed_point_is_recorded_and_the_others_continue() {
     // I3D95: COPY of half of the regions takes 3.9 ms.
     let half = rows[2].measured["last_copy_ms"].expect("it is copied");
     assert!((half / 3.9 - 1.0).abs() < 0.02, "{half} ms");
-    let _ = std::fs::remove_dir_all(path);
 }
 
 #[test]
 fn rows_are_read_and_written_bit_for_bit() {
     let sweep = sweep("[sweep]\nseeds = 3\n");
-    let path = folder("bits");
-    let mut store = Store::open(&path, sweep.header().expect("valid"), false).expect("writable");
+    let path = tempdir().expect("a folder");
+    let mut store = Store::open(path.path(), sweep.header().expect("valid"), false).expect("writable");
     all(&sweep, &mut store);
     let before = rows(&mut store, 3);
     drop(store);
-    let mut store = Store::open(&path, sweep.header().expect("valid"), true).expect("ours");
+    let mut store = Store::open(path.path(), sweep.header().expect("valid"), true).expect("ours");
     assert_eq!(rows(&mut store, 3), before);
     store.finish().expect("writable");
-    let text = std::fs::read_to_string(path.join(ROWS_FILE)).expect("written");
+    let text = std::fs::read_to_string(path.path().join(ROWS_FILE)).expect("written");
     let lines: Vec<String> = before.iter().map(|row| serde_json::to_string(row).expect("JSON")).collect();
     assert_eq!(text.lines().skip(1).collect::<Vec<_>>(), lines);
-    let _ = std::fs::remove_dir_all(path);
 }
 
 #[test]
 fn a_file_cut_at_any_byte_is_repaired_and_continued_to_the_same_bytes() {
     let sweep = sweep("[sweep]\nseeds = 2\n");
-    let path = folder("cut");
+    let path = tempdir().expect("a folder");
     let header = sweep.header().expect("valid");
-    let mut store = Store::open(&path, header.clone(), false).expect("writable");
+    let mut store = Store::open(path.path(), header.clone(), false).expect("writable");
     all(&sweep, &mut store);
     store.finish().expect("writable");
-    let whole = std::fs::read(path.join(ROWS_FILE)).expect("written");
+    let whole = std::fs::read(path.path().join(ROWS_FILE)).expect("written");
     let ends: Vec<usize> = whole.iter().enumerate().filter(|(_, b)| **b == b'\n').map(|(at, _)| at + 1).collect();
     for cut in (0..whole.len()).step_by(37).chain(ends) {
-        std::fs::write(path.join(ROWS_FILE), &whole[..cut]).expect("writable");
-        let mut store = Store::open(&path, header.clone(), true).expect("only the end is torn");
+        std::fs::write(path.path().join(ROWS_FILE), &whole[..cut]).expect("writable");
+        let mut store = Store::open(path.path(), header.clone(), true).expect("only the end is torn");
         all(&sweep, &mut store);
         store.finish().expect("writable");
-        assert!(std::fs::read(path.join(ROWS_FILE)).expect("written") == whole, "cut at {cut}");
+        assert!(std::fs::read(path.path().join(ROWS_FILE)).expect("written") == whole, "cut at {cut}");
     }
-    let _ = std::fs::remove_dir_all(path);
 }
 
 #[test]
 fn only_one_process_may_write_into_a_folder() {
     let sweep = sweep("[sweep]\nseeds = 1\n");
-    let path = folder("lock");
+    let path = tempdir().expect("a folder");
     let header = sweep.header().expect("valid");
-    let first = Store::open(&path, header.clone(), false).expect("writable");
-    let error = Store::open(&path, header.clone(), true).expect_err("in use");
+    let first = Store::open(path.path(), header.clone(), false).expect("writable");
+    let error = Store::open(path.path(), header.clone(), true).expect_err("in use");
     assert!(error.to_string().contains("another process"), "{error}");
     drop(first);
-    Store::open(&path, header, true).expect("free again");
-    let _ = std::fs::remove_dir_all(path);
+    Store::open(path.path(), header, true).expect("free again");
 }
 
 #[test]
 fn files_named_in_a_sweep_file_or_in_its_axes_are_found_beside_the_sweep_file() {
-    let place = folder("relative");
-    std::fs::create_dir_all(&place).expect("a folder");
+    let place = tempdir().expect("a folder");
     let poses = "time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n9,0,0,0,1,0,0,0\n";
     for name in ["base.csv", "axis.csv"] {
-        std::fs::write(place.join(name), poses).expect("written");
+        std::fs::write(place.path().join(name), poses).expect("written");
     }
     let text = format!(
         "{BASE}head.motion = \"base.csv\"\n[sweep.grid]\nhead.motion = [\"base.csv\", \"axis.csv\"]\nseed = [1, 2]\n"
     );
-    let path = place.join("sweep.toml");
+    let path = place.path().join("sweep.toml");
     std::fs::write(&path, text).expect("written");
     let sweep = Sweep::load(&path).expect("a sweep");
     for point in 0..4 {
         let plan = sweep.plan(point).unwrap_or_else(|error| panic!("point {point}: {error}"));
         assert!(plan.head.is_some());
     }
-    let _ = std::fs::remove_dir_all(&place);
 }
 
 /// Tests that a sweep stores ranges and not their values. An earlier version stored the values, and needed 9 GB for 13
 /// axes of ten million values.
 #[test]
 fn a_sweep_stores_ranges_without_memory_for_each_value() {
-    let keys = [
-        "gp.triangle_ns",
-        "gp.message_ns",
-        "gp.bin_entry_ns",
-        "gp.sphere_ns",
-        "gp.edit_ns",
-        "gp.pass_ns",
-        "ring.word_ns",
-    ];
-    let axes: String = keys.iter().map(|key| format!("machine.{key} = {{ from = 1, to = 10000000 }}\n")).collect();
+    let keys = "gp.triangle_ns gp.message_ns gp.bin_entry_ns gp.sphere_ns gp.edit_ns gp.pass_ns ring.word_ns";
+    let axes = keys.split(' ').map(|key| format!("machine.{key} = {{ from = 1, to = 10000000 }}\n"));
+    let axes: String = axes.collect();
     let text = refusal(&format!("[sweep.grid]\n{axes}"));
     assert!(text.contains("at most 10000000 points"), "{text}");
     let seeds = sweep("[sweep]\nseeds = 10000000\n");
@@ -246,33 +227,30 @@ fn a_range_and_a_list_can_form_one_axis() {
 #[test]
 fn a_row_that_belongs_to_no_point_is_refused() {
     let sweep = sweep("[sweep]\nseeds = 2\n");
-    let path = folder("no-point");
+    let path = tempdir().expect("a folder");
     let header = sweep.header().expect("valid");
-    let mut store = Store::open(&path, header.clone(), false).expect("writable");
+    let mut store = Store::open(path.path(), header.clone(), false).expect("writable");
     all(&sweep, &mut store);
     drop(store);
-    let rows = std::fs::read_to_string(path.join(ROWS_FILE)).expect("written");
+    let rows = std::fs::read_to_string(path.path().join(ROWS_FILE)).expect("written");
     let line = rows.lines().position(|line| line.contains("\"point\":1,")).expect("there") + 1;
-    std::fs::write(path.join(ROWS_FILE), rows.replace("\"point\":1,", "\"point\":9999,")).expect("ours");
-    let error = Store::open(&path, header, true).expect_err("no such point").to_string();
+    std::fs::write(path.path().join(ROWS_FILE), rows.replace("\"point\":1,", "\"point\":9999,")).expect("ours");
+    let error = Store::open(path.path(), header, true).expect_err("no such point").to_string();
     assert!(error.ends_with(&format!("line {line}: expected a row of a sweep, found point 9999 of 2")), "{error}");
-    let _ = std::fs::remove_dir_all(path);
 }
 
 #[test]
 fn only_temporary_files_of_a_killed_process_are_removed() {
     let sweep = sweep("[sweep]\nseeds = 1\n");
-    let path = folder("left-over");
-    std::fs::create_dir_all(&path).expect("writable");
+    let path = tempdir().expect("a folder");
     for name in [".pxpl5-a1B2c3.tmp", "mine.tmp", ".pxpl5-mine"] {
-        std::fs::write(path.join(name), "x").expect("writable");
+        std::fs::write(path.path().join(name), "x").expect("writable");
     }
-    drop(Store::open(&path, sweep.header().expect("valid"), false).expect("writable"));
-    let entries = std::fs::read_dir(&path).expect("there").map(|entry| entry.expect("entry").file_name());
+    drop(Store::open(path.path(), sweep.header().expect("valid"), false).expect("writable"));
+    let entries = std::fs::read_dir(path.path()).expect("there").map(|entry| entry.expect("entry").file_name());
     let names: BTreeSet<_> = entries.map(|name| name.to_string_lossy().into_owned()).collect();
     let expected = [".lock", ".pxpl5-mine", "manifest.json", "mine.tmp", "rows.jsonl", "times.jsonl"];
     assert_eq!(names, expected.map(str::to_owned).into());
-    let _ = std::fs::remove_dir_all(path);
 }
 
 /// Returns two sweeps with the model `file`: as the scene of all points, and as a value of an axis.
@@ -292,56 +270,53 @@ fn hash_in(place: &Path, text: &str) -> String {
 
 #[test]
 fn editing_the_model_file_changes_the_hash_of_a_sweep() {
-    let place = folder("edited");
-    std::fs::create_dir_all(&place).expect("a folder");
+    let place = tempdir().expect("a folder");
     let model = |x: i32| {
-        std::fs::write(place.join("m.obj"), format!("v 0 0 0\nv {x} 0 0\nv 0 1 0\nf 1 2 3\n")).expect("written")
+        std::fs::write(place.path().join("m.obj"), format!("v 0 0 0\nv {x} 0 0\nv 0 1 0\nf 1 2 3\n")).expect("written")
     };
     for text in sweeps_with("m.obj") {
         model(1);
-        let before = hash_in(&place, &text);
-        assert_eq!(before, hash_in(&place, &text));
+        let before = hash_in(place.path(), &text);
+        assert_eq!(before, hash_in(place.path(), &text));
         model(2);
-        assert_ne!(before, hash_in(&place, &text), "{text}");
+        assert_ne!(before, hash_in(place.path(), &text), "{text}");
     }
-    let _ = std::fs::remove_dir_all(&place);
 }
 
 /// Tests that a change of a glTF scene's binary file changes the hash of a sweep, although the glTF file stays the
 /// same. A build without the glTF reader cannot read the scene and keeps the hash.
 #[test]
 fn editing_the_buffer_file_of_a_model_changes_the_hash_of_a_sweep() {
-    let place = folder("buffer");
-    std::fs::create_dir_all(&place).expect("a folder");
+    let place = tempdir().expect("a folder");
     let triangle = r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"m.bin"}],
         "bufferViews":[{"buffer":0,"byteLength":36}],
         "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[9,9,0]}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}]}"#;
-    std::fs::write(place.join("m.gltf"), triangle).expect("written");
+    std::fs::write(place.path().join("m.gltf"), triangle).expect("written");
     let hash_of = |text: &str, x: f32| {
         let corners: Vec<u8> = [0., 0., 0., x, 0., 0., 0., 1., 0.].iter().flat_map(|n: &f32| n.to_le_bytes()).collect();
-        std::fs::write(place.join("m.bin"), corners).expect("written");
-        hash_in(&place, text)
+        std::fs::write(place.path().join("m.bin"), corners).expect("written");
+        hash_in(place.path(), text)
     };
     for text in sweeps_with("m.gltf") {
         let before = hash_of(&text, 1.0);
         assert_eq!(before, hash_of(&text, 1.0));
         // The reader of glTF is a feature of the scene crate.
-        let read = pxpl5_scene::load(place.join("m.gltf"));
+        let read = pxpl5_scene::load(place.path().join("m.gltf"));
         let is_read = read.is_ok_and(|scene| !scene.triangles().is_empty());
         assert_eq!(before != hash_of(&text, 2.0), is_read, "{text}");
     }
-    let _ = std::fs::remove_dir_all(&place);
 }
 
 #[test]
 fn a_stopped_sweep_keeps_its_finished_rows_and_continues_to_the_same_rows() {
     let sweep = sweep("[sweep.grid]\nseed = [1, 2, 3, 4, 5, 6, 7, 8]\n");
-    let open = |name: &str| Store::open(&folder(name), sweep.header().expect("valid"), true).expect("a folder");
-    let mut whole = open("not-stopped");
+    let folders = [0, 1].map(|_| tempdir().expect("a folder"));
+    let open = |n: usize| Store::open(folders[n].path(), sweep.header().expect("valid"), true).expect("a folder");
+    let mut whole = open(0);
     all(&sweep, &mut whole);
     // A sweep that was stopped before it began has no row.
-    let mut store = open("stopped");
+    let mut store = open(1);
     let mut watcher = StopsAfter::default();
     let options = RunOptions { shard: Shard::ALL, threads: 1 };
     assert_eq!(SweepQuery::new(&sweep, &mut store, options).run(&mut watcher).expect("it stops"), 0);

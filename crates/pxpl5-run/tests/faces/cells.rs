@@ -133,7 +133,6 @@ fn segments_have_gaps_without_warping_and_no_gaps_with_warping() {
     let plain = along_the_wall(CELLS, 3.0);
     let warped = along_the_wall(WARPED, 3.0);
     [&plain, &warped].into_iter().for_each(|outcome| assert_no_faults(outcome.record()));
-    println!("torn texels {} without warping, {} with it", torn(&plain), torn(&warped));
     assert!(torn(&plain) >= 2);
     assert_eq!(torn(&warped), 0);
 }
@@ -164,12 +163,10 @@ fn far_cells_are_drawn_less_often_than_near_ones() {
     let [plain, warped] = [CELLS, WARPED].map(|pipeline| along_the_wall(pipeline, 90.0 / 512.0));
     let updates = |outcome: &Outcome| (0..4).map(|k| memory(outcome.record(), k).stats().swaps).collect::<Vec<_>>();
     let [plain, warped] = [&plain, &warped].map(updates);
-    println!("updates {plain:?} {warped:?}");
     // With warping, memories that are drawn in one cycle are shown together, so the fastest memory waits for the slower
     // memories.
     assert!(warped[0] <= plain[0]);
     let ideal = updates_by_the_rule(200);
-    println!("by the rule {ideal:?}");
     // The last updates are not shown before the run ends.
     assert!(plain.iter().zip(ideal).all(|(found, ideal)| ideal.abs_diff(*found) <= 2), "{plain:?} {ideal:?}");
     assert!(plain[0] > 190 && plain.windows(2).all(|pair| pair[0] >= pair[1]), "{plain:?}");
