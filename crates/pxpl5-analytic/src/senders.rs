@@ -22,7 +22,7 @@ use pphigs::{Picture, RegionBinning, Shading, Share, TransformWork};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Work;
 use pxpl5_renderer::Layout;
-use pxpl5_run::{Experiment, ExperimentError, display_list, views};
+use pxpl5_run::{Experiment, ExperimentError, SceneViews, ViewSource, display_list};
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, MAX_MESSAGE_WORDS, RegionId, ViewNumber};
 use slats::CLUMP;
@@ -84,8 +84,8 @@ impl Clumps {
     ) -> Result<Self, ExperimentError> {
         // Transform the scene for the first view.
         let list = Arc::new(display_list(experiment.scene())?);
-        let (views, _) = views(experiment.scene(), experiment.seed, *experiment.hmd(), 2);
-        let view = views(ViewNumber::FIRST, Time(0));
+        let views = SceneViews::new(experiment.scene(), experiment.seed, *experiment.hmd(), 2);
+        let view = views.newest(ViewNumber::FIRST, Time(0));
         let viewport = Viewport::field(FieldParity::Even);
         let picture = Picture { viewport, shading: Shading::Gouraud, binning, layout: Layout::slats(), pixels: false };
         let of_gp = |gp: usize| {

@@ -114,7 +114,7 @@ impl Pipeline for OneAtATime {
         let views = Arc::clone(&setup.views);
         let node = ports.gps[0];
         let gp = machine.processor(node, Priority::Foreground);
-        let view = move |number, time| views(number, time);
+        let view = move |number, time| views.newest(number, time);
         let picture = self.picture(machine.record().display())?;
         let program = firmware(gp, ports, Arc::clone(&setup.list), picture, view);
         machine.load(node, Priority::Foreground, Box::pin(program));

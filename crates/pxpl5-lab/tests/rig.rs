@@ -6,10 +6,14 @@ use pxpl5_lab::rig::{Rig, RigQuery};
 use pxpl5_lab::{Study, StudyError};
 use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
-use pxpl5_run::{PictureRules, PictureTimes, Pipeline, PipelineSettings, Registry, RenderingControl, Setup, Views};
+use pxpl5_run::{
+    PictureRules, PictureTimes, Pipeline, PipelineSettings, Registry, RenderingControl, Setup, ViewSource,
+};
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
+use pxpl5_wire::ViewNumber;
 use std::sync::{Arc, Mutex};
+use tracking::Pose;
 use tracking::rig::Measurement;
 use tracking::tracker::TrackerConfig;
 
@@ -107,15 +111,31 @@ enum Fault {
     StaleViews,
 }
 
-/// Returns head poses that lag behind by one pose.
-fn stale(views: &Views) -> Views {
-    let views = Arc::clone(views);
-    let last: Mutex<Option<FrameView>> = Mutex::new(None);
-    Arc::new(move |number, time| {
-        let fresh = views(number, time);
-        let shown = last.lock().expect("one thread").replace(fresh.clone()).unwrap_or_else(|| fresh.clone());
+/// Head poses that lag behind by one pose.
+#[derive(Debug)]
+struct Stale {
+    views: Arc<dyn ViewSource>,
+    last: Mutex<Option<FrameView>>,
+}
+
+impl ViewSource for Stale {
+    fn newest(&self, number: ViewNumber, now: Time) -> FrameView {
+        let fresh = self.views.newest(number, now);
+        let shown = self.last.lock().expect("one thread").replace(fresh.clone()).unwrap_or_else(|| fresh.clone());
         FrameView { number: fresh.number, ..shown }
-    })
+    }
+
+    fn view_at(&self, number: ViewNumber, now: Time, shown_at: Time) -> FrameView {
+        self.views.view_at(number, now, shown_at)
+    }
+
+    fn pose_at(&self, now: Time, at: Time) -> Pose {
+        self.views.pose_at(now, at)
+    }
+
+    fn report_from(&self, instant: Time) -> Option<Time> {
+        self.views.report_from(instant)
+    }
 }
 
 impl Pipeline for Faulty {
@@ -132,7 +152,10 @@ impl Pipeline for Faulty {
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
-        let views = if self.fault == Fault::StaleViews { stale(&setup.views) } else { Arc::clone(&setup.views) };
+        let mut views = Arc::clone(&setup.views);
+        if self.fault == Fault::StaleViews {
+            views = Arc::new(Stale { views, last: Mutex::default() });
+        }
         self.inner.load(machine, &Setup { views, ..setup.clone() })
     }
 }

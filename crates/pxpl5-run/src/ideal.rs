@@ -2,7 +2,8 @@ use crate::display_list::display_list_for;
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
 use crate::result::outcome::Outcome;
-use crate::scene_views::{hmd_on, view, views};
+use crate::scene_views::{SceneViews, hmd_on, view};
+use crate::views::ViewSource;
 use pphigs::oracle::IdealPicture;
 use pphigs::{DisplayList, Picture, RegionBinning};
 use pxpl5_geometry::Viewport;
@@ -44,7 +45,7 @@ pub(crate) fn ideal_picture(
     // A tracked head is at its true pose, not at the predicted one.
     let view = match head {
         Some(head) => view(scene, &hmd, eyes, ViewNumber::FIRST, time, &head.truth(time).in_single_precision()),
-        None => views(scene, experiment.seed, hmd, eyes).0(ViewNumber::FIRST, time),
+        None => SceneViews::new(scene, experiment.seed, hmd, eyes).newest(ViewNumber::FIRST, time),
     };
     let layout = pipeline.layout();
     let shading = pipeline.shading();

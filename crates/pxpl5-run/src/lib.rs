@@ -86,10 +86,10 @@ pub use result::picture_ends::{PictureResult, WARM_UP_PICTURES};
 pub use result::result_window::{ResultWindow, WARM_UP_PERIODS, WINDOW_DEFINITION};
 pub use result::summary::{Summary, retraces};
 pub use result::tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
-pub use scene_views::{hmd_on, views};
+pub use scene_views::{SceneViews, hmd_on};
 pub use stepper::{Pause, Stepper};
 pub use tunings::Tunings;
-pub use views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
+pub use views::ViewSource;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,6 +1,6 @@
 use crate::head_views::HeadViews;
 use crate::result::picture_ends::PictureResult;
-use crate::views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
+use crate::views::ViewSource;
 use image::RgbImage;
 use pphigs::{DisplayList, Shading};
 use pxpl5_gp::{CodeUse, HostTiming};
@@ -9,7 +9,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::KeyValue;
 use pxpl5_sim::parameters::SettingError;
-use pxpl5_sim::{Span, Time};
+use pxpl5_sim::{Span, Time, mix};
 use pxpl5_wire::display::{Aim, Coverage, LightTimes};
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 use std::any::Any;
@@ -36,18 +36,13 @@ pub enum Source {
     },
 }
 
-/// Input of a pipeline: the scene as a display list, and the functions that supply views.
-#[derive(Clone)]
+/// Input of a pipeline: the scene as a display list, and the source of views.
+#[derive(Clone, Debug)]
 pub struct Setup {
     /// Primitives that are drawn in every picture.
     pub list: Arc<DisplayList>,
-    /// Function that returns the newest view: its transforms, and the edits of moving structures.
-    pub views: Views,
-    /// Function that returns a view for a requested display time, for firmware that computes the display time of a
-    /// view.
-    pub wanted: ViewsWanted,
-    /// Function that returns the pose of the head alone, for displays that follow its rotation.
-    pub poses: Poses,
+    /// Source of views, poses and tracker reports.
+    pub views: Arc<dyn ViewSource>,
     /// Scene from which the display list was made ([`Pipeline::prepare`]).
     pub scene: Arc<Scene>,
     /// Instant for which a picture's view is drawn, within the time in which the picture is displayed. Examples are the
@@ -55,14 +50,26 @@ pub struct Setup {
     ///
     /// Only firmware that computes the display times of its views uses this setting.
     pub aim: Aim,
-    /// Function that returns the arrival time of the next tracker report at the host.
-    pub reports: ReportTimes,
-    /// Function that returns the start time of the next frame, for a host that waits for the pipeline.
-    pub starts: FrameStarts,
     /// Times of the host's operations, in nanoseconds.
     pub host: HostTiming,
+    /// Seed of the host's computing times.
+    pub seed: u64,
+    /// True if the host begins a frame only when a tracker report arrives.
+    pub on_demand: bool,
     /// True if pixels may be computed.
     pub pixels: bool,
+}
+
+impl Setup {
+    /// Returns the time at which a host that is ready at the instant `ready` begins its next frame. Returns `None` if
+    /// the host begins no more frames.
+    ///
+    /// The host's application computes before each frame. With frames on demand, the first report at which the host is
+    /// ready asks for the frame.
+    pub fn frame_start(&self, ready: Time) -> Option<Time> {
+        let asked = if self.on_demand { self.views.report_from(ready)? } else { ready };
+        Some(asked + self.host.application_span(mix(self.seed ^ mix(asked.0))))
+    }
 }
 
 /// Times of one picture, which is a frame or a field, on its way through the machine.

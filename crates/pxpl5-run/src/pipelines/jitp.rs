@@ -105,15 +105,15 @@ pub(super) fn whole_pass(setup: &Setup) -> TransformCost {
 
 pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let gp = machine.processor(config.host, Priority::Foreground);
-    let reports = Arc::clone(&setup.reports);
+    let views = Arc::clone(&setup.views);
     // The host passes on the tracker's reports.
-    let program = host(gp, config.clone(), setup.host, move |after| reports(after));
+    let program = host(gp, config.clone(), setup.host, move |after| views.report_after(after));
     machine.load(config.host, Priority::Foreground, Box::pin(program));
     let gp = machine.processor(config.master, Priority::Foreground);
-    let views = Arc::clone(&setup.wanted);
+    let views = Arc::clone(&setup.views);
     let pass = whole_pass(setup);
     // The master requests views for the instants at which its strips are visible.
-    let view_of = move |wanted: Wanted| views(wanted.number, wanted.reports_until, wanted.shown_at);
+    let view_of = move |wanted: Wanted| views.view_at(wanted.number, wanted.reports_until, wanted.shown_at);
     for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);
     }

@@ -233,7 +233,7 @@ impl Pipeline for PolicyPipeline {
             pixels: setup.pixels,
         };
         let drawing = Drawing { ports, list: Arc::clone(&setup.list), picture, policy: Arc::clone(&self.policy) };
-        let program = firmware(gp, drawing, move |number, time| views(number, time));
+        let program = firmware(gp, drawing, move |number, time| views.newest(number, time));
         machine.load(node, Priority::Foreground, Box::pin(program));
         Ok(())
     }

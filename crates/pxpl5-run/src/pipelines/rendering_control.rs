@@ -138,11 +138,10 @@ impl Pipeline for RenderingControl {
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let config = self.config(machine, setup.pixels)?;
         let foreground = Priority::Foreground;
-        let views = Arc::clone(&setup.views);
-        let starts = Arc::clone(&setup.starts);
+        let (starts, views) = (setup.clone(), Arc::clone(&setup.views));
         let gp = machine.processor(config.host, foreground);
         // The host decides when a frame begins, and samples the view for it.
-        let plan = frames(move |ready| starts(ready), move |view, time| views(view, time));
+        let plan = frames(move |ready| starts.frame_start(ready), move |view, time| views.newest(view, time));
         let program = host(gp, config.clone(), setup.host, plan);
         machine.load(config.host, foreground, Box::pin(program));
         let gp = machine.processor(config.master, foreground);

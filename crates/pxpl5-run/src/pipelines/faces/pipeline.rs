@@ -2,7 +2,7 @@
 //! orientation of the head.
 
 use super::cells::ByCells;
-use super::ideal::{All, IdealFaces, seen_next};
+use super::ideal::{All, IdealFaces};
 use super::keys::{FacePolicy, IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::objects::ByObjects;
 use super::plan::{Cycles, Full, Plan, Updates};
@@ -14,7 +14,7 @@ use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::pipelines::faces::segments::SegmentedScene;
 use crate::pipelines::{region_has_room, shading_value, swapped_in};
 use crate::result::picture_ends::PictureResult;
-use crate::views::{Poses, ReportTimes};
+use crate::views::ViewSource;
 use address_recalculation::priority::{Falloff, PriorityTiming};
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Lens, Orientation, orientation_message};
 use glam::{Mat4, Vec4};
@@ -31,7 +31,6 @@ use pxpl5_wire::{Body, CopyContent, Lines, NodeId, PeriodNumber, PictureNumber, 
 use rendering_control::cube::{Faces, WarpedLists};
 use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::any::Any;
-use std::fmt;
 use std::sync::Arc;
 
 /// The renderer that draws the cube faces.
@@ -168,8 +167,8 @@ impl FacePipeline {
         let projection = projection(display);
         let scan = display.scan()?;
         // An ideal renderer has no delay, so its views are predicted for the next field.
-        let setup = &if self.source == FaceSource::Ideal { seen_next(setup, scan) } else { setup.clone() };
-        let updates = Updates::new(setup, &notes, projection, display.timing.display_memories as usize);
+        let seen_next = (self.source == FaceSource::Ideal).then_some(scan);
+        let updates = Updates::new(setup, seen_next, &notes, projection, display.timing.display_memories as usize);
         if self.policy == FacePolicy::Full && self.source == FaceSource::Ideal {
             let structures = vec![true; setup.list.structures.len()].into();
             let mut cycles = Cycles::new(updates, scan, All { structures });
@@ -235,26 +234,20 @@ const ORIENTATION_PORT: usize = 0;
 /// Connection from the host to the display that carries the head's orientations.
 ///
 /// The first orientation is the head's initial orientation. Later orientations follow tracker reports or are predicted.
+#[derive(Debug)]
 struct OrientationLine {
-    reports: ReportTimes,
-    poses: Poses,
+    views: Arc<dyn ViewSource>,
     latched: OrientationTiming,
-}
-
-impl fmt::Debug for OrientationLine {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("OrientationLine").field("latched", &self.latched).finish_non_exhaustive()
-    }
 }
 
 impl HostLine for OrientationLine {
     fn next(&self, after: Time) -> Option<Time> {
-        self.latched.next(after, |instant| (self.reports)(instant))
+        self.latched.next(after, |instant| self.views.report_after(instant))
     }
 
     fn messages(&mut self, now: Time) -> Vec<(usize, Body)> {
         let (reports_until, aimed) = self.latched.predicted(now);
-        let turned = (self.poses)(reports_until, aimed).orientation;
+        let turned = self.views.pose_at(reports_until, aimed).orientation;
         let rows = Orientation::from_quaternion(turned.to_array()).map_or([[f64::NAN; 3]; 3], |turned| turned.rows());
         vec![(ORIENTATION_PORT, Body::Words(orientation_message(rows)))]
     }
@@ -455,9 +448,7 @@ impl FacePipeline {
     fn plug_orientations(self, machine: &mut Machine, setup: &Setup) {
         let link = setup.host.link_span(ORIENTATION_WORDS);
         if let Some(latched) = OrientationTiming::before(machine.record().display(), link, setup.aim) {
-            let reports = Arc::clone(&setup.reports);
-            let poses = Arc::clone(&setup.poses);
-            machine.plug_host_line(Box::new(OrientationLine { reports, poses, latched }));
+            machine.plug_host_line(Box::new(OrientationLine { views: Arc::clone(&setup.views), latched }));
         }
     }
 

@@ -2,6 +2,7 @@
 //! policy selects.
 
 use crate::pipeline::Setup;
+use crate::pipelines::faces::latched_head::lights_of;
 use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
 use crate::pipelines::faces::segments::moves;
 use address_recalculation::FaceScan;
@@ -18,6 +19,9 @@ pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction<FaceUpda
 
 pub(super) struct Updates {
     pub(super) setup: Setup,
+    /// Scan of the display if updates are shown at the next retrace. Views are then predicted for the time at which the
+    /// next field is lit.
+    seen_next: Option<FaceScan>,
     pub(super) projection: Mat4,
     pub(super) notes: Arc<RequestedUpdates>,
     /// Flag of each structure of the scene: true if the structure moves by itself or with the head.
@@ -28,15 +32,25 @@ pub(super) struct Updates {
 }
 
 impl Updates {
-    pub(super) fn new(setup: &Setup, notes: &Arc<RequestedUpdates>, projection: Mat4, memories: usize) -> Self {
+    pub(super) fn new(
+        setup: &Setup,
+        seen_next: Option<FaceScan>,
+        notes: &Arc<RequestedUpdates>,
+        projection: Mat4,
+        memories: usize,
+    ) -> Self {
         let has_head_frame = setup.list.structures.iter().any(|structure| structure.frame == ModelFrame::Head);
         let moving = setup.scene.structures().iter().map(moves).collect();
         let (setup, notes) = (setup.clone(), Arc::clone(notes));
-        Self { setup, projection, notes, moving, sent: vec![0; memories], has_head_frame }
+        Self { setup, seen_next, projection, notes, moving, sent: vec![0; memories], has_head_frame }
     }
 
     pub(super) fn view(&self, number: PictureNumber, now: Time) -> FrameView {
-        (self.setup.views)(ViewNumber::taken_for(number), now)
+        let (view, Setup { views, aim, .. }) = (ViewNumber::taken_for(number), &self.setup);
+        match self.seen_next {
+            None => views.newest(view, now),
+            Some(scan) => views.view_at(view, now, aim.instant(&lights_of(&scan, scan.field_at(now).next()))),
+        }
     }
 
     /// Returns the next update of a display memory, drawn from the eye position that is known at `now`.
@@ -110,7 +124,7 @@ impl Full {
     }
 
     pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction<FaceUpdate> {
-        match (self.updates.setup.starts)(now) {
+        match self.updates.setup.frame_start(now) {
             None => HostAction::Nothing,
             Some(start) if start > now => HostAction::Wait(start),
             // The host is ready: request a redraw of everything.
