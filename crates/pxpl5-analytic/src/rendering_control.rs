@@ -154,7 +154,7 @@ impl StereoModel {
         let [triangle, sphere] = kinds.map(|kind| Cost::of_command(&config.renderer, kind));
         let shade = Cost::of_command(&config.renderer, CommandKind::Shade);
         Ok(Self {
-            eyes: program.eyes(),
+            eyes: program.properties().eyes,
             slaves: (config.n_gps - 1) as f64,
             renderers: config.n_renderers,
             gp: config.gp,

@@ -5,9 +5,9 @@ use pphigs::FrameView;
 use pxpl5_lab::rig::{Rig, RigQuery};
 use pxpl5_lab::{Study, StudyError};
 use pxpl5_machine::{Machine, MachineConfig, Record};
-use pxpl5_renderer::Layout;
 use pxpl5_run::{
-    PictureRules, PictureTimes, Pipeline, PipelineSettings, Registry, RenderingControl, Setup, ViewSource,
+    PictureRules, PictureTimes, Pipeline, PipelineProperties, PipelineSettings, Registry, RenderingControl, Setup,
+    ViewSource,
 };
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
@@ -143,12 +143,8 @@ impl Pipeline for Faulty {
         "faulty"
     }
 
-    fn eyes(&self) -> usize {
-        self.inner.eyes()
-    }
-
-    fn layout(&self) -> Layout {
-        self.inner.layout()
+    fn properties(&self) -> PipelineProperties {
+        self.inner.properties()
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
@@ -169,14 +165,6 @@ impl PictureRules for Faulty {
 
     fn periods_a_picture(&self, record: &Record) -> Option<u64> {
         self.inner.periods_a_picture(record)
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        self.inner.latency_definition()
-    }
-
-    fn due_definition(&self) -> &'static str {
-        self.inner.due_definition()
     }
 }
 

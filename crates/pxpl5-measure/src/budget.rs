@@ -180,7 +180,7 @@ fn misses_ms<'a>(run: &'a FinalResults<'_>, poses: &'a Poses) -> impl Iterator<I
     let nexts = run.pictures.iter().skip(1).map(Some).chain([run.next]);
     let is_counted = |times: &PictureTimes| {
         let is_steady = run.window.is_some_and(|window| window.holds_picture(display.period_at(times.shown_at)));
-        is_steady && times.is_shown() && times.layer == 0 && !run.pipeline.knows_when_seen()
+        is_steady && times.is_shown() && times.layer == 0 && !run.pipeline.properties().knows_when_seen
     };
     let counted = run.pictures.iter().zip(nexts).filter(move |(times, _)| is_counted(times));
     counted.filter_map(|(times, next)| {

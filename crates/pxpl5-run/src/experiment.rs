@@ -52,8 +52,8 @@ pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Para
 ///
 /// The times of work without code come from the parameters `gp.*` of the timing table. Returns `None` if all work has
 /// code, or if the level is not [`Level::Cycle`].
-pub fn warning_without_code(level: Level, config: &MachineConfig, pipeline: &dyn Pipeline) -> Option<String> {
-    let what = (level == Level::Cycle).then(|| pipeline.without_code(config)).flatten()?;
+pub fn warning_without_code(level: Level, pipeline: &dyn Pipeline) -> Option<String> {
+    let what = pipeline.properties().without_code.filter(|_| level == Level::Cycle)?;
     let name = pipeline.name();
     Some(format!(
         "{name} at the cycle level: there is no i860 code for {what}; this work takes the times of the timing table (gp.*)"
@@ -387,7 +387,7 @@ impl Experiment {
     /// ([`warning_without_code`]), and problems in the files of the head's motion and of the scene.
     pub fn warnings(&self) -> Vec<String> {
         let supposed = self.out_of_range();
-        let of_table = warning_without_code(self.level, &self.config, self.pipeline.as_ref());
+        let of_table = warning_without_code(self.level, self.pipeline.as_ref());
         let of_head = self.head.iter().flat_map(|head| head.motion().warnings());
         let of_scene = self.scene.warnings().iter().map(|warning| format!("{}: {warning}", self.scene.name()));
         supposed.iter().map(Parameter::warning).chain(of_table).chain(of_head).chain(of_scene).collect()

@@ -64,7 +64,7 @@ pub use keys::PipelineSettings;
 pub use level::Level;
 pub use observe::observed_run::ObservedRun;
 pub use observe::observers::{FinalResults, ObserverFactory, StreamingObserver};
-pub use pipeline::{PictureRules, PictureTimes, Pipeline, Setup, Source};
+pub use pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup, Source};
 pub use pipelines::faces::{
     FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, OrientationTiming, RequestedUpdate, RequestedUpdates,
     RotationLatency, SegmentedScene, ShownUpdate,

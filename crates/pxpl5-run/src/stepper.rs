@@ -361,7 +361,7 @@ fn needed_by_run(partial: &Outcome) -> Option<u64> {
 /// Returns the number of pictures of a run. A period that shows old pictures in a new direction of the head also
 /// counts.
 fn shown_in(outcome: &Outcome) -> u64 {
-    outcome.tally().pictures.max(outcome.pipeline().turned_periods(outcome.record(), outcome.end()))
+    outcome.tally().pictures.max(outcome.turned_periods())
 }
 
 /// Number of fields below which the machine may not detect a deadlock itself.

@@ -41,7 +41,7 @@ fn run(pipeline: Arc<dyn Pipeline>, config: MachineConfig, scene: &Arc<Scene>, f
 }
 
 fn assert_ideal(outcome: &Outcome, what: &str) {
-    for surface in (0..outcome.pipeline().eyes() as u16).map(SurfaceId) {
+    for surface in (0..outcome.pipeline().properties().eyes as u16).map(SurfaceId) {
         let ideal = outcome.ideal_picture(surface, Time::ZERO).expect("drawn");
         let picture = outcome.pipeline().picture(outcome.record(), surface).expect("shown");
         let background = picture.get_pixel(0, 0);

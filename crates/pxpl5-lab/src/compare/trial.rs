@@ -125,7 +125,7 @@ fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
 /// get the newest orientation at scan-out. All other pictures have the orientation of the pose for which they were
 /// drawn.
 fn turns_ms(outcome: &Outcome) -> Vec<f64> {
-    if outcome.pipeline().coverage() == Coverage::View {
+    if outcome.pipeline().properties().coverage == Coverage::View {
         return Budget::totals_ms(outcome);
     }
     outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()

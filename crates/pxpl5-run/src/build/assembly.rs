@@ -10,12 +10,11 @@ use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::keys::PipelineSettings;
 use crate::level::{Level, with_clocks_of_instructions};
-use crate::pipeline::{Pipeline, Setup};
+use crate::pipeline::{Pipeline, PipelineProperties, Setup};
 use crate::pipelines;
 use crate::registry::{DisplayEntry, PipelineEntry};
 use crate::scene_views::{SceneViews, hmd_on};
 use crate::views::ViewSource;
-use pphigs::DisplayList;
 use pxpl5_machine::{Machine, MachineConfig};
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
@@ -32,13 +31,13 @@ impl Experiment {
         let [red, green, blue] = self.scene.lighting().background;
         let background = u32::from_be_bytes([0, red, green, blue]);
         adapted.displays.iter_mut().for_each(|display| display.set_background(background));
-        let layout = self.pipeline.layout();
+        let PipelineProperties { eyes, layout, .. } = self.pipeline.properties();
         let config = match self.level {
             Level::Analytic => return Err(ExperimentError::Level),
             Level::Transaction => adapted,
             Level::Cycle => with_clocks_of_instructions(&adapted, &layout),
         };
-        let mut machine = Machine::new(&config, self.pipeline.eyes(), layout)?;
+        let mut machine = Machine::new(&config, eyes, layout)?;
         if self.level == Level::Cycle {
             machine.run_code();
         }
@@ -66,10 +65,10 @@ impl Experiment {
         preparation: Preparation,
     ) -> Result<(Setup, Option<Arc<HeadViews>>), ExperimentError> {
         let hmd = hmd_on(machine.record().display(), &self.hmd);
-        let eyes = self.pipeline.eyes();
+        let properties = self.pipeline.properties();
         let scene = self.pipeline.prepare(&self.scene, machine)?;
-        let list = display_list_for(&scene, self.pipeline.shading())?;
-        let list = Arc::new(DisplayList { is_single: self.pipeline.is_single(config), ..list });
+        let list = Arc::new(display_list_for(&scene, &properties, config)?);
+        let eyes = properties.eyes;
         // A tracker supplies the views, or the viewer follows the scene's own motion without any delay.
         let mut head = None;
         if let Some(tracked) = preparation.head.or_else(|| self.head.clone()) {
@@ -94,12 +93,12 @@ impl Experiment {
 /// The [`SettingError`] states the coverage of the display and the coverage of the pipeline.
 pub fn check_coverage(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), SettingError> {
     let Some(display) = config.displays.first() else { return Ok(()) };
-    let (shown, drawn) = (display.coverage(), pipeline.coverage());
+    let (shown, drawn) = (display.coverage(), pipeline.properties().coverage);
     if shown == drawn {
         return Ok(());
     }
     // The first entries of the lists that match serve as examples.
-    let matching = |entry: &PipelineEntry| (entry.build)(&PipelineSettings::default()).coverage() == shown;
+    let matching = |entry: &PipelineEntry| (entry.build)(&PipelineSettings::default()).properties().coverage == shown;
     let pipelines = pipelines::entries().into_iter().find(matching).map_or("none", |entry| entry.name);
     let matching = |entry: &DisplayEntry| (entry.config)().coverage() == drawn;
     let displays = displays().into_iter().find(matching).map_or("none", |entry| entry.name);

@@ -57,19 +57,19 @@ impl Experiment {
         let Some(head) = self.predicting_head() else { return Ok(Preparation::default()) };
         let dry_run = self.dry_run.clone().map_or_else(|| self.make_dry_run(head), Ok)?;
         let tuned = head.is_to_be_tuned().then(|| dry_run.tuned(head)).flatten();
-        let seen_times = (!self.pipeline.knows_when_seen()).then(|| dry_run.seen_times.clone());
+        let seen_times = (!self.pipeline.properties().knows_when_seen).then(|| dry_run.seen_times.clone());
         Ok(Preparation { seen_times, head: tuned.map(Arc::new) })
     }
 
     /// Returns the head if a run needs a dry run, because the firmware does not compute display times, or because the
     /// predictor is not tuned.
     fn predicting_head(&self) -> Option<&Arc<Head>> {
-        let needs = |head: &&Arc<Head>| !self.pipeline.knows_when_seen() || head.is_to_be_tuned();
+        let needs = |head: &&Arc<Head>| !self.pipeline.properties().knows_when_seen || head.is_to_be_tuned();
         self.head.as_ref().filter(|head| head.predicts()).filter(needs)
     }
 
     fn make_dry_run(&self, head: &Head) -> Result<Arc<DryRun>, ExperimentError> {
-        let dry_run = if self.pipeline.knows_when_seen() {
+        let dry_run = if self.pipeline.properties().knows_when_seen {
             self.short_dry_run(head)?
         } else {
             self.without_prediction(head, self.fields)?

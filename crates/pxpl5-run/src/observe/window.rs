@@ -53,7 +53,7 @@ impl Window {
             KeptRecords::Statistics => !experiment.traffic,
             KeptRecords::Recent => true,
         };
-        let forgets = may_discard && experiment.pipeline.can_discard_records();
+        let forgets = may_discard && experiment.pipeline.properties().can_discard_records;
         let samples = if forgets { KEPT_SAMPLES } else { usize::MAX };
         let tally = Tally::new(experiment.end(), field_ms(record), samples);
         let observer = experiment.observer.filter(|_| forgets && experiment.keep == KeptRecords::Statistics);

@@ -1,13 +1,13 @@
 use super::{late_regions, ntsc, samples};
 use crate::keys::PipelineSettings;
-use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup, Source};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use crate::result::picture_ends::PictureResult;
 use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, host, master, slave};
 use pphigs::{Share, TransformCost};
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, NamedTable, Record};
+use pxpl5_machine::{Arrival, LateRegion, Machine, NamedTable, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
@@ -54,7 +54,7 @@ impl Jitp {
     fn config(self, record: &Record, pixels: bool) -> Result<JitpConfig, SettingError> {
         let schedule =
             DrawingSchedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
-        config(self.name(), record, schedule, self.layout(), pixels)
+        config(self.name(), record, schedule, Layout::slats(), pixels)
     }
 
     fn is_middle(self, arrival: &Arrival) -> bool {
@@ -159,30 +159,24 @@ impl Pipeline for Jitp {
         vec![("strip_rows", KeyValue::Whole(self.strip_rows.into()))]
     }
 
-    fn eyes(&self) -> usize {
-        1
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::slats()
-    }
-
-    fn knows_when_seen(&self) -> bool {
-        true
-    }
-
-    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        None
+    fn properties(&self) -> PipelineProperties {
+        PipelineProperties {
+            knows_when_seen: true,
+            without_code: None,
+            has_one_pose: self.viewpoint == Viewpoint::Field,
+            can_discard_records: true,
+            ..PipelineProperties::new(
+                Layout::slats(),
+                "from the order of the middle strip (or of the field, where one view serves all of it), for which the newest pose is taken, to the scan of that strip",
+                "a picture is due every field, and in time if every strip arrives before the beam",
+            )
+        }
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let config = JitpConfig { aim: setup.aim, ..self.config(machine.record(), setup.pixels)? };
         load(machine, setup, &config);
         Ok(())
-    }
-
-    fn has_one_pose(&self) -> bool {
-        self.viewpoint == Viewpoint::Field
     }
 }
 
@@ -222,10 +216,6 @@ impl PictureRules for Jitp {
         times.filter(|times| video.retrace(times.picture.period_drawn_for().next()) <= end).collect()
     }
 
-    fn can_discard_records(&self) -> bool {
-        true
-    }
-
     fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         late_regions(display, record, end, |video, arrival| due(video, &arrival.target))
@@ -233,14 +223,6 @@ impl PictureRules for Jitp {
 
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        "from the order of the middle strip (or of the field, where one view serves all of it), for which the newest pose is taken, to the scan of that strip"
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "a picture is due every field, and in time if every strip arrives before the beam"
     }
 
     fn source(

@@ -4,7 +4,7 @@
 //! One graphics processor draws frames for a single eye and shows each frame when it is finished. The policy is called
 //! after TRANSFORM, so it receives the final number of primitives in every region.
 
-use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup};
 use crate::pipelines::{shading_value, whole_picture};
 use crate::result::picture_ends::PictureResult;
 use pphigs::{DisplayList, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages};
@@ -208,16 +208,15 @@ impl Pipeline for PolicyPipeline {
         vec![("shading", shading_value(self.shading)), ("policy", KeyValue::Text(self.policy.name().into()))]
     }
 
-    fn eyes(&self) -> usize {
-        1
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::rendering_control_phong()
-    }
-
-    fn shading(&self) -> Shading {
-        self.shading
+    fn properties(&self) -> PipelineProperties {
+        PipelineProperties {
+            shading: self.shading,
+            ..PipelineProperties::new(
+                Layout::rendering_control_phong(),
+                "from the start of TRANSFORM to the retrace at which the frame is swapped in",
+                "no frame is ever due: each is shown when it is finished",
+            )
+        }
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
@@ -229,7 +228,7 @@ impl Pipeline for PolicyPipeline {
             viewport: whole_picture(machine.record())?,
             shading: self.shading,
             binning: RegionBinning::Touched,
-            layout: self.layout(),
+            layout: Layout::rendering_control_phong(),
             pixels: setup.pixels,
         };
         let drawing = Drawing { ports, list: Arc::clone(&setup.list), picture, policy: Arc::clone(&self.policy) };
@@ -254,14 +253,6 @@ impl PictureRules for PolicyPipeline {
             layer: 0,
         });
         times.filter(|times| times.shown_at < end).collect()
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        "from the start of TRANSFORM to the retrace at which the frame is swapped in"
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "no frame is ever due: each is shown when it is finished"
     }
 }
 

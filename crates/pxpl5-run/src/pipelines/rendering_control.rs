@@ -1,11 +1,11 @@
 use super::{SHADING, region_has_room, shading_or, shading_value, swapped_in, whole_picture};
 use crate::keys::PipelineSettings;
-use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use image::RgbImage;
 use pphigs::{Picture, RegionBinning, Shading};
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, Machine, MachineConfig, Record};
+use pxpl5_machine::{Arrival, Machine, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
 use pxpl5_sim::{Span, Time};
@@ -86,7 +86,7 @@ impl RenderingControl {
             viewport: whole_picture(machine.record())?,
             shading: self.shading,
             binning: RegionBinning::Touched,
-            layout: self.layout(),
+            layout: Layout::rendering_control_phong(),
             pixels,
         };
         Ok(RenderingControlConfig {
@@ -95,7 +95,7 @@ impl RenderingControl {
             slaves: slaves.to_vec(),
             renderers: ports.renderers.clone(),
             drawn: Frames {
-                frame_buffers: ports.display().iter().copied().take(self.eyes()).collect(),
+                frame_buffers: ports.display().iter().copied().take(self.properties().eyes).collect(),
                 frame_buffer_ports: ports.display().to_vec(),
                 picture,
                 regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions()) as usize,
@@ -118,21 +118,19 @@ impl Pipeline for RenderingControl {
         vec![("mono", KeyValue::Flag(self.mono)), ("shading", shading_value(self.shading)), ("finished", finished)]
     }
 
-    fn eyes(&self) -> usize {
-        if self.mono { 1 } else { 2 }
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::rendering_control_phong()
-    }
-
-    fn shading(&self) -> Shading {
-        self.shading
-    }
-
-    /// Returns `None`, because i860 code exists for all work of this pipeline.
-    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        None
+    fn properties(&self) -> PipelineProperties {
+        PipelineProperties {
+            eyes: if self.mono { 1 } else { 2 },
+            shading: self.shading,
+            // i860 code exists for all work of this pipeline.
+            without_code: None,
+            can_discard_records: true,
+            ..PipelineProperties::new(
+                Layout::rendering_control_phong(),
+                "from the start of TRANSFORM of the frame's first eye on the first slave to the retrace at which the frame is swapped in",
+                "the time of COPY determines how often a frame is due: once in the number of periods that the pixels of all eyes need at a frame buffer's port, one eye at a time (two NTSC fields for a stereo pair); a frame is shown when it is swapped in",
+            )
+        }
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
@@ -160,14 +158,10 @@ impl Pipeline for RenderingControl {
 impl PictureRules for RenderingControl {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let stages = record.stages();
-        let frames = record.observation().frames(self.eyes()).into_iter();
+        let frames = record.observation().frames(self.properties().eyes).into_iter();
         let shown = frames.map(|(number, tick)| (PictureNumber::FIRST.after(number), record.tick(tick)));
         let shown = shown.filter(|(_, shown_at)| *shown_at < end);
         shown.filter_map(|(frame, at)| swapped_in(&stages, frame, at)).collect()
-    }
-
-    fn can_discard_records(&self) -> bool {
-        true
     }
 
     /// Returns the time of COPY for all eyes, one after the other, in whole display periods. For a stereo pair, COPY
@@ -177,14 +171,6 @@ impl PictureRules for RenderingControl {
         let ports = (record.ports().display().len() / surfaces.len().max(1)).max(1);
         let copies: Span = surfaces.iter().map(|surface| copy_span(record, surface, ports as u16)).sum();
         Some(record.display().period_at(Time(copies.0.saturating_sub(1))).next().0)
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        "from the start of TRANSFORM of the frame's first eye on the first slave to the retrace at which the frame is swapped in"
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "the time of COPY determines how often a frame is due: once in the number of periods that the pixels of all eyes need at a frame buffer's port, one eye at a time (two NTSC fields for a stereo pair); a frame is shown when it is swapped in"
     }
 
     fn copy_part(&self, arrival: &Arrival) -> u8 {

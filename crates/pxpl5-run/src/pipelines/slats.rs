@@ -1,6 +1,6 @@
 use super::{late_regions, ntsc, samples};
 use crate::keys::PipelineSettings;
-use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup, light_span};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use crate::result::picture_ends::PictureResult;
 use pphigs::{RegionBinning, Shading, Share};
@@ -119,8 +119,8 @@ impl Slats {
             frame_buffers: [ports.display()[0], ports.display()[1]],
             copy: self.copy,
             binning: self.binning,
-            shading: self.shading(),
-            layout: self.layout(),
+            shading: self.lighting.shading(),
+            layout: Layout::slats(),
             pixels,
         }
     }
@@ -146,35 +146,31 @@ impl Pipeline for Slats {
         all
     }
 
-    fn eyes(&self) -> usize {
-        2
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::slats()
-    }
-
-    fn shading(&self) -> Shading {
-        self.lighting.shading()
-    }
-
-    fn is_single(&self, config: &MachineConfig) -> bool {
-        let is_compiled = config.code.unwrap_or(CodeVersion::Compiled) == CodeVersion::Compiled;
-        is_compiled && self.binning == RegionBinning::All && self.lighting == SlatsLighting::Precomputed
-    }
-
-    fn code_use(&self) -> CodeUse {
-        match (self.lighting, self.binning) {
-            (SlatsLighting::Precomputed, RegionBinning::All) => CodeUse::Slats,
-            (SlatsLighting::Precomputed, _) => CodeUse::SlatsTouched,
-            (SlatsLighting::OnGp, _) => CodeUse::SlatsLit,
+    fn properties(&self) -> PipelineProperties {
+        PipelineProperties {
+            eyes: 2,
+            shading: self.lighting.shading(),
+            code_use: match (self.lighting, self.binning) {
+                (SlatsLighting::Precomputed, RegionBinning::All) => CodeUse::Slats,
+                (SlatsLighting::Precomputed, _) => CodeUse::SlatsTouched,
+                (SlatsLighting::OnGp, _) => CodeUse::SlatsLit,
+            },
+            without_code: (self.binning == RegionBinning::Boxes).then_some("no code bins by bounding boxes"),
+            can_discard_records: true,
+            // The latency is always one field, but not the time from the start of a field to the first copy.
+            compared_ms: |summary| summary.copy_begins_ms,
+            ..PipelineProperties::new(
+                Layout::slats(),
+                "from the retrace at which the newest view is taken and TRANSFORM starts to the retrace from which on the field is scanned out",
+                "a picture is due every field, and in time if every region arrives before its deadline; the deadline is the retrace, or for the bottom regions of a split copy the scan of their first line; with a backup, a late picture counts for the later retrace of its lines at which it is shown",
+            )
         }
     }
 
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         // A machine with times of code has those of the program that draws this variant.
         let has_times_of_code = config.gp == GpTiming::SLATS_1994;
-        let config = if has_times_of_code { config.with_times_of_code(self.code_use()) } else { config };
+        let config = if has_times_of_code { config.with_times_of_code(self.properties().code_use) } else { config };
         let Some(code) = self.code else { return config };
         // The fitted program of 1995 has no times of its own per pass and structure.
         if has_times_of_code && matches!(code, Code::Of1995) {
@@ -183,10 +179,6 @@ impl Pipeline for Slats {
         let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
         let gp = GpTiming { triangle_ns, sphere_ns, bin_entry_ns, ..config.gp };
         MachineConfig { gp, code: Some(code.version()), ..config }
-    }
-
-    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        (self.binning == RegionBinning::Boxes).then_some("no code bins by bounding boxes")
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
@@ -260,10 +252,6 @@ impl PictureRules for Slats {
         times.filter(evaluated).collect()
     }
 
-    fn can_discard_records(&self) -> bool {
-        true
-    }
-
     fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let due =
@@ -279,14 +267,6 @@ impl PictureRules for Slats {
     /// once, because the next field has the lines between them.
     fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightTimes {
         light_span(record, record.display().period_at(times.shown_at), 1)
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        "from the retrace at which the newest view is taken and TRANSFORM starts to the retrace from which on the field is scanned out"
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "a picture is due every field, and in time if every region arrives before its deadline; the deadline is the retrace, or for the bottom regions of a split copy the scan of their first line; with a backup, a late picture counts for the later retrace of its lines at which it is shown"
     }
 
     /// Returns 0 for the upper and 1 for the lower half of a split copy. The halves are timed separately.

@@ -127,7 +127,7 @@ impl Outcome {
 
     /// Returns a text that defines for this pipeline when a picture is due, and when it is in time.
     pub fn due_definition(&self) -> String {
-        format!("{}; {WINDOW_DEFINITION}", self.pipeline().due_definition())
+        format!("{}; {WINDOW_DEFINITION}", self.pipeline().properties().due_definition)
     }
 
     /// Returns the number of complete new pictures per second, over the result window.

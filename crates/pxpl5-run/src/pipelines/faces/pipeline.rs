@@ -6,9 +6,7 @@ use super::ideal::{All, IdealFaces};
 use super::keys::{FacePolicy, IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::objects::ByObjects;
 use super::plan::{Cycles, Full, Plan, Updates};
-use crate::head_views::HeadViews;
-use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
-use crate::pipelines::faces::history::middle_pixel;
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup};
 use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::pipelines::faces::segments::SegmentedScene;
@@ -24,10 +22,10 @@ use pxpl5_gp::Priority;
 use pxpl5_machine::{Attachment, HostLine, Machine, MachineConfig, Record, Shown};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::{HmdConfig, Scene};
+use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{KeyValue, SettingError};
-use pxpl5_sim::{Span, Time};
-use pxpl5_wire::display::{Aim, Coverage};
-use pxpl5_wire::{Body, CopyContent, Lines, NodeId, PeriodNumber, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
+use pxpl5_wire::display::Coverage;
+use pxpl5_wire::{Body, CopyContent, Lines, NodeId, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
 use rendering_control::cube::{Faces, WarpedLists};
 use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::any::Any;
@@ -149,8 +147,13 @@ impl FacePipeline {
         // A face is a square picture, divided into the usual regions.
         let grid = RegionGrid { width: texels, height: texels, region_width: REGION_SIZE, region_height: REGION_SIZE };
         let viewport = Viewport::new(grid, Lines::Frame).map_err(|error| error.at("arp.face_texels"))?;
-        let picture =
-            Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels };
+        let picture = Picture {
+            viewport,
+            shading: self.shading,
+            binning: RegionBinning::Touched,
+            layout: Layout::rendering_control_phong(),
+            pixels,
+        };
         // A display with packed texels takes one word a pixel, otherwise colour and depth are sent.
         let content = if display.format().words() == 1 { CopyContent::Packed } else { CopyContent::ColourAndDepth };
         if self.source == FaceSource::PixelPlanes {
@@ -280,20 +283,27 @@ impl Pipeline for FacePipeline {
         settings
     }
 
-    fn eyes(&self) -> usize {
-        1
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::rendering_control_phong()
-    }
-
-    fn shading(&self) -> Shading {
-        self.shading
-    }
-
-    fn coverage(&self) -> Coverage {
-        Coverage::Surroundings
+    fn properties(&self) -> PipelineProperties {
+        let is_ideal = self.source == FaceSource::Ideal;
+        // An ideal renderer uses no graphics processors. Moving vertices of warped cells takes no time at any level.
+        let is_warped = !is_ideal && self.policy == FacePolicy::CellsWarped;
+        PipelineProperties {
+            shading: self.shading,
+            coverage: Coverage::Surroundings,
+            without_code: is_warped.then_some("moving the vertices of warped cells (0 in the table)"),
+            knows_when_seen: is_ideal,
+            has_one_pose: false,
+            can_discard_records: true,
+            ..PipelineProperties::new(
+                Layout::rendering_control_phong(),
+                if is_ideal {
+                    "of translation: from the instant at which an update of any display memory is drawn, in no time, to the retrace at which it is swapped in"
+                } else {
+                    "of translation: from the start of TRANSFORM of an update of any display memory on the first slave to the retrace at which it is swapped in"
+                },
+                "an update is never due: until it is shown, the display shows the old faces in the right direction, from the old eye position",
+            )
+        }
     }
 
     /// Adapts the display to this variant. The adapted display accepts cube faces, and uses the variant's latch mode
@@ -301,7 +311,7 @@ impl Pipeline for FacePipeline {
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
         // Replace a display that takes no faces.
-        if config.displays.first().is_none_or(|display| display.coverage() != self.coverage()) {
+        if config.displays.first().is_none_or(|display| display.coverage() != Coverage::Surroundings) {
             let display = match self.source {
                 FaceSource::PixelPlanes => ArpConfig::MACHINE,
                 FaceSource::Ideal => ArpConfig::IDEAL,
@@ -338,14 +348,6 @@ impl Pipeline for FacePipeline {
         Ok(scene)
     }
 
-    /// Returns a description of work without i860 code: moving vertices of warped cells takes no time at any level.
-    ///
-    /// An ideal renderer uses no graphics processors and returns `None`.
-    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        let is_warped = self.source == FaceSource::PixelPlanes && self.policy == FacePolicy::CellsWarped;
-        is_warped.then_some("moving the vertices of warped cells (0 in the table)")
-    }
-
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         self.plug_orientations(machine, setup);
         if self.source == FaceSource::Ideal {
@@ -371,14 +373,6 @@ impl Pipeline for FacePipeline {
         }
         Ok(())
     }
-
-    fn has_one_pose(&self) -> bool {
-        false
-    }
-
-    fn knows_when_seen(&self) -> bool {
-        self.source == FaceSource::Ideal
-    }
 }
 
 impl PictureRules for FacePipeline {
@@ -398,40 +392,6 @@ impl PictureRules for FacePipeline {
         let mut pictures: Vec<PictureTimes> = ports.enumerate().flat_map(of_layer).collect();
         pictures.sort_by_key(|times| (times.shown_at, times.picture));
         pictures
-    }
-
-    fn can_discard_records(&self) -> bool {
-        true
-    }
-
-    /// Counts the fields since the first swap of any display memory, because each field is shown with its own latched
-    /// orientation.
-    fn turned_periods(&self, record: &Record, end: Time) -> u64 {
-        let first = record.observation().first_swap();
-        let after = record.display().period_at(end);
-        first.map_or(0, |first| after.since(first.min(after)))
-    }
-
-    fn turn_interval(&self, record: &Record, head: &HeadViews, aim: Aim, period: PeriodNumber) -> Option<Span> {
-        let (timing, [x, y]) = (OrientationTiming::of_record(record, aim)?, middle_pixel(record, period)?);
-        let (reports_until, aimed) = timing.orientation_of_pixel(head, x, y, period)?;
-        let measured = head.measured_at(head.report_by(reports_until)?)?;
-        Some(aimed.since(measured))
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        match self.source {
-            FaceSource::PixelPlanes => {
-                "of translation: from the start of TRANSFORM of an update of any display memory on the first slave to the retrace at which it is swapped in"
-            }
-            FaceSource::Ideal => {
-                "of translation: from the instant at which an update of any display memory is drawn, in no time, to the retrace at which it is swapped in"
-            }
-        }
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "an update is never due: until it is shown, the display shows the old faces in the right direction, from the old eye position"
     }
 }
 
