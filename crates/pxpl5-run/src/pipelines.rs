@@ -31,7 +31,7 @@ use std::any::Any;
 pub(crate) fn entries() -> Vec<PipelineEntry> {
     let mut all = vec![rendering_control::ENTRY, slats::ENTRY, frameless::ENTRY];
     all.extend(jitp::ENTRIES);
-    all.extend(faces::ENTRIES);
+    all.extend(faces::ENTRIES.into_iter().flatten());
     all
 }
 

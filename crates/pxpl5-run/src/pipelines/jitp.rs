@@ -42,13 +42,7 @@ impl Jitp {
 
     /// Returns the pipelines of all viewpoints, each without and with racing.
     pub fn all() -> Vec<Self> {
-        let viewpoints = [
-            Viewpoint::Field,
-            Viewpoint::Strip,
-            Viewpoint::Dual(Interpolation::Screen),
-            Viewpoint::Dual(Interpolation::View),
-        ];
-        viewpoints.iter().flat_map(|v| [false, true].map(|racing| Self::new(*v, racing))).collect()
+        VARIANTS.iter().map(|(_, viewpoint, racing, _)| Self::new(*viewpoint, *racing)).collect()
     }
 
     fn config(self, record: &Record, pixels: bool) -> Result<JitpConfig, SettingError> {
@@ -143,16 +137,8 @@ struct Arrived {
 
 impl Pipeline for Jitp {
     fn name(&self) -> &'static str {
-        match (self.viewpoint, self.racing) {
-            (Viewpoint::Field, false) => "jitp-field",
-            (Viewpoint::Field, true) => "jitp-field-racing",
-            (Viewpoint::Strip, false) => "jitp-scanline",
-            (Viewpoint::Strip, true) => "jitp-scanline-racing",
-            (Viewpoint::Dual(Interpolation::Screen), false) => "jitp-dual-screen",
-            (Viewpoint::Dual(Interpolation::Screen), true) => "jitp-dual-screen-racing",
-            (Viewpoint::Dual(Interpolation::View), false) => "jitp-dual-view",
-            (Viewpoint::Dual(Interpolation::View), true) => "jitp-dual-view-racing",
-        }
+        let is_own = |(_, viewpoint, racing, _): &&Variant| (*viewpoint, *racing) == (self.viewpoint, self.racing);
+        VARIANTS.iter().find(is_own).map_or("", |(name, ..)| name)
     }
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
@@ -260,18 +246,57 @@ const KEYS: &[Key] = &[Key::new("strip_rows", "height of a strip", KeyValues::Wh
     .with_unit("lines")
     .with_default("8 for a field, 1 for lines")];
 
-const fn entry(
-    name: &'static str,
-    about: &'static str,
-    build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
-) -> PipelineEntry {
+/// Name of a variant, the choice of the instants for which lines are drawn, true if strips arrive just before the beam,
+/// and a description.
+type Variant = (&'static str, Viewpoint, bool, &'static str);
+
+const SCREEN: Viewpoint = Viewpoint::Dual(Interpolation::Screen);
+const VIEW: Viewpoint = Viewpoint::Dual(Interpolation::View);
+const RACING: &str = "the same, just before the beam (JITP)";
+
+const VARIANTS: [Variant; 8] = [
+    (
+        "jitp-field",
+        Viewpoint::Field,
+        false,
+        "a field drawn for the instant of its middle, one field ahead of the beam (JITP)",
+    ),
+    (
+        "jitp-field-racing",
+        Viewpoint::Field,
+        true,
+        "a field drawn for the instant of its middle, just before the beam (JITP)",
+    ),
+    (
+        "jitp-scanline",
+        Viewpoint::Strip,
+        false,
+        "every line drawn for its own instant, one field ahead of the beam (JITP)",
+    ),
+    (
+        "jitp-scanline-racing",
+        Viewpoint::Strip,
+        true,
+        "every line drawn for its own instant, just before the beam (JITP)",
+    ),
+    ("jitp-dual-screen", SCREEN, false, "lines between two views of a field, interpolated on the screen (JITP)"),
+    ("jitp-dual-screen-racing", SCREEN, true, RACING),
+    ("jitp-dual-view", VIEW, false, "lines between two views of a field, interpolated before the projection (JITP)"),
+    ("jitp-dual-view-racing", VIEW, true, RACING),
+];
+
+pub(super) const ENTRIES: [PipelineEntry; 8] =
+    [entry::<0>(), entry::<1>(), entry::<2>(), entry::<3>(), entry::<4>(), entry::<5>(), entry::<6>(), entry::<7>()];
+
+const fn entry<const VARIANT: usize>() -> PipelineEntry {
+    let (name, .., about) = VARIANTS[VARIANT];
     PipelineEntry {
         name,
         family: "jitp",
         about,
         preset: "small-hmd",
         keys: KEYS,
-        build,
+        build: build::<VARIANT>,
         limit: |_| LimitCriterion { goal: Goal::NoMissedRetrace, scene: TestScene::FullScreen, fields: 24 },
         tables: TABLES,
         closed_form: None,
@@ -279,40 +304,9 @@ const fn entry(
     }
 }
 
-fn build(viewpoint: Viewpoint, racing: bool, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
+fn build<const VARIANT: usize>(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
+    let (_, viewpoint, racing, _) = VARIANTS[VARIANT];
     let jitp = Jitp::new(viewpoint, racing);
     let strip_rows = settings.whole("strip_rows").map_or(jitp.strip_rows, |rows| rows as u32);
     Arc::new(Jitp { strip_rows, ..jitp })
 }
-
-const SCREEN: Viewpoint = Viewpoint::Dual(Interpolation::Screen);
-const VIEW: Viewpoint = Viewpoint::Dual(Interpolation::View);
-
-pub(super) const ENTRIES: [PipelineEntry; 8] = [
-    entry(
-        "jitp-field",
-        "a field drawn for the instant of its middle, one field ahead of the beam (JITP)",
-        |settings| build(Viewpoint::Field, false, settings),
-    ),
-    entry(
-        "jitp-field-racing",
-        "a field drawn for the instant of its middle, just before the beam (JITP)",
-        |settings| build(Viewpoint::Field, true, settings),
-    ),
-    entry("jitp-scanline", "every line drawn for its own instant, one field ahead of the beam (JITP)", |settings| {
-        build(Viewpoint::Strip, false, settings)
-    }),
-    entry("jitp-scanline-racing", "every line drawn for its own instant, just before the beam (JITP)", |settings| {
-        build(Viewpoint::Strip, true, settings)
-    }),
-    entry("jitp-dual-screen", "lines between two views of a field, interpolated on the screen (JITP)", |settings| {
-        build(SCREEN, false, settings)
-    }),
-    entry("jitp-dual-screen-racing", "the same, just before the beam (JITP)", |settings| build(SCREEN, true, settings)),
-    entry(
-        "jitp-dual-view",
-        "lines between two views of a field, interpolated before the projection (JITP)",
-        |settings| build(VIEW, false, settings),
-    ),
-    entry("jitp-dual-view-racing", "the same, just before the beam (JITP)", |settings| build(VIEW, true, settings)),
-];

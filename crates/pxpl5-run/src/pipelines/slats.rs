@@ -138,11 +138,11 @@ impl Pipeline for Slats {
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
         let mut all = vec![
-            ("copy", name(&COPIES, &self.copy)),
-            ("binning", name(&BINNINGS, &self.binning)),
-            ("lighting", name(&LIGHTINGS, &self.lighting)),
+            ("copy", name(&CopySchedule::ALL, self.copy)),
+            ("binning", name(&RegionBinning::ALL, self.binning)),
+            ("lighting", name(&SlatsLighting::ALL, self.lighting)),
         ];
-        all.extend(self.code.map(|code| ("code", name(&CODES, &code))));
+        all.extend(self.code.map(|code| ("code", name(&Code::ALL, code))));
         all
     }
 
@@ -332,17 +332,8 @@ fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
     if before_retrace { retrace } else { video.reaches(target, field).unwrap_or(retrace) }
 }
 
-const COPIES: [(&str, CopySchedule); 3] = CopySchedule::ALL;
-const BINNINGS: [(&str, RegionBinning); 3] = RegionBinning::ALL;
-const LIGHTINGS: [(&str, SlatsLighting); 2] = SlatsLighting::ALL;
-const CODES: [(&str, Code); 3] = Code::ALL;
-
-fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> KeyValue {
-    KeyValue::Name(choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name))
-}
-
-fn chosen<T: Copy>(choices: &[(&'static str, T)], name: Option<&str>) -> Option<T> {
-    choices.iter().find(|(choice, _)| Some(*choice) == name).map(|(_, value)| *value)
+fn name<T: PartialEq>(choices: &[(&'static str, T)], value: T) -> KeyValue {
+    KeyValue::Name(choices.iter().find(|(_, choice)| *choice == value).map_or("", |(name, _)| name))
 }
 
 pub(super) const ENTRY: PipelineEntry = PipelineEntry {
@@ -389,10 +380,10 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
 fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     let split = Slats::split();
     Arc::new(Slats {
-        copy: chosen(&COPIES, settings.name("copy")).unwrap_or(split.copy),
-        binning: chosen(&BINNINGS, settings.name("binning")).unwrap_or(split.binning),
-        lighting: chosen(&LIGHTINGS, settings.name("lighting")).unwrap_or(split.lighting),
-        code: chosen(&CODES, settings.name("code")),
+        copy: settings.chosen("copy").unwrap_or(split.copy),
+        binning: settings.chosen("binning").unwrap_or(split.binning),
+        lighting: settings.chosen("lighting").unwrap_or(split.lighting),
+        code: settings.chosen("code"),
     })
 }
 
@@ -401,7 +392,7 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
 /// If every clump (group of triangles) goes to all regions, the test scene has full-screen triangles. Otherwise the
 /// test scene has small triangles.
 fn limit(settings: &PipelineSettings) -> LimitCriterion {
-    let touched = settings.name("binning") == Some(BINNINGS[1].0);
+    let touched = settings.chosen("binning") == Some(RegionBinning::Touched);
     let scene = if touched { TestScene::Typical } else { TestScene::FullScreen };
     LimitCriterion { goal: Goal::NoMissedRetrace, scene, fields: 16 }
 }

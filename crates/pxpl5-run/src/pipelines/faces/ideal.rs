@@ -85,8 +85,7 @@ pub(super) struct All {
 
 impl DuePolicy for All {
     fn begin(&mut self, _: &Updates, _: PictureNumber, now: Time) -> VecDeque<Due> {
-        let structures = Arc::clone(&self.structures);
-        [Due { memory: 0, together: 0, structures, at: now, view: None, warp: None }].into()
+        [Due::newest(Arc::clone(&self.structures), now)].into()
     }
 }
 

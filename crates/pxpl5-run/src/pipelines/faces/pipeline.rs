@@ -3,13 +3,14 @@
 
 use super::cells::ByCells;
 use super::ideal::{All, IdealFaces};
-use super::keys::{FacePolicy, IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
+use super::keys::{FacePolicy, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::objects::ByObjects;
-use super::plan::{Cycles, Full, Plan, Updates};
+use super::plan::{Cycles, DuePolicy, Plan, Updates, full};
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup};
 use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::pipelines::faces::segments::SegmentedScene;
+use crate::pipelines::rendering_control::{load_programs, with_boards};
 use crate::pipelines::{region_has_room, shading_value, swapped_in};
 use crate::result::picture_ends::PictureResult;
 use crate::views::ViewSource;
@@ -18,7 +19,6 @@ use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Lens
 use glam::{Mat4, Vec4};
 use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::Priority;
 use pxpl5_machine::{Attachment, HostLine, Machine, MachineConfig, Record, Shown};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::{HmdConfig, Scene};
@@ -27,7 +27,6 @@ use pxpl5_sim::parameters::{KeyValue, SettingError};
 use pxpl5_wire::display::Coverage;
 use pxpl5_wire::{Body, CopyContent, Lines, NodeId, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
 use rendering_control::cube::{Faces, WarpedLists};
-use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -125,22 +124,6 @@ impl FacePipeline {
         }
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig<Faces>, SettingError> {
-        let ports = machine.ports();
-        // The first GP is the master, and all others are slaves.
-        let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
-        if slaves.is_empty() {
-            return Err(too_few_gps(1));
-        }
-        Ok(RenderingControlConfig {
-            host: ports.host,
-            master: *master,
-            slaves: slaves.to_vec(),
-            renderers: ports.renderers.clone(),
-            drawn: self.faces(machine, pixels)?,
-        })
-    }
-
     fn faces(self, machine: &Machine, pixels: bool) -> Result<Faces, SettingError> {
         let display = display_of(machine.record())?.config();
         let texels = display.timing.face_texels as u32;
@@ -172,30 +155,25 @@ impl FacePipeline {
         // An ideal renderer has no delay, so its views are predicted for the next field.
         let seen_next = (self.source == FaceSource::Ideal).then_some(scan);
         let updates = Updates::new(setup, seen_next, &notes, projection, display.timing.display_memories as usize);
-        if self.policy == FacePolicy::Full && self.source == FaceSource::Ideal {
-            let structures = vec![true; setup.list.structures.len()].into();
-            let mut cycles = Cycles::new(updates, scan, All { structures });
-            return Ok(Box::new(move |number, now| cycles.next(number, now)));
-        }
-        if self.policy == FacePolicy::Full {
-            let mut full = Full::new(updates);
-            return Ok(Box::new(move |number, now| full.next(number, now)));
+        let structures = vec![true; setup.list.structures.len()].into();
+        if self.policy == FacePolicy::Full && self.source == FaceSource::PixelPlanes {
+            return Ok(full(updates, structures));
         }
         // Other policies distribute structures over several memories and work in cycles.
-        let timing =
-            PriorityTiming { memories: display.timing.display_memories, ..priority_timing(machine.record().config())? };
-        if self.policy == FacePolicy::Objects {
-            let policy = ByObjects::new(&setup.list, scan, &timing);
-            let mut cycles = Cycles::new(updates, scan, policy);
-            return Ok(Box::new(move |number, now| cycles.next(number, now)));
-        }
-        // Without warping, cells use a falloff of `None`.
-        let falloff = if self.policy == FacePolicy::CellsWarped { self.falloff } else { Falloff::None };
-        let cut: Option<&SegmentedScene> = machine.record().attached();
-        let cells = cut.map_or_else(Arc::default, |cut| Arc::clone(&cut.cells));
-        let policy = ByCells::new(&updates, cells, &timing, falloff);
-        let mut cycles = Cycles::new(updates, scan, policy);
-        Ok(Box::new(move |number, now| cycles.next(number, now)))
+        let memories = display.timing.display_memories;
+        let timing = || priority_timing(machine.record().config()).map(|timing| PriorityTiming { memories, ..timing });
+        let policy: Box<dyn DuePolicy> = match self.policy {
+            FacePolicy::Full => Box::new(All { structures }),
+            FacePolicy::Objects => Box::new(ByObjects::new(&setup.list, scan, &timing()?)),
+            FacePolicy::Cells | FacePolicy::CellsWarped => {
+                // Without warping, cells use a falloff of `None`.
+                let falloff = if self.policy == FacePolicy::CellsWarped { self.falloff } else { Falloff::None };
+                let cut: Option<&SegmentedScene> = machine.record().attached();
+                let cells = cut.map_or_else(Arc::default, |cut| Arc::clone(&cut.cells));
+                Box::new(ByCells::new(&updates, cells, &timing()?, falloff))
+            }
+        };
+        Ok(Cycles::plan(updates, scan, policy))
     }
 
     const fn has_cells(self) -> bool {
@@ -207,10 +185,6 @@ fn priority_timing(config: &MachineConfig) -> Result<PriorityTiming, SettingErro
     let timing = config.firmware_table().copied().unwrap_or(PriorityTiming::PAPERS);
     timing.check()?;
     Ok(timing)
-}
-
-fn too_few_gps(found: u64) -> SettingError {
-    SettingError::limits("n_gps of faces (a master and slaves)", (2, 1_000), found)
 }
 
 fn display_of(record: &Record) -> Result<&AddressRecalculationPipeline, SettingError> {
@@ -258,12 +232,8 @@ impl HostLine for OrientationLine {
 
 impl Pipeline for FacePipeline {
     fn name(&self) -> &'static str {
-        let [field, line, pixel] = self.names();
-        match self.latch {
-            Latch::Field => field,
-            Latch::Line => line,
-            Latch::Pixel => pixel,
-        }
+        let row = if self.source == FaceSource::Ideal { FacePolicy::ALL.len() } else { self.policy as usize };
+        NAMES[row][self.latch as usize]
     }
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
@@ -353,24 +323,12 @@ impl Pipeline for FacePipeline {
         if self.source == FaceSource::Ideal {
             return self.plug_ideal_source(machine, setup);
         }
-        let config = self.config(machine, setup.pixels)?;
+        let config = with_boards(machine, "faces", || self.faces(machine, setup.pixels))?;
         // All slaves share recent views, because each slave transforms for the same faces.
         let mut list = matte(&setup.list);
         list.recent = RecentViews::keeping(VIEWS_AT_A_TIME);
-        let list = Arc::new(list);
-        let foreground = Priority::Foreground;
         let plan = self.plan(machine, setup)?;
-        let gp = machine.processor(config.host, foreground);
-        machine.load(config.host, foreground, Box::pin(host(gp, config.clone(), setup.host, plan)));
-        let gp = machine.processor(config.master, foreground);
-        machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));
-        // Each slave gets its share of the triangles.
-        for (index, node) in config.slaves.iter().enumerate() {
-            let gp = machine.processor(*node, foreground);
-            for (level, program) in slave(&gp, &config, config.share(&list, index), index) {
-                machine.load(*node, level, Box::pin(program));
-            }
-        }
+        load_programs(machine, &config, setup.host, &Arc::new(list), plan);
         Ok(())
     }
 }
@@ -396,13 +354,6 @@ impl PictureRules for FacePipeline {
 }
 
 impl FacePipeline {
-    const fn names(self) -> [&'static str; 3] {
-        match self.source {
-            FaceSource::PixelPlanes => NAMES[self.policy as usize],
-            FaceSource::Ideal => IDEAL_NAMES,
-        }
-    }
-
     /// Adds the connection that carries orientations from the host to the display. Every renderer of faces needs this
     /// connection.
     fn plug_orientations(self, machine: &mut Machine, setup: &Setup) {

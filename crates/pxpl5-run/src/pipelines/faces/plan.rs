@@ -105,42 +105,27 @@ pub(super) struct Due {
     pub(super) warp: Option<FaceWarp>,
 }
 
+impl Due {
+    /// Returns an update of the only display memory, which contains `structures` and is drawn from the newest view.
+    pub(super) const fn newest(structures: Arc<[bool]>, at: Time) -> Self {
+        Self { memory: 0, together: 0, structures, at, view: None, warp: None }
+    }
+}
+
 pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
     let matrix = world_to_eye.as_dmat4();
     -(DMat3::from_mat4(matrix).transpose() * matrix.w_axis.truncate())
 }
 
-/// A plan for a single display memory. Each update redraws all structures. The next update begins when the previous
-/// update ends.
-pub(super) struct Full {
-    updates: Updates,
-    structures: Arc<[bool]>,
-}
-
-impl Full {
-    pub(super) fn new(updates: Updates) -> Self {
-        let structures = vec![true; updates.setup.list.structures.len()].into();
-        Self { updates, structures }
-    }
-
-    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction<FaceUpdate> {
-        match self.updates.setup.frame_start(now) {
-            None => HostAction::Nothing,
-            Some(start) if start > now => HostAction::Wait(start),
-            // The host is ready: request a redraw of everything.
-            Some(_) => {
-                let due = Due {
-                    memory: 0,
-                    together: 0,
-                    structures: Arc::clone(&self.structures),
-                    at: now,
-                    view: None,
-                    warp: None,
-                };
-                HostAction::Send(self.updates.of_memory(number, now, &due))
-            }
-        }
-    }
+/// Returns a plan for a single display memory. Each update redraws all structures. The next update begins when the
+/// previous update ends.
+pub(super) fn full(mut updates: Updates, structures: Arc<[bool]>) -> Plan {
+    Box::new(move |number, now| match updates.setup.frame_start(now) {
+        None => HostAction::Nothing,
+        Some(start) if start > now => HostAction::Wait(start),
+        // The host is ready: request a redraw of everything.
+        Some(_) => HostAction::Send(updates.of_memory(number, now, &Due::newest(Arc::clone(&structures), now))),
+    })
 }
 
 pub(super) trait DuePolicy {
@@ -154,20 +139,21 @@ pub(super) trait DuePolicy {
 /// A cycle begins when all display memories of the previous cycle have been sent, but never in the field in which the
 /// previous cycle began. The selected memories are sent in ascending order. On a machine that is fast enough, each
 /// cycle lasts one field and begins with the field.
-pub(super) struct Cycles<P> {
+pub(super) struct Cycles {
     updates: Updates,
     scan: FaceScan,
-    policy: P,
+    policy: Box<dyn DuePolicy>,
     pending: VecDeque<Due>,
     began: Option<PeriodNumber>,
 }
 
-impl<P: DuePolicy> Cycles<P> {
-    pub(super) const fn new(updates: Updates, scan: FaceScan, policy: P) -> Self {
-        Self { updates, scan, policy, pending: VecDeque::new(), began: None }
+impl Cycles {
+    pub(super) fn plan(updates: Updates, scan: FaceScan, policy: Box<dyn DuePolicy>) -> Plan {
+        let mut cycles = Self { updates, scan, policy, pending: VecDeque::new(), began: None };
+        Box::new(move |number, now| cycles.next(number, now))
     }
 
-    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction<FaceUpdate> {
+    fn next(&mut self, number: PictureNumber, now: Time) -> HostAction<FaceUpdate> {
         if self.pending.is_empty() {
             let field = self.scan.field_at(now);
             if self.began.is_some_and(|began| began >= field) {
