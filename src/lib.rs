@@ -180,7 +180,7 @@ pub mod run {
 pub mod measure {
     pub use pxpl5_measure::{
         FacesReport, GpUtilisation, MemoryReport, PICTURES_FOLLOWED, PortShare, PortUtilisation, RendererUtilisation,
-        RingUtilisation, RotationPart, Shares, Vdrt, latency_by_surface, latency_parts, pixel_errors, program, screen,
+        RingUtilisation, RotationPart, Shares, latency_by_surface, pixel_errors, program, screen,
     };
 }
 

@@ -63,21 +63,22 @@ impl Budget {
             return Self::default();
         }
         let n: u64 = with_pictures.iter().map(|budget| budget.n).sum();
-        // A single run has the weight 1, so its means stay the same to the last bit.
-        let mean = |of: fn(&Self) -> f64| -> f64 {
+        let mean = |of: &dyn Fn(&Self) -> f64| -> f64 {
             with_pictures.iter().map(|budget| of(budget) * (budget.n as f64 / n as f64)).sum()
         };
-        Self {
-            tracking_ms: mean(|budget| budget.tracking_ms),
-            waiting_ms: mean(|budget| budget.waiting_ms),
-            sending_ms: mean(|budget| budget.sending_ms),
-            drawing_ms: mean(|budget| budget.drawing_ms),
-            showing_ms: mean(|budget| budget.showing_ms),
-            scanning_ms: mean(|budget| budget.scanning_ms),
-            lighting_ms: mean(|budget| budget.lighting_ms),
-            total_ms: mean(|budget| budget.total_ms),
-            n,
-        }
+        let means = std::array::from_fn(|stage| mean(&|budget| budget.stages_ms()[stage]));
+        Self { total_ms: mean(&|budget| budget.total_ms), ..Self::of_stages(means, n) }
+    }
+
+    const fn stages_ms(&self) -> [f64; STAGES] {
+        let Self { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms, .. } = *self;
+        [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms]
+    }
+
+    fn of_stages(means: [f64; STAGES], n: u64) -> Self {
+        let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms] = means;
+        let total_ms = means.iter().sum();
+        Self { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms, total_ms, n }
     }
 }
 
@@ -150,10 +151,7 @@ impl BudgetSum {
 
     pub(crate) fn result(self) -> Budget {
         let n = self.stages_ms[0].count();
-        let means = self.stages_ms.map(|samples| samples.statistics().mean);
-        let total_ms = means.iter().sum();
-        let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms] = means;
-        Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms, total_ms, n }
+        Budget::of_stages(self.stages_ms.map(|samples| samples.statistics().mean), n)
     }
 }
 

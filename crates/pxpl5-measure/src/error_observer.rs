@@ -5,7 +5,7 @@ use crate::errors::{CENTRE, FieldMisregistration, PixelErrors, Showing, grid, la
 use crate::eye_report::{Device, EyeReport, EyeSum};
 use crate::moved::{Moved, moved};
 use crate::raster::{offset, pose_of_field};
-use crate::registration::{Evaluated, Evaluator, middle};
+use crate::registration::{Evaluated, Evaluator, Lost, middle};
 use crate::reproject::Move;
 use crate::reprojector::Reprojector;
 use crate::rows::Rows;
@@ -286,7 +286,7 @@ impl Evaluation {
         let (content, drawn) = match found {
             Moved::Shows(content, drawn) => (content, drawn),
             Moved::NotComplete(seen) => return self.error(pixel, &seen, collected),
-            Moved::Beyond | Moved::Hidden => {
+            Moved::Lost(_) => {
                 collected.errors.unfilled += 1;
                 return self.error(pixel, &self.shown.seen(run, pixel.place, field, pixel.begins), collected);
             }
@@ -346,8 +346,9 @@ impl Evaluation {
                     let Some(newest) = reprojector.newest(display, [x, y]).filter(|_| has_ray) else { continue };
                     let now = (Warp::Depth, &newest.pose);
                     match moved((&self.evaluator, &self.shown, run), now, [x, y], field, at) {
+                        Moved::Lost(lost) => eye.add_pixel(lost == Lost::Beyond, lost == Lost::Hidden),
+                        Moved::Shows(..) => eye.add_pixel(false, false),
                         Moved::NotComplete(_) => {}
-                        found => eye.add_pixel(matches!(found, Moved::Beyond), matches!(found, Moved::Hidden)),
                     }
                 }
                 Content::Reprojected(reprojector) => {

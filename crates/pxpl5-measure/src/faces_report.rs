@@ -1,7 +1,8 @@
 //! Report of an address recalculation display, as numbers.
 
+use crate::head_results::HeadResults;
 use crate::step_observer::Steps;
-use crate::turn_observer::{RotationPart, Turns};
+use crate::turn_observer::RotationPart;
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
 use pxpl5_run::{Outcome, Statistics};
 use serde::Serialize;
@@ -69,7 +70,7 @@ impl FacesReport {
     pub const SCHEMA: &'static str = "pxpl5-arp/1";
 
     /// Returns the report of a run, or `None` if the run's display is not an address recalculation display.
-    pub fn of(outcome: &Outcome) -> Option<Self> {
+    pub(crate) fn of(outcome: &Outcome, results: &HeadResults) -> Option<Self> {
         let display: &AddressRecalculationPipeline = outcome.record().display_of_kind()?;
         let timing = &display.config().timing;
         // A display that lacks a counter has counted nothing.
@@ -77,8 +78,7 @@ impl FacesReport {
             let counters = outcome.record().display().counters();
             counters.iter().find(|counter| counter.name == name).map_or(0, |counter| counter.count)
         };
-        let turns = Turns::of(outcome);
-        let steps = Steps::of(outcome);
+        let HeadResults { turns, steps, .. } = results;
         let memories = outcome.display_memories().iter().enumerate();
         Some(Self {
             schema: Self::SCHEMA,
@@ -89,7 +89,7 @@ impl FacesReport {
             matrix_refused: counted("matrices refused"),
             memories: memories.map(|(k, memory)| MemoryReport::of(outcome, (k, memory), steps.get(k))).collect(),
             rotation_latency_ms: turns.latency_ms,
-            rotation_latency_parts_ms: turns.parts_ms,
+            rotation_latency_parts_ms: turns.parts_ms.clone(),
         })
     }
 }

@@ -138,12 +138,12 @@ pub(crate) struct Evaluated {
     pub(crate) is_behind: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Warped {
-    Seen(Content, DVec2),
-    /// No content, because the content lies beyond the edge of the drawn picture.
+/// Reason why the last picture does not have the content of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lost {
+    /// The content lies beyond the edge of the last picture.
     Beyond,
-    /// No content, because a nearer object hides the content in the drawn picture.
+    /// Another object hid the content in the last picture.
     Hidden,
 }
 
@@ -153,17 +153,15 @@ const NEARER: f64 = 1e-4;
 impl Evaluator {
     /// Returns the content at the screen position `place`, after each pixel of a picture was moved by its depth to the
     /// pose `now`.
-    pub(crate) fn warped(&self, drawn: &Moment, now: &Pose, place: DVec2) -> Warped {
+    pub(crate) fn warped(&self, drawn: &Moment, now: &Pose, place: DVec2) -> Result<(Content, DVec2), Lost> {
         let ahead = now.orientation * self.direction(place);
         let met = self.contents.met(now.position, ahead, drawn.objects_at);
-        let Some(content) = met.or_else(|| self.on_background(drawn, now, ahead)) else { return Warped::Beyond };
+        let content = met.or_else(|| self.on_background(drawn, now, ahead)).ok_or(Lost::Beyond)?;
         let point = drawn.pose.view_of(self.contents.place(&content, drawn.objects_at));
-        let Some(source) = self.view.project(point).filter(|source| self.view.contains(*source)) else {
-            return Warped::Beyond;
-        };
+        let source = self.view.project(point).filter(|source| self.view.contains(*source)).ok_or(Lost::Beyond)?;
         let before = self.contents.place(&self.met(drawn, source), drawn.objects_at);
         let is_hidden = -drawn.pose.view_of(before).z < -point.z * (1.0 - NEARER);
-        if is_hidden { Warped::Hidden } else { Warped::Seen(content, source) }
+        if is_hidden { Err(Lost::Hidden) } else { Ok((content, source)) }
     }
 
     /// Returns the depth of the content at a position of a picture, in metres along the axis of the view.
