@@ -68,9 +68,9 @@ impl CriticalPath {
     /// Returns the chain of waits of the last complete pictures of a run so far. Returns `None` before the first
     /// complete picture.
     pub fn so_far(run: &ObservedRun<'_>) -> Option<Self> {
-        let is_on_screen = |times: &&PictureTimes| times.is_shown() && times.shown_at <= run.end();
-        let all: Vec<&PictureTimes> = run.pictures().iter().filter(is_on_screen).collect();
-        Self::of_last(run.record(), &all)
+        let is_on_screen = |times: &&PictureTimes| times.is_shown() && times.shown_at <= run.end;
+        let all: Vec<&PictureTimes> = run.pictures.iter().filter(is_on_screen).collect();
+        Self::of_last(run.record, &all)
     }
 
     fn of_last(record: &Record, all: &[&PictureTimes]) -> Option<Self> {

@@ -284,7 +284,7 @@ impl Stepper {
     #[getter]
     fn shown(&self, py: Python<'_>) -> PyResult<usize> {
         self.thread
-            .execute(py, |stepper, _| stepper.observed_run().pictures().iter().filter(|times| times.is_shown()).count())
+            .execute(py, |stepper, _| stepper.observed_run().pictures.iter().filter(|times| times.is_shown()).count())
     }
 
     /// Runs to the end of the experiment and returns the outcome, which equals the outcome of a run without steps.

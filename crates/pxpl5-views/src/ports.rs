@@ -51,8 +51,8 @@ fn has_more_ports(display: &dyn Display) -> bool {
 /// Returns the pictures that a port has shown, in the order in which the pictures were begun. A port shows each picture
 /// from one swap to the port's next swap.
 pub(crate) fn shown(run: &ObservedRun<'_>, node: NodeId) -> Vec<ShownPicture> {
-    let shown = run.record().shown_by(node);
-    let ends = shown.iter().skip(1).map(|next| next.at).chain([run.end()]);
+    let shown = run.record.shown_by(node);
+    let ends = shown.iter().skip(1).map(|next| next.at).chain([run.end]);
     let all = shown.iter().zip(ends);
     all.map(|(shown, end)| ShownPicture { picture: shown.picture, begin: shown.at, end }).collect()
 }

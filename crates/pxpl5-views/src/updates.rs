@@ -3,7 +3,7 @@
 use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;
 use pxpl5_run::{ObservedRun, PictureTimes};
-use pxpl5_sim::Time;
+use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 
 /// The updates (head poses with edits) that the host sent in a run.
@@ -25,7 +25,7 @@ struct Received {
 impl Updates {
     pub(crate) fn of(run: &ObservedRun<'_>, stages: &[StageSpan]) -> Self {
         let sends = stages.iter().filter(|span| span.stage == Stage::Send);
-        let receive_span = run.receive_span();
+        let receive_span = Span::from_ns(run.experiment.config().gp.message_ns);
         let mut received: Vec<Received> =
             sends.filter_map(|send| Some(Received { at: send.end? + receive_span, update: send.picture })).collect();
         received.sort_unstable();
@@ -48,6 +48,6 @@ impl Updates {
 
 /// Returns true if the host samples the poses of pictures. Otherwise a graphics processor samples them.
 fn host_samples(run: &ObservedRun<'_>) -> bool {
-    let host = run.record().ports().host;
-    run.observation().marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host)
+    let host = run.record.ports().host;
+    run.record.observation().marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host)
 }

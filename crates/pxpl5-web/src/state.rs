@@ -49,7 +49,7 @@ fn back(stepper: &Stepper) -> Option<Time> {
 
 pub(crate) fn misses_all(stepper: &Stepper) -> bool {
     let run = stepper.observed_run();
-    run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
+    run.pictures.len() > WARM_UP_PICTURES && !run.pictures.iter().any(PictureTimes::is_shown)
 }
 
 /// Returns, as JSON, the share of time for which each kind of board was busy, the waits that delayed the last pictures,
@@ -156,7 +156,7 @@ pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Optio
 
 pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
     let run = stepper.observed_run();
-    let newest = run.pictures().iter().rev().find(|times| times.is_shown() && times.shown_at <= stepper.now());
+    let newest = run.pictures.iter().rev().find(|times| times.is_shown() && times.shown_at <= stepper.now());
     let options = TimelineOptions {
         picture: newest.map(|times| times.picture),
         first_field: stepper.period().before(fields.saturating_sub(1)).or(Some(pxpl5_wire::PeriodNumber::FIRST)),

@@ -11,7 +11,7 @@ use crate::result::summary::Summary;
 use crate::result::tally::{Tally, of_picture};
 use pxpl5_machine::{Observation, ObservedEvent, Record, StageSpan};
 use pxpl5_sim::Statistics;
-use pxpl5_sim::{Span, Time};
+use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::fmt;
 use std::sync::Arc;
@@ -193,11 +193,6 @@ impl Outcome {
     /// Returns the start and end of every stage of every picture. The times of COPY are measured at the displays.
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()
-    }
-
-    /// Returns the time that a graphics processor needs to receive one message.
-    pub const fn receive_span(&self) -> Span {
-        Span::from_ns(self.experiment.config.gp.message_ns)
     }
 
     /// Returns the pipeline that was run.

@@ -18,8 +18,8 @@ pub(super) fn rows(run: &ObservedRun<'_>, stages: &[StageSpan], options: &Timeli
     }
     rows.push(stage_row("graphics processors", run, stages, &[Stage::Edit, Stage::Transform]));
     rows.push(stage_row("renderers", run, stages, &[Stage::Render]));
-    let ports = display_ports(run.record());
-    let surfaces = run.record().surfaces().filter(|(id, _)| !has_separate_ports(run.record(), *id));
+    let ports = display_ports(run.record);
+    let surfaces = run.record.surfaces().filter(|(id, _)| !has_separate_ports(run.record, *id));
     rows.extend(surfaces.map(|(id, surface)| row(surface.title, copies(run, |arrival| arrival.surface == id))));
     rows.extend(ports.iter().map(|port| port_row(run, port)));
     rows
@@ -44,11 +44,11 @@ fn stage_bar(run: &ObservedRun<'_>, span: &StageSpan) -> Bar {
     Bar {
         stage: span.stage,
         picture: span.picture,
-        surface: span.surface.filter(|_| has_many_surfaces(run.record())),
+        surface: span.surface.filter(|_| has_many_surfaces(run.record)),
         bottom: None,
         first_line: 0,
         begin: span.begin,
-        end: span.end.unwrap_or(run.end()).max(span.begin),
+        end: span.end.unwrap_or(run.end).max(span.begin),
         lane: 0,
         receiving: Vec::new(),
     }
@@ -65,16 +65,16 @@ type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 /// Returns the COPY bars of a surface or a port. A picture has one bar, or two bars if the picture arrived in two
 /// parts, one after the other.
 fn copies(run: &ObservedRun<'_>, is_there: impl Fn(&Arrival) -> bool) -> Vec<Bar> {
-    let message = run.record().message_span();
+    let message = run.record.message_span();
     let mut parts = Parts::new();
-    for arrival in run.observation().arrivals.iter().filter(|arrival| is_there(arrival)) {
+    for arrival in run.record.observation().arrivals.iter().filter(|arrival| is_there(arrival)) {
         let begin = arrival.begins_at(message);
         // Arrivals of the same picture and part extend one bar.
         let key = (arrival.target.picture, run.pipeline().copy_part(arrival));
-        let bar = parts.entry(key).or_insert_with(|| copy_bar(run.record(), arrival, begin));
+        let bar = parts.entry(key).or_insert_with(|| copy_bar(run.record, arrival, begin));
         bar.begin = bar.begin.min(begin);
         bar.end = bar.end.max(arrival.last_part_at);
-        bar.first_line = bar.first_line.min(first_line(run.record(), arrival));
+        bar.first_line = bar.first_line.min(first_line(run.record, arrival));
         bar.receiving.push((begin, arrival.last_part_at));
     }
     name_halves(&mut parts);

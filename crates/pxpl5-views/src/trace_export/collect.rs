@@ -93,7 +93,7 @@ impl Trace {
             }
         }
         for (stage, slices) in slices {
-            self.track(group, stage_name(stage), Events::Slices(apart(slices.into_iter())));
+            self.track(group, &stage_name(stage), Events::Slices(apart(slices.into_iter())));
         }
     }
 
