@@ -1,5 +1,5 @@
 use super::jitp::{TABLES, config, load, whole_pass};
-use super::{ntsc, samples};
+use super::{ntsc, sampled_at, samples};
 use crate::keys::PipelineSettings;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
@@ -12,7 +12,7 @@ use pxpl5_machine::{Arrival, Machine, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
-use pxpl5_wire::{CopyTarget, PictureNumber, RegionGrid, RegionId, ViewNumber};
+use pxpl5_wire::{CopyTarget, PictureNumber, RegionGrid, RegionId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use tracking::view::RandomOrder;
@@ -149,16 +149,8 @@ impl PictureRules for Frameless {
         let batch = observation.most_regions_of_a_picture().max(1);
         let times = samples(record).filter_map(|mark| {
             let (blocks, copied_at, target) = last.get(&mark.picture)?;
-            Some(PictureTimes {
-                picture: mark.picture,
-                view: mark.view.unwrap_or(ViewNumber::taken_for(mark.picture)),
-                sampled_at: Some(mark.time),
-                transform_at: mark.time,
-                copied_at: Some(*copied_at),
-                shown_at: next_light(video, target, *copied_at),
-                end: PictureResult::of(*blocks == batch, true),
-                layer: 0,
-            })
+            let shown_at = next_light(video, target, *copied_at);
+            Some(sampled_at(mark, Some(*copied_at), shown_at, PictureResult::of(*blocks == batch, true)))
         });
         let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();
         // The order in which updates are shown may differ from the order of their numbers.

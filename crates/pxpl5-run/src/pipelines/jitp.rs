@@ -1,4 +1,4 @@
-use super::{late_regions, ntsc, samples};
+use super::{late_regions, ntsc, sampled_at, samples};
 use crate::keys::PipelineSettings;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
@@ -188,16 +188,9 @@ impl PictureRules for Jitp {
         let times = samples(record).map(|mark| {
             let Arrived { in_period, in_time, middle_at } = arrived.get(&mark.picture).copied().unwrap_or_default();
             let field = mark.picture.period_drawn_for();
-            PictureTimes {
-                picture: mark.picture,
-                view: mark.view.unwrap_or_default(),
-                sampled_at: Some(mark.time),
-                transform_at: mark.time,
-                copied_at: middle_at,
-                shown_at: video.when(0, middle_line(field), field).unwrap_or_else(|| video.retrace(field)),
-                end: PictureResult::of(in_period == grid.regions(), in_time == grid.regions()),
-                layer: 0,
-            }
+            let shown_at = video.when(0, middle_line(field), field).unwrap_or_else(|| video.retrace(field));
+            let end = PictureResult::of(in_period == grid.regions(), in_time == grid.regions());
+            sampled_at(mark, middle_at, shown_at, end)
         });
         times.filter(|times| video.retrace(times.picture.period_drawn_for().next()) <= end).collect()
     }

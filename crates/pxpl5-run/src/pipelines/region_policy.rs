@@ -5,9 +5,9 @@
 //! after TRANSFORM, so it receives the final number of primitives in every region.
 
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup};
-use crate::pipelines::{shading_value, whole_picture};
+use crate::pipelines::{picture, sampled_at, samples, shading_value, whole_picture};
 use crate::result::picture_ends::PictureResult;
-use pphigs::{DisplayList, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages};
+use pphigs::{DisplayList, FrameView, Pass, Picture, RegionEnvelope, Shading, Share, region_messages};
 use pxpl5_gp::{Fault, Gp, Priority, Stage};
 use pxpl5_machine::{Machine, Ports, Record};
 use pxpl5_renderer::Layout;
@@ -224,13 +224,7 @@ impl Pipeline for PolicyPipeline {
         let views = Arc::clone(&setup.views);
         let node = ports.gps[0];
         let gp = machine.processor(node, Priority::Foreground);
-        let picture = Picture {
-            viewport: whole_picture(machine.record())?,
-            shading: self.shading,
-            binning: RegionBinning::Touched,
-            layout: Layout::rendering_control_phong(),
-            pixels: setup.pixels,
-        };
+        let picture = picture(whole_picture(machine.record())?, self.shading, setup.pixels);
         let drawing = Drawing { ports, list: Arc::clone(&setup.list), picture, policy: Arc::clone(&self.policy) };
         let program = firmware(gp, drawing, move |number, time| views.newest(number, time));
         machine.load(node, Priority::Foreground, Box::pin(program));
@@ -241,17 +235,8 @@ impl Pipeline for PolicyPipeline {
 impl PictureRules for PolicyPipeline {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let shown = record.observation().frames(1).into_values();
-        let begun = record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample);
-        let times = begun.zip(shown).map(|(mark, tick)| PictureTimes {
-            picture: mark.picture,
-            view: ViewNumber::taken_for(mark.picture),
-            sampled_at: Some(mark.time),
-            transform_at: mark.time,
-            copied_at: None,
-            shown_at: record.tick(tick),
-            end: PictureResult::Shown,
-            layer: 0,
-        });
+        let begun = samples(record).zip(shown);
+        let times = begun.map(|(mark, tick)| sampled_at(mark, None, record.tick(tick), PictureResult::Shown));
         times.filter(|times| times.shown_at < end).collect()
     }
 }

@@ -1,9 +1,9 @@
-use super::{SHADING, region_has_room, shading_or, shading_value, swapped_in, whole_picture};
+use super::{SHADING, picture, region_has_room, shading_or, shading_value, swapped_in, whole_picture};
 use crate::keys::PipelineSettings;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use image::RgbImage;
-use pphigs::{DisplayList, Picture, RegionBinning, Shading};
+use pphigs::{DisplayList, Shading};
 use pxpl5_gp::{HostTiming, Priority};
 use pxpl5_machine::{Arrival, Machine, Ports, Record};
 use pxpl5_renderer::Layout;
@@ -77,17 +77,10 @@ impl RenderingControl {
         let ports = machine.ports();
         // A finished region takes one block of the backing store.
         region_has_room(machine.record(), 1)?;
-        let picture = Picture {
-            viewport: whole_picture(machine.record())?,
-            shading: self.shading,
-            binning: RegionBinning::Touched,
-            layout: Layout::rendering_control_phong(),
-            pixels,
-        };
         Ok(Frames {
             frame_buffers: ports.display().iter().copied().take(self.properties().eyes).collect(),
             frame_buffer_ports: ports.display().to_vec(),
-            picture,
+            picture: picture(whole_picture(machine.record())?, self.shading, pixels),
             regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions()) as usize,
         })
     }

@@ -1,4 +1,4 @@
-use super::{late_regions, ntsc, samples};
+use super::{late_regions, ntsc, sampled_at, samples};
 use crate::keys::PipelineSettings;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
@@ -11,7 +11,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, names};
 use pxpl5_wire::display::LightTimes;
-use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, RegionGrid, SurfaceId, ViewNumber};
+use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, RegionGrid, SurfaceId};
 use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -229,16 +229,7 @@ impl PictureRules for Slats {
                 (Some(_), Some(_)) => PictureResult::Shown,
                 (Some(_), None) => PictureResult::of(in_its_period, false),
             };
-            PictureTimes {
-                picture: mark.picture,
-                view: mark.view.unwrap_or(ViewNumber::taken_for(mark.picture)),
-                sampled_at: Some(mark.time),
-                transform_at: mark.time,
-                copied_at: whole.then_some(copied.at),
-                shown_at: record.tick(shown.unwrap_or(field)),
-                end: picture_end,
-                layer: 0,
-            }
+            sampled_at(mark, whole.then_some(copied.at), record.tick(shown.unwrap_or(field)), picture_end)
         });
         // A picture is evaluated only after its last possible period. The bottom half of a split copy is scanned in
         // that period. Under a backup, a later retrace of the same lines may show the picture.

@@ -11,13 +11,13 @@ use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::pipelines::faces::segments::SegmentedScene;
 use crate::pipelines::rendering_control::{load_programs, with_boards};
-use crate::pipelines::{region_has_room, shading_value, swapped_in};
+use crate::pipelines::{picture, region_has_room, shading_value, swapped_in};
 use crate::result::picture_ends::PictureResult;
 use crate::views::ViewSource;
 use address_recalculation::priority::{Falloff, PriorityTiming};
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Lens, Orientation, orientation_message};
 use glam::{Mat4, Vec4};
-use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
+use pphigs::{DisplayList, RecentViews, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::{Attachment, HostLine, Machine, MachineConfig, Record, Shown};
 use pxpl5_renderer::Layout;
@@ -130,13 +130,7 @@ impl FacePipeline {
         // A face is a square picture, divided into the usual regions.
         let grid = RegionGrid { width: texels, height: texels, region_width: REGION_SIZE, region_height: REGION_SIZE };
         let viewport = Viewport::new(grid, Lines::Frame).map_err(|error| error.at("arp.face_texels"))?;
-        let picture = Picture {
-            viewport,
-            shading: self.shading,
-            binning: RegionBinning::Touched,
-            layout: Layout::rendering_control_phong(),
-            pixels,
-        };
+        let picture = picture(viewport, self.shading, pixels);
         // A display with packed texels takes one word a pixel, otherwise colour and depth are sent.
         let content = if display.format().words() == 1 { CopyContent::Packed } else { CopyContent::ColourAndDepth };
         if self.source == FaceSource::PixelPlanes {
