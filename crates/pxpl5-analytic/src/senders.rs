@@ -209,7 +209,22 @@ struct Sender<'a> {
     served: [bool; MAX_RENDERERS],
 }
 
-impl Sender<'_> {
+impl<'a> Sender<'a> {
+    fn idle(gp: usize, clumps: &'a [Clump], model: &SlatsModel) -> Self {
+        Self {
+            gp,
+            clumps,
+            begun: 0,
+            messages: VecDeque::new(),
+            since_ns: 0.0,
+            channels_ns: vec![f64::MIN; model.source_channels],
+            cpu_ns: 0.0,
+            accepted_ns: 0.0,
+            draining_ns: 0.0,
+            served: [false; MAX_RENDERERS],
+        }
+    }
+
     fn is_done(&self) -> bool {
         self.messages.is_empty()
     }
@@ -258,18 +273,8 @@ impl<'a> Ring<'a> {
             begin_ns[0] += model.transform_begins_ns();
         }
         let sender = |(gp, clumps): (usize, &'c Vec<Clump>)| {
-            let mut sender = Sender {
-                gp,
-                clumps,
-                begun: 0,
-                messages: VecDeque::new(),
-                since_ns: 0.0,
-                channels_ns: vec![f64::MIN; model.source_channels],
-                cpu_ns: begin_ns[gp],
-                accepted_ns: if gp == 0 { accepted_ns } else { 0.0 },
-                draining_ns: 0.0,
-                served: [false; MAX_RENDERERS],
-            };
+            let sender = Sender { cpu_ns: begin_ns[gp], ..Sender::idle(gp, clumps, model) };
+            let mut sender = Sender { accepted_ns: if gp == 0 { accepted_ns } else { 0.0 }, ..sender };
             self.next_clump(&mut sender);
             sender
         };
@@ -279,18 +284,7 @@ impl<'a> Ring<'a> {
     fn clear_all(&mut self) -> f64 {
         // A clump without primitives produces only the messages that clear.
         let nothing = Clump { transform_ns: 0.0, bins: [[0.0; 2]; REGIONS] };
-        let mut sender = Sender {
-            gp: 0,
-            clumps: std::slice::from_ref(&nothing),
-            begun: 0,
-            messages: VecDeque::new(),
-            since_ns: 0.0,
-            channels_ns: vec![f64::MIN; self.model.source_channels],
-            cpu_ns: 0.0,
-            accepted_ns: 0.0,
-            draining_ns: 0.0,
-            served: [false; MAX_RENDERERS],
-        };
+        let mut sender = Sender::idle(0, std::slice::from_ref(&nothing), self.model);
         self.clears = true;
         self.next_clump(&mut sender);
         while !sender.is_done() {

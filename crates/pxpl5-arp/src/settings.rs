@@ -26,11 +26,7 @@ impl PolicyKind {
     pub const ALL: [(&str, Self); 3] = [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells)];
 
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Full => "full",
-            Self::Objects => "objects",
-            Self::Cells => "cells",
-        }
+        Self::ALL[self as usize].0
     }
 }
 

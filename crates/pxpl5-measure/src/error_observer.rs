@@ -124,7 +124,6 @@ impl Showing {
             setting,
             pixels_per_s: f64::from(columns) * f64::from(lines) * periods_per_s,
             poses_per_s: f64::from(poses) * periods_per_s,
-            has_depth: setting.by == Warp::Depth,
         })
     }
 }
