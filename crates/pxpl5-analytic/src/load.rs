@@ -59,7 +59,7 @@ impl Load {
     ) -> Result<Vec<Self>, ExperimentError> {
         // All GPs together hold the whole scene, so a single share suffices.
         let list = Arc::new(display_list(experiment.scene())?);
-        let views = SceneViews::new(experiment.scene(), experiment.seed, *experiment.hmd(), 2);
+        let views = SceneViews::new(experiment.scene(), experiment.seed, experiment.hmd, 2);
         let share = Share::new(list, 0, 1);
         let layout = Layout::rendering_control_phong();
         let picture = Picture { viewport, shading: Shading::Phong, binning, layout, pixels: false };

@@ -84,7 +84,7 @@ impl Clumps {
     ) -> Result<Self, ExperimentError> {
         // Transform the scene for the first view.
         let list = Arc::new(display_list(experiment.scene())?);
-        let views = SceneViews::new(experiment.scene(), experiment.seed, *experiment.hmd(), 2);
+        let views = SceneViews::new(experiment.scene(), experiment.seed, experiment.hmd, 2);
         let view = views.newest(ViewNumber::FIRST, Time(0));
         let viewport = Viewport::field(FieldParity::Even);
         let picture = Picture { viewport, shading: Shading::Gouraud, binning, layout: Layout::slats(), pixels: false };

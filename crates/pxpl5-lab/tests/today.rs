@@ -149,9 +149,9 @@ fn a_pipeline_that_needs_interlace_is_refused_with_its_name() {
 fn raster(text: &str) -> Raster {
     let text = format!("head.motion = \"pan:10\"\n{text}");
     let plan = plan(&text);
-    let raster = plan.head.as_ref().expect("a head").head().raster();
+    let raster = plan.head.as_ref().expect("a head").head().raster;
     let again = ExperimentFile::parse(&plan.settings().to_string(), "written").and_then(|file| file.resolve());
-    assert_eq!(again.expect("an experiment").head.expect("a head").head().raster(), raster);
+    assert_eq!(again.expect("an experiment").head.expect("a head").head().raster, raster);
     raster
 }
 

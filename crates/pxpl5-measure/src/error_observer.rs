@@ -41,7 +41,7 @@ impl ErrorSum {
 
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let Some(head) = run.head else { return };
-        let showing = self.showing.unwrap_or_else(|| head.head().raster().into());
+        let showing = self.showing.unwrap_or_else(|| head.head().raster.into());
         let evaluation = self.evaluation.get_or_insert_with(|| Evaluation::begin(run, head, showing, self.without));
         let window_from = run.window.map(|window| window.first_period);
         if self.window_from != window_from {

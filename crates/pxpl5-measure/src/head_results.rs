@@ -109,7 +109,7 @@ impl PixelErrors {
     /// covers only the last periods.
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
-        let results = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster().into());
+        let results = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster.into());
         results.map_or_else(|| evaluated(outcome, showing, None, 0).0, |results| results.error.clone())
     }
 
@@ -152,7 +152,7 @@ impl EyeReport {
 
 /// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.
 pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
-    Some(PixelErrors::shown(outcome, outcome.head()?.head().raster().into()))
+    Some(PixelErrors::shown(outcome, outcome.head()?.head().raster.into()))
 }
 
 impl Budget {

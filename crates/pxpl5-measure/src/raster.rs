@@ -59,7 +59,7 @@ impl<'a> RasterOffsets<'a> {
         let run = outcome.final_results();
         let display = outcome.record().display();
         let view = hmd_on(display, &run.hmd);
-        match head.head().raster() {
+        match head.head().raster {
             Raster::Plain => return None,
             Raster::Reprojected(setting) => {
                 let moved_by = MovedBy::Device(Rc::new(PictureMover::new(run, head, setting)));

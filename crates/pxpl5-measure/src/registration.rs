@@ -26,7 +26,7 @@ pub(crate) struct Evaluator {
 impl Evaluator {
     pub(crate) fn new(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         let view = hmd_on(run.record.display(), &run.hmd);
-        let at_content = head.head().evaluate_at_m().is_none();
+        let at_content = head.head().evaluate_at_m.is_none();
         let contents = if at_content { Contents::of(head.scene()) } else { Contents::default() };
         Self { view, head: Arc::clone(head), contents, distance_m: head.distance_m() }
     }

@@ -128,8 +128,9 @@ fn the_error_of_a_prediction_interval_is_the_time_from_its_instant_to_the_middle
     let slats = run(&(Arc::new(Slats::split()) as Arc<dyn Pipeline>), Some(predicted()), 90);
     let control = Arc::new(RenderingControl::mono()) as Arc<dyn Pipeline>;
     let light = experiment(&control, "sphere:10", 90).head(predicted()).after_dry_run().expect("it runs");
-    let heavy = experiment(&control, "full-screen:1200", 90).head(predicted());
-    let heavy = heavy.with_dry_run(light.dry_run().cloned()).run().expect("it runs");
+    let mut heavy = experiment(&control, "full-screen:1200", 90).head(predicted());
+    heavy.dry_run = light.dry_run;
+    let heavy = heavy.run().expect("it runs");
     // A field of Slats is scanned once, and a picture of Rendering Control until the next one.
     let max = [(&slats, Some(1)), (&heavy, None)].map(|(outcome, lit)| {
         let expected = Percentiles::of(prediction_interval_errors_ms(outcome, lit).into_iter());

@@ -85,10 +85,17 @@ pub struct Experiment {
     pub head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
     pub(crate) results_from: Option<PeriodNumber>,
-    pub(crate) hmd: Hmd,
+    /// Head-mounted display with the resolution of the papers' display. A run uses the resolution of the machine's
+    /// display instead.
+    pub hmd: Hmd,
     pub(crate) estimates: Option<Estimates>,
     pub(crate) observer: Option<ObserverFactory>,
-    pub(crate) dry_run: Option<Arc<DryRun>>,
+    /// Dry run that [`Experiment::after_dry_run`] has stored.
+    ///
+    /// This field is hidden, because a wrong dry run would give wrong results. A comparison of predictors copies it to
+    /// experiments that differ only in the predictor.
+    #[doc(hidden)]
+    pub dry_run: Option<Arc<DryRun>>,
 }
 
 /// Functions by which a pipeline's closed form estimates results of an experiment, before or after a run.
@@ -293,12 +300,6 @@ impl Experiment {
         self
     }
 
-    /// Returns the head-mounted display with the resolution of the papers' display. A run uses the resolution of the
-    /// machine's display instead.
-    pub const fn hmd(&self) -> &Hmd {
-        &self.hmd
-    }
-
     /// Begins the evaluation of the run at the period `period` of the first display, or later if the warm-up takes
     /// longer.
     ///
@@ -322,20 +323,14 @@ impl Experiment {
         Self { scene: scene.into(), ..self }
     }
 
-    /// Removes the head. The pipeline then follows the scene's own motion without any delay.
-    #[must_use]
-    pub fn without_head(self) -> Self {
-        Self { head: None, ..self }
-    }
-
     /// Returns the correction that the head-mounted display applies to a picture during scan-out.
     pub fn raster(&self) -> Raster {
-        self.head.as_ref().map(|head| head.raster()).unwrap_or_default()
+        self.head.as_ref().map(|head| head.raster).unwrap_or_default()
     }
 
     /// Returns the instant for which pictures are drawn, such as the middle of the time in which a picture lights.
     pub fn aim(&self) -> Aim {
-        self.head.as_ref().map(|head| head.aim()).unwrap_or_default()
+        self.head.as_ref().map(|head| head.aim).unwrap_or_default()
     }
 
     /// Returns a hash of everything that affects the results: machine, pipeline with its settings, contents of the
@@ -379,7 +374,7 @@ impl Experiment {
 
     /// Returns the parameters of machine, tracker and predictor whose values no source supports ([`out_of_range`]).
     pub fn out_of_range(&self) -> Vec<Parameter> {
-        let of_head = self.head.iter().flat_map(|head| head.unsupported_parameters()).cloned();
+        let of_head = self.head.iter().flat_map(|head| &head.unsupported_parameters).cloned();
         out_of_range(&self.config, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 

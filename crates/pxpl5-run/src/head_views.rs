@@ -123,7 +123,7 @@ impl HeadViews {
         seen_times: Option<SeenTimes>,
     ) -> Self {
         let start = head.motion.pose(0);
-        let (anchor, begin) = match head.place() {
+        let (anchor, begin) = match head.place {
             HeadPlace::Scene => (start, scene.motion().pose(0)),
             HeadPlace::World => (start, start),
             HeadPlace::Content => facing::content(head.motion.as_ref(), scene, &hmd, until),
@@ -209,7 +209,7 @@ impl HeadViews {
     /// The default is the distance from the head's start to the centre of the scene, but at least 0.1 metres.
     pub fn distance_m(&self) -> f64 {
         let (centre, _) = self.scene.bounding_sphere();
-        self.head.evaluate_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
+        self.head.evaluate_at_m.unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
     }
 
     /// Returns the records of the requested poses in memory, sorted by view number. [`KeptRecords`](crate::KeptRecords)

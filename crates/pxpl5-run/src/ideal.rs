@@ -41,7 +41,7 @@ pub(crate) fn ideal_picture(
     // The pipeline may draw fewer eyes than the display has surfaces.
     let size = surfaces.get(surface).filter(|_| surface < eyes)?;
     let list = display_list_for(scene, &properties, record.config()).ok()?;
-    let hmd = hmd_on(record.display(), experiment.hmd());
+    let hmd = hmd_on(record.display(), &experiment.hmd);
     // A tracked head is at its true pose, not at the predicted one.
     let view = match head {
         Some(head) => view(scene, &hmd, eyes, ViewNumber::FIRST, time, &head.truth(time).in_single_precision()),

@@ -36,12 +36,18 @@ pub(crate) fn display_ports(record: &Record) -> Vec<DisplayPort> {
 
 /// Returns true if a surface shows the content of several ports.
 pub(crate) fn has_separate_ports(record: &Record, surface: SurfaceId) -> bool {
+    display_of(record, surface).is_some_and(has_more_ports)
+}
+
+pub(crate) fn display_of(record: &Record, surface: SurfaceId) -> Option<&dyn Display> {
     let mut first = 0;
-    record.displays().iter().any(|display| {
-        let own = first..first + display.surfaces().len();
-        first = own.end;
-        own.contains(&surface.index()) && has_more_ports(display.as_ref())
-    })
+    for display in record.displays() {
+        first += display.surfaces().len();
+        if surface.index() < first {
+            return Some(display.as_ref());
+        }
+    }
+    None
 }
 
 fn has_more_ports(display: &dyn Display) -> bool {

@@ -206,7 +206,7 @@ impl WebMachine {
     /// The faces form a cross of 512 x 384 pixels. Without `memory`, all memories are combined: each texel is the
     /// nearest texel of all memories. The result is empty for a display without such memories.
     pub fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
-        self.0.faces(eye, memory)
+        pictures::faces(self.0.stepper(), eye, memory).unwrap_or_default()
     }
 
     /// Returns a timeline of the last `fields` display periods as SVG.
@@ -245,7 +245,7 @@ impl WebMachine {
     ///
     /// Returns a message if the scene cannot be drawn.
     pub fn volume(&self) -> Result<WebVolume, JsError> {
-        self.0.volume().map(WebVolume).map_err(refused)
+        volume::Volume::draw(self.0.stepper().experiment().scene()).map(WebVolume).map_err(refused)
     }
 }
 

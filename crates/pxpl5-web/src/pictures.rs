@@ -106,9 +106,9 @@ pub(crate) fn memories(stepper: &Stepper) -> usize {
 /// Returns the six cube faces that a display memory shows to an eye now, arranged as a cross. Each side of a face has
 /// [`FACE_SIDE`] pixels. Without a memory's index, all memories are combined: each texel is the nearest texel of all
 /// memories. Returns `None` for a memory that does not exist.
-pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: Option<usize>) -> Option<Vec<u8>> {
+pub(crate) fn faces(stepper: &Stepper, eye: usize, memory: Option<usize>) -> Option<Vec<u8>> {
     let display = stepper.record().display_of_kind::<AddressRecalculationPipeline>()?;
-    let all = display.memories(eye);
+    let all = display.memories(*Eye::BOTH.get(eye)?);
     let some = match memory {
         Some(number) => std::slice::from_ref(all.get(number)?),
         None => all,
@@ -197,14 +197,14 @@ mod tests {
     #[test]
     fn joined_faces_are_lit_where_any_memory_is_lit() {
         let session = session("pipeline=arp-priority\ndisplay=arp\nscene=aircraft\nfields=60", 500_000_000_000);
-        let joined = faces(session.stepper(), Eye::Left, None).expect("a display with faces");
+        let joined = faces(session.stepper(), 0, None).expect("a display with faces");
         let is_lit = |rgba: &[u8]| rgba[..3] != [0, 0, 0];
         for memory in 0..memories(session.stepper()) {
-            let one = faces(session.stepper(), Eye::Left, Some(memory)).expect("a memory");
+            let one = faces(session.stepper(), 0, Some(memory)).expect("a memory");
             let lost =
                 one.chunks(4).zip(joined.chunks(4)).filter(|(one, joined)| is_lit(one) && !is_lit(joined)).count();
             assert_eq!(lost, 0, "memory {memory}");
         }
-        assert!(faces(session.stepper(), Eye::Left, Some(99)).is_none());
+        assert!(faces(session.stepper(), 0, Some(99)).is_none());
     }
 }

@@ -3,13 +3,12 @@
 use crate::files::Files;
 use crate::pictures::{self, Difference, rgba};
 use crate::state;
-use crate::volume::Volume;
 use pxpl5_lab::limit::{LimitQuery, Model, about};
 use pxpl5_lab::{ExperimentFile, Plan};
 use pxpl5_machine::Board;
 use pxpl5_run::{BareHost, Experiment, KeptRecords, Pause, Stepper};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Eye, SurfaceId};
+use pxpl5_wire::SurfaceId;
 use serde_json::{Value, json};
 use std::sync::Arc;
 use tracking::motion::{GrowingRecording, Recording};
@@ -107,11 +106,6 @@ impl Session {
         self.stepper.ideal_picture(SurfaceId(surface)).map(|picture| pictures::outlines(&picture)).unwrap_or_default()
     }
 
-    pub(crate) fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
-        let faces = Eye::BOTH.get(eye).and_then(|eye| pictures::faces(&self.stepper, *eye, memory));
-        faces.unwrap_or_default()
-    }
-
     /// Returns the number of primitives in the scene, and approximately the number that the pipeline shows in time, as
     /// JSON.
     ///
@@ -131,10 +125,6 @@ impl Session {
         let model = Model::new(self.plan.scene.clone(), whole);
         let query = LimitQuery { model: Some(model), head: None, ..LimitQuery::of_plan(&self.plan) };
         about(triangles, |triangles| query.reached(triangles)).ok().map(u64::from)
-    }
-
-    pub(crate) fn volume(&self) -> Result<Volume, String> {
-        Volume::draw(self.stepper.experiment().scene())
     }
 }
 

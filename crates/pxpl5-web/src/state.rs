@@ -28,7 +28,7 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
         "trace_hash": record.trace_hash().to_string(),
         "config_hash": stepper.experiment().config_hash().to_string(),
         "surfaces": surfaces.collect::<Vec<_>>(),
-        "field_of_view_deg": stepper.experiment().hmd().config().horizontal_fov_deg,
+        "field_of_view_deg": stepper.experiment().hmd.config().horizontal_fov_deg,
         "memories": pictures::memories(stepper),
         "turn_deg_s": stepper.head().map(|head| head.head().motion().angular_velocity(stepper.now().0).length().to_degrees()),
     })

@@ -49,7 +49,7 @@ impl Predictors {
 /// Returns `None` for an experiment without a head.
 pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     let head = experiment.head.as_ref()?;
-    let showing = head.raster().into();
+    let showing = head.raster.into();
     let each = parallel::map(&PredictorKind::ALL, |kind| with_predictor(experiment, head, showing, *kind));
     let mean = |one: &PredictorResult| one.error.as_ref().map(|error| (one.kind, error.pixels.mean));
     let evaluated = each.iter().filter_map(mean).filter(|(_, mean)| mean.is_finite());

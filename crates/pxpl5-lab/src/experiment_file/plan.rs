@@ -311,7 +311,7 @@ impl Plan {
 
     /// Returns the parameters with values outside the range that their sources allow.
     pub fn out_of_range(&self) -> Vec<Parameter> {
-        let of_head = self.head.iter().flat_map(|head| head.head().unsupported_parameters().to_vec());
+        let of_head = self.head.iter().flat_map(|head| head.head().unsupported_parameters.clone());
         out_of_range(&self.machine, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 

@@ -38,21 +38,6 @@ impl Experiment {
         Ok(Self { dry_run, ..self })
     }
 
-    /// Returns the dry run that [`Experiment::after_dry_run`] has stored.
-    pub const fn dry_run(&self) -> Option<&Arc<DryRun>> {
-        self.dry_run.as_ref()
-    }
-
-    /// Stores the dry run of an experiment that differs only in the predictor.
-    ///
-    /// This method is hidden, because a wrong dry run would give wrong results. A comparison of predictors uses this
-    /// method, so that one dry run serves all predictors.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn with_dry_run(self, dry_run: Option<Arc<DryRun>>) -> Self {
-        Self { dry_run, ..self }
-    }
-
     pub(crate) fn prepare(&self) -> Result<Preparation, ExperimentError> {
         let Some(head) = self.predicting_head() else { return Ok(Preparation::default()) };
         let dry_run = self.dry_run.clone().map_or_else(|| self.make_dry_run(head), Ok)?;

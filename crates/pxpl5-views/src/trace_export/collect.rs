@@ -2,7 +2,7 @@ use super::flows::connect;
 use super::groups::{Group, groups, named};
 use super::model::{Events, Slice, Trace, Track};
 use super::slices::{apart, message_slice, region_slice, stage_name, stage_slice};
-use crate::ports::{display_ports, shown as shown_by};
+use crate::ports::{display_of, display_ports, shown as shown_by};
 use crate::results::origin;
 use pxpl5_gp::{Mark, Stage, StageEdge};
 use pxpl5_machine::{Record, Traffic};
@@ -156,17 +156,6 @@ fn ended(record: &Record, mark: &Mark, begin: Time) -> Slice {
 
 fn name_of(groups: &[Group], node: NodeId) -> &str {
     groups.iter().find(|group| group.node == Some(node)).map_or("", |group| &group.name)
-}
-
-fn display_of(record: &Record, surface: SurfaceId) -> Option<&dyn Display> {
-    let mut first = 0;
-    for display in record.displays() {
-        first += display.surfaces().len();
-        if surface.index() < first {
-            return Some(display.as_ref());
-        }
-    }
-    None
 }
 
 fn period_slice(display: &dyn Display, pictures: &[PictureTimes], period: PeriodNumber) -> Slice {
