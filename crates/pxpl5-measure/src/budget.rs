@@ -132,7 +132,7 @@ impl BudgetSum {
         }
         // Sum the stages of the new pictures.
         self.poses.append(&mut poses(run));
-        for stages in of_pictures(run, &self.poses, run.steady_pictures()) {
+        for stages in of_pictures(run, &self.poses) {
             self.totals_ms.push(stages.iter().sum());
             self.stages_ms.iter_mut().zip(stages).for_each(|(samples, ms)| samples.push(ms));
         }
@@ -159,13 +159,10 @@ pub(crate) fn poses(run: &FinalResults<'_>) -> Poses {
     run.head.map(|head| head.sampled()).unwrap_or_default().into_iter().map(|s| (s.number, s)).collect()
 }
 
-/// Returns the duration of each stage in milliseconds, for each complete picture whose head pose is still in memory.
-pub(crate) fn of_pictures<'a>(
-    run: &FinalResults<'_>,
-    poses: &Poses,
-    pictures: impl Iterator<Item = &'a PictureTimes>,
-) -> Vec<[f64; STAGES]> {
-    let complete = pictures.filter(|times| times.is_shown());
+/// Returns the duration of each stage in milliseconds, for each complete picture in the result window whose head pose is
+/// still in memory.
+pub(crate) fn of_pictures(run: &FinalResults<'_>, poses: &Poses) -> Vec<[f64; STAGES]> {
+    let complete = run.steady_pictures().iter().filter(|times| times.is_shown());
     complete.filter_map(|times| of_picture(run, times, poses.get(&times.view)?)).collect()
 }
 

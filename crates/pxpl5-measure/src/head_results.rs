@@ -171,7 +171,7 @@ impl Budget {
     /// measurement of the pose until the middle of the picture is lit.
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
         let run = outcome.final_results();
-        let stages = of_pictures(&run, &poses(&run), run.steady_pictures());
+        let stages = of_pictures(&run, &poses(&run));
         stages.iter().map(|stages| stages.iter().sum()).collect()
     }
 }

@@ -5,7 +5,7 @@ use crate::content::{Content, Contents};
 use crate::reproject::direction;
 use crate::shown::{Drawn, FacesSeen, Moment, Seen, Shown};
 use glam::{DVec2, DVec3};
-use pxpl5_run::{FinalResults, HeadViews, ObservedRun, Outcome, hmd_on};
+use pxpl5_run::{FinalResults, HeadViews, Outcome, hmd_on};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
@@ -230,16 +230,12 @@ impl<'a> Registration<'a> {
     /// Prepares the evaluation of a run from the records that remain in memory. Returns `None` for a run without a
     /// head.
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
-        Self::of_results(outcome.final_results())
+        Self::so_far(outcome.final_results())
     }
 
     /// Prepares the evaluation of a run that goes on, from the records that remain in memory. Returns `None` for a run
     /// without a head.
-    pub fn so_far(run: &'a ObservedRun<'_>) -> Option<Self> {
-        Self::of_results(run.results())
-    }
-
-    fn of_results(run: FinalResults<'a>) -> Option<Self> {
+    pub fn so_far(run: FinalResults<'a>) -> Option<Self> {
         let head = run.head?;
         Some(Self { evaluator: Evaluator::new(&run, head), shown: Shown::of_run(&run, head), run })
     }

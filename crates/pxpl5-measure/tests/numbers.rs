@@ -46,10 +46,10 @@ fn at_the_end_of_a_run_the_partial_shares_equal_the_shares_in_the_report() {
         let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).fields(60).pixels(Pixels::Off);
         let mut stepper = experiment.stepper().expect("it fits");
         assert_eq!(Utilisation::so_far(&stepper), None, "no time has passed");
-        assert_eq!(CriticalPath::so_far(&stepper.observed_run()), None, "no picture was shown");
+        assert_eq!(CriticalPath::so_far(&stepper), None, "no picture was shown");
         stepper.run_to(stepper.end());
         let utilisation = Utilisation::so_far(&stepper).expect("time has passed");
-        let path = CriticalPath::so_far(&stepper.observed_run()).expect("pictures were shown");
+        let path = CriticalPath::so_far(&stepper).expect("pictures were shown");
         let report = stepper.finish().expect("it runs").report();
         assert_eq!(Some(utilisation), report.utilisation);
         let of_report = report.critical_path.expect("pictures were shown");

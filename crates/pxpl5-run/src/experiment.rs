@@ -274,6 +274,7 @@ impl Experiment {
             pipeline: self.pipeline.as_ref(),
             aim: self.aim(),
             fields: self.fields,
+            now: record.tick(self.end()),
             record,
             head,
             hmd: self.hmd,

@@ -62,7 +62,6 @@ pub use host::{BareHost, Host};
 pub use kept_records::KeptRecords;
 pub use keys::PipelineSettings;
 pub use level::Level;
-pub use observe::observed_run::ObservedRun;
 pub use observe::observers::{FinalResults, ObserverFactory, StreamingObserver};
 pub use pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup, Source};
 pub use pipelines::faces::{

@@ -2,7 +2,7 @@
 //! finds the pictures that the port showed.
 
 use pxpl5_machine::Record;
-use pxpl5_run::ObservedRun;
+use pxpl5_run::FinalResults;
 use pxpl5_sim::Time;
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId};
@@ -56,9 +56,9 @@ fn has_more_ports(display: &dyn Display) -> bool {
 
 /// Returns the pictures that a port has shown, in the order in which the pictures were begun. A port shows each picture
 /// from one swap to the port's next swap.
-pub(crate) fn shown(run: &ObservedRun<'_>, node: NodeId) -> Vec<ShownPicture> {
+pub(crate) fn shown(run: &FinalResults<'_>, node: NodeId) -> Vec<ShownPicture> {
     let shown = run.record.shown_by(node);
-    let ends = shown.iter().skip(1).map(|next| next.at).chain([run.end]);
+    let ends = shown.iter().skip(1).map(|next| next.at).chain([run.now]);
     let all = shown.iter().zip(ends);
     all.map(|(shown, end)| ShownPicture { picture: shown.picture, begin: shown.at, end }).collect()
 }

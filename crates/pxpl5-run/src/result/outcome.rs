@@ -5,10 +5,10 @@ use crate::observe::observers::FinalResults;
 use crate::observe::window::{Closed, Window, field_ms};
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::result::due::{DuePictures, MIN_UPDATES};
-use crate::result::latency::{LatencyParts, parts};
+use crate::result::latency::{LatencyParts, parts_of_pictures};
 use crate::result::result_window::{ResultWindow, WINDOW_DEFINITION};
 use crate::result::summary::Summary;
-use crate::result::tally::{Tally, of_picture};
+use crate::result::tally::Tally;
 use pxpl5_machine::{Observation, ObservedEvent, Record, StageSpan};
 use pxpl5_sim::Statistics;
 use pxpl5_sim::Time;
@@ -98,14 +98,7 @@ impl Outcome {
 
     /// Returns the pictures in the result window.
     pub fn steady_pictures(&self) -> &[PictureTimes] {
-        let Some(window) = self.closed.window else { return &[] };
-        let display = self.record.display();
-        // Pictures are in the order in which they are shown.
-        let is_in = |times: &PictureTimes| window.holds_picture(display.period_at(times.shown_at));
-        let pictures = self.pictures();
-        let first = pictures.iter().position(is_in).unwrap_or(pictures.len());
-        let end = pictures.iter().rposition(is_in).map_or(first, |last| last + 1);
-        &pictures[first..end]
+        self.final_results().steady_pictures()
     }
 
     /// Returns the pictures in the result window that were complete in time. Other pictures have no latency.
@@ -231,10 +224,7 @@ impl Outcome {
     /// Returns the parts of the latencies of the complete pictures in the result window. Pictures without records in
     /// memory are left out.
     pub fn latency_parts(&self) -> Vec<LatencyParts> {
-        let stages = self.stages();
-        let parts =
-            self.complete_pictures().map(|times| parts(&self.record, times, of_picture(&stages, times.picture)));
-        parts.collect()
+        parts_of_pictures(&self.record, self.complete_pictures())
     }
 
     /// Returns the results that are available at every level of detail, over the pictures in the result window.

@@ -5,7 +5,7 @@
 
 use crate::observe::observers::FinalResults;
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::result::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
+use crate::result::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, of_picture, pair, parts};
 use crate::result::picture_ends::PictureResults;
 use crate::result::summary::retraces;
 use pxpl5_gp::Stage;
@@ -147,17 +147,17 @@ impl Tally {
             // The window begins later than assumed, so all samples so far lie before the window.
             self.restart(window.first_period);
         }
-        let steady: Vec<PictureTimes> = results.steady_pictures().copied().collect();
+        let steady = results.steady_pictures();
         if steady.is_empty() {
             return;
         }
         // All pictures in the window count for copies and stages. Only complete pictures count for latencies.
         let stages = record.stages();
-        self.take_copies(pipeline, record, &steady);
+        self.take_copies(pipeline, record, steady);
         let complete = steady.iter().filter(|times| times.is_shown());
         complete.clone().for_each(|times| self.take_complete(record, times, of_picture(&stages, times.picture)));
         self.take_eye_swaps(&stages, complete);
-        self.take_stages(&stages, &steady);
+        self.take_stages(&stages, steady);
         steady.iter().for_each(|times| *self.updates.entry(times.layer).or_default() += 1);
     }
 
@@ -279,12 +279,6 @@ impl Tally {
     pub(crate) const fn ends(&self) -> &PictureResults {
         &self.ends
     }
-}
-
-pub(crate) fn of_picture(stages: &[StageSpan], picture: PictureNumber) -> &[StageSpan] {
-    let first = stages.partition_point(|span| span.picture < picture);
-    let count = stages[first..].iter().take_while(|span| span.picture == picture).count();
-    &stages[first..first + count]
 }
 
 fn copies(pipeline: &dyn Pipeline, record: &Record) -> Copies {

@@ -64,7 +64,7 @@ impl Trace {
         let arrivals = outcome.observation().arrivals.iter().filter(|arrival| arrival.target.frame_buffer == node);
         self.track(group, "COPY", Events::Slices(apart(arrivals.map(|arrival| region_slice(arrival, message)))));
         // A swap is an instant, and the displayed picture is a slice.
-        let shown = shown_by(&outcome.observed_run(), node);
+        let shown = shown_by(&outcome.final_results(), node);
         let swaps = shown.iter().map(|shown| (shown.begin, "swap".to_owned()));
         self.track(group, "swaps", Events::Instants(swaps.collect()));
         let slices = shown.iter().map(|shown| Slice {

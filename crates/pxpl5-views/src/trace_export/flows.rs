@@ -18,7 +18,7 @@ struct Stop {
 }
 
 pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
-    let updates = Updates::of(&outcome.observed_run(), &outcome.stages());
+    let updates = Updates::of(&outcome.final_results(), &outcome.stages());
     let sends = firsts(trace, &[Stage::Send]);
     let stages = firsts(trace, &[Stage::Transform, Stage::Render, Stage::Copy]);
     let shown = first_shown(trace);

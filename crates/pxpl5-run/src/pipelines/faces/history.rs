@@ -26,12 +26,6 @@ pub struct FaceHistory {
 }
 
 impl FaceHistory {
-    /// Returns the history of the cube faces of a run, from the records in memory. Returns `None` if the run's display
-    /// does not accept cube faces.
-    pub fn of(outcome: &Outcome) -> Option<Self> {
-        Self::held(outcome.record())
-    }
-
     /// Returns the history from the records of a run that has ended or is in progress. Returns `None` if the run's
     /// display does not accept cube faces.
     pub fn held(record: &Record) -> Option<Self> {
@@ -81,11 +75,6 @@ pub(crate) fn display(record: &Record) -> Option<&AddressRecalculationPipeline> 
 }
 
 impl OrientationTiming {
-    /// Returns the orientation timing of a run, or `None` if the run's display does not accept cube faces.
-    pub fn of(outcome: &Outcome) -> Option<Self> {
-        Self::of_run(&outcome.final_results())
-    }
-
     /// Returns the orientation timing of a run that has ended or is in progress. Returns `None` if the run's display
     /// does not accept cube faces.
     pub fn of_run(results: &FinalResults<'_>) -> Option<Self> {
