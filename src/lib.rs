@@ -169,7 +169,7 @@ pub use tracking;
 /// conversions.
 pub mod run {
     pub use pxpl5_run::{
-        ClosedForm, Estimates, FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, KEPT_SAMPLES, LATE_REGIONS_LISTED,
+        ClosedForm, Estimates, FaceHistory, FacePipeline, FacePolicy, FaceSource, KEPT_SAMPLES, LATE_REGIONS_LISTED,
         OrientationTiming, PixelField, RequestedUpdate, RequestedUpdates, RotationLatency, SceneViews, SegmentedScene,
         ShownUpdate, SurfaceLatency, Tally, ViewSource, bit_of, check_coverage, display_list, in_ms, in_us, region_at,
         retraces, warning_without_code,

@@ -65,7 +65,7 @@ pub use level::Level;
 pub use observe::observers::{FinalResults, ObserverFactory, StreamingObserver};
 pub use pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup, Source};
 pub use pipelines::faces::{
-    FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, OrientationTiming, RequestedUpdate, RequestedUpdates,
+    FaceHistory, FacePipeline, FacePolicy, FaceSource, OrientationTiming, RequestedUpdate, RequestedUpdates,
     RotationLatency, SegmentedScene, ShownUpdate,
 };
 pub use pipelines::{

@@ -1,13 +1,13 @@
 //! Registry entries of the address recalculation pipelines: names, settings and variants.
 
 use super::keys::{FacePolicy, LENS, NAMES, POLICY, SEGMENT, WARP};
-use super::pipeline::{FaceLens, FacePipeline, FaceSource};
+use super::pipeline::{FacePipeline, FaceSource};
 use crate::keys::PipelineSettings;
 use crate::pipeline::Pipeline;
 use crate::pipelines::{SHADING, shading_or};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
-use address_recalculation::Latch;
 use address_recalculation::priority::PriorityTiming;
+use address_recalculation::{Latch, Lens};
 use pxpl5_sim::parameters::Key;
 use std::sync::Arc;
 
@@ -69,6 +69,6 @@ fn build<const ROW: usize, const LATCH: usize>(settings: &PipelineSettings) -> A
         shading: shading_or(settings, new.shading),
         segmented: settings.flag(SEGMENT.name).unwrap_or(new.segmented),
         falloff: settings.chosen(WARP.name).unwrap_or(new.falloff),
-        lens: settings.text(LENS.name).and_then(|text| text.parse().ok()).and_then(FaceLens::of).unwrap_or(new.lens),
+        lens: settings.text(LENS.name).and_then(|text| text.parse().ok()).filter(|lens| *lens != Lens::Flat),
     })
 }

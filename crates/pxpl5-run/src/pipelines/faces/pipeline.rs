@@ -42,7 +42,7 @@ pub enum FaceSource {
 }
 
 /// A pipeline that draws six cube faces for an address recalculation display.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FacePipeline {
     /// The renderer that draws the cube faces.
     pub source: FaceSource,
@@ -60,53 +60,8 @@ pub struct FacePipeline {
     /// Decrease of the displacement of vertices, for warped cells, with the distance from the border to a display
     /// memory with a lower update rate.
     pub falloff: Falloff,
-    /// Lens between display and eye.
-    pub lens: FaceLens,
-}
-
-/// A lens that is defined by at most two coefficients.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FaceLens {
-    /// The lens in the display's configuration. By default, the display has no lens.
-    #[default]
-    OfDisplay,
-    /// Lens whose viewing angle is proportional to the distance from the middle.
-    Equidistant,
-    /// Radial polynomial lens with two coefficients. The coefficients are stored as bits, so that pipelines can be
-    /// compared.
-    Radial([u64; 2]),
-}
-
-impl FaceLens {
-    /// Converts a lens. Returns `None` for a lens that is defined by a table.
-    pub fn of(lens: Lens) -> Option<Self> {
-        match lens {
-            Lens::Flat => Some(Self::OfDisplay),
-            Lens::Equidistant => Some(Self::Equidistant),
-            Lens::Radial { k1, k2 } => Some(Self::Radial([k1, k2].map(f64::to_bits))),
-            Lens::Table(_) => None,
-        }
-    }
-
-    /// Returns the lens, or `None` for the lens of the display.
-    pub fn lens(self) -> Option<Lens> {
-        match self {
-            Self::OfDisplay => None,
-            Self::Equidistant => Some(Lens::Equidistant),
-            Self::Radial(bits) => {
-                let [k1, k2] = bits.map(f64::from_bits);
-                Some(Lens::Radial { k1, k2 })
-            }
-        }
-    }
-
-    fn text(self) -> Option<String> {
-        match self.lens()? {
-            Lens::Radial { k1, k2: 0.0 } => Some(format!("radial:{k1}")),
-            Lens::Radial { k1, k2 } => Some(format!("radial:{k1}:{k2}")),
-            _ => Some("equidistant".to_owned()),
-        }
-    }
+    /// Lens between display and eye. By default, the lens in the display's configuration.
+    pub lens: Option<Lens>,
 }
 
 impl FacePipeline {
@@ -120,11 +75,11 @@ impl FacePipeline {
             shading: Shading::Phong,
             segmented: true,
             falloff: Falloff::Linear,
-            lens: FaceLens::OfDisplay,
+            lens: None,
         }
     }
 
-    fn faces(self, machine: &Machine, pixels: bool) -> Result<Faces, SettingError> {
+    fn faces(&self, machine: &Machine, pixels: bool) -> Result<Faces, SettingError> {
         let display = display_of(machine.record())?.config();
         let texels = display.timing.face_texels as u32;
         // A face is a square picture, divided into the usual regions.
@@ -140,7 +95,7 @@ impl FacePipeline {
         Ok(Faces { memories, picture, content, warped: WarpedLists::default() })
     }
 
-    fn plan(self, machine: &mut Machine, setup: &Setup) -> Result<Plan, SettingError> {
+    fn plan(&self, machine: &mut Machine, setup: &Setup) -> Result<Plan, SettingError> {
         let notes = Arc::new(RequestedUpdates::default());
         machine.attach(Arc::clone(&notes) as Arc<dyn Attachment>);
         let display = display_of(machine.record())?.config();
@@ -170,8 +125,15 @@ impl FacePipeline {
         Ok(Cycles::plan(updates, scan, policy))
     }
 
-    const fn has_cells(self) -> bool {
+    const fn has_cells(&self) -> bool {
         matches!(self.policy, FacePolicy::Cells | FacePolicy::CellsWarped)
+    }
+}
+
+fn lens_text(lens: &Lens) -> String {
+    match lens {
+        Lens::Radial { k1, k2: 0.0 } => format!("radial:{k1}"),
+        lens => lens.to_string(),
     }
 }
 
@@ -236,7 +198,7 @@ impl Pipeline for FacePipeline {
             settings.push((POLICY.name, KeyValue::Name(FacePolicy::ALL[self.policy as usize].0)));
         }
         // Without a lens, the key for the lens is absent, so that names of older experiments stay valid.
-        settings.extend(self.lens.text().map(|lens| (LENS.name, KeyValue::Text(lens.into()))));
+        settings.extend(self.lens.as_ref().map(|lens| (LENS.name, KeyValue::Text(lens_text(lens).into()))));
         if self.has_cells() {
             settings.push((SEGMENT.name, KeyValue::Flag(self.segmented)));
         }
@@ -287,8 +249,8 @@ impl Pipeline for FacePipeline {
             config.displays.first_mut().and_then(|d| (d.as_mut() as &mut dyn Any).downcast_mut::<ArpConfig>())
         {
             display.latch = self.latch;
-            if let Some(lens) = self.lens.lens() {
-                display.lens = lens;
+            if let Some(lens) = &self.lens {
+                display.lens = lens.clone();
             }
             if self.policy == FacePolicy::Full {
                 display.timing.display_memories = 1;
@@ -350,14 +312,14 @@ impl PictureRules for FacePipeline {
 impl FacePipeline {
     /// Adds the connection that carries orientations from the host to the display. Every renderer of faces needs this
     /// connection.
-    fn plug_orientations(self, machine: &mut Machine, setup: &Setup) {
+    fn plug_orientations(&self, machine: &mut Machine, setup: &Setup) {
         let link = setup.host.link_span(ORIENTATION_WORDS);
         if let Some(latched) = OrientationTiming::before(machine.record().display(), link, setup.aim) {
             machine.plug_host_line(Box::new(OrientationLine { views: Arc::clone(&setup.views), latched }));
         }
     }
 
-    fn plug_ideal_source(self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
+    fn plug_ideal_source(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let display = display_of(machine.record())?;
         let scan = display.config().scan()?;
         let ideal = IdealFaces {
