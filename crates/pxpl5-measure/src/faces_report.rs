@@ -87,15 +87,17 @@ impl FacesReport {
             pipeline_ns: timing.depth().as_ms() * 1e6,
             matrix_loads: counted("matrix loads"),
             matrix_refused: counted("matrices refused"),
-            memories: memories.map(|(k, memory)| MemoryReport::of(outcome, (k, memory), steps.get(k))).collect(),
-            rotation_latency_ms: turns.latency_ms,
-            rotation_latency_parts_ms: turns.parts_ms.clone(),
+            memories: memories
+                .map(|(k, memory)| MemoryReport::of(outcome, (k, memory), steps.get(k).cloned().unwrap_or_default()))
+                .collect(),
+            rotation_latency_ms: turns.0,
+            rotation_latency_parts_ms: turns.1.clone(),
         })
     }
 }
 
 impl MemoryReport {
-    fn of(outcome: &Outcome, (k, memory): (usize, &DisplayMemory), steps: Option<&Steps>) -> Self {
+    fn of(outcome: &Outcome, (k, memory): (usize, &DisplayMemory), steps: Steps) -> Self {
         let stats = memory.stats();
         let in_window = outcome.tally().updates.get(&k).copied().unwrap_or_default();
         // Mean number of periods between updates within the window.
@@ -111,8 +113,8 @@ impl MemoryReport {
             segments: last.map_or(0, |note| note.structures.iter().filter(|held| **held).count()),
             regions_copied: stats.regions,
             missed: stats.missed,
-            translation_latency_ms: steps.and_then(|steps| steps.latency_ms),
-            translation_latency_parts_ms: steps.map(|steps| steps.parts_ms.clone()).unwrap_or_default(),
+            translation_latency_ms: steps.0,
+            translation_latency_parts_ms: steps.1,
             lateness_ms: stats.lateness.as_ms(),
             bytes: memory.bytes(),
         }

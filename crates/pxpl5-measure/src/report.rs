@@ -171,7 +171,7 @@ impl HeadReport {
     fn of(head: &Head, results: &HeadResults) -> Self {
         Self {
             tracker: head.tracker().config().name.clone(),
-            predictor: format!("{:?}", head.predictor_kind()),
+            predictor: format!("{:?}", head.predictor().kind),
             aim: head.aim,
             prediction: *head.predictor(),
             training: head.training().copied(),

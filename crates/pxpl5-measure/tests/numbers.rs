@@ -181,7 +181,8 @@ fn a_size_that_fits_is_named_only_if_it_is_smaller_than_the_scene() {
         pictures: 5,
     };
     for (estimates, expected, advice) in cases {
-        let experiment = experiment.clone().with_estimates(Some(estimates));
+        let mut experiment = experiment.clone();
+        experiment.estimates = Some(estimates);
         let heavy = TooHeavy::of(&experiment, &due).expect("late ones");
         assert_eq!([heavy.pictures_due, heavy.missed_retraces, heavy.primitives], [8, 3, n]);
         assert!(heavy.primitives_in_time == expected && heavy.advice.contains(advice), "{heavy}");

@@ -88,7 +88,11 @@ pub struct Experiment {
     /// Head-mounted display with the resolution of the papers' display. A run uses the resolution of the machine's
     /// display instead.
     pub hmd: Hmd,
-    pub(crate) estimates: Option<Estimates>,
+    /// Functions that compute the estimates in error messages, such as a sufficient number of fields.
+    ///
+    /// This field is hidden, because the estimates change error messages only.
+    #[doc(hidden)]
+    pub estimates: Option<Estimates>,
     pub(crate) observer: Option<ObserverFactory>,
     /// Dry run that [`Experiment::after_dry_run`] has stored.
     ///
@@ -245,16 +249,6 @@ impl Experiment {
         self
     }
 
-    /// Sets the functions that compute the estimates in error messages, such as a sufficient number of fields.
-    ///
-    /// This method is hidden, because the estimates change error messages only.
-    #[doc(hidden)]
-    #[must_use]
-    pub const fn with_estimates(mut self, estimates: Option<Estimates>) -> Self {
-        self.estimates = estimates;
-        self
-    }
-
     /// Sets the streaming observer of a run with [`KeptRecords::Statistics`].
     ///
     /// Such a run discards old records. The observer must therefore compute the results for a tracked head during the
@@ -285,20 +279,6 @@ impl Experiment {
             samples: usize::MAX,
             window: None,
         }
-    }
-
-    /// Returns an estimate of how many primitives the scene can have, after decimation, so that all pictures are in
-    /// time. Returns `None` if the pipeline has no closed form, or if the formulas give no estimate.
-    pub fn primitives_in_time(&self) -> Option<u64> {
-        (self.estimates?.primitives_in_time)(self)
-    }
-
-    /// Sets the optics of the head-mounted display and the distance between the eyes. The resolution comes from the
-    /// machine's display.
-    #[must_use]
-    pub const fn with_hmd(mut self, hmd: Hmd) -> Self {
-        self.hmd = hmd;
-        self
     }
 
     /// Begins the evaluation of the run at the period `period` of the first display, or later if the warm-up takes

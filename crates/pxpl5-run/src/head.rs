@@ -220,7 +220,10 @@ impl Head {
 
     fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
-            Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
+            Some(given) => {
+                let given = Arc::clone(given);
+                Box::new((0..given.len()).map(move |next| given[next]))
+            }
             None => Box::new(self.tracker.reports(motion, self.seed)),
         }
     }
@@ -325,11 +328,6 @@ impl Head {
         if let Numbers::Tuned(_, Some(training)) = &self.numbers { Some(training) } else { None }
     }
 
-    /// Returns the kind of filter that computes poses from the tracker's reports.
-    pub const fn predictor_kind(&self) -> PredictorKind {
-        self.predictor.kind
-    }
-
     /// Returns the tracker that reports the pose of the head.
     pub const fn tracker(&self) -> &TrackerModel {
         &self.tracker
@@ -346,20 +344,5 @@ impl Head {
 
     pub(crate) fn build_predictor(&self) -> Box<dyn Predictor> {
         self.predictor.build().expect("checked by Head::new")
-    }
-}
-
-struct GivenReports {
-    given: Arc<[TrackerReport]>,
-    next: usize,
-}
-
-impl Iterator for GivenReports {
-    type Item = TrackerReport;
-
-    fn next(&mut self) -> Option<TrackerReport> {
-        let report = self.given.get(self.next).copied();
-        self.next += 1;
-        report
     }
 }

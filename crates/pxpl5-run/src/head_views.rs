@@ -38,12 +38,6 @@ pub struct SampledPose {
     pub pose: Pose,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Newest {
-    measured_at: Option<Time>,
-    arrived_at: Option<Time>,
-}
-
 /// A predictor that receives tracker reports as simulated time advances.
 ///
 /// The content of a report is computed only after its arrival, because the motion can depend on a user's input during
@@ -52,12 +46,12 @@ pub(crate) struct Follower {
     arrivals: Peekable<Arrivals>,
     contents: Contents,
     predictor: Box<dyn Predictor + Send>,
-    newest: Newest,
+    newest: Option<Coming>,
 }
 
 impl Follower {
     pub(crate) fn new(arrivals: Arrivals, contents: Contents, predictor: Box<dyn Predictor + Send>) -> Self {
-        Self { arrivals: arrivals.peekable(), contents, predictor, newest: Newest::default() }
+        Self { arrivals: arrivals.peekable(), contents, predictor, newest: None }
     }
 
     fn of_head(head: &Head, until: Time) -> Self {
@@ -77,15 +71,14 @@ impl Follower {
         let accepted = self.predictor.counts().accepted;
         self.predictor.observe(report);
         if self.predictor.counts().accepted > accepted {
-            let Coming { arrives, measured } = Coming::of(*report);
-            self.newest = Newest { measured_at: Some(measured), arrived_at: Some(arrives) };
+            self.newest = Some(Coming::of(*report));
         }
     }
 
     /// Returns the predicted pose at `at`, in the tracker's coordinates, or `start` before the first report.
     pub(crate) fn pose(&mut self, reports_until: Time, at: Time, start: &Pose) -> Pose {
         self.follow(reports_until);
-        if self.newest.measured_at.is_none() { *start } else { self.predictor.predict(at.0) }
+        if self.newest.is_none() { *start } else { self.predictor.predict(at.0) }
     }
 }
 
@@ -242,7 +235,8 @@ impl ViewSource for HeadViews {
     fn view_at(&self, number: ViewNumber, reports_until: Time, shown_at: Time) -> FrameView {
         let (follower, sampled) = &mut *self.state();
         let pose = self.in_scene(&follower.pose(reports_until, shown_at, &self.start));
-        let Newest { measured_at, arrived_at } = follower.newest;
+        let [measured_at, arrived_at] =
+            [|it: Coming| it.measured, |it: Coming| it.arrives].map(|at| follower.newest.map(at));
         let predicted_for = self.head.predicts().then_some(shown_at);
         let objects_at = shown_at;
         sampled.push(SampledPose { number, reports_until, measured_at, arrived_at, predicted_for, objects_at, pose });

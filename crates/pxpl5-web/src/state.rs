@@ -200,7 +200,7 @@ mod tests {
                 );
                 let mut session = Session::new(&settings, &Files::default()).expect("known settings");
                 session.run_to(700_000_000_000);
-                let [error, age] = [misregistration(session.stepper()), diagram::age(session.stepper())];
+                let [error, age] = [misregistration(&session.stepper), diagram::age(&session.stepper)];
                 [&error["degrees"], &age["age_ms"]]
                     .map(|number| number.as_f64().unwrap_or_else(|| panic!("{pipeline}")))
             };

@@ -360,15 +360,15 @@ impl Plan {
 
     fn at_named_level(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();
-        let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
-            .with_estimates(entry.and_then(|entry| Some(entry.closed_form?.estimates)))
+        let mut experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
             .observed_by(Some(HeadSum::begin))
-            .with_hmd(self.hmd)
             .fields(self.fields)
             .seed(self.seed)
             .pixels(self.pixels)
             .level(self.level)
             .host(Workstation::new());
+        experiment.estimates = entry.and_then(|entry| Some(entry.closed_form?.estimates));
+        experiment.hmd = self.hmd;
         match &self.head {
             Some(head) => experiment.head(head.head()),
             None => experiment,

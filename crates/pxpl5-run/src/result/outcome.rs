@@ -115,7 +115,7 @@ impl Outcome {
     /// pipeline has no due pictures, or if the run ended before the first due picture or in its warm-up.
     pub fn due(&self) -> Option<DuePictures> {
         let every = self.pipeline().periods_a_picture(&self.record)?;
-        DuePictures::of_ends(self.closed.tally.ends(), every, &self.closed.window?)
+        DuePictures::of_ends(&self.closed.tally.ends, every, &self.closed.window?)
     }
 
     /// Returns a text that defines for this pipeline when a picture is due, and when it is in time.
@@ -140,8 +140,7 @@ impl Outcome {
         let window = self.closed.window?;
         // Otherwise several updates make up a picture, and each period counts at most once.
         let pictures = complete as f64 / self.pipeline().updates_per_picture(&self.record);
-        let seen =
-            pictures.min(self.closed.tally.ends().periods_shown([window.first_period, window.last_period]) as f64);
+        let seen = pictures.min(self.closed.tally.ends.periods_shown([window.first_period, window.last_period]) as f64);
         Some(seen * 1e3 / (window.periods() as f64 * self.field_ms()))
     }
 

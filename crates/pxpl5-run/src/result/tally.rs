@@ -58,11 +58,11 @@ pub struct Tally {
     /// twice counts twice.
     pub records_read: u64,
     surfaces_ms: Vec<Samples>,
-    ends: PictureResults,
+    pub(crate) ends: PictureResults,
     pub(crate) window_from: Option<PeriodNumber>,
     region_ms: f64,
     region_pixels: u64,
-    end: PeriodNumber,
+    pub(crate) end: PeriodNumber,
     field_ms: f64,
     limit: usize,
 }
@@ -82,14 +82,9 @@ pub struct SurfaceLatency<'a> {
     pub ms: &'a Samples,
 }
 
-/// The times of the first and the last word of a copy. A copy is one eye under Rendering Control, and half a field
+/// The times of the first and the last word of each copy. A copy is one eye under Rendering Control, and half a field
 /// under Slats.
-struct CopySpan {
-    begin: Time,
-    end: Time,
-}
-
-type Copies = BTreeMap<(PictureNumber, u8), CopySpan>;
+type Copies = BTreeMap<(PictureNumber, u8), [Time; 2]>;
 
 impl Tally {
     pub(crate) fn new(end: PeriodNumber, field_ms: f64, limit: usize) -> Self {
@@ -120,10 +115,6 @@ impl Tally {
             field_ms,
             limit,
         }
-    }
-
-    pub(crate) fn end_early(&mut self, reached: PeriodNumber) {
-        self.end = self.end.min(reached);
     }
 
     /// Counts pictures of the whole run, not only of the result window, in the order in which they are shown.
@@ -211,10 +202,10 @@ impl Tally {
         for times in steady {
             for (samples, place) in self.copy_ms.iter_mut().zip(0..) {
                 let span = copies.get(&(times.picture, place));
-                samples.extend(span.map(|span| (span.end - span.begin).as_ms()));
+                samples.extend(span.map(|[begin, end]| (*end - *begin).as_ms()));
             }
             let first = copies.get(&(times.picture, 0));
-            self.copy_begins_ms.extend(first.map(|first| first.begin.since(times.transform_at).as_ms()));
+            self.copy_begins_ms.extend(first.map(|[begin, _]| begin.since(times.transform_at).as_ms()));
         }
     }
 
@@ -275,10 +266,6 @@ impl Tally {
     pub fn region_copy_us(&self) -> f64 {
         self.region_ms * 1e3 * 15_360.0 / self.region_pixels as f64
     }
-
-    pub(crate) const fn ends(&self) -> &PictureResults {
-        &self.ends
-    }
 }
 
 fn copies(pipeline: &dyn Pipeline, record: &Record) -> Copies {
@@ -287,10 +274,9 @@ fn copies(pipeline: &dyn Pipeline, record: &Record) -> Copies {
     for arrival in &record.observation().arrivals {
         let place = pipeline.copy_part(arrival);
         let begin = arrival.begins_at(message);
-        let fresh = CopySpan { begin, end: arrival.last_part_at };
-        let span = copies.entry((arrival.target.picture, place)).or_insert(fresh);
-        span.begin = span.begin.min(begin);
-        span.end = span.end.max(arrival.last_part_at);
+        let [first, last] = copies.entry((arrival.target.picture, place)).or_insert([begin, arrival.last_part_at]);
+        *first = begin.min(*first);
+        *last = arrival.last_part_at.max(*last);
     }
     copies
 }

@@ -22,7 +22,8 @@ pub struct ShownUpdate {
 /// Updates that each display memory of a run has shown, in order.
 #[derive(Clone, Debug, Default)]
 pub struct FaceHistory {
-    memories: Vec<Vec<ShownUpdate>>,
+    /// Updates of each display memory.
+    pub memories: Vec<Vec<ShownUpdate>>,
 }
 
 impl FaceHistory {
@@ -41,11 +42,6 @@ impl FaceHistory {
     /// Memories that show nothing are left out.
     pub fn at(&self, period: PeriodNumber) -> impl Iterator<Item = &ShownUpdate> {
         (0..self.memories.len()).filter_map(move |memory| self.memory_at(memory, period))
-    }
-
-    /// Returns the number of display memories.
-    pub const fn n_memories(&self) -> usize {
-        self.memories.len()
     }
 
     /// Returns the update that a display memory shows in a period. Returns `None` before the memory's first update.
