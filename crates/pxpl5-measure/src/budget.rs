@@ -89,7 +89,7 @@ impl Budget {
 /// [`Budget::total_ms`]: the wait for the pipeline, SEND and EDIT, the scan to the middle of the picture, and its light.
 pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
     let Budget { tracking_ms, drawing_ms, showing_ms, .. } = Budget::of(outcome);
-    let of_eyes = outcome.summary().eye_latency_ms();
+    let of_eyes = outcome.summary().eye_swap_latencies_ms.statistics();
     // Eyes that share one TRANSFORM have no latency of their own.
     let rendering_ms = if of_eyes.n == 0 { drawing_ms + showing_ms } else { of_eyes.mean };
     Some(tracking_ms + rendering_ms).filter(|sum| sum.is_finite())

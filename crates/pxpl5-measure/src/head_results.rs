@@ -66,12 +66,8 @@ pub(crate) struct HeadResults {
 }
 
 impl HeadResults {
-    fn from_observer(outcome: &Outcome) -> Option<&Self> {
-        outcome.observed()
-    }
-
     pub(crate) fn of(outcome: &Outcome) -> Cow<'_, Self> {
-        if let Some(results) = Self::from_observer(outcome) {
+        if let Some(results) = outcome.observed() {
             return Cow::Borrowed(results);
         }
         let mut sum = HeadSum::default();
@@ -88,7 +84,7 @@ impl HeadResults {
 /// Returns a warning if a run with a head has discarded its records and had no streaming observer.
 pub(crate) fn missing_results_warning(outcome: &Outcome) -> Option<String> {
     let is_missing =
-        outcome.head().is_some() && outcome.has_discarded_records() && HeadResults::from_observer(outcome).is_none();
+        outcome.head().is_some() && outcome.has_discarded_records() && outcome.observed::<HeadResults>().is_none();
     is_missing.then(|| MISSING_RESULTS.to_owned())
 }
 
@@ -109,7 +105,7 @@ impl PixelErrors {
     /// covers only the last periods.
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
-        let results = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster.into());
+        let results = outcome.observed::<HeadResults>().filter(|_| showing == head.head().raster.into());
         results.map_or_else(|| evaluated(outcome, showing, None, 0).0, |results| results.error.clone())
     }
 
@@ -159,7 +155,7 @@ impl Budget {
     /// Returns the mean time of each stage of the latency. The mean covers the pictures in the result window that are
     /// complete and have a measured pose.
     pub fn of(outcome: &Outcome) -> Self {
-        if let Some(results) = HeadResults::from_observer(outcome) {
+        if let Some(results) = outcome.observed::<HeadResults>() {
             return results.end_to_end;
         }
         let mut sum = BudgetSum::default();

@@ -7,7 +7,6 @@ use crate::kept_records::{KeptRecords, MIN_RECORDS};
 use crate::level::Level;
 use crate::observe::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
-use crate::raster::Raster;
 use pxpl5_machine::{MachineConfig, Optimization, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::StopFlag;
@@ -302,11 +301,6 @@ impl Experiment {
     #[must_use]
     pub fn with_scene(self, scene: impl Into<Arc<Scene>>) -> Self {
         Self { scene: scene.into(), ..self }
-    }
-
-    /// Returns the correction that the head-mounted display applies to a picture during scan-out.
-    pub fn raster(&self) -> Raster {
-        self.head.as_ref().map(|head| head.raster).unwrap_or_default()
     }
 
     /// Returns the instant for which pictures are drawn, such as the middle of the time in which a picture lights.
