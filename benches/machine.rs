@@ -8,8 +8,8 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5::{
-    Experiment, Level, Machine, MachineConfig, Outcome, PeriodNumber, Pipeline, Pixels, RenderingControl, Slats,
-    Workstation, scene,
+    Experiment, Level, Machine, MachineConfig, Outcome, PeriodNumber, Pipeline, PipelineProperties, Pixels,
+    RenderingControl, Slats, Workstation, scene,
 };
 use std::hint::black_box;
 
@@ -69,7 +69,8 @@ fn idle(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(FIELDS));
     group.bench_function("idle", |b| {
         b.iter(|| {
-            let machine = Machine::new(&MachineConfig::small_hmd(), pipeline.eyes(), pipeline.layout());
+            let PipelineProperties { eyes, layout, .. } = pipeline.properties();
+            let machine = Machine::new(&MachineConfig::small_hmd(), eyes, layout);
             let mut machine = machine.expect("the preset is valid");
             machine.switch_on();
             let end = machine.record().tick(PeriodNumber(FIELDS));

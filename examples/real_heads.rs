@@ -11,7 +11,7 @@ use pxpl5::compare::{CompareQuery, Comparison, ComparisonRow, MeanInterval, RowC
 use pxpl5::lab::motion;
 use pxpl5::tracking::motion::Motion;
 use pxpl5::tracking::time::{PS_PER_MS, PS_PER_S};
-use pxpl5::views::charts::{ChartAxes, Curve, curve_chart};
+use pxpl5::views::charts::{ChartAxes, ChartSeries, curve_chart};
 use pxpl5::{ExperimentFile, LatencyCurve, Study};
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -72,14 +72,14 @@ fn over_time() -> Result<String, Box<dyn Error>> {
     let head = motion(HEADS[0][0])?;
     let curves = LATENCIES_MS.map(|ms| {
         let curve = LatencyCurve::of(&head, ms, 29, 1.0);
-        Curve { name: format!("{ms} ms, mean {:.1} px", curve.mean_px()), points: curve.points }
+        ChartSeries::line(&format!("{ms} ms, mean {:.1} px", curve.mean_px()), &curve.points)
     });
     let axes = ChartAxes {
         title: "Error that a latency alone causes for a user who looks around".to_owned(),
         across: "time, s".to_owned(),
         up: "error in the middle of the picture, px".to_owned(),
     };
-    Ok(curve_chart(&axes, &curves))
+    Ok(curve_chart(axes, curves.into()))
 }
 
 /// Samples of a motion in a second.

@@ -100,7 +100,7 @@ fn measure(system: &str, setting: Option<(&str, &str)>, motion: &str) -> Result<
 
 fn of_run(outcome: &Outcome) -> Found {
     let seconds = outcome.fields() as f64 * outcome.field_ms() * 1e-3;
-    let has_faces = outcome.pipeline().coverage() == Coverage::Surroundings;
+    let has_faces = outcome.pipeline().properties().coverage == Coverage::Surroundings;
     let errors = outcome.pixel_errors().filter(|errors| errors.evaluated > 0);
     let arrivals = outcome.observation().arrivals.iter();
     let texels = arrivals.map(|arrival| {
@@ -121,9 +121,9 @@ fn triangles(outcome: &Outcome) -> u64 {
     let notes = outcome.requested_updates();
     let Some(head) = outcome.head() else { return 0 };
     let scene = head.scene();
-    if outcome.pipeline().coverage() == Coverage::View {
+    if outcome.pipeline().properties().coverage == Coverage::View {
         let views: BTreeSet<_> = head.sampled().into_iter().map(|sampled| sampled.number).collect();
-        return (views.len() * outcome.pipeline().eyes() * scene.triangles().len()) as u64;
+        return (views.len() * outcome.pipeline().properties().eyes * scene.triangles().len()) as u64;
     }
     let of_structures = scene.structures().iter().map(|structure| structure.triangles.len() as u64);
     let of_structures: Vec<u64> = of_structures.collect();

@@ -117,8 +117,8 @@ pub use pxpl5_run::Registry;
 /// The pipeline of the example loads the firmware of an existing pipeline, and has the same results.
 ///
 /// ```
-/// use pxpl5::firmware::{CopyTarget, Layout, PictureNumber, Shading, ViewNumber};
-/// use pxpl5::{Aim, Machine, PictureTimes, Record, SettingError, Setup, Source, Time, prelude::*};
+/// use pxpl5::firmware::{CopyTarget, PictureNumber, ViewNumber};
+/// use pxpl5::{Aim, Machine, PictureTimes, PipelineProperties, Record, SettingError, Setup, Source, Time, prelude::*};
 /// use std::collections::BTreeMap;
 ///
 /// #[derive(Debug)]
@@ -128,14 +128,9 @@ pub use pxpl5_run::Registry;
 ///     fn name(&self) -> &'static str {
 ///         "mine"
 ///     }
-///     fn eyes(&self) -> usize {
-///         self.0.eyes()
-///     }
-///     fn layout(&self) -> Layout {
-///         self.0.layout()
-///     }
-///     fn shading(&self) -> Shading {
-///         self.0.shading()
+///     fn properties(&self) -> PipelineProperties {
+///         let latency_definition = "from TRANSFORM to the swap";
+///         PipelineProperties { latency_definition, due_definition: "no picture is due", ..self.0.properties() }
 ///     }
 ///     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
 ///         self.0.load(machine, setup)
@@ -155,12 +150,6 @@ pub use pxpl5_run::Registry;
 ///         aim: Aim,
 ///     ) -> Option<Source> {
 ///         self.0.source(record, target, views, aim)
-///     }
-///     fn latency_definition(&self) -> &'static str {
-///         "from TRANSFORM to the swap"
-///     }
-///     fn due_definition(&self) -> &'static str {
-///         "no picture is due"
 ///     }
 /// }
 ///
@@ -325,7 +314,7 @@ pub use pphigs::RegionBinning;
 pub use pxpl5_run::{
     Aim, Cause, Code, DisplayEntry, Every, FIELDS_RANGE, FinishedRegions, Frameless, Goal, HeadPlace, HeadViews, Host,
     Interpolation, Jitp, KeptRecords, Key, KeyValue, KeyValues, LimitCriterion, Pause, PictureRules, PipelineEntry,
-    PipelineSettings, Pixels, PolicyFrame, Raster, RegionAssignment, RegionPolicy, SampledPose, Setup, SlatsLighting,
-    Source, TestScene, Viewpoint, Warp, out_of_range,
+    PipelineProperties, PipelineSettings, Pixels, PolicyFrame, Raster, RegionAssignment, RegionPolicy, SampledPose,
+    Setup, SlatsLighting, Source, TestScene, Viewpoint, Warp, out_of_range,
 };
 pub use slats::CopySchedule;

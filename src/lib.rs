@@ -169,10 +169,10 @@ pub use tracking;
 /// conversions.
 pub mod run {
     pub use pxpl5_run::{
-        ClosedForm, Estimates, FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, FrameStarts, KEPT_SAMPLES,
-        LATE_REGIONS_LISTED, ObservedRun, OrientationTiming, PixelField, Poses, ReportTimes, RequestedUpdate,
-        RequestedUpdates, RotationLatency, SegmentedScene, ShownUpdate, SurfaceLatency, Tally, Views, ViewsWanted,
-        bit_of, check_coverage, display_list, in_ms, in_us, region_at, retraces, views, warning_without_code,
+        ClosedForm, Estimates, FaceHistory, FacePipeline, FacePolicy, FaceSource, KEPT_SAMPLES, LATE_REGIONS_LISTED,
+        OrientationTiming, PixelField, RequestedUpdate, RequestedUpdates, RotationLatency, SceneViews, SegmentedScene,
+        ShownUpdate, SurfaceLatency, Tally, ViewSource, bit_of, check_coverage, display_list, in_ms, in_us, region_at,
+        retraces, warning_without_code,
     };
 }
 
@@ -180,7 +180,7 @@ pub mod run {
 pub mod measure {
     pub use pxpl5_measure::{
         FacesReport, GpUtilisation, MemoryReport, PICTURES_FOLLOWED, PortShare, PortUtilisation, RendererUtilisation,
-        RingUtilisation, RotationPart, Shares, Vdrt, latency_by_surface, latency_parts, pixel_errors, program, screen,
+        RingUtilisation, RotationPart, Shares, latency_by_surface, pixel_errors, program, screen,
     };
 }
 

@@ -13,8 +13,8 @@ use pxpl5::oracle::IdealPicture;
 use pxpl5::scene::config::FIT_DISTANCE_RADII;
 use pxpl5::scene::{self, HeadMotion, HeadPath, Scene, Sway};
 use pxpl5::{
-    Experiment, KeyValue, Level, MachineConfig, Measured, Outcome, PipelineEntry, PipelineSettings, SurfaceId, Time,
-    registry,
+    Experiment, KeyValue, Level, MachineConfig, Measured, Outcome, PipelineEntry, PipelineProperties, PipelineSettings,
+    SurfaceId, Time, registry,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -134,9 +134,8 @@ static IDEALS: Ideals = Mutex::new(BTreeMap::new());
 
 fn ideal(outcome: &Outcome, scene: &Scene, surface: u16) -> Arc<IdealPicture> {
     let primitives = scene.triangles().len() + scene.spheres().len();
-    let pipeline = outcome.pipeline();
-    let drawn =
-        format!("{} {} {} {}", scene.name(), pipeline.layout().plan().name, pipeline.shading() as u8, pipeline.eyes());
+    let PipelineProperties { layout, shading, eyes, .. } = outcome.pipeline().properties();
+    let drawn = format!("{} {} {} {eyes}", scene.name(), layout.plan().name, shading as u8);
     let key = (drawn, primitives, surface);
     let cached = IDEALS.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
     cached.unwrap_or_else(|| {
@@ -153,7 +152,7 @@ fn faults(entry: &PipelineEntry, size: (usize, usize), whole: &Scene) -> Vec<Str
     let scene = Arc::new(still(whole, most));
     let outcome = run(entry, size, &scene, fields);
     let mut faults = Vec::new();
-    for surface in 0..outcome.pipeline().eyes() as u16 {
+    for surface in 0..outcome.pipeline().properties().eyes as u16 {
         let ideal = ideal(&outcome, &scene, surface);
         let picture = outcome.picture(SurfaceId(surface)).expect("pixels are on");
         let wrong = ideal.differences(&picture);
@@ -222,7 +221,7 @@ fn every_pipeline_shows_the_same_pictures_at_the_cycle_level() {
         let [table, code] =
             [Level::Transaction, Level::Cycle].map(|level| run_at(level, drawn, size, &scene, fields.min(60)));
         assert_ne!(table.report().trace_hash, code.report().trace_hash, "{} takes other times", entry.name);
-        for surface in (0..table.pipeline().eyes() as u16).map(SurfaceId) {
+        for surface in (0..table.pipeline().properties().eyes as u16).map(SurfaceId) {
             let [expected, found] = [&table, &code].map(|outcome| outcome.picture(surface).expect("pixels are on"));
             let background = expected.get_pixel(0, 0);
             assert!(expected.pixels().any(|pixel| pixel != background), "{}: something is drawn", entry.name);
@@ -235,7 +234,7 @@ fn every_pipeline_shows_the_same_pictures_at_the_cycle_level() {
 /// Returns true if a pipeline draws pictures for the eye. Faces of a cube are compared with ideal faces in
 /// crates/pxpl5-run/tests/faces, and their display is compared with a reference model.
 fn draws_pictures(entry: &PipelineEntry) -> bool {
-    (entry.build)(&PipelineSettings::default()).coverage() == Coverage::View
+    (entry.build)(&PipelineSettings::default()).properties().coverage == Coverage::View
 }
 
 #[test]

@@ -232,7 +232,7 @@ fn each_display_memory_has_a_row_with_received_and_shown_pictures() {
     let outcome = experiment.run().expect("it runs");
     let options = TimelineOptions { fields: Some(12), ..TimelineOptions::default() };
     let timeline = Timeline::of(&outcome, &options);
-    let history = pxpl5::run::FaceHistory::of(&outcome).expect("a display with faces");
+    let history = pxpl5::run::FaceHistory::held(outcome.record()).expect("a display with faces");
     let mut received = 0;
     for k in 0..4 {
         let row = timeline.rows.iter().find(|row| row.name == format!("arp port {k}")).expect("a row a memory");

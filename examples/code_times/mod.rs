@@ -51,7 +51,7 @@ use pxpl5_geometry::Viewport;
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::Layout;
-use pxpl5_run::{ExperimentError, Views, display_list, views};
+use pxpl5_run::{ExperimentError, SceneViews, ViewSource, display_list};
 use pxpl5_scene::{Hmd, builtin};
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber};
@@ -257,7 +257,7 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
 /// One board's share of a scene, with the head poses for which the board transforms the share.
 struct Rig {
     share: Share,
-    views: Views,
+    views: SceneViews,
     processor: Processor,
 }
 
@@ -283,7 +283,7 @@ impl Rig {
         let scene = Arc::new(builtin(scene)?);
         let is_single = (version, of) == (CodeVersion::Compiled, CodeUse::Slats);
         let list = Arc::new(part(DisplayList { is_single, ..display_list(&scene)? }));
-        let (views, _) = views(&scene, 1, Hmd::unc(), 2);
+        let views = SceneViews::new(&scene, 1, Hmd::unc(), 2);
         let share = Share::new(list, 0, boards);
         // The board holds its share of the display list in memory, as in a run.
         let mut processor = Processor::new(NodeId(1), MEMORY, version, MachineConfig::small_hmd().i860);
@@ -292,7 +292,7 @@ impl Rig {
     }
 
     fn view(&self, number: u64) -> FrameView {
-        (self.views)(ViewNumber(number), Time(number * VIEW_PERIOD_PS))
+        self.views.newest(ViewNumber(number), Time(number * VIEW_PERIOD_PS))
     }
 }
 

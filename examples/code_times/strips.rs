@@ -8,6 +8,7 @@ use pphigs::{
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{CodeVersion, GpTiming, ProcessorFault};
 use pxpl5_renderer::Layout;
+use pxpl5_run::ViewSource;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
 
@@ -166,7 +167,7 @@ fn between_ns(rig: &mut Rig, in_eye_space: bool, near: [i32; 2]) -> Result<f64, 
 }
 
 fn views(rig: &Rig) -> [pphigs::FrameView; 2] {
-    [0, 1].map(|number| (rig.views)(ViewNumber(number), Time(number * FIELD_PS)))
+    [0, 1].map(|number| rig.views.newest(ViewNumber(number), Time(number * FIELD_PS)))
 }
 
 /// Returns the nanoseconds to assemble each kind of order. A first execution loads the code into the caches.

@@ -85,7 +85,8 @@ fn primitives_in_time(
     summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
 ) -> Option<u64> {
     let (least, most) = ESTIMATED_FIELDS;
-    let plain = experiment.clone().without_head().fields(experiment.fields.clamp(least, most));
+    let mut plain = experiment.clone().fields(experiment.fields.clamp(least, most));
+    plain.head = None;
     let is_in_time = |scene: &Arc<Scene>| is_in_time(&summary(&plain.clone().with_scene(Arc::clone(scene))).ok()?);
     let whole = Arc::clone(plain.scene());
     let mut denser = Arc::clone(&whole);

@@ -3,7 +3,7 @@
 use pphigs::{Picture, PrimitiveCounts, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
-use pxpl5_run::{Experiment, ExperimentError, display_list, views};
+use pxpl5_run::{Experiment, ExperimentError, SceneViews, ViewSource, display_list};
 use pxpl5_sim::Time;
 use pxpl5_wire::{RegionId, ViewNumber};
 use std::sync::Arc;
@@ -59,13 +59,13 @@ impl Load {
     ) -> Result<Vec<Self>, ExperimentError> {
         // All GPs together hold the whole scene, so a single share suffices.
         let list = Arc::new(display_list(experiment.scene())?);
-        let (views, _) = views(experiment.scene(), experiment.seed, *experiment.hmd(), 2);
+        let views = SceneViews::new(experiment.scene(), experiment.seed, experiment.hmd, 2);
         let share = Share::new(list, 0, 1);
         let layout = Layout::rendering_control_phong();
         let picture = Picture { viewport, shading: Shading::Phong, binning, layout, pixels: false };
         let mut loads = Vec::with_capacity(2 * times.len());
         for (number, time) in ViewNumber::FIRST.onwards().zip(times) {
-            let view = views(number, Time(*time));
+            let view = views.newest(number, Time(*time));
             loads.extend([0, 1].map(|eye| Self::of_pass(&share, &share.transform(&view, eye, picture))));
         }
         Ok(loads)

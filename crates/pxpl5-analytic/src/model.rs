@@ -87,7 +87,7 @@ impl SlatsModel {
     /// wait.
     pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, SettingError> {
         // Each renderer holds as many regions as its memory layout permits.
-        slats::Binding::new(config.n_renderers, program.layout().plan().contexts, program.copy)?;
+        slats::Binding::new(config.n_renderers, program.properties().layout.plan().contexts, program.copy)?;
         // A variant of the program changes the machine, as in a run with events. The usual program changes nothing, and
         // sweeps make many models of it.
         let usual = Slats { copy: program.copy, ..Slats::whole() };

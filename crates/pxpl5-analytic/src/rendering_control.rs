@@ -154,7 +154,7 @@ impl StereoModel {
         let [triangle, sphere] = kinds.map(|kind| Cost::of_command(&config.renderer, kind));
         let shade = Cost::of_command(&config.renderer, CommandKind::Shade);
         Ok(Self {
-            eyes: program.eyes(),
+            eyes: program.properties().eyes,
             slaves: (config.n_gps - 1) as f64,
             renderers: config.n_renderers,
             gp: config.gp,
@@ -437,13 +437,17 @@ impl StereoModel {
         let shown: Vec<_> = frames.iter().filter(|frame| frame.shown_ns < end_ns).skip(WARM_UP_PICTURES).collect();
         let due = self.due(frames, fields);
         let field_ms = self.field_ns * 1e-6;
-        let eye_swap_latencies_ms: Samples = shown.iter().flat_map(|frame| self.eye_swap_latencies_ms(frame)).collect();
+        let of_eyes = |end: fn(&StereoTimes, usize) -> f64| -> Samples {
+            let eyes = shown.iter().flat_map(|frame| (0..self.eyes).map(move |eye| (frame, eye)));
+            eyes.map(|(frame, eye)| (end(frame, eye) - frame.transform_ns[eye]) * 1e-6).collect()
+        };
+        let eye_swap_latencies_ms = of_eyes(|frame, _| frame.shown_ns);
         Summary {
             latencies_ms: shown.iter().map(|frame| (frame.shown_ns - frame.transform_ns[0]) * 1e-6).collect(),
             field_ms,
             updates_hz: due.and_then(|due| due.updates_hz(field_ms)),
             due,
-            eye_latencies_ms: shown.iter().flat_map(|frame| self.eye_latencies_ms(frame)).collect(),
+            eye_latencies_ms: of_eyes(|frame, eye| frame.copy_ns[eye].1),
             eye_retraces: eye_swap_latencies_ms.iter().map(|ms| retraces(*ms, field_ms)).collect(),
             eye_swap_latencies_ms,
             region_copy_us: self.copy_ns.iter().sum::<f64>() / self.copy_ns.len() as f64 * 1e-3,
@@ -451,14 +455,6 @@ impl StereoModel {
             last_copy_ms: if self.eyes > 1 { mean_ms(&shown, |frame| frame.copy_length_ns(1)) } else { 0.0 },
             copy_begins_ms: mean_ms(&shown, |frame| frame.copy_ns[0].0 - frame.transform_ns[0]),
         }
-    }
-
-    fn eye_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
-        (0..self.eyes).map(|eye| (frame.copy_ns[eye].1 - frame.transform_ns[eye]) * 1e-6).collect()
-    }
-
-    fn eye_swap_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
-        (0..self.eyes).map(|eye| (frame.shown_ns - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
     /// Counts the frames that are due and shown. Frames are due at the rate at which the pixels of all eyes can be

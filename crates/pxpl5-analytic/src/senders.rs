@@ -22,7 +22,7 @@ use pphigs::{Picture, RegionBinning, Shading, Share, TransformWork};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Work;
 use pxpl5_renderer::Layout;
-use pxpl5_run::{Experiment, ExperimentError, display_list, views};
+use pxpl5_run::{Experiment, ExperimentError, SceneViews, ViewSource, display_list};
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, MAX_MESSAGE_WORDS, RegionId, ViewNumber};
 use slats::CLUMP;
@@ -84,8 +84,8 @@ impl Clumps {
     ) -> Result<Self, ExperimentError> {
         // Transform the scene for the first view.
         let list = Arc::new(display_list(experiment.scene())?);
-        let (views, _) = views(experiment.scene(), experiment.seed, *experiment.hmd(), 2);
-        let view = views(ViewNumber::FIRST, Time(0));
+        let views = SceneViews::new(experiment.scene(), experiment.seed, experiment.hmd, 2);
+        let view = views.newest(ViewNumber::FIRST, Time(0));
         let viewport = Viewport::field(FieldParity::Even);
         let picture = Picture { viewport, shading: Shading::Gouraud, binning, layout: Layout::slats(), pixels: false };
         let of_gp = |gp: usize| {
@@ -209,7 +209,22 @@ struct Sender<'a> {
     served: [bool; MAX_RENDERERS],
 }
 
-impl Sender<'_> {
+impl<'a> Sender<'a> {
+    fn idle(gp: usize, clumps: &'a [Clump], model: &SlatsModel) -> Self {
+        Self {
+            gp,
+            clumps,
+            begun: 0,
+            messages: VecDeque::new(),
+            since_ns: 0.0,
+            channels_ns: vec![f64::MIN; model.source_channels],
+            cpu_ns: 0.0,
+            accepted_ns: 0.0,
+            draining_ns: 0.0,
+            served: [false; MAX_RENDERERS],
+        }
+    }
+
     fn is_done(&self) -> bool {
         self.messages.is_empty()
     }
@@ -258,18 +273,8 @@ impl<'a> Ring<'a> {
             begin_ns[0] += model.transform_begins_ns();
         }
         let sender = |(gp, clumps): (usize, &'c Vec<Clump>)| {
-            let mut sender = Sender {
-                gp,
-                clumps,
-                begun: 0,
-                messages: VecDeque::new(),
-                since_ns: 0.0,
-                channels_ns: vec![f64::MIN; model.source_channels],
-                cpu_ns: begin_ns[gp],
-                accepted_ns: if gp == 0 { accepted_ns } else { 0.0 },
-                draining_ns: 0.0,
-                served: [false; MAX_RENDERERS],
-            };
+            let sender = Sender { cpu_ns: begin_ns[gp], ..Sender::idle(gp, clumps, model) };
+            let mut sender = Sender { accepted_ns: if gp == 0 { accepted_ns } else { 0.0 }, ..sender };
             self.next_clump(&mut sender);
             sender
         };
@@ -279,18 +284,7 @@ impl<'a> Ring<'a> {
     fn clear_all(&mut self) -> f64 {
         // A clump without primitives produces only the messages that clear.
         let nothing = Clump { transform_ns: 0.0, bins: [[0.0; 2]; REGIONS] };
-        let mut sender = Sender {
-            gp: 0,
-            clumps: std::slice::from_ref(&nothing),
-            begun: 0,
-            messages: VecDeque::new(),
-            since_ns: 0.0,
-            channels_ns: vec![f64::MIN; self.model.source_channels],
-            cpu_ns: 0.0,
-            accepted_ns: 0.0,
-            draining_ns: 0.0,
-            served: [false; MAX_RENDERERS],
-        };
+        let mut sender = Sender::idle(0, std::slice::from_ref(&nothing), self.model);
         self.clears = true;
         self.next_clump(&mut sender);
         while !sender.is_done() {

@@ -9,7 +9,7 @@ use crate::{no_form, pipeline_of};
 use multiversion::multiversion;
 use pphigs::RegionBinning;
 use pxpl5_run::{
-    ClosedForm, Estimates, Experiment, ExperimentError, Samples, Slats, Summary, WARM_UP_PERIODS, WARM_UP_PICTURES,
+    ClosedForm, Estimates, Experiment, ExperimentError, Slats, Summary, WARM_UP_PERIODS, WARM_UP_PICTURES,
 };
 use slats::CopySchedule;
 
@@ -216,13 +216,11 @@ fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
         field_ms,
         updates_hz: due.and_then(|due| due.updates_hz(field_ms)),
         due,
-        eye_latencies_ms: Samples::default(),
-        eye_swap_latencies_ms: Samples::default(),
-        eye_retraces: Samples::default(),
         region_copy_us: model.region_ns * 1e-3,
         first_copy_ms: length_ms(times.top),
         last_copy_ms: times.bottom.map_or(0.0, length_ms),
         copy_begins_ms: (times.top.begin_ns - model.transform_begins_ns()) * 1e-6,
+        ..Summary::default()
     }
 }
 

@@ -61,7 +61,7 @@ impl WalkOutcome {
         let settings = plan.settings()?;
         let scaled = (plan.walk.hall_scale != 1.0).then(|| scaled(scene, plan.walk.hall_scale)).transpose()?;
         let scene = scaled.as_ref().unwrap_or(scene);
-        let path = path_of(scene, plan.route())?;
+        let path = path_of(scene, plan.route)?;
         let world = World::new(scene, settings.numbers.cell_m)?;
         let eye = at_frames(&path, plan.walk.m_per_s, settings.numbers.frame_hz);
         // Walk, and draw the view at the end.
@@ -77,7 +77,7 @@ impl WalkOutcome {
             segments: world.segments.len() as u64,
             frames,
             m_per_s: plan.walk.m_per_s,
-            settings: plan.given().clone(),
+            settings: plan.given.clone(),
         };
         drop(eye);
         Ok(Self { path, settings, tally, report, world })

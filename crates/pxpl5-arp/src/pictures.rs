@@ -130,14 +130,14 @@ fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<V
     let mut pictures: Vec<ArpPicture> = Vec::new();
     // Unfolded faces of each memory.
     for (memory, set) in faces.memories.iter().enumerate() {
-        pictures.push(ArpPicture::Pixels(format!("faces-{memory}"), cross(set, faces.background())));
+        pictures.push(ArpPicture::Pixels(format!("faces-{memory}"), cross(set, faces.background)));
     }
     // Faces of a reference memory with the whole scene.
-    let whole = WalkSettings { display: simulation.settings().display.clone(), ..WalkSettings::FULL }.with_memories(1);
-    let whole = WalkFaces::of(&shown(simulation.world(), &whole, 0..1, &|_| eye)?)?;
-    pictures.push(ArpPicture::Pixels("faces-whole".to_owned(), cross(&whole.memories[0], faces.background())));
+    let whole = WalkSettings { display: simulation.settings.display.clone(), ..WalkSettings::FULL }.with_memories(1);
+    let whole = WalkFaces::of(&shown(simulation.world, &whole, 0..1, &|_| eye)?)?;
+    pictures.push(ArpPicture::Pixels("faces-whole".to_owned(), cross(&whole.memories[0], faces.background)));
     // Views without a lens, then through the display's lens.
-    let display = &simulation.settings().display;
+    let display = &simulation.settings.display;
     let views = MemoryViews { faces: &faces, orientation, lens: without_lens(display) };
     if views.lens == Lens::Flat {
         pictures.push(ArpPicture::Pixels("eye-flat".to_owned(), views.seen()?));
@@ -213,7 +213,7 @@ fn widest_upright(world: &World, simulation: &Simulation<'_>) -> Option<DVec3> {
         |segment: usize| !["floor", "ceiling"].contains(&world.objects[world.segments[segment].object].name.as_str());
     let upright = world.shared.iter().filter(|shared| shared.segments.iter().all(|segment| is_upright(*segment)));
     let upright = World { shared: upright.cloned().collect(), ..world.clone() };
-    let (_, vertex) = Tears::of(&upright, simulation.shown()).widest?;
+    let (_, vertex) = Tears::of(&upright, &simulation.shown).widest?;
     Some(world.vertices[vertex as usize])
 }
 

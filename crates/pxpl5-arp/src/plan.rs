@@ -31,8 +31,9 @@ pub struct WalkPlan {
     is_segmented: Option<bool>,
     has_cascade: Option<bool>,
     threshold: Option<ThresholdChoice>,
-    route: Route,
-    given: BTreeMap<String, String>,
+    pub route: Route,
+    /// Settings that the user gave explicitly, each with its path such as `priority.cell_m`.
+    pub given: BTreeMap<String, String>,
 }
 
 /// A threshold of the image error, in pixels or texels. The threshold becomes an angle when the display's resolution is
@@ -121,11 +122,6 @@ impl WalkPlan {
         }
     }
 
-    /// Returns the settings that the user gave explicitly, each with its path such as `priority.cell_m`.
-    pub const fn given(&self) -> &BTreeMap<String, String> {
-        &self.given
-    }
-
     /// Returns the plan with a lens. `name` is the file from which the lens was read.
     #[must_use]
     pub fn behind(mut self, lens: Lens, name: &str) -> Self {
@@ -137,10 +133,6 @@ impl WalkPlan {
     /// Returns the size and viewing angle of the display's picture. A lens table must match this size and this angle.
     pub fn picture(&self) -> LensPicture {
         self.chosen.display.picture()
-    }
-
-    pub const fn route(&self) -> Route {
-        self.route
     }
 
     /// Returns the complete settings. Settings that were not given have their default values.

@@ -240,7 +240,7 @@ fn priority(world: &World, settings: &WalkSettings, tally: &WalkTally) -> Priori
     let is_cells = settings.policy == PolicyKind::Cells;
     let draws_per_s = tally.draws_per_s(hz);
     PriorityReport {
-        policy: settings.policy.name(),
+        policy: PolicyKind::ALL[settings.policy as usize].0,
         theta_deg: (settings.policy != PolicyKind::Full).then_some(settings.numbers.theta_deg),
         cell_m: is_cells.then_some(settings.numbers.cell_m),
         draws_per_s,

@@ -24,14 +24,6 @@ pxpl5_sim::parameters::named!(PolicyKind, "policy", PolicyKind::ALL);
 
 impl PolicyKind {
     pub const ALL: [(&str, Self); 3] = [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells)];
-
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Full => "full",
-            Self::Objects => "objects",
-            Self::Cells => "cells",
-        }
-    }
 }
 
 /// Speed of the renderer that draws the cube faces.

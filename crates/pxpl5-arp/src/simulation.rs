@@ -54,12 +54,13 @@ pub struct FrameOutcome {
 /// A viewer's walk through a scene, simulated frame by frame.
 #[derive(Clone, Debug)]
 pub struct Simulation<'a> {
-    world: &'a World,
-    settings: WalkSettings,
+    pub world: &'a World,
+    pub settings: WalkSettings,
     units: Vec<Unit>,
     policy: Policy,
     queue: Queue,
-    shown: Vec<Option<Content>>,
+    /// Contents of each memory, or `None` for a memory without an update so far.
+    pub shown: Vec<Option<Content>>,
     frames: u64,
     before: Option<DVec3>,
 }
@@ -90,19 +91,6 @@ impl<'a> Simulation<'a> {
             frames: 0,
             before: None,
         })
-    }
-
-    pub const fn world(&self) -> &'a World {
-        self.world
-    }
-
-    pub const fn settings(&self) -> &WalkSettings {
-        &self.settings
-    }
-
-    /// Returns the contents of each memory, or `None` for a memory without an update so far.
-    pub fn shown(&self) -> &[Option<Content>] {
-        &self.shown
     }
 
     /// Returns the current assignment of cells to memories. Returns `None` unless the policy is `cells`.

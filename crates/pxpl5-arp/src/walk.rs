@@ -69,7 +69,7 @@ impl WalkTally {
         self.redeals += u64::from(outcome.reassigns_cells);
         for (memory, tally) in self.memories.iter_mut().enumerate() {
             tally.missed += u64::from(outcome.missed[memory]);
-            let Some(content) = &simulation.shown()[memory] else { continue };
+            let Some(content) = &simulation.shown[memory] else { continue };
             // Count the contents of the memory and the age of its eye position.
             let segments = content.segments.len() as u64;
             tally.segment_frames += segments;
@@ -77,17 +77,17 @@ impl WalkTally {
             let age = self.frames - 1 - content.frame;
             if outcome.swapped[memory] {
                 // A timed source shows an update from the next frame on.
-                tally.drawn_in = age + u64::from(simulation.settings().source != SourceKind::Ideal);
+                tally.drawn_in = age + u64::from(simulation.settings.source != SourceKind::Ideal);
                 tally.updates += 1;
                 tally.segments_drawn += segments;
-                tally.triangles_drawn += content.triangles(simulation.world());
+                tally.triangles_drawn += content.triangles(simulation.world);
             }
             tally.shown_frames += 1;
             tally.age_frames += age.max(tally.drawn_in);
             tally.drawing_frames += tally.drawn_in;
         }
         // Tears between all memories in this frame.
-        let tears = Tears::of(simulation.world(), simulation.shown());
+        let tears = Tears::of(simulation.world, &simulation.shown);
         self.widest.push(tears.widest);
         self.tears.before.extend(tears.before);
         self.tears.after.extend(tears.after);

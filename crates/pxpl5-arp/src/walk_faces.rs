@@ -15,7 +15,8 @@ pub struct WalkFaces {
     /// Counts of the triangles drawn into the faces.
     pub drawing: DrawCounts,
     config: ArpConfig,
-    background: u32,
+    /// Background colour, 0x00RRGGBB.
+    pub background: u32,
 }
 
 impl WalkFaces {
@@ -25,25 +26,20 @@ impl WalkFaces {
     ///
     /// Fails in the same cases as [`crate::WalkSettings::view`].
     pub fn of(simulation: &Simulation<'_>) -> Result<Self, SettingError> {
-        let settings = simulation.settings();
+        let settings = &simulation.settings;
         let view = settings.view()?;
         let mut drawing = DrawCounts::default();
         let mut memories = Vec::new();
         // Memories without an update stay empty.
-        for content in simulation.shown() {
+        for content in &simulation.shown {
             let mut faces = FaceSet::new(view.geometry.texels, settings.display.format());
             if let Some(content) = content {
-                drawing.add(content.draw(simulation.world(), &view, &mut faces));
+                drawing.add(content.draw(simulation.world, &view, &mut faces));
             }
             memories.push(faces);
         }
-        let background = simulation.world().background;
+        let background = simulation.world.background;
         Ok(Self { memories, drawing, config: ArpConfig { background, ..settings.display.clone() }, background })
-    }
-
-    /// Returns the background colour, 0x00RRGGBB.
-    pub const fn background(&self) -> u32 {
-        self.background
     }
 
     /// Returns the same faces viewed through the lens `lens`.

@@ -68,12 +68,12 @@ fn memories_drawn_from_one_position_equal_one_memory_bit_for_bit() {
     let mut cells = simulated(&small(CELLS));
     cells.frame(eye).expect("drawn");
     let faces = WalkFaces::of(&cells).expect("drawn");
-    let view = cells.settings().view().expect("a range");
-    let mut one = FaceSet::new(128, cells.settings().display.format());
-    let in_order: Vec<usize> = cells.shown().iter().flatten().flat_map(|content| content.segments.clone()).collect();
+    let view = cells.settings.view().expect("a range");
+    let mut one = FaceSet::new(128, cells.settings.display.format());
+    let in_order: Vec<usize> = cells.shown.iter().flatten().flat_map(|content| content.segments.clone()).collect();
     assert_eq!(in_order.len(), WORLD.segments.len());
     view.draw(eye, WORLD.triangles(&in_order, |vertex| vertex), &mut one);
-    let mut composite = FaceSet::new(128, cells.settings().display.format());
+    let mut composite = FaceSet::new(128, cells.settings.display.format());
     for face in CubeFace::ALL {
         for k in 0..128 * 128 {
             let texel = TexelAddress { face, column: k % 128, row: k / 128 };
@@ -131,7 +131,7 @@ fn no_vertex_ever_has_an_angular_error_above_theta() {
     let mut worst: f64 = 0.0;
     for frame in 0..2_000 {
         let outcome = simulation.frame(eye(frame)).expect("drawn");
-        for content in simulation.shown().iter().skip(1).flatten() {
+        for content in simulation.shown.iter().skip(1).flatten() {
             for segment in &content.segments {
                 for vertex in WORLD.segments[*segment].triangles.iter().flatten() {
                     let place = WORLD.vertices[*vertex as usize];
@@ -151,7 +151,7 @@ fn each_segment_is_in_exactly_one_memory_even_when_cells_are_reassigned() {
         for frame in 0..700 {
             simulation.frame(eye(frame)).expect("drawn");
             let mut held: Vec<usize> =
-                simulation.shown().iter().flatten().flat_map(|content| content.segments.clone()).collect();
+                simulation.shown.iter().flatten().flat_map(|content| content.segments.clone()).collect();
             held.sort_unstable();
             assert!(held.iter().copied().eq(0..WORLD.segments.len()), "{:?} frame {frame}", settings.policy);
         }
@@ -195,7 +195,7 @@ fn a_jump_of_a_kilometre_assigns_objects_once_and_leaves_no_tear() {
     let far = DVec3::new(1_000.0, 1.7, 0.0);
     assert!(simulation.frame(far).expect("drawn").reassigns_cells);
     assert!(!simulation.frame(far).expect("drawn").reassigns_cells);
-    assert!(Tears::of(&WORLD, simulation.shown()).after.iter().all(|gap| *gap < 1e-12));
+    assert!(Tears::of(&WORLD, &simulation.shown).after.iter().all(|gap| *gap < 1e-12));
 }
 
 #[test]
@@ -261,7 +261,7 @@ fn with_a_slow_renderer_slow_memories_miss_retraces_first_and_incomplete_memorie
     let slow = WalkSettings { source: SourceKind::Timed { triangles_per_s: 3_000.0 }, ..CELLS };
     let mut simulation = simulated(&slow);
     let outcome = simulation.frame(PATH.place(0.0)).expect("drawn");
-    assert!(outcome.missed[3] && simulation.shown()[3].is_none());
+    assert!(outcome.missed[3] && simulation.shown[3].is_none());
 }
 
 #[test]

@@ -12,7 +12,8 @@ use pxpl5_cli::pxpl5::firmware::{
 };
 use pxpl5_cli::pxpl5::{
     Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureResult, PictureRules, PictureTimes, Pipeline,
-    PipelineEntry, PipelineSettings, Ports, Record, Registry, SettingError, Setup, Span, TestScene, Time,
+    PipelineEntry, PipelineProperties, PipelineSettings, Ports, Record, Registry, SettingError, Setup, Span, TestScene,
+    Time,
 };
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -31,7 +32,7 @@ impl OneAtATime {
             viewport: Viewport::new(grid, Lines::Frame)?,
             shading: self.shading,
             binning: RegionBinning::Touched,
-            layout: self.layout(),
+            layout: self.properties().layout,
             pixels: true,
         })
     }
@@ -101,12 +102,10 @@ impl Pipeline for OneAtATime {
         vec![("shading", KeyValue::Name(shading))]
     }
 
-    fn eyes(&self) -> usize {
-        1
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::rendering_control_phong()
+    fn properties(&self) -> PipelineProperties {
+        let latency = "from the start of TRANSFORM to the retrace at which the frame is swapped in";
+        let due = "no frame is ever due: each is shown when it is finished";
+        PipelineProperties::new(Layout::rendering_control_phong(), latency, due)
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
@@ -114,7 +113,7 @@ impl Pipeline for OneAtATime {
         let views = Arc::clone(&setup.views);
         let node = ports.gps[0];
         let gp = machine.processor(node, Priority::Foreground);
-        let view = move |number, time| views(number, time);
+        let view = move |number, time| views.newest(number, time);
         let picture = self.picture(machine.record().display())?;
         let program = firmware(gp, ports, Arc::clone(&setup.list), picture, view);
         machine.load(node, Priority::Foreground, Box::pin(program));
@@ -137,14 +136,6 @@ impl PictureRules for OneAtATime {
             layer: 0,
         });
         times.filter(|times| times.shown_at < end).collect()
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        "from the start of TRANSFORM to the retrace at which the frame is swapped in"
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "no frame is ever due: each is shown when it is finished"
     }
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn to_other_retraces(summary: &Summary) -> Option<[f64; 2]> {
 /// Returns a warning for each statistic of a run that lies within [`NEAR_FIELDS`] of an edge. A pipeline that draws each
 /// part of a picture for its own instant has no such edge.
 pub fn near_edges(outcome: &Outcome) -> Vec<String> {
-    if outcome.pipeline().knows_when_seen() { Vec::new() } else { of_summary(&outcome.summary()) }
+    if outcome.pipeline().properties().knows_when_seen { Vec::new() } else { of_summary(&outcome.summary()) }
 }
 
 fn of_summary(summary: &Summary) -> Vec<String> {

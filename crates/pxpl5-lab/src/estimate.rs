@@ -148,13 +148,13 @@ impl RunWork {
             fields: experiment.fields,
             gps: experiment.config().n_gps as u64,
             primitives: experiment.scene().primitives() as u64,
-            eyes: pipeline.eyes() as u64,
+            eyes: pipeline.properties().eyes as u64,
             pictures_a_field: 1.0,
             uses_closed_form: false,
             batch: whole("batch"),
             block: whole("block"),
             is_cycle_level: experiment.level == Level::Cycle,
-            keeps_everything: keeps_everything || !pipeline.can_discard_records(),
+            keeps_everything: keeps_everything || !pipeline.properties().can_discard_records,
             is_tracked: experiment.head.is_some(),
         };
         // A pipeline shows at most one picture in a field, and fewer if TRANSFORM takes longer.

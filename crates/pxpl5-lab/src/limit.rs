@@ -210,7 +210,9 @@ impl LimitQuery {
     /// Returns an error if the goal is an update rate that cannot be measured for the scene. A pipeline that draws all
     /// directions may show fewer than two updates, because it redraws only a small part of the scene.
     fn check_rate(&self) -> Result<(), ExperimentError> {
-        let (Goal::RateHz(hz), true) = (self.criterion.goal, self.pipeline.coverage() == Coverage::Surroundings) else {
+        let (Goal::RateHz(hz), true) =
+            (self.criterion.goal, self.pipeline.properties().coverage == Coverage::Surroundings)
+        else {
             return Ok(());
         };
         let outcome = self.experiment(1)?.run()?;

@@ -228,14 +228,14 @@ impl Rig {
 /// Returns an error for a pipeline in which a photodiode on the screen cannot detect a new frame.
 fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), StudyError> {
     let refused = |reason: &str| {
-        let found = format_args!("{}: {reason}; {}", pipeline.name(), pipeline.due_definition());
+        let found = format_args!("{}: {reason}; {}", pipeline.name(), pipeline.properties().due_definition);
         Err(SettingError::value("", "a pipeline whose frames a photodiode can distinguish", found).into())
     };
-    if pipeline.coverage() == Coverage::Surroundings {
+    if pipeline.properties().coverage == Coverage::Surroundings {
         return refused("its display turns with the head, so the light changes before any frame is drawn");
     }
-    let machine =
-        Machine::new(&pipeline.adapt(machine.clone()), 1, pipeline.layout()).map_err(ExperimentError::from)?;
+    let machine = Machine::new(&pipeline.adapt(machine.clone()), 1, pipeline.properties().layout)
+        .map_err(ExperimentError::from)?;
     if pipeline.periods_a_picture(machine.record()).is_none() {
         return refused("parts of the screen change one by one, so the light under a photodiode is that of one part");
     }

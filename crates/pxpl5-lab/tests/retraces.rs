@@ -81,7 +81,8 @@ fn without_a_closed_form_the_message_asks_for_a_longer_run() {
 #[test]
 fn a_frame_of_two_hundred_fields_counts_as_one_shown_picture() {
     let form = registry().pipeline("rendering-control").expect("known").closed_form.map(|form| form.estimates);
-    let short = experiment(slow(), "full-screen:12", 60).with_estimates(form);
+    let mut short = experiment(slow(), "full-screen:12", 60);
+    short.estimates = form;
     let needed = partial(short.run().expect_err("too short")).0.expect("it has a closed form");
     let outcome = experiment(slow(), "full-screen:12", needed + needed / 10).run().expect("long enough");
     let report = outcome.report();

@@ -1,10 +1,19 @@
-//! Tests of the pendulum rig in front of the machine: the measurements outside and inside the machine agree.
+//! Tests of the pendulum rig in front of the machine. The measurements outside and inside the machine agree, and each
+//! measurement reveals faults of the other.
 
+use pphigs::FrameView;
 use pxpl5_lab::rig::{Rig, RigQuery};
 use pxpl5_lab::{Study, StudyError};
-use pxpl5_machine::MachineConfig;
-use pxpl5_run::{Pipeline, PipelineSettings, Registry};
-use std::sync::Arc;
+use pxpl5_machine::{Machine, MachineConfig, Record};
+use pxpl5_run::{
+    PictureRules, PictureTimes, Pipeline, PipelineProperties, PipelineSettings, Registry, RenderingControl, Setup,
+    ViewSource,
+};
+use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
+use pxpl5_wire::ViewNumber;
+use std::sync::{Arc, Mutex};
+use tracking::Pose;
 use tracking::rig::Measurement;
 use tracking::tracker::TrackerConfig;
 
@@ -75,6 +84,94 @@ fn the_external_latency_of_slats_is_a_field_plus_the_delay_of_the_photodiode_lin
     let found = measured.outside.rendering;
     assert!((ms(found.min) - least).abs() < 1e-3 || (ms(found.min) - least - line_ms / 2.0).abs() < 1e-3, "{found:?}");
     assert!(ms(found.max) < least + line_ms / 2.0 + 1e-3, "{found:?}");
+}
+
+/// The pipeline Rendering Control with an injected fault.
+#[derive(Debug)]
+struct Faulty {
+    inner: RenderingControl,
+    fault: Fault,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    /// The time stamps of pictures are one field too early, so that the inside measurement is wrong.
+    EarlyStamps,
+    /// Frames show the pose of the previous frame. Their light comes one frame late, while the time stamps stay the
+    /// same.
+    StaleViews,
+}
+
+/// Head poses that lag behind by one pose.
+#[derive(Debug)]
+struct Stale {
+    views: Arc<dyn ViewSource>,
+    last: Mutex<Option<FrameView>>,
+}
+
+impl ViewSource for Stale {
+    fn newest(&self, number: ViewNumber, now: Time) -> FrameView {
+        let fresh = self.views.newest(number, now);
+        let shown = self.last.lock().expect("one thread").replace(fresh.clone()).unwrap_or_else(|| fresh.clone());
+        FrameView { number: fresh.number, ..shown }
+    }
+
+    fn view_at(&self, number: ViewNumber, now: Time, shown_at: Time) -> FrameView {
+        self.views.view_at(number, now, shown_at)
+    }
+
+    fn pose_at(&self, now: Time, at: Time) -> Pose {
+        self.views.pose_at(now, at)
+    }
+
+    fn report_from(&self, instant: Time) -> Option<Time> {
+        self.views.report_from(instant)
+    }
+}
+
+impl Pipeline for Faulty {
+    fn name(&self) -> &'static str {
+        "faulty"
+    }
+
+    fn properties(&self) -> PipelineProperties {
+        self.inner.properties()
+    }
+
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
+        let mut views = Arc::clone(&setup.views);
+        if self.fault == Fault::StaleViews {
+            views = Arc::new(Stale { views, last: Mutex::default() });
+        }
+        self.inner.load(machine, &Setup { views, ..setup.clone() })
+    }
+}
+
+impl PictureRules for Faulty {
+    fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
+        let early = if self.fault == Fault::EarlyStamps { 16_683_333_333 } else { 0 };
+        let pictures = self.inner.pictures(record, end).into_iter();
+        pictures.map(|times| PictureTimes { shown_at: Time(times.shown_at.0 - early), ..times }).collect()
+    }
+
+    fn periods_a_picture(&self, record: &Record) -> Option<u64> {
+        self.inner.periods_a_picture(record)
+    }
+}
+
+#[test]
+fn each_measurement_detects_errors_of_the_other_measurement() {
+    let with = |fault| {
+        let faulty = Faulty { inner: RenderingControl::stereo(), fault };
+        measure(TrackerConfig::fastrak(), Arc::new(faulty), 4)
+    };
+    let early = with(Fault::EarlyStamps).expect("light comes");
+    assert!(!early.agrees(), "{early:?}");
+    // The light of the last frame never appears. The rig either reports so, or the latencies disagree.
+    match with(Fault::StaleViews) {
+        Ok(stale) => assert!(!stale.agrees(), "{stale:?}"),
+        Err(error) => assert!(matches!(error, StudyError::Setting(_)), "{error}"),
+    }
 }
 
 #[test]

@@ -127,8 +127,8 @@ fn every_pipeline_draws_for_a_panel_or_names_the_missing_requirement() {
 fn raster(text: &str) -> Raster {
     let text = format!("head.motion = \"pan:10\"\n{text}");
     let plan = plan(&text);
-    let raster = plan.head.as_ref().expect("a head").head().raster();
-    assert_eq!(support::plan(&plan.settings().to_string()).head.expect("a head").head().raster(), raster);
+    let raster = plan.head.as_ref().expect("a head").head().raster;
+    assert_eq!(support::plan(&plan.settings().to_string()).head.expect("a head").head().raster, raster);
     raster
 }
 

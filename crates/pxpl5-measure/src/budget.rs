@@ -63,21 +63,22 @@ impl Budget {
             return Self::default();
         }
         let n: u64 = with_pictures.iter().map(|budget| budget.n).sum();
-        // A single run has the weight 1, so its means stay the same to the last bit.
-        let mean = |of: fn(&Self) -> f64| -> f64 {
+        let mean = |of: &dyn Fn(&Self) -> f64| -> f64 {
             with_pictures.iter().map(|budget| of(budget) * (budget.n as f64 / n as f64)).sum()
         };
-        Self {
-            tracking_ms: mean(|budget| budget.tracking_ms),
-            waiting_ms: mean(|budget| budget.waiting_ms),
-            sending_ms: mean(|budget| budget.sending_ms),
-            drawing_ms: mean(|budget| budget.drawing_ms),
-            showing_ms: mean(|budget| budget.showing_ms),
-            scanning_ms: mean(|budget| budget.scanning_ms),
-            lighting_ms: mean(|budget| budget.lighting_ms),
-            total_ms: mean(|budget| budget.total_ms),
-            n,
-        }
+        let means = std::array::from_fn(|stage| mean(&|budget| budget.stages_ms()[stage]));
+        Self { total_ms: mean(&|budget| budget.total_ms), ..Self::of_stages(means, n) }
+    }
+
+    const fn stages_ms(&self) -> [f64; STAGES] {
+        let Self { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms, .. } = *self;
+        [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms]
+    }
+
+    fn of_stages(means: [f64; STAGES], n: u64) -> Self {
+        let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms] = means;
+        let total_ms = means.iter().sum();
+        Self { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms, total_ms, n }
     }
 }
 
@@ -88,7 +89,7 @@ impl Budget {
 /// [`Budget::total_ms`]: the wait for the pipeline, SEND and EDIT, the scan to the middle of the picture, and its light.
 pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
     let Budget { tracking_ms, drawing_ms, showing_ms, .. } = Budget::of(outcome);
-    let of_eyes = outcome.summary().eye_latency_ms();
+    let of_eyes = outcome.summary().eye_swap_latencies_ms.statistics();
     // Eyes that share one TRANSFORM have no latency of their own.
     let rendering_ms = if of_eyes.n == 0 { drawing_ms + showing_ms } else { of_eyes.mean };
     Some(tracking_ms + rendering_ms).filter(|sum| sum.is_finite())
@@ -131,7 +132,7 @@ impl BudgetSum {
         }
         // Sum the stages of the new pictures.
         self.poses.append(&mut poses(run));
-        for stages in of_pictures(run, &self.poses, run.steady_pictures()) {
+        for stages in of_pictures(run, &self.poses) {
             self.totals_ms.push(stages.iter().sum());
             self.stages_ms.iter_mut().zip(stages).for_each(|(samples, ms)| samples.push(ms));
         }
@@ -150,10 +151,7 @@ impl BudgetSum {
 
     pub(crate) fn result(self) -> Budget {
         let n = self.stages_ms[0].count();
-        let means = self.stages_ms.map(|samples| samples.statistics().mean);
-        let total_ms = means.iter().sum();
-        let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms] = means;
-        Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, lighting_ms, total_ms, n }
+        Budget::of_stages(self.stages_ms.map(|samples| samples.statistics().mean), n)
     }
 }
 
@@ -161,13 +159,10 @@ pub(crate) fn poses(run: &FinalResults<'_>) -> Poses {
     run.head.map(|head| head.sampled()).unwrap_or_default().into_iter().map(|s| (s.number, s)).collect()
 }
 
-/// Returns the duration of each stage in milliseconds, for each complete picture whose head pose is still in memory.
-pub(crate) fn of_pictures<'a>(
-    run: &FinalResults<'_>,
-    poses: &Poses,
-    pictures: impl Iterator<Item = &'a PictureTimes>,
-) -> Vec<[f64; STAGES]> {
-    let complete = pictures.filter(|times| times.is_shown());
+/// Returns the duration of each stage in milliseconds, for each complete picture in the result window whose head pose is
+/// still in memory.
+pub(crate) fn of_pictures(run: &FinalResults<'_>, poses: &Poses) -> Vec<[f64; STAGES]> {
+    let complete = run.steady_pictures().iter().filter(|times| times.is_shown());
     complete.filter_map(|times| of_picture(run, times, poses.get(&times.view)?)).collect()
 }
 
@@ -180,7 +175,7 @@ fn misses_ms<'a>(run: &'a FinalResults<'_>, poses: &'a Poses) -> impl Iterator<I
     let nexts = run.pictures.iter().skip(1).map(Some).chain([run.next]);
     let is_counted = |times: &PictureTimes| {
         let is_steady = run.window.is_some_and(|window| window.holds_picture(display.period_at(times.shown_at)));
-        is_steady && times.is_shown() && times.layer == 0 && !run.pipeline.knows_when_seen()
+        is_steady && times.is_shown() && times.layer == 0 && !run.pipeline.properties().knows_when_seen
     };
     let counted = run.pictures.iter().zip(nexts).filter(move |(times, _)| is_counted(times));
     counted.filter_map(|(times, next)| {

@@ -7,7 +7,7 @@
 use crate::resource::Resource;
 use crate::trail::{Step, Trail};
 use pxpl5_machine::{Board, Record};
-use pxpl5_run::{ObservedRun, Outcome, PictureTimes};
+use pxpl5_run::{Outcome, PictureTimes, Stepper};
 use pxpl5_sim::Span;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -67,9 +67,10 @@ impl CriticalPath {
 
     /// Returns the chain of waits of the last complete pictures of a run so far. Returns `None` before the first
     /// complete picture.
-    pub fn so_far(run: &ObservedRun<'_>) -> Option<Self> {
-        let is_on_screen = |times: &&PictureTimes| times.is_shown() && times.shown_at <= run.end();
-        let all: Vec<&PictureTimes> = run.pictures().iter().filter(is_on_screen).collect();
+    pub fn so_far(run: &Stepper) -> Option<Self> {
+        let is_on_screen = |times: &&PictureTimes| times.is_shown() && times.shown_at <= run.now();
+        let pictures = run.pictures();
+        let all: Vec<&PictureTimes> = pictures.iter().filter(is_on_screen).collect();
         Self::of_last(run.record(), &all)
     }
 

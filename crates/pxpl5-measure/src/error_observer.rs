@@ -5,7 +5,7 @@ use crate::errors::{CENTRE, FieldMisregistration, PixelErrors, Showing, grid, la
 use crate::eye_report::{Device, EyeReport, EyeSum};
 use crate::moved::{Moved, moved};
 use crate::raster::{offset, pose_of_field};
-use crate::registration::{Evaluated, Evaluator, middle};
+use crate::registration::{Evaluated, Evaluator, Lost, middle};
 use crate::reproject::Move;
 use crate::reprojector::Reprojector;
 use crate::rows::Rows;
@@ -41,7 +41,7 @@ impl ErrorSum {
 
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let Some(head) = run.head else { return };
-        let showing = self.showing.unwrap_or_else(|| head.head().raster().into());
+        let showing = self.showing.unwrap_or_else(|| head.head().raster.into());
         let evaluation = self.evaluation.get_or_insert_with(|| Evaluation::begin(run, head, showing, self.without));
         let window_from = run.window.map(|window| window.first_period);
         if self.window_from != window_from {
@@ -124,7 +124,6 @@ impl Showing {
             setting,
             pixels_per_s: f64::from(columns) * f64::from(lines) * periods_per_s,
             poses_per_s: f64::from(poses) * periods_per_s,
-            has_depth: setting.by == Warp::Depth,
         })
     }
 }
@@ -286,7 +285,7 @@ impl Evaluation {
         let (content, drawn) = match found {
             Moved::Shows(content, drawn) => (content, drawn),
             Moved::NotComplete(seen) => return self.error(pixel, &seen, collected),
-            Moved::Beyond | Moved::Hidden => {
+            Moved::Lost(_) => {
                 collected.errors.unfilled += 1;
                 return self.error(pixel, &self.shown.seen(run, pixel.place, field, pixel.begins), collected);
             }
@@ -346,8 +345,9 @@ impl Evaluation {
                     let Some(newest) = reprojector.newest(display, [x, y]).filter(|_| has_ray) else { continue };
                     let now = (Warp::Depth, &newest.pose);
                     match moved((&self.evaluator, &self.shown, run), now, [x, y], field, at) {
+                        Moved::Lost(lost) => eye.add_pixel(lost == Lost::Beyond, lost == Lost::Hidden),
+                        Moved::Shows(..) => eye.add_pixel(false, false),
                         Moved::NotComplete(_) => {}
-                        found => eye.add_pixel(matches!(found, Moved::Beyond), matches!(found, Moved::Hidden)),
                     }
                 }
                 Content::Reprojected(reprojector) => {

@@ -2,7 +2,7 @@
 
 use crate::distribution::Distribution;
 use crate::percentiles::Percentiles;
-use pxpl5_run::{KEPT_SAMPLES, Reprojection};
+use pxpl5_run::{KEPT_SAMPLES, Reprojection, Warp};
 use pxpl5_sim::Time;
 use serde::Serialize;
 
@@ -45,7 +45,6 @@ pub(crate) struct Device {
     pub(crate) setting: Reprojection,
     pub(crate) pixels_per_s: f64,
     pub(crate) poses_per_s: f64,
-    pub(crate) has_depth: bool,
 }
 
 #[derive(Debug)]
@@ -97,7 +96,7 @@ impl EyeSum {
             pose_age_ms: self.age_ms.percentiles(),
             checked_pixels: self.checked,
             empty_share: share(self.beyond),
-            disoccluded_share: share(self.hidden).filter(|_| device.has_depth),
+            disoccluded_share: share(self.hidden).filter(|_| device.setting.by == Warp::Depth),
         });
         let smear_px = self.smear.map(|smear| smear.percentiles());
         (smear_px.is_some() || reprojection.is_some()).then_some(EyeReport { smear_px, reprojection })

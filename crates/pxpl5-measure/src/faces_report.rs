@@ -1,7 +1,8 @@
 //! Report of an address recalculation display, as numbers.
 
+use crate::head_results::HeadResults;
 use crate::step_observer::Steps;
-use crate::turn_observer::{RotationPart, Turns};
+use crate::turn_observer::RotationPart;
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
 use pxpl5_run::{Outcome, Statistics};
 use serde::Serialize;
@@ -69,7 +70,7 @@ impl FacesReport {
     pub const SCHEMA: &'static str = "pxpl5-arp/1";
 
     /// Returns the report of a run, or `None` if the run's display is not an address recalculation display.
-    pub fn of(outcome: &Outcome) -> Option<Self> {
+    pub(crate) fn of(outcome: &Outcome, results: &HeadResults) -> Option<Self> {
         let display: &AddressRecalculationPipeline = outcome.record().display_of_kind()?;
         let timing = &display.config().timing;
         // A display that lacks a counter has counted nothing.
@@ -77,8 +78,7 @@ impl FacesReport {
             let counters = outcome.record().display().counters();
             counters.iter().find(|counter| counter.name == name).map_or(0, |counter| counter.count)
         };
-        let turns = Turns::of(outcome);
-        let steps = Steps::of(outcome);
+        let HeadResults { turns, steps, .. } = results;
         let memories = outcome.display_memories().iter().enumerate();
         Some(Self {
             schema: Self::SCHEMA,
@@ -87,15 +87,17 @@ impl FacesReport {
             pipeline_ns: timing.depth().as_ms() * 1e6,
             matrix_loads: counted("matrix loads"),
             matrix_refused: counted("matrices refused"),
-            memories: memories.map(|(k, memory)| MemoryReport::of(outcome, (k, memory), steps.get(k))).collect(),
-            rotation_latency_ms: turns.latency_ms,
-            rotation_latency_parts_ms: turns.parts_ms,
+            memories: memories
+                .map(|(k, memory)| MemoryReport::of(outcome, (k, memory), steps.get(k).cloned().unwrap_or_default()))
+                .collect(),
+            rotation_latency_ms: turns.0,
+            rotation_latency_parts_ms: turns.1.clone(),
         })
     }
 }
 
 impl MemoryReport {
-    fn of(outcome: &Outcome, (k, memory): (usize, &DisplayMemory), steps: Option<&Steps>) -> Self {
+    fn of(outcome: &Outcome, (k, memory): (usize, &DisplayMemory), steps: Steps) -> Self {
         let stats = memory.stats();
         let in_window = outcome.tally().updates.get(&k).copied().unwrap_or_default();
         // Mean number of periods between updates within the window.
@@ -111,8 +113,8 @@ impl MemoryReport {
             segments: last.map_or(0, |note| note.structures.iter().filter(|held| **held).count()),
             regions_copied: stats.regions,
             missed: stats.missed,
-            translation_latency_ms: steps.and_then(|steps| steps.latency_ms),
-            translation_latency_parts_ms: steps.map(|steps| steps.parts_ms.clone()).unwrap_or_default(),
+            translation_latency_ms: steps.0,
+            translation_latency_parts_ms: steps.1,
             lateness_ms: stats.lateness.as_ms(),
             bytes: memory.bytes(),
         }

@@ -5,24 +5,86 @@ use crate::budget::{Budget, BudgetSum, of_pictures, poses};
 use crate::error_observer::ErrorSum;
 use crate::errors::{PixelErrors, Showing};
 use crate::eye_report::EyeReport;
-use crate::head_observer::HeadResults;
-use crate::latency::LatencyPercentiles;
 use crate::percentiles::Percentiles;
 use crate::step_observer::{StepSum, Steps};
 use crate::turn_observer::{RotationLatencySum, Turns};
-use pxpl5_run::{Cause, Outcome};
+use pxpl5_run::{Cause, FinalResults, Outcome, StreamingObserver};
+use std::any::Any;
+use std::borrow::Cow;
 use tracking::time::PS_PER_MS;
 
+/// A streaming observer for runs that keep only statistics.
+///
+/// The observer collects the latency from the head's pose until pixels are lit, rotation latencies of address
+/// recalculation displays, and errors in pixels. A run uses the observer after
+/// `experiment.keep(KeptRecords::Statistics).observed_by(Some(HeadSum::begin))`.
+#[derive(Debug, Default)]
+pub struct HeadSum {
+    budget: BudgetSum,
+    turns: RotationLatencySum,
+    steps: StepSum,
+    errors: ErrorSum,
+}
+
+impl HeadSum {
+    /// Creates the streaming observer. This function is the argument of
+    /// [`Experiment::observed_by`](pxpl5_run::Experiment::observed_by).
+    pub fn begin() -> Box<dyn StreamingObserver> {
+        Box::<Self>::default()
+    }
+
+    fn results(self) -> HeadResults {
+        let Self { budget, turns, steps, errors } = self;
+        let percentiles = budget.percentiles();
+        let (error, eye) = errors.result();
+        let (turns, steps) = (turns.result(), steps.result());
+        HeadResults { end_to_end: budget.result(), percentiles, turns, steps, error, eye }
+    }
+}
+
+impl StreamingObserver for HeadSum {
+    fn take(&mut self, results: &FinalResults<'_>) {
+        self.budget.take(results);
+        self.turns.take(results);
+        self.steps.take(results);
+        self.errors.take(results);
+    }
+
+    fn result(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
+        Box::new(self.results())
+    }
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct HeadResults {
+    pub(crate) end_to_end: Budget,
+    pub(crate) percentiles: [Percentiles; 2],
+    pub(crate) turns: Turns,
+    pub(crate) steps: Vec<Steps>,
+    pub(crate) error: PixelErrors,
+    pub(crate) eye: Option<EyeReport>,
+}
+
 impl HeadResults {
-    fn from_observer(outcome: &Outcome) -> Option<&Self> {
-        outcome.observed()
+    pub(crate) fn of(outcome: &Outcome) -> Cow<'_, Self> {
+        if let Some(results) = outcome.observed() {
+            return Cow::Borrowed(results);
+        }
+        let mut sum = HeadSum::default();
+        sum.take(&outcome.final_results());
+        let mut results = sum.results();
+        // A translation latency needs the records of the whole time in which an update is shown.
+        if outcome.has_discarded_records() {
+            results.steps.clear();
+        }
+        Cow::Owned(results)
     }
 }
 
 /// Returns a warning if a run with a head has discarded its records and had no streaming observer.
 pub(crate) fn missing_results_warning(outcome: &Outcome) -> Option<String> {
     let is_missing =
-        outcome.head().is_some() && outcome.has_discarded_records() && HeadResults::from_observer(outcome).is_none();
+        outcome.head().is_some() && outcome.has_discarded_records() && outcome.observed::<HeadResults>().is_none();
     is_missing.then(|| MISSING_RESULTS.to_owned())
 }
 
@@ -43,7 +105,7 @@ impl PixelErrors {
     /// covers only the last periods.
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
-        let results = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster().into());
+        let results = outcome.observed::<HeadResults>().filter(|_| showing == head.head().raster.into());
         results.map_or_else(|| evaluated(outcome, showing, None, 0).0, |results| results.error.clone())
     }
 
@@ -84,72 +146,28 @@ impl EyeReport {
     }
 }
 
-/// Returns the pixel errors in the display mode of the head's display, and the [`EyeReport`] if pixels are lit for more
-/// than an instant or a device moves pictures. Returns `None` for a run without a head.
-pub(crate) fn errors_and_eye(outcome: &Outcome) -> Option<(PixelErrors, Option<EyeReport>)> {
-    let showing = outcome.head()?.head().raster().into();
-    let results = HeadResults::from_observer(outcome).map(|results| (results.error.clone(), results.eye.clone()));
-    Some(results.unwrap_or_else(|| evaluated(outcome, showing, None, 0)))
-}
-
 /// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.
 pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
-    Some(PixelErrors::shown(outcome, outcome.head()?.head().raster().into()))
+    Some(PixelErrors::shown(outcome, outcome.head()?.head().raster.into()))
 }
 
 impl Budget {
     /// Returns the mean time of each stage of the latency. The mean covers the pictures in the result window that are
     /// complete and have a measured pose.
     pub fn of(outcome: &Outcome) -> Self {
-        HeadResults::from_observer(outcome).map_or_else(|| budget_sum(outcome).result(), |results| results.end_to_end)
+        if let Some(results) = outcome.observed::<HeadResults>() {
+            return results.end_to_end;
+        }
+        let mut sum = BudgetSum::default();
+        sum.take(&outcome.final_results());
+        sum.result()
     }
 
     /// Returns the latency of each picture whose records are in memory, in milliseconds. The latency lasts from the
     /// measurement of the pose until the middle of the picture is lit.
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
         let run = outcome.final_results();
-        let stages = of_pictures(&run, &poses(&run), run.steady_pictures());
+        let stages = of_pictures(&run, &poses(&run));
         stages.iter().map(|stages| stages.iter().sum()).collect()
-    }
-}
-
-fn budget_sum(outcome: &Outcome) -> BudgetSum {
-    let mut sum = BudgetSum::default();
-    sum.take(&outcome.final_results());
-    sum
-}
-
-impl LatencyPercentiles {
-    /// Returns the percentiles of a run. Those that concern the head are empty without a head.
-    pub fn of(outcome: &Outcome) -> Self {
-        let of_head = HeadResults::from_observer(outcome).map(|results| results.percentiles);
-        let [head_to_light, prediction_interval_error] = of_head.unwrap_or_else(|| budget_sum(outcome).percentiles());
-        let latency = Percentiles::of(outcome.tally().latency_ms.iter().copied());
-        Self { latency, head_to_light, prediction_interval_error }
-    }
-}
-
-impl Turns {
-    pub(crate) fn of(outcome: &Outcome) -> Self {
-        if let Some(results) = HeadResults::from_observer(outcome) {
-            return results.turns.clone();
-        }
-        let mut sum = RotationLatencySum::default();
-        sum.take(&outcome.final_results());
-        sum.result()
-    }
-}
-
-impl Steps {
-    pub(crate) fn of(outcome: &Outcome) -> Vec<Self> {
-        if let Some(results) = HeadResults::from_observer(outcome) {
-            return results.steps.clone();
-        }
-        if outcome.has_discarded_records() {
-            return Vec::new();
-        }
-        let mut sum = StepSum::default();
-        sum.take(&outcome.final_results());
-        sum.result()
     }
 }

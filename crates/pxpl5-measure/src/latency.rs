@@ -1,14 +1,7 @@
 //! Statistics of the latency of pictures and its parts.
 
 use crate::percentiles::Percentiles;
-use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
-
-/// Returns the latency parts of the complete pictures in the result window.
-///
-/// Pictures whose records were discarded ([`pxpl5_run::KeptRecords`]) are left out.
-pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
-    outcome.latency_parts()
-}
+use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, Outcome, Samples};
 
 pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<LatencyPartStatistics> {
     let parts = LATENCY_PARTS.iter().zip(&outcome.tally().parts_ms);

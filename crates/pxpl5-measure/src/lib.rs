@@ -2,7 +2,7 @@
 //!
 //! | question | answer |
 //! |---|---|
-//! | How long is the latency, and which part of the machine causes it? | [`latency_parts`], [`latency_by_surface`], [`Budget`] |
+//! | How long is the latency, and which part of the machine causes it? | [`Outcome::latency_parts`], [`latency_by_surface`], [`Budget`] |
 //! | How many pixels is the content displaced, and why? | [`PixelErrors`], [`Registration`], [`ErrorCauses`] |
 //! | How large is the error that a latency alone causes? | [`LatencyCurve`] |
 //! | What does the viewer see? | [`picture`], [`side_by_side`], [`RasterOffsets`] |
@@ -25,7 +25,6 @@ mod error_observer;
 mod errors;
 mod eye_report;
 mod faces_report;
-mod head_observer;
 mod head_results;
 mod latency;
 mod latency_curve;
@@ -59,16 +58,15 @@ pub use depth_warp::{DepthPicture, reproject_with_depth};
 pub use errors::{FieldMisregistration, PixelErrors, Showing};
 pub use eye_report::{EyeReport, ReprojectionReport};
 pub use faces_report::{FacesReport, MemoryReport};
-pub use head_observer::HeadSum;
-pub use head_results::pixel_errors;
-pub use latency::{LatencyPartStatistics, LatencyPercentiles, SurfaceStatistics, latency_by_surface, latency_parts};
+pub use head_results::{HeadSum, pixel_errors};
+pub use latency::{LatencyPartStatistics, LatencyPercentiles, SurfaceStatistics, latency_by_surface};
 pub use latency_curve::LatencyCurve;
 pub use measured::Measured;
 pub use percentiles::Percentiles;
 pub use pictures::{picture, screen, side_by_side};
 pub use pxpl5_run::{LATENCY_PARTS, LatencyParts, Outcome, PartDefinition};
 pub use quantity::{Measure, QUANTITIES, Quantity, Results};
-pub use raster::{RasterOffsets, Vdrt};
+pub use raster::RasterOffsets;
 pub use registration::Registration;
 pub use report::{HeadReport, Report};
 pub use reproject::reproject;

@@ -3,11 +3,11 @@
 use crate::Report;
 use crate::errors::PixelErrors;
 use crate::head_results::pixel_errors;
-use crate::latency::{SurfaceStatistics, latency_by_surface, latency_parts};
+use crate::latency::{SurfaceStatistics, latency_by_surface};
 use crate::pictures::picture;
 use crate::quantity::Measure;
 use image::RgbImage;
-use pxpl5_run::{LatencyParts, Outcome};
+use pxpl5_run::Outcome;
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::SurfaceId;
 
@@ -25,10 +25,6 @@ pub trait Measured {
     ///
     /// Returns [`SettingError`] with the most similar name if no quantity is called `name`.
     fn quantity(&self, name: &str) -> Result<Option<f64>, SettingError>;
-
-    /// Returns the latency parts of the complete pictures in the result window. Pictures whose records were discarded
-    /// are left out.
-    fn latency_parts(&self) -> Vec<LatencyParts>;
 
     /// Returns the latencies of each eye and of the pair of eyes. The result is empty if the eyes share one TRANSFORM.
     fn latency_by_surface(&self) -> Vec<SurfaceStatistics>;
@@ -49,10 +45,6 @@ impl Measured for Outcome {
 
     fn quantity(&self, name: &str) -> Result<Option<f64>, SettingError> {
         Ok(Measure::named(name)?.of_outcome(self))
-    }
-
-    fn latency_parts(&self) -> Vec<LatencyParts> {
-        latency_parts(self)
     }
 
     fn latency_by_surface(&self) -> Vec<SurfaceStatistics> {

@@ -1,6 +1,6 @@
 use crate::content::Content;
 use crate::drawn::Drawn;
-use crate::registration::{Evaluator, Warped, middle};
+use crate::registration::{Evaluator, Lost, middle};
 use crate::reproject::Move;
 use crate::rows::Rows;
 use crate::shown::{Seen, Shown};
@@ -17,10 +17,8 @@ pub(crate) enum Moved {
     Shows(Content, Drawn),
     /// No picture that can be evaluated covers the pixel. For example, the picture at the pixel is incomplete.
     NotComplete(Seen),
-    /// No content, because the pixel's content lies beyond the edge of the drawn picture.
-    Beyond,
-    /// No content, because a nearer object hides the content in the drawn picture.
-    Hidden,
+    /// The last picture does not have the content.
+    Lost(Lost),
 }
 
 /// Largest number of iterations in the search for the picture position that a pixel shows. If parts of a picture have
@@ -40,13 +38,16 @@ pub(crate) fn moved(
     // The region that contains the source determines the pose, and the pose determines the source. Search for a source
     // that lies in its own region.
     let mut pixel = place;
-    let mut last = Moved::Beyond;
+    let mut last = Moved::Lost(Lost::Beyond);
     for _ in 0..STEPS {
         let drawn = match shown.seen(run, pixel, field, at) {
             Seen::Complete(drawn) => drawn,
             other => return Moved::NotComplete(other),
         };
-        let Some((content, source)) = source(evaluator, by, now, &drawn, target, &mut last) else { return last };
+        let (content, source) = match source(evaluator, by, now, &drawn, target) {
+            Ok(found) => found,
+            Err(lost) => return Moved::Lost(lost),
+        };
         last = Moved::Shows(content, drawn);
         let next = pixel_at(&evaluator.view, source, Rows::lit(run.record.display(), field));
         if next == pixel {
@@ -60,33 +61,15 @@ pub(crate) fn moved(
 /// Returns the content that moves to a screen position, and the position of this content in the picture.
 ///
 /// Returns `None` if no content moves to this position. `reason` then states the reason.
-fn source(
-    evaluator: &Evaluator,
-    by: Warp,
-    now: &Pose,
-    drawn: &Drawn,
-    target: DVec2,
-    reason: &mut Moved,
-) -> Option<(Content, DVec2)> {
+fn source(evaluator: &Evaluator, by: Warp, now: &Pose, drawn: &Drawn, target: DVec2) -> Result<(Content, DVec2), Lost> {
     let moment = evaluator.moment(drawn);
     // Cube faces are several pictures, each with its own depth. For them, a device corrects only the rotation.
     if by == Warp::Depth && !matches!(drawn, Drawn::Faces(_)) {
-        return match evaluator.warped(&moment, now, target) {
-            Warped::Seen(content, source) => Some((content, source)),
-            Warped::Beyond => {
-                *reason = Moved::Beyond;
-                None
-            }
-            Warped::Hidden => {
-                *reason = Moved::Hidden;
-                None
-            }
-        };
+        return evaluator.warped(&moment, now, target);
     }
-    *reason = Moved::Beyond;
     let source = Move::between(by, &evaluator.view, &moment.pose, now).source(&evaluator.view, target);
-    let source = source.filter(|source| evaluator.view.contains(*source))?;
-    Some((evaluator.content(drawn, source), source))
+    let source = source.filter(|source| evaluator.view.contains(*source)).ok_or(Lost::Beyond)?;
+    Ok((evaluator.content(drawn, source), source))
 }
 
 /// Returns the pixel at the position `place`, in the nearest row that the field lights.

@@ -1,7 +1,7 @@
 //! Pictures after a device has moved the pictures to the newest pose.
 
 use crate::depth_warp::{DepthPicture, Drawing};
-use crate::registration::{Evaluator, Warped, middle};
+use crate::registration::{Evaluator, middle};
 use crate::reproject::{Move, fill_row, move_row};
 use crate::reprojector::Reprojector;
 use crate::rows::Rows;
@@ -161,10 +161,7 @@ impl<'a> PictureMover<'a> {
         let moment = self.evaluator.moment(&drawn);
         // With depth, each pixel has its own displacement.
         if self.setting.by == Warp::Depth {
-            let from = |x| match self.evaluator.warped(&moment, &newest.pose, middle(x, y)) {
-                Warped::Seen(_, from) => Some(from),
-                Warped::Beyond | Warped::Hidden => None,
-            };
+            let from = |x| self.evaluator.warped(&moment, &newest.pose, middle(x, y)).ok().map(|(_, from)| from);
             fill_row(screen, rows, (y, xs), from, out);
             return;
         }

@@ -77,10 +77,10 @@ pub static QUANTITIES: [Quantity; 67] = [
     of_run("latency_ms.p50", LATENCY, |_, r| Some(r.percentiles_ms.latency.p50)),
     of_run("latency_ms.p95", LATENCY, |_, r| Some(r.percentiles_ms.latency.p95)),
     of_run("latency_ms.p99", LATENCY, |_, r| Some(r.percentiles_ms.latency.p99)),
-    of_summary("eye_latency_ms.mean", EYE_LATENCY, |s| s.eye_latency_ms().rounded().mean),
-    of_summary("eye_latency_ms.sd", EYE_LATENCY, |s| s.eye_latency_ms().rounded().sd),
-    of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces().rounded().mean),
-    of_summary("eye_retraces.sd", EYE_RETRACES, |s| s.eye_retraces().rounded().sd),
+    of_summary("eye_latency_ms.mean", EYE_LATENCY, |s| s.eye_swap_latencies_ms.statistics().rounded().mean),
+    of_summary("eye_latency_ms.sd", EYE_LATENCY, |s| s.eye_swap_latencies_ms.statistics().rounded().sd),
+    of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces.statistics().rounded().mean),
+    of_summary("eye_retraces.sd", EYE_RETRACES, |s| s.eye_retraces.statistics().rounded().sd),
     // NaN counts as no value: see `Measure::of`.
     of_summary(
         "updates_hz",

@@ -14,38 +14,6 @@ use std::rc::Rc;
 use tracking::view::{Hmd, RasterOffset};
 use tracking::{Pose, rotation};
 
-/// A raster that the display shifts during scan-out (Breglia 1981).
-///
-/// At the retrace, the newest tracker data predict the head's pose for the first line of the field. The picture is
-/// shifted by the difference in yaw and pitch between the drawn pose and this prediction. During the field, the shift
-/// follows the predicted rates.
-///
-/// Roll and translation are not corrected. The flat raster is shifted instead of rotated, so errors remain at the
-/// edges.
-pub struct Vdrt<'a> {
-    estimator: Estimator,
-    display: &'a dyn Display,
-}
-
-impl std::fmt::Debug for Vdrt<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Vdrt").finish_non_exhaustive()
-    }
-}
-
-impl<'a> Vdrt<'a> {
-    /// Creates a raster that `display` shifts. The raster offsets come from head poses that `estimator` predicts.
-    pub const fn new(estimator: Estimator, display: &'a dyn Display) -> Self {
-        Self { estimator, display }
-    }
-
-    /// Returns the raster offset of a field whose picture was drawn for the pose `drawn_for`. Successive calls must
-    /// have ascending fields.
-    pub fn offset(&mut self, field: PeriodNumber, drawn_for: &Pose) -> RasterOffset {
-        offset(&mut self.estimator, self.display, field, drawn_for)
-    }
-}
-
 /// Returns the raster offset of a field whose picture was drawn for a pose. The offset comes from a prediction, which
 /// uses the tracker reports that have arrived at the field's start.
 pub(crate) fn offset(
@@ -91,7 +59,7 @@ impl<'a> RasterOffsets<'a> {
         let run = outcome.final_results();
         let display = outcome.record().display();
         let view = hmd_on(display, &run.hmd);
-        match head.head().raster() {
+        match head.head().raster {
             Raster::Plain => return None,
             Raster::Reprojected(setting) => {
                 let moved_by = MovedBy::Device(Rc::new(PictureMover::new(run, head, setting)));
@@ -101,10 +69,10 @@ impl<'a> RasterOffsets<'a> {
         }
         // VDRT computes the offset of each field from the pose for which its picture was drawn.
         let shown = Shown::of_run(&run, head);
-        let mut vdrt = Vdrt::new(Estimator::new(head, None), display);
+        let mut estimator = Estimator::new(head, None);
         let offsets = PeriodNumber::FIRST.until(run.until).map(|field| {
             let pose = pose_of_field(&run, &shown, field)?;
-            Some(vdrt.offset(field, &pose))
+            Some(offset(&mut estimator, display, field, &pose))
         });
         Some(Self { display, view, moved_by: MovedBy::Offsets(offsets.collect()) })
     }

@@ -5,7 +5,7 @@ use crate::content::{Content, Contents};
 use crate::reproject::direction;
 use crate::shown::{Drawn, FacesSeen, Moment, Seen, Shown};
 use glam::{DVec2, DVec3};
-use pxpl5_run::{FinalResults, HeadViews, ObservedRun, Outcome, hmd_on};
+use pxpl5_run::{FinalResults, HeadViews, Outcome, hmd_on};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ pub(crate) struct Evaluator {
 impl Evaluator {
     pub(crate) fn new(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         let view = hmd_on(run.record.display(), &run.hmd);
-        let at_content = head.head().evaluate_at_m().is_none();
+        let at_content = head.head().evaluate_at_m.is_none();
         let contents = if at_content { Contents::of(head.scene()) } else { Contents::default() };
         Self { view, head: Arc::clone(head), contents, distance_m: head.distance_m() }
     }
@@ -138,12 +138,12 @@ pub(crate) struct Evaluated {
     pub(crate) is_behind: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Warped {
-    Seen(Content, DVec2),
-    /// No content, because the content lies beyond the edge of the drawn picture.
+/// Reason why the last picture does not have the content of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lost {
+    /// The content lies beyond the edge of the last picture.
     Beyond,
-    /// No content, because a nearer object hides the content in the drawn picture.
+    /// Another object hid the content in the last picture.
     Hidden,
 }
 
@@ -153,17 +153,15 @@ const NEARER: f64 = 1e-4;
 impl Evaluator {
     /// Returns the content at the screen position `place`, after each pixel of a picture was moved by its depth to the
     /// pose `now`.
-    pub(crate) fn warped(&self, drawn: &Moment, now: &Pose, place: DVec2) -> Warped {
+    pub(crate) fn warped(&self, drawn: &Moment, now: &Pose, place: DVec2) -> Result<(Content, DVec2), Lost> {
         let ahead = now.orientation * self.direction(place);
         let met = self.contents.met(now.position, ahead, drawn.objects_at);
-        let Some(content) = met.or_else(|| self.on_background(drawn, now, ahead)) else { return Warped::Beyond };
+        let content = met.or_else(|| self.on_background(drawn, now, ahead)).ok_or(Lost::Beyond)?;
         let point = drawn.pose.view_of(self.contents.place(&content, drawn.objects_at));
-        let Some(source) = self.view.project(point).filter(|source| self.view.contains(*source)) else {
-            return Warped::Beyond;
-        };
+        let source = self.view.project(point).filter(|source| self.view.contains(*source)).ok_or(Lost::Beyond)?;
         let before = self.contents.place(&self.met(drawn, source), drawn.objects_at);
         let is_hidden = -drawn.pose.view_of(before).z < -point.z * (1.0 - NEARER);
-        if is_hidden { Warped::Hidden } else { Warped::Seen(content, source) }
+        if is_hidden { Err(Lost::Hidden) } else { Ok((content, source)) }
     }
 
     /// Returns the depth of the content at a position of a picture, in metres along the axis of the view.
@@ -232,16 +230,12 @@ impl<'a> Registration<'a> {
     /// Prepares the evaluation of a run from the records that remain in memory. Returns `None` for a run without a
     /// head.
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
-        Self::of_results(outcome.final_results())
+        Self::so_far(outcome.final_results())
     }
 
     /// Prepares the evaluation of a run that goes on, from the records that remain in memory. Returns `None` for a run
     /// without a head.
-    pub fn so_far(run: &'a ObservedRun<'_>) -> Option<Self> {
-        Self::of_results(run.results())
-    }
-
-    fn of_results(run: FinalResults<'a>) -> Option<Self> {
+    pub fn so_far(run: FinalResults<'a>) -> Option<Self> {
         let head = run.head?;
         Some(Self { evaluator: Evaluator::new(&run, head), shown: Shown::of_run(&run, head), run })
     }

@@ -5,10 +5,11 @@ use crate::critical_path::CriticalPath;
 use crate::errors::PixelErrors;
 use crate::eye_report::EyeReport;
 use crate::faces_report::FacesReport;
-use crate::head_results::{errors_and_eye, missing_results_warning};
+use crate::head_results::{HeadResults, missing_results_warning};
 use crate::latency::{
     LatencyPartStatistics, LatencyPercentiles, SurfaceStatistics, latency_by_surface, latency_part_statistics,
 };
+use crate::percentiles::Percentiles;
 use crate::program;
 use crate::too_heavy::TooHeavy;
 use crate::utilisation::Utilisation;
@@ -167,21 +168,19 @@ pub struct HeadReport {
 }
 
 impl HeadReport {
-    fn of_head(outcome: &Outcome, head: &Head) -> Option<(Self, Option<EyeReport>)> {
-        let (error, eye) = errors_and_eye(outcome)?;
-        let report = Self {
+    fn of(head: &Head, results: &HeadResults) -> Self {
+        Self {
             tracker: head.tracker().config().name.clone(),
-            predictor: format!("{:?}", head.predictor_kind()),
-            aim: head.aim(),
+            predictor: format!("{:?}", head.predictor().kind),
+            aim: head.aim,
             prediction: *head.predictor(),
             training: head.training().copied(),
             fingerprint: head.fingerprint().to_string(),
-            evaluated_at_m: head.evaluate_at_m(),
-            display: head.raster(),
-            end_to_end: Budget::of(outcome),
-            error,
-        };
-        Some((report, eye))
+            evaluated_at_m: head.evaluate_at_m,
+            display: head.raster,
+            end_to_end: results.end_to_end,
+            error: results.error.clone(),
+        }
     }
 }
 
@@ -215,7 +214,9 @@ impl Report {
         let record = outcome.record();
         let due = outcome.due();
         let tally = outcome.tally();
-        let (head, eye) = outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())).unzip();
+        let results = HeadResults::of(outcome);
+        let [head_to_light, prediction_interval_error] = results.percentiles;
+        let latency = Percentiles::of(tally.latency_ms.iter().copied());
         let mut report = Self {
             // Identity of the run.
             schema: Self::SCHEMA.to_owned(),
@@ -246,9 +247,9 @@ impl Report {
             fields: outcome.fields(),
             window: outcome.window(),
             pictures: tally.complete as usize,
-            latency_fields: outcome.latency_fields().defined(pipeline.latency_definition()),
-            latency_ms: outcome.latency_ms().defined(pipeline.latency_definition()),
-            percentiles_ms: LatencyPercentiles::of(outcome),
+            latency_fields: outcome.latency_fields().defined(pipeline.properties().latency_definition),
+            latency_ms: outcome.latency_ms().defined(pipeline.properties().latency_definition),
+            percentiles_ms: LatencyPercentiles { latency, head_to_light, prediction_interval_error },
             latency_parts_ms: latency_part_statistics(outcome),
             latency_by_eye_ms: latency_by_surface(outcome),
             // Results over the whole run.
@@ -263,10 +264,10 @@ impl Report {
             first_late_regions: tally.first_late_regions.clone(),
             display_counters: record.display().counters(),
             // Results that only some runs have.
-            head,
-            eye: eye.flatten(),
-            arp: FacesReport::of(outcome),
-            hmd: *hmd_on(outcome.record().display(), outcome.experiment().hmd()).config(),
+            head: outcome.head().map(|views| HeadReport::of(views.head(), &results)),
+            eye: results.eye.clone(),
+            arp: FacesReport::of(outcome, &results),
+            hmd: *hmd_on(outcome.record().display(), &outcome.experiment().hmd).config(),
             utilisation: Utilisation::of(record),
             critical_path: CriticalPath::of(outcome),
             trace_hash: String::new(),

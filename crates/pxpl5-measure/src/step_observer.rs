@@ -28,13 +28,10 @@ struct OfMemory {
 }
 
 /// Latencies from a step (translation) of the head until the content of one display memory is lit.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Steps {
-    /// Latency over all display periods since the display memory's first update, in milliseconds. `None` before the
-    /// first update.
-    pub(crate) latency_ms: Option<Statistics>,
-    pub(crate) parts_ms: Vec<(&'static str, f64)>,
-}
+///
+/// The first entry has the latency over all display periods since the display memory's first update, in milliseconds.
+/// It is `None` before the first update. The second entry has the mean of each part.
+pub(crate) type Steps = (Option<Statistics>, Vec<(&'static str, f64)>);
 
 impl StepSum {
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
@@ -43,7 +40,7 @@ impl StepSum {
         let Some(history) = FaceHistory::held(run.record) else { return };
         // Each field and memory gives one latency, once its results can no longer change.
         for field in self.next.until(run.until) {
-            for memory in 0..history.n_memories() {
+            for memory in 0..history.memories.len() {
                 let Some(shown) = history.memory_at(memory, field) else { continue };
                 if self.memories.len() <= memory {
                     self.memories.resize_with(memory + 1, || OfMemory {
@@ -91,7 +88,7 @@ impl OfMemory {
             return Steps::default();
         }
         let parts = PARTS.into_iter().zip(self.parts).map(|(name, sum)| (name, sum / count as f64));
-        Steps { latency_ms: Some(self.total.statistics()), parts_ms: parts.collect() }
+        (Some(self.total.statistics()), parts.collect())
     }
 }
 

@@ -30,7 +30,8 @@ impl TooHeavy {
             return None;
         }
         let primitives = experiment.scene().primitives() as u64;
-        let primitives_in_time = experiment.primitives_in_time().filter(|in_time| *in_time < primitives);
+        let primitives_in_time = experiment.estimates.and_then(|estimates| (estimates.primitives_in_time)(experiment));
+        let primitives_in_time = primitives_in_time.filter(|in_time| *in_time < primitives);
         let advice = advice(experiment.pipeline().name(), primitives_in_time);
         Some(Self { pictures_due: due.due, missed_retraces: due.not_shown(), primitives, primitives_in_time, advice })
     }

@@ -435,7 +435,9 @@ impl<'a> Trail<'a> {
         let work = self.stages[place];
         let board = self.record.ports().board(work.node);
         let resource = if work.stage == Stage::Send { Resource::Host } else { Resource::Transform };
-        way.charge(resource, Some(board), work.begin, || format!("{} on {board}", name(work.stage)));
+        way.charge(resource, Some(board), work.begin, || {
+            format!("{} on {board}", work.stage.to_string().to_uppercase())
+        });
         let by = work.begin;
         let own = self.stages[..place].iter().rposition(|before| before.node == work.node && before.end <= by);
         if let Some(own) = own.filter(|own| self.stages[*own].end + NEAR >= by) {
@@ -469,17 +471,5 @@ impl<'a> Trail<'a> {
         };
         let all = self.drawn.iter().enumerate().filter(|(_, (_, region))| is_of(region));
         all.max_by_key(|(_, (_, region))| region.finished_at).map_or(At::Begin, |(place, _)| At::Drawn(place))
-    }
-}
-
-const fn name(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Sample => "sample",
-        Stage::Send => "SEND",
-        Stage::Edit => "EDIT",
-        Stage::Transform => "TRANSFORM",
-        Stage::Render => "RENDER",
-        Stage::Copy => "COPY",
-        Stage::Swap => "swap",
     }
 }

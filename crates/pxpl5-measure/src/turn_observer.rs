@@ -24,11 +24,8 @@ pub(crate) struct RotationLatencySum {
     parts: Vec<Samples>,
 }
 
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Turns {
-    pub(crate) latency_ms: Option<Statistics>,
-    pub(crate) parts_ms: Vec<RotationPart>,
-}
+/// Statistics of the latency, and of its parts. `None` without any latency.
+pub(crate) type Turns = (Option<Statistics>, Vec<RotationPart>);
 
 impl RotationLatencySum {
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
@@ -53,6 +50,6 @@ impl RotationLatencySum {
         }
         let named = RotationLatency::default().parts().map(|(name, _)| name).into_iter().zip(&self.parts);
         let parts = named.map(|(name, samples)| RotationPart { name, statistics: samples.statistics() });
-        Turns { latency_ms: Some(self.total.statistics()), parts_ms: parts.collect() }
+        (Some(self.total.statistics()), parts.collect())
     }
 }

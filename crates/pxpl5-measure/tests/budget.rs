@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use pxpl5_machine::MachineConfig;
-use pxpl5_measure::{Budget, ErrorCauses, LatencyPercentiles, Percentiles, PixelErrors, Showing};
+use pxpl5_measure::{Budget, ErrorCauses, Measured, Percentiles, PixelErrors, Showing};
 use pxpl5_run::{
     Cause, Experiment, Frameless, Head, Jitp, Outcome, Pipeline, Pixels, RenderingControl, Slats, Viewpoint,
 };
@@ -85,7 +85,7 @@ fn stages_from_head_to_light_add_up() {
         assert_eq!(found.len(), n);
         found.iter().zip(&totals).for_each(|(found, expected)| assert_near(*found, *expected, name));
         // The report has their percentiles.
-        let found = LatencyPercentiles::of(&outcome);
+        let found = outcome.report().percentiles_ms;
         let expected = Percentiles::of(totals.into_iter());
         assert_near(found.head_to_light.p50, expected.p50, name);
         assert_near(found.head_to_light.p95, expected.p95, name);
@@ -128,12 +128,13 @@ fn the_error_of_a_prediction_interval_is_the_time_from_its_instant_to_the_middle
     let slats = run(&(Arc::new(Slats::split()) as Arc<dyn Pipeline>), Some(predicted()), 90);
     let control = Arc::new(RenderingControl::mono()) as Arc<dyn Pipeline>;
     let light = experiment(&control, "sphere:10", 90).head(predicted()).after_dry_run().expect("it runs");
-    let heavy = experiment(&control, "full-screen:1200", 90).head(predicted());
-    let heavy = heavy.with_dry_run(light.dry_run().cloned()).run().expect("it runs");
+    let mut heavy = experiment(&control, "full-screen:1200", 90).head(predicted());
+    heavy.dry_run = light.dry_run;
+    let heavy = heavy.run().expect("it runs");
     // A field of Slats is scanned once, and a picture of Rendering Control until the next one.
     let max = [(&slats, Some(1)), (&heavy, None)].map(|(outcome, lit)| {
         let expected = Percentiles::of(prediction_interval_errors_ms(outcome, lit).into_iter());
-        let found = LatencyPercentiles::of(outcome).prediction_interval_error;
+        let found = outcome.report().percentiles_ms.prediction_interval_error;
         assert!(found.n > 10 && found.n == expected.n, "{found:?} {expected:?}");
         assert_near(found.max, expected.max, "max");
         assert_near(found.mean, expected.mean, "mean");

@@ -38,10 +38,10 @@ fn at_the_end_of_a_run_the_partial_shares_equal_the_shares_in_the_report() {
     for pipeline in ["rendering-control", "slats"] {
         let mut stepper = experiment(pipeline, "sphere:10").fields(60).stepper().expect("it fits");
         assert_eq!(Utilisation::so_far(&stepper), None, "no time has passed");
-        assert_eq!(CriticalPath::so_far(&stepper.observed_run()), None, "no picture was shown");
+        assert_eq!(CriticalPath::so_far(&stepper), None, "no picture was shown");
         stepper.run_to(stepper.end());
         let utilisation = Utilisation::so_far(&stepper).expect("time has passed");
-        let path = CriticalPath::so_far(&stepper.observed_run()).expect("pictures were shown");
+        let path = CriticalPath::so_far(&stepper).expect("pictures were shown");
         let report = stepper.finish().expect("it runs").report();
         assert_eq!(Some(utilisation), report.utilisation);
         let of_report = report.critical_path.expect("pictures were shown");
@@ -173,7 +173,8 @@ fn a_size_that_fits_is_named_only_if_it_is_smaller_than_the_scene() {
         pictures: 5,
     };
     for (estimates, expected, advice) in cases {
-        let experiment = experiment.clone().with_estimates(Some(estimates));
+        let mut experiment = experiment.clone();
+        experiment.estimates = Some(estimates);
         let heavy = TooHeavy::of(&experiment, &due).expect("late ones");
         assert_eq!([heavy.pictures_due, heavy.missed_retraces, heavy.primitives], [8, 3, n]);
         assert!(heavy.primitives_in_time == expected && heavy.advice.contains(advice), "{heavy}");

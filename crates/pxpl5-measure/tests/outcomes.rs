@@ -18,7 +18,7 @@ fn run(pipeline: &str, fields: u64, pixels: Pixels) -> Outcome {
 #[test]
 fn statistics_of_stages_equal_those_of_the_single_pictures() {
     let outcome = run("rendering-control", 60, Pixels::Off);
-    let parts = Measured::latency_parts(&outcome);
+    let parts = outcome.latency_parts();
     let report = outcome.report();
     assert!(parts.len() > 3, "pictures after the warm-up");
     assert!(!report.latency_parts_ms.is_empty());

@@ -319,7 +319,7 @@ impl Outcome {
     /// Returns the parts of a pixel's memory, such as colour and depth. Each part has a name, a first bit and a width
     /// in bits.
     fn pixel_memory_fields(&self, py: Python<'_>) -> PyResult<Vec<(String, u32, u32)>> {
-        let layout: Layout = self.run(py)?.0.pipeline().layout();
+        let layout: Layout = self.run(py)?.0.pipeline().properties().layout;
         Ok(layout.ranges().into_iter().map(|range| (range.name, range.first, range.width)).collect())
     }
 

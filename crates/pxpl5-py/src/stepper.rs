@@ -261,8 +261,7 @@ impl Stepper {
     /// Returns the number of complete pictures that the machine has shown so far.
     #[getter]
     fn shown(&self, py: Python<'_>) -> PyResult<usize> {
-        self.thread
-            .execute(py, |stepper, _| stepper.observed_run().pictures().iter().filter(|times| times.is_shown()).count())
+        self.thread.execute(py, |stepper, _| stepper.pictures().iter().filter(|times| times.is_shown()).count())
     }
 
     /// Runs to the end of the experiment and returns the outcome, which equals the outcome of a run without steps.

@@ -72,7 +72,7 @@ impl Stepper {
             return None;
         }
         let array = self.array(renderer)?;
-        let layout = self.experiment().pipeline().layout();
+        let layout = self.experiment().pipeline().properties().layout;
         let ranges = layout.ranges().into_iter();
         let fields = ranges.map(|FieldRange { name, first, width }| {
             let bits = (0..width).map(|n| u128::from(bit_of(&array.plane((first + n) as usize), x, y)) << n);

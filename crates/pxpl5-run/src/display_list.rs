@@ -1,6 +1,9 @@
 use crate::error::ExperimentError;
+use crate::pipeline::PipelineProperties;
 use pphigs::{DisplayList, DisplayStructure, MAX_EDITS, ModelFrame, RecentViews, Shading};
 use pxpl5_geometry::{Culling, WorldSphere};
+use pxpl5_gp::{CodeUse, CodeVersion};
+use pxpl5_machine::MachineConfig;
 use pxpl5_scene::Scene;
 
 /// Returns the triangles and spheres of a scene as a display list.
@@ -52,8 +55,16 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, ExperimentError> {
     Ok(list.with_vertices_in_order())
 }
 
-/// Returns the list of [`display_list`], with colours that are computed in advance if `shading` requires them.
-pub(crate) fn display_list_for(scene: &Scene, shading: Shading) -> Result<DisplayList, ExperimentError> {
+/// Returns the list of [`display_list`] in the form that a pipeline draws on a machine.
+pub(crate) fn display_list_for(
+    scene: &Scene,
+    pipeline: &PipelineProperties,
+    config: &MachineConfig,
+) -> Result<DisplayList, ExperimentError> {
     let list = display_list(scene)?;
-    Ok(if shading == Shading::Precomputed { list.with_precomputed_colours() } else { list })
+    let is_precomputed = pipeline.shading == Shading::Precomputed;
+    let list = if is_precomputed { list.with_precomputed_colours() } else { list };
+    // The compiled program of Slats has planes in single precision.
+    let is_compiled = config.code.unwrap_or(CodeVersion::Compiled) == CodeVersion::Compiled;
+    Ok(DisplayList { is_single: is_compiled && pipeline.code_use == CodeUse::Slats, ..list })
 }

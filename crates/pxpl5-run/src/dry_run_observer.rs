@@ -73,7 +73,11 @@ impl StreamingObserver for DryRunObserver {
         }
         self.note_requests(head);
         self.end_views(results);
-        self.take_turns(results, head);
+        self.turned_to
+            .until(results.until)
+            .filter_map(|period| results.turn_interval(period))
+            .for_each(|span| self.turns.add(span));
+        self.turned_to = results.until;
     }
 
     fn result(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
@@ -149,20 +153,12 @@ impl DryRunObserver {
     /// itself.
     fn end_view(&mut self, results: &FinalResults<'_>, view: ViewNumber, ended: &ShownView) {
         let instant = results.aim.instant(&ended.shown);
-        if !results.pipeline.knows_when_seen() {
+        if !results.pipeline.properties().knows_when_seen {
             self.aimed_at.insert(view, instant);
         }
         ended.requested_at.iter().for_each(|at| self.leads.add(instant.since(*at)));
         if let Some(measured_at) = ended.measured_at.filter(|_| ended.is_complete) {
             self.intervals.add(instant.since(measured_at));
         }
-    }
-
-    fn take_turns(&mut self, results: &FinalResults<'_>, head: &HeadViews) {
-        let FinalResults { pipeline, record, aim, until, .. } = *results;
-        let periods = self.turned_to.until(until);
-        let spans = periods.filter_map(|period| pipeline.turn_interval(record, head, aim, period));
-        spans.for_each(|span| self.turns.add(span));
-        self.turned_to = until;
     }
 }

@@ -26,7 +26,7 @@ pub enum ExperimentError {
         pictures: usize,
         /// Approximate number of fields until a picture after the warm-up is shown. `None` if no picture was shown.
         ///
-        /// The number is computed by the pipeline's closed form ([`crate::Experiment::with_estimates`]). Without a
+        /// The number is computed by the pipeline's closed form ([`crate::Experiment::estimates`]). Without a
         /// closed form, the number is extrapolated from the run.
         needed: Option<u64>,
         /// Outcome of the run, with all observations.

@@ -7,7 +7,6 @@ use crate::kept_records::{KeptRecords, MIN_RECORDS};
 use crate::level::Level;
 use crate::observe::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
-use crate::raster::Raster;
 use pxpl5_machine::{MachineConfig, Optimization, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::StopFlag;
@@ -52,8 +51,8 @@ pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Para
 ///
 /// The times of work without code come from the parameters `gp.*` of the timing table. Returns `None` if all work has
 /// code, or if the level is not [`Level::Cycle`].
-pub fn warning_without_code(level: Level, config: &MachineConfig, pipeline: &dyn Pipeline) -> Option<String> {
-    let what = (level == Level::Cycle).then(|| pipeline.without_code(config)).flatten()?;
+pub fn warning_without_code(level: Level, pipeline: &dyn Pipeline) -> Option<String> {
+    let what = pipeline.properties().without_code.filter(|_| level == Level::Cycle)?;
     let name = pipeline.name();
     Some(format!(
         "{name} at the cycle level: there is no i860 code for {what}; this work takes the times of the timing table (gp.*)"
@@ -85,10 +84,21 @@ pub struct Experiment {
     pub head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
     pub(crate) results_from: Option<PeriodNumber>,
-    pub(crate) hmd: Hmd,
-    pub(crate) estimates: Option<Estimates>,
+    /// Head-mounted display with the resolution of the papers' display. A run uses the resolution of the machine's
+    /// display instead.
+    pub hmd: Hmd,
+    /// Functions that compute the estimates in error messages, such as a sufficient number of fields.
+    ///
+    /// This field is hidden, because the estimates change error messages only.
+    #[doc(hidden)]
+    pub estimates: Option<Estimates>,
     pub(crate) observer: Option<ObserverFactory>,
-    pub(crate) dry_run: Option<Arc<DryRun>>,
+    /// Dry run that [`Experiment::after_dry_run`] has stored.
+    ///
+    /// This field is hidden, because a wrong dry run would give wrong results. A comparison of predictors copies it to
+    /// experiments that differ only in the predictor.
+    #[doc(hidden)]
+    pub dry_run: Option<Arc<DryRun>>,
 }
 
 /// Functions by which a pipeline's closed form estimates results of an experiment, before or after a run.
@@ -238,16 +248,6 @@ impl Experiment {
         self
     }
 
-    /// Sets the functions that compute the estimates in error messages, such as a sufficient number of fields.
-    ///
-    /// This method is hidden, because the estimates change error messages only.
-    #[doc(hidden)]
-    #[must_use]
-    pub const fn with_estimates(mut self, estimates: Option<Estimates>) -> Self {
-        self.estimates = estimates;
-        self
-    }
-
     /// Sets the streaming observer of a run with [`KeptRecords::Statistics`].
     ///
     /// Such a run discards old records. The observer must therefore compute the results for a tracked head during the
@@ -267,6 +267,7 @@ impl Experiment {
             pipeline: self.pipeline.as_ref(),
             aim: self.aim(),
             fields: self.fields,
+            now: record.tick(self.end()),
             record,
             head,
             hmd: self.hmd,
@@ -277,26 +278,6 @@ impl Experiment {
             samples: usize::MAX,
             window: None,
         }
-    }
-
-    /// Returns an estimate of how many primitives the scene can have, after decimation, so that all pictures are in
-    /// time. Returns `None` if the pipeline has no closed form, or if the formulas give no estimate.
-    pub fn primitives_in_time(&self) -> Option<u64> {
-        (self.estimates?.primitives_in_time)(self)
-    }
-
-    /// Sets the optics of the head-mounted display and the distance between the eyes. The resolution comes from the
-    /// machine's display.
-    #[must_use]
-    pub const fn with_hmd(mut self, hmd: Hmd) -> Self {
-        self.hmd = hmd;
-        self
-    }
-
-    /// Returns the head-mounted display with the resolution of the papers' display. A run uses the resolution of the
-    /// machine's display instead.
-    pub const fn hmd(&self) -> &Hmd {
-        &self.hmd
     }
 
     /// Begins the evaluation of the run at the period `period` of the first display, or later if the warm-up takes
@@ -322,20 +303,9 @@ impl Experiment {
         Self { scene: scene.into(), ..self }
     }
 
-    /// Removes the head. The pipeline then follows the scene's own motion without any delay.
-    #[must_use]
-    pub fn without_head(self) -> Self {
-        Self { head: None, ..self }
-    }
-
-    /// Returns the correction that the head-mounted display applies to a picture during scan-out.
-    pub fn raster(&self) -> Raster {
-        self.head.as_ref().map(|head| head.raster()).unwrap_or_default()
-    }
-
     /// Returns the instant for which pictures are drawn, such as the middle of the time in which a picture lights.
     pub fn aim(&self) -> Aim {
-        self.head.as_ref().map(|head| head.aim()).unwrap_or_default()
+        self.head.as_ref().map(|head| head.aim).unwrap_or_default()
     }
 
     /// Returns a hash of everything that affects the results: machine, pipeline with its settings, contents of the
@@ -379,7 +349,7 @@ impl Experiment {
 
     /// Returns the parameters of machine, tracker and predictor whose values no source supports ([`out_of_range`]).
     pub fn out_of_range(&self) -> Vec<Parameter> {
-        let of_head = self.head.iter().flat_map(|head| head.unsupported_parameters()).cloned();
+        let of_head = self.head.iter().flat_map(|head| &head.unsupported_parameters).cloned();
         out_of_range(&self.config, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
@@ -387,7 +357,7 @@ impl Experiment {
     /// ([`warning_without_code`]), and problems in the files of the head's motion and of the scene.
     pub fn warnings(&self) -> Vec<String> {
         let supposed = self.out_of_range();
-        let of_table = warning_without_code(self.level, &self.config, self.pipeline.as_ref());
+        let of_table = warning_without_code(self.level, self.pipeline.as_ref());
         let of_head = self.head.iter().flat_map(|head| head.motion().warnings());
         let of_scene = self.scene.warnings().iter().map(|warning| format!("{}: {warning}", self.scene.name()));
         supposed.iter().map(Parameter::warning).chain(of_table).chain(of_head).chain(of_scene).collect()

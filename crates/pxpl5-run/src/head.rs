@@ -58,13 +58,18 @@ pub struct Head {
     pub(crate) tracker: TrackerModel,
     predictor: PredictorConfig,
     numbers: Numbers,
-    evaluate_at_m: Option<f64>,
+    /// Distance at which pixel errors are evaluated, in metres. `None` means the distance of the scene's content.
+    pub evaluate_at_m: Option<f64>,
     pub(crate) seed: u64,
-    raster: Raster,
-    aim: Aim,
-    place: HeadPlace,
+    /// Correction that the head-mounted display applies to a picture during scan-out.
+    pub raster: Raster,
+    /// Instant for which poses are predicted, such as the middle of the time in which a picture lights.
+    pub aim: Aim,
+    /// Coordinates in which the motion is given.
+    pub place: HeadPlace,
     reports: Option<Arc<[TrackerReport]>>,
-    unsupported_parameters: Vec<Parameter>,
+    /// Parameters of tracker and predictor whose values no source supports. Reports warn of these parameters.
+    pub unsupported_parameters: Vec<Parameter>,
     tunings: Option<Arc<Tunings>>,
 }
 
@@ -177,22 +182,11 @@ impl Head {
         Ok(Self { evaluate_at_m: Some(metres), ..self })
     }
 
-    /// Returns the distance at which pixel errors are evaluated, in metres. `None` means the distance of the scene's
-    /// content.
-    pub const fn evaluate_at_m(&self) -> Option<f64> {
-        self.evaluate_at_m
-    }
-
     /// Sets the coordinates of the motion: relative to the start of the scene's own motion, or in the scene.
     #[must_use]
     pub const fn with_place(mut self, place: HeadPlace) -> Self {
         self.place = place;
         self
-    }
-
-    /// Returns the coordinates in which the motion is given.
-    pub const fn place(&self) -> HeadPlace {
-        self.place
     }
 
     /// Sets the correction that the head-mounted display applies to a picture during scan-out.
@@ -207,17 +201,6 @@ impl Head {
     pub const fn with_aim(mut self, aim: Aim) -> Self {
         self.aim = aim;
         self
-    }
-
-    /// Stores parameters of tracker and predictor whose values no source supports. Reports warn of these parameters.
-    #[must_use]
-    pub fn with_unsupported_parameters(self, unsupported_parameters: Vec<Parameter>) -> Self {
-        Self { unsupported_parameters, ..self }
-    }
-
-    /// Returns the parameters that [`Head::with_unsupported_parameters`] has stored.
-    pub fn unsupported_parameters(&self) -> &[Parameter] {
-        &self.unsupported_parameters
     }
 
     /// Replaces the tracker's reports by `reports`, which must be sorted by arrival time.
@@ -237,19 +220,12 @@ impl Head {
 
     fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
-            Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
+            Some(given) => {
+                let given = Arc::clone(given);
+                Box::new((0..given.len()).map(move |next| given[next]))
+            }
             None => Box::new(self.tracker.reports(motion, self.seed)),
         }
-    }
-
-    /// Returns the instant for which poses are predicted, such as the middle of the time in which a picture lights.
-    pub const fn aim(&self) -> Aim {
-        self.aim
-    }
-
-    /// Returns the correction that the head-mounted display applies to a picture during scan-out.
-    pub const fn raster(&self) -> Raster {
-        self.raster
     }
 
     /// Returns a hash of the motion and of all settings of the head.
@@ -352,11 +328,6 @@ impl Head {
         if let Numbers::Tuned(_, Some(training)) = &self.numbers { Some(training) } else { None }
     }
 
-    /// Returns the kind of filter that computes poses from the tracker's reports.
-    pub const fn predictor_kind(&self) -> PredictorKind {
-        self.predictor.kind
-    }
-
     /// Returns the tracker that reports the pose of the head.
     pub const fn tracker(&self) -> &TrackerModel {
         &self.tracker
@@ -373,20 +344,5 @@ impl Head {
 
     pub(crate) fn build_predictor(&self) -> Box<dyn Predictor> {
         self.predictor.build().expect("checked by Head::new")
-    }
-}
-
-struct GivenReports {
-    given: Arc<[TrackerReport]>,
-    next: usize,
-}
-
-impl Iterator for GivenReports {
-    type Item = TrackerReport;
-
-    fn next(&mut self) -> Option<TrackerReport> {
-        let report = self.given.get(self.next).copied();
-        self.next += 1;
-        report
     }
 }

@@ -5,7 +5,7 @@ use crate::facing;
 use crate::head::{Head, HeadPlace};
 use crate::report_schedule::{Arrivals, Coming, Contents, ReportSchedule};
 use crate::scene_views::view;
-use crate::views::{Poses, ReportTimes, Views, ViewsWanted};
+use crate::views::ViewSource;
 use glam::{DQuat, DVec3};
 use pphigs::FrameView;
 use pxpl5_scene::{Hmd, Scene};
@@ -38,12 +38,6 @@ pub struct SampledPose {
     pub pose: Pose,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Newest {
-    measured_at: Option<Time>,
-    arrived_at: Option<Time>,
-}
-
 /// A predictor that receives tracker reports as simulated time advances.
 ///
 /// The content of a report is computed only after its arrival, because the motion can depend on a user's input during
@@ -52,12 +46,12 @@ pub(crate) struct Follower {
     arrivals: Peekable<Arrivals>,
     contents: Contents,
     predictor: Box<dyn Predictor + Send>,
-    newest: Newest,
+    newest: Option<Coming>,
 }
 
 impl Follower {
     pub(crate) fn new(arrivals: Arrivals, contents: Contents, predictor: Box<dyn Predictor + Send>) -> Self {
-        Self { arrivals: arrivals.peekable(), contents, predictor, newest: Newest::default() }
+        Self { arrivals: arrivals.peekable(), contents, predictor, newest: None }
     }
 
     fn of_head(head: &Head, until: Time) -> Self {
@@ -77,15 +71,14 @@ impl Follower {
         let accepted = self.predictor.counts().accepted;
         self.predictor.observe(report);
         if self.predictor.counts().accepted > accepted {
-            let Coming { arrives, measured } = Coming::of(*report);
-            self.newest = Newest { measured_at: Some(measured), arrived_at: Some(arrives) };
+            self.newest = Some(Coming::of(*report));
         }
     }
 
     /// Returns the predicted pose at `at`, in the tracker's coordinates, or `start` before the first report.
     pub(crate) fn pose(&mut self, reports_until: Time, at: Time, start: &Pose) -> Pose {
         self.follow(reports_until);
-        if self.newest.measured_at.is_none() { *start } else { self.predictor.predict(at.0) }
+        if self.newest.is_none() { *start } else { self.predictor.predict(at.0) }
     }
 }
 
@@ -104,6 +97,8 @@ pub struct HeadViews {
     /// Pose of the motion at time zero.
     start: Pose,
     state: Mutex<(Follower, Vec<SampledPose>)>,
+    /// Predictor of poses alone, whose requests have other times than the requests for views.
+    turns: Mutex<Follower>,
 }
 
 impl fmt::Debug for HeadViews {
@@ -121,35 +116,29 @@ impl HeadViews {
         seen_times: Option<SeenTimes>,
     ) -> Self {
         let start = head.motion.pose(0);
-        let (anchor, begin) = match head.place() {
+        let (anchor, begin) = match head.place {
             HeadPlace::Scene => (start, scene.motion().pose(0)),
             HeadPlace::World => (start, start),
             HeadPlace::Content => facing::content(head.motion.as_ref(), scene, &hmd, until),
         };
         let base = Pose { orientation: begin.orientation.normalize(), ..begin };
         let schedule = Mutex::new(ReportSchedule::new(head.arrivals(until)));
-        let state = Mutex::new((Follower::of_head(&head, until), Vec::new()));
-        Self { head, scene: Arc::clone(scene), hmd, eyes, until, schedule, seen_times, base, anchor, start, state }
-    }
-
-    pub(crate) fn functions(this: &Arc<Self>) -> (Views, ViewsWanted, ReportTimes) {
-        let [a, b, c] = [(); 3].map(|()| Arc::clone(this));
-        (
-            Arc::new(move |number, time| a.newest(number, time)),
-            Arc::new(move |number, reports_until, shown_at| b.view(number, reports_until, shown_at)),
-            Arc::new(move |after| c.report_after(after)),
-        )
-    }
-
-    /// Returns a function that predicts the head's pose. The function has its own predictor, because its requests have
-    /// other times than the requests for views.
-    pub(crate) fn poses(this: &Arc<Self>) -> Poses {
-        let follower = Mutex::new(this.follower());
-        let views = Arc::clone(this);
-        Arc::new(move |reports_until, at| {
-            let mut follower = follower.lock().unwrap_or_else(PoisonError::into_inner);
-            views.in_scene(&follower.pose(reports_until, at, &views.start))
-        })
+        let [views, turns] = [(); 2].map(|()| Follower::of_head(&head, until));
+        let (state, turns) = (Mutex::new((views, Vec::new())), Mutex::new(turns));
+        Self {
+            head,
+            scene: Arc::clone(scene),
+            hmd,
+            eyes,
+            until,
+            schedule,
+            seen_times,
+            base,
+            anchor,
+            start,
+            state,
+            turns,
+        }
     }
 
     /// Returns the measurement time of the first report that reaches the host at the instant `arrived` or later.
@@ -186,38 +175,6 @@ impl HeadViews {
         self.schedule.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn newest(&self, number: ViewNumber, time: Time) -> FrameView {
-        let shown_at = self.seen_times.as_ref().map_or(time, |seen_times| seen_times.aimed_at(number, time));
-        self.view(number, time, shown_at)
-    }
-
-    fn view(&self, number: ViewNumber, reports_until: Time, shown_at: Time) -> FrameView {
-        let (follower, sampled) = &mut *self.state();
-        let pose = self.in_scene(&follower.pose(reports_until, shown_at, &self.start));
-        let Newest { measured_at, arrived_at } = follower.newest;
-        let predicted_for = self.head.predicts().then_some(shown_at);
-        sampled.push(SampledPose {
-            number,
-            reports_until,
-            measured_at,
-            arrived_at,
-            predicted_for,
-            objects_at: shown_at,
-            pose,
-        });
-        view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
-    }
-
-    pub(crate) fn report_from(&self, instant: Time) -> Option<Time> {
-        Some(self.schedule().from(instant)?.arrives)
-    }
-
-    /// Returns the arrival time of the first report that reaches the host after an instant. Returns `None` if no later
-    /// report exists.
-    pub fn report_after(&self, after: Time) -> Option<Time> {
-        Some(self.schedule().after(after)?.arrives)
-    }
-
     pub(crate) fn in_scene(&self, tracked: &Pose) -> Pose {
         let turn: DQuat = self.base.orientation * self.anchor.orientation.conjugate();
         let way: DVec3 = turn * (tracked.position - self.anchor.position);
@@ -245,7 +202,7 @@ impl HeadViews {
     /// The default is the distance from the head's start to the centre of the scene, but at least 0.1 metres.
     pub fn distance_m(&self) -> f64 {
         let (centre, _) = self.scene.bounding_sphere();
-        self.head.evaluate_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
+        self.head.evaluate_at_m.unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
     }
 
     /// Returns the records of the requested poses in memory, sorted by view number. [`KeptRecords`](crate::KeptRecords)
@@ -266,5 +223,32 @@ impl HeadViews {
 
     pub(crate) const fn start(&self) -> &Pose {
         &self.start
+    }
+}
+
+impl ViewSource for HeadViews {
+    fn newest(&self, number: ViewNumber, now: Time) -> FrameView {
+        let shown_at = self.seen_times.as_ref().map_or(now, |seen_times| seen_times.aimed_at(number, now));
+        self.view_at(number, now, shown_at)
+    }
+
+    fn view_at(&self, number: ViewNumber, reports_until: Time, shown_at: Time) -> FrameView {
+        let (follower, sampled) = &mut *self.state();
+        let pose = self.in_scene(&follower.pose(reports_until, shown_at, &self.start));
+        let [measured_at, arrived_at] =
+            [|it: Coming| it.measured, |it: Coming| it.arrives].map(|at| follower.newest.map(at));
+        let predicted_for = self.head.predicts().then_some(shown_at);
+        let objects_at = shown_at;
+        sampled.push(SampledPose { number, reports_until, measured_at, arrived_at, predicted_for, objects_at, pose });
+        view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
+    }
+
+    fn pose_at(&self, reports_until: Time, at: Time) -> Pose {
+        let mut follower = self.turns.lock().unwrap_or_else(PoisonError::into_inner);
+        self.in_scene(&follower.pose(reports_until, at, &self.start))
+    }
+
+    fn report_from(&self, instant: Time) -> Option<Time> {
+        Some(self.schedule().from(instant)?.arrives)
     }
 }

@@ -1,10 +1,12 @@
 use crate::display_list::display_list_for;
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
+use crate::pipeline::PipelineProperties;
 use crate::result::outcome::Outcome;
-use crate::scene_views::{hmd_on, view, views};
+use crate::scene_views::{SceneViews, hmd_on, view};
+use crate::views::ViewSource;
 use pphigs::oracle::IdealPicture;
-use pphigs::{DisplayList, Picture, RegionBinning};
+use pphigs::{Picture, RegionBinning};
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::Record;
 use pxpl5_sim::Time;
@@ -31,23 +33,20 @@ pub(crate) fn ideal_picture(
     surface: SurfaceId,
     time: Time,
 ) -> Option<IdealPicture> {
-    let pipeline = experiment.pipeline();
     let scene = experiment.scene();
     let surface = surface.index();
-    let eyes = pipeline.eyes();
+    let properties = experiment.pipeline().properties();
+    let PipelineProperties { eyes, layout, shading, .. } = properties;
     let surfaces = record.display().surfaces();
     // The pipeline may draw fewer eyes than the display has surfaces.
     let size = surfaces.get(surface).filter(|_| surface < eyes)?;
-    let list = display_list_for(scene, pipeline.shading()).ok()?;
-    let list = DisplayList { is_single: pipeline.is_single(record.config()), ..list };
-    let hmd = hmd_on(record.display(), experiment.hmd());
+    let list = display_list_for(scene, &properties, record.config()).ok()?;
+    let hmd = hmd_on(record.display(), &experiment.hmd);
     // A tracked head is at its true pose, not at the predicted one.
     let view = match head {
         Some(head) => view(scene, &hmd, eyes, ViewNumber::FIRST, time, &head.truth(time).in_single_precision()),
-        None => views(scene, experiment.seed, hmd, eyes).0(ViewNumber::FIRST, time),
+        None => SceneViews::new(scene, experiment.seed, hmd, eyes).newest(ViewNumber::FIRST, time),
     };
-    let layout = pipeline.layout();
-    let shading = pipeline.shading();
     let drawn = |viewport| {
         let picture = Picture { viewport, shading, binning: RegionBinning::Touched, layout, pixels: true };
         pphigs::oracle::ideal_picture(&list, &view, surface, &picture)

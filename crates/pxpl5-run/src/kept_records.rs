@@ -19,7 +19,7 @@ pub enum KeptRecords {
     /// The results for a tracked head need the streaming observer of
     /// [`Experiment::observed_by`](crate::Experiment::observed_by). Two kinds of runs keep everything nevertheless: a
     /// run that records messages, and a run of a pipeline that needs old records
-    /// ([`PictureRules::can_discard_records`](crate::PictureRules::can_discard_records)).
+    /// ([`PipelineProperties::can_discard_records`](crate::PipelineProperties::can_discard_records)).
     Statistics,
     /// The run keeps the same data as under [`KeptRecords::Statistics`], but messages may be recorded, and no streaming
     /// observer is used.

@@ -1,5 +1,6 @@
 use pxpl5_sim::parameters::KeyValue;
 use std::collections::BTreeMap;
+use std::str::FromStr;
 
 /// Values of the pipeline settings (keys) that the user has set.
 ///
@@ -28,6 +29,11 @@ impl PipelineSettings {
     /// Returns the text of a key, or `None` if the user did not set the key.
     pub fn text(&self, key: &str) -> Option<&str> {
         if let Some(KeyValue::Text(text)) = self.values.get(key) { Some(text) } else { None }
+    }
+
+    /// Returns the choice that a key with named values names, or `None` if the user did not set the key.
+    pub fn chosen<T: FromStr>(&self, key: &str) -> Option<T> {
+        self.name(key)?.parse().ok()
     }
 
     /// Returns the value of a key with named values, or `None` if the user did not set the key.

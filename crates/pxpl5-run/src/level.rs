@@ -12,7 +12,7 @@
 //! This crate has Rendering Control, Slats, just-in-time pixels, frameless rendering and address recalculation.
 //! In these pipelines, all work of graphics processors is i860 code (docs/gp-timing.md). At the cycle level no time
 //! comes from the timing table, and `tests/cycle.rs` checks this. Other pipelines take the times of the table for work
-//! without code ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their reports state this.
+//! without code ([`PipelineProperties::without_code`](crate::PipelineProperties::without_code)), and their reports state this.
 //!
 //! The machine selects the code that runs ([`MachineConfig::code`]), independent of its table of times. With the times
 //! of the code in the table ([`MachineConfig::with_times_of_code`]), the transaction level agrees with the cycle level

@@ -62,11 +62,10 @@ pub use host::{BareHost, Host};
 pub use kept_records::KeptRecords;
 pub use keys::PipelineSettings;
 pub use level::Level;
-pub use observe::observed_run::ObservedRun;
 pub use observe::observers::{FinalResults, ObserverFactory, StreamingObserver};
-pub use pipeline::{PictureRules, PictureTimes, Pipeline, Setup, Source};
+pub use pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup, Source};
 pub use pipelines::faces::{
-    FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, OrientationTiming, RequestedUpdate, RequestedUpdates,
+    FaceHistory, FacePipeline, FacePolicy, FaceSource, OrientationTiming, RequestedUpdate, RequestedUpdates,
     RotationLatency, SegmentedScene, ShownUpdate,
 };
 pub use pipelines::{
@@ -86,10 +85,10 @@ pub use result::picture_ends::{PictureResult, WARM_UP_PICTURES};
 pub use result::result_window::{ResultWindow, WARM_UP_PERIODS, WINDOW_DEFINITION};
 pub use result::summary::{Summary, retraces};
 pub use result::tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
-pub use scene_views::{hmd_on, views};
+pub use scene_views::{SceneViews, hmd_on};
 pub use stepper::{Pause, Stepper};
 pub use tunings::Tunings;
-pub use views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
+pub use views::ViewSource;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,6 +1,6 @@
-use crate::head_views::HeadViews;
 use crate::result::picture_ends::PictureResult;
-use crate::views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
+use crate::result::summary::Summary;
+use crate::views::ViewSource;
 use image::RgbImage;
 use pphigs::{DisplayList, Shading};
 use pxpl5_gp::{CodeUse, HostTiming};
@@ -9,7 +9,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::KeyValue;
 use pxpl5_sim::parameters::SettingError;
-use pxpl5_sim::{Span, Time};
+use pxpl5_sim::{Time, mix};
 use pxpl5_wire::display::{Aim, Coverage, LightTimes};
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 use std::any::Any;
@@ -36,18 +36,13 @@ pub enum Source {
     },
 }
 
-/// Input of a pipeline: the scene as a display list, and the functions that supply views.
-#[derive(Clone)]
+/// Input of a pipeline: the scene as a display list, and the source of views.
+#[derive(Clone, Debug)]
 pub struct Setup {
     /// Primitives that are drawn in every picture.
     pub list: Arc<DisplayList>,
-    /// Function that returns the newest view: its transforms, and the edits of moving structures.
-    pub views: Views,
-    /// Function that returns a view for a requested display time, for firmware that computes the display time of a
-    /// view.
-    pub wanted: ViewsWanted,
-    /// Function that returns the pose of the head alone, for displays that follow its rotation.
-    pub poses: Poses,
+    /// Source of views, poses and tracker reports.
+    pub views: Arc<dyn ViewSource>,
     /// Scene from which the display list was made ([`Pipeline::prepare`]).
     pub scene: Arc<Scene>,
     /// Instant for which a picture's view is drawn, within the time in which the picture is displayed. Examples are the
@@ -55,14 +50,26 @@ pub struct Setup {
     ///
     /// Only firmware that computes the display times of its views uses this setting.
     pub aim: Aim,
-    /// Function that returns the arrival time of the next tracker report at the host.
-    pub reports: ReportTimes,
-    /// Function that returns the start time of the next frame, for a host that waits for the pipeline.
-    pub starts: FrameStarts,
     /// Times of the host's operations, in nanoseconds.
     pub host: HostTiming,
+    /// Seed of the host's computing times.
+    pub seed: u64,
+    /// True if the host begins a frame only when a tracker report arrives.
+    pub on_demand: bool,
     /// True if pixels may be computed.
     pub pixels: bool,
+}
+
+impl Setup {
+    /// Returns the time at which a host that is ready at the instant `ready` begins its next frame. Returns `None` if
+    /// the host begins no more frames.
+    ///
+    /// The host's application computes before each frame. With frames on demand, the first report at which the host is
+    /// ready asks for the frame.
+    pub fn frame_start(&self, ready: Time) -> Option<Time> {
+        let asked = if self.on_demand { self.views.report_from(ready)? } else { ready };
+        Some(asked + self.host.application_span(mix(self.seed ^ mix(asked.0))))
+    }
 }
 
 /// Times of one picture, which is a frame or a field, on its way through the machine.
@@ -97,6 +104,66 @@ impl PictureTimes {
     }
 }
 
+/// Properties of a pipeline that the same settings always give.
+#[derive(Clone, Copy, Debug)]
+pub struct PipelineProperties {
+    /// Number of pictures drawn at the same time, each for one surface of the first display: 1, or 2 for two eyes.
+    pub eyes: usize,
+    /// Layout of pixel memory.
+    pub layout: Layout,
+    /// Method of shading. The default is Gouraud: colours are computed at the corners.
+    pub shading: Shading,
+    /// Directions that a picture shows. The display must have the same coverage
+    /// ([`DisplayConfig::coverage`](pxpl5_wire::display::DisplayConfig::coverage)).
+    pub coverage: Coverage,
+    /// Kind of i860 code that the pipeline uses, which determines the times of the code. The default is the code of the
+    /// graphics library PPHIGS.
+    pub code_use: CodeUse,
+    /// Short description of the graphics processors' work that has no i860 code. `None` if all work has code.
+    ///
+    /// At the cycle level, the times of work without code come from the timing table.
+    pub without_code: Option<&'static str>,
+    /// True if the firmware itself computes the time at which a view will be seen.
+    pub knows_when_seen: bool,
+    /// True if a whole picture is drawn for one head pose. Only such a picture can be shifted by the display to correct
+    /// the pose.
+    pub has_one_pose: bool,
+    /// True if [`PictureRules::pictures`] and [`PictureRules::late_regions`] need no old records.
+    ///
+    /// After [`Machine::discard_before`], both methods must give the same results for times after the discarded
+    /// records. Only then can a long run discard records.
+    pub can_discard_records: bool,
+    /// Sentence that defines latency for this pipeline.
+    pub latency_definition: &'static str,
+    /// Sentence that defines two times: when a picture is due, and up to when the picture is in time. For pipelines
+    /// without due pictures, the sentence states why no picture is due.
+    pub due_definition: &'static str,
+    /// Function that returns the time, in milliseconds, by which levels of detail are compared. The default is the mean
+    /// latency.
+    pub compared_ms: fn(&Summary) -> f64,
+}
+
+impl PipelineProperties {
+    /// Creates properties with a layout of pixel memory, the definition of latency, and the definition of due pictures.
+    /// All other properties have their defaults.
+    pub fn new(layout: Layout, latency_definition: &'static str, due_definition: &'static str) -> Self {
+        Self {
+            eyes: 1,
+            layout,
+            shading: Shading::Gouraud,
+            coverage: Coverage::View,
+            code_use: CodeUse::Pphigs,
+            without_code: Some("all work of its firmware except messages"),
+            knows_when_seen: false,
+            has_one_pose: true,
+            can_discard_records: false,
+            latency_definition,
+            due_definition,
+            compared_ms: |summary| summary.latency_ms().mean,
+        }
+    }
+}
+
 /// A set of programs for all boards of a machine, which define how the machine draws. [`PictureRules`] defines the
 /// times and contents of the pictures.
 pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
@@ -109,39 +176,13 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Returns the number of pictures drawn at the same time, each for one surface of the first display: 1, or 2 for
-    /// two eyes.
-    fn eyes(&self) -> usize;
-
-    /// Returns the layout of pixel memory.
-    fn layout(&self) -> Layout;
-
-    /// Returns the method of shading. The default is Gouraud: colours are computed at the corners.
-    fn shading(&self) -> Shading {
-        Shading::Gouraud
-    }
-
-    /// Returns true if triangles are drawn by the compiled program of Slats, with planes in single precision.
-    fn is_single(&self, _: &MachineConfig) -> bool {
-        false
-    }
-
-    /// Returns the kind of i860 code that the pipeline uses, which determines the times of the code. The default is the
-    /// code of the graphics library PPHIGS.
-    fn code_use(&self) -> CodeUse {
-        CodeUse::Pphigs
-    }
+    /// Returns the properties of the pipeline.
+    fn properties(&self) -> PipelineProperties;
 
     /// Returns the configuration of the machine with the changes that this variant of the pipeline needs. For example,
     /// a variant with a different version of the i860 code changes the times of triangles.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         config
-    }
-
-    /// Returns the directions that a picture shows. The display must have the same coverage
-    /// ([`DisplayConfig::coverage`](pxpl5_wire::display::DisplayConfig::coverage)).
-    fn coverage(&self) -> Coverage {
-        Coverage::View
     }
 
     /// Returns the scene in the form that the pipeline draws. The default is the unchanged scene. A pipeline can attach
@@ -154,31 +195,12 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         Ok(Arc::clone(scene))
     }
 
-    /// Returns a short description of the graphics processors' work that has no i860 code. Returns `None` if all work
-    /// has code.
-    ///
-    /// At the cycle level, the times of work without code come from the timing table.
-    fn without_code(&self, _config: &MachineConfig) -> Option<&'static str> {
-        Some("all work of its firmware except messages")
-    }
-
     /// Loads the pipeline's programs onto the boards.
     ///
     /// # Errors
     ///
     /// Returns a [`SettingError`] if the pipeline cannot run on the machine.
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError>;
-
-    /// Returns true if the firmware itself computes the time at which a view will be seen.
-    fn knows_when_seen(&self) -> bool {
-        false
-    }
-
-    /// Returns true if a whole picture is drawn for one head pose. Only such a picture can be shifted by the display to
-    /// correct the pose.
-    fn has_one_pose(&self) -> bool {
-        true
-    }
 }
 
 /// The rules that determine the times and contents of a pipeline's pictures.
@@ -186,29 +208,6 @@ pub trait PictureRules {
     /// Returns the pictures that were begun and that, at `end`, are shown or have missed their deadline. The list is in
     /// the order in which the pictures are shown.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
-
-    /// Returns the number of display periods before `end` in which the display showed old pictures in a new head
-    /// direction.
-    ///
-    /// Each such period counts as a picture, although the pipeline drew nothing for this period.
-    fn turned_periods(&self, _record: &Record, _end: Time) -> u64 {
-        0
-    }
-
-    /// Returns the prediction interval of the orientation by which the display turns the middle pixel of a period. The
-    /// interval lasts from the measurement of the orientation to the instant for which the orientation was predicted.
-    /// Returns `None` if the display turns no pictures, and before the first report.
-    fn turn_interval(&self, _record: &Record, _head: &HeadViews, _aim: Aim, _period: PeriodNumber) -> Option<Span> {
-        None
-    }
-
-    /// Returns true if [`PictureRules::pictures`] and [`PictureRules::late_regions`] need no old records.
-    ///
-    /// After [`Machine::discard_before`], both methods must give the same results for times after the discarded
-    /// records. Only then can a long run discard records.
-    fn can_discard_records(&self) -> bool {
-        false
-    }
 
     /// Returns the regions that missed their deadline before `end`.
     fn late_regions(&self, _record: &Record, _end: Time) -> Vec<LateRegion> {
@@ -223,13 +222,6 @@ pub trait PictureRules {
     fn periods_a_picture(&self, _record: &Record) -> Option<u64> {
         None
     }
-
-    /// Returns one sentence that defines latency for this pipeline.
-    fn latency_definition(&self) -> &'static str;
-
-    /// Returns a sentence that defines two times: when a picture is due, and up to when the picture is in time. For
-    /// pipelines without due pictures, the sentence states why no picture is due.
-    fn due_definition(&self) -> &'static str;
 
     /// Returns the number of entries in the list of [`PictureRules::pictures`] that together make one whole picture.
     /// The number is 1 unless the pipeline draws a picture in several updates.

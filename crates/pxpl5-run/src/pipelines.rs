@@ -18,11 +18,12 @@ use crate::keys::PipelineSettings;
 use crate::pipeline::PictureTimes;
 use crate::registry::PipelineEntry;
 use crate::result::picture_ends::PictureResult;
-use pphigs::Shading;
+use pphigs::{Picture, RegionBinning, Shading};
 use pxpl5_framebuffer::{NtscDisplay, Video};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Mark, Stage};
 use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
+use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, names};
 use pxpl5_wire::{Lines, PictureNumber, RegionGrid, ViewNumber};
@@ -31,7 +32,7 @@ use std::any::Any;
 pub(crate) fn entries() -> Vec<PipelineEntry> {
     let mut all = vec![rendering_control::ENTRY, slats::ENTRY, frameless::ENTRY];
     all.extend(jitp::ENTRIES);
-    all.extend(faces::ENTRIES);
+    all.extend(faces::ENTRIES.into_iter().flatten());
     all
 }
 
@@ -106,6 +107,27 @@ fn swapped_in(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> O
         end: PictureResult::Shown,
         layer: 0,
     })
+}
+
+/// Returns a picture of the usual regions, whole in one viewport, in the layout of Rendering Control.
+const fn picture(viewport: Viewport, shading: Shading, pixels: bool) -> Picture {
+    let layout = Layout::rendering_control_phong();
+    Picture { viewport, shading, binning: RegionBinning::Touched, layout, pixels }
+}
+
+/// Returns the times of a picture that begins with TRANSFORM at the sample `mark`, and that the display shows at
+/// `shown_at`.
+fn sampled_at(mark: &Mark, copied_at: Option<Time>, shown_at: Time, end: PictureResult) -> PictureTimes {
+    PictureTimes {
+        picture: mark.picture,
+        view: mark.view.unwrap_or(ViewNumber::taken_for(mark.picture)),
+        sampled_at: Some(mark.time),
+        transform_at: mark.time,
+        copied_at,
+        shown_at,
+        end,
+        layer: 0,
+    }
 }
 
 fn samples(record: &Record) -> impl Iterator<Item = &Mark> {

@@ -122,33 +122,27 @@ pub struct DisplayEntry {
     pub config: fn() -> Box<dyn DisplayConfig>,
 }
 
-impl fmt::Display for PipelineEntry {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name)
-    }
+/// Implements the text form of an entry, its name, which the registry of the papers finds.
+macro_rules! found_by_name {
+    ($entry:ty, $find:ident) => {
+        impl fmt::Display for $entry {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.pad(self.name)
+            }
+        }
+
+        impl FromStr for $entry {
+            type Err = SettingError;
+
+            fn from_str(name: &str) -> Result<Self, SettingError> {
+                Registry::of_papers().$find(name).copied()
+            }
+        }
+    };
 }
 
-impl FromStr for PipelineEntry {
-    type Err = SettingError;
-
-    fn from_str(name: &str) -> Result<Self, SettingError> {
-        Registry::of_papers().pipeline(name).copied()
-    }
-}
-
-impl fmt::Display for DisplayEntry {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name)
-    }
-}
-
-impl FromStr for DisplayEntry {
-    type Err = SettingError;
-
-    fn from_str(name: &str) -> Result<Self, SettingError> {
-        Registry::of_papers().display(name).copied()
-    }
-}
+found_by_name!(PipelineEntry, pipeline);
+found_by_name!(DisplayEntry, display);
 
 /// All registered pipelines and displays.
 #[derive(Clone, Debug)]

@@ -41,10 +41,6 @@ impl ReportSchedule {
         self.queue.get(earlier).copied()
     }
 
-    pub(crate) fn after(&mut self, instant: Time) -> Option<Coming> {
-        self.from(Time(instant.0.saturating_add(1)))
-    }
-
     pub(crate) fn by(&mut self, instant: Time) -> Option<Coming> {
         self.read_until_after(instant);
         let there = self.queue.partition_point(|coming| coming.arrives <= instant);
@@ -94,7 +90,6 @@ mod tests {
                 let at = at.max(oldest);
                 let place = |coming: Option<Coming>| coming.map(|coming| coming.measured.0 as usize);
                 prop_assert_eq!(place(kept.from(Time(at))), all.iter().position(|arrival| *arrival >= at));
-                prop_assert_eq!(place(kept.after(Time(at))), all.iter().position(|arrival| *arrival > at));
                 let last = all.iter().rposition(|arrival| *arrival <= at);
                 prop_assert_eq!(place(kept.by(Time(at))), last);
                 if let Some(last) = last {

@@ -36,20 +36,7 @@ impl Experiment {
     /// if the run ends early. Returns [`ExperimentError::TooShort`] with all observations if only pictures of the
     /// warm-up were shown.
     pub fn run(&self) -> Result<Outcome, ExperimentError> {
-        self.run_with(|_, _| {})
-    }
-
-    /// Runs the experiment and reports progress. `progress` receives the number of fields simulated so far and in
-    /// total.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`Experiment::run`].
-    pub fn run_with(&self, mut progress: impl FnMut(u64, u64)) -> Result<Outcome, ExperimentError> {
-        self.run_stopping(&[], |field, _| {
-            progress(field.since(PeriodNumber::FIRST), self.fields);
-            Ok(())
-        })
+        self.run_stopping(&[], |_, _| Ok(()))
     }
 
     /// Runs the experiment and calls `at` at the start of each field in `stops`, at every 60th field (at every field of the

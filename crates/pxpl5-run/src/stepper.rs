@@ -7,8 +7,10 @@ use crate::experiment::{Experiment, Pixels};
 use crate::head_views::HeadViews;
 use crate::ideal::ideal_picture;
 use crate::level::Level;
+use crate::observe::observers::FinalResults;
 use crate::observe::window::Window;
 use crate::pipeline::PictureTimes;
+use crate::result::latency::{LatencyParts, parts_of_pictures};
 use crate::result::outcome::Outcome;
 use crate::result::picture_ends::WARM_UP_PICTURES;
 use crate::result::result_window::WARM_UP_PERIODS;
@@ -270,6 +272,25 @@ impl Stepper {
         self.record().ring().channel_snapshots(self.now).collect()
     }
 
+    /// Returns the pictures that were begun and evaluated up to now, in order, complete or not.
+    pub fn pictures(&self) -> Vec<PictureTimes> {
+        self.experiment.pipeline().pictures(self.record(), self.now)
+    }
+
+    /// Returns the observations up to now for evaluation, with the [`pictures`](Self::pictures) so far. The run so far
+    /// has no result window.
+    pub fn results<'a>(&'a self, pictures: &'a [PictureTimes]) -> FinalResults<'a> {
+        FinalResults { pictures, now: self.now, ..self.experiment.final_results(self.record(), self.head()) }
+    }
+
+    /// Returns the latency parts of the newest complete pictures, at most `most`. The newest picture is the last entry.
+    pub fn last_latencies(&self, most: usize) -> Vec<LatencyParts> {
+        let pictures = self.pictures();
+        let mut last: Vec<_> = pictures.iter().rev().filter(|times| times.is_shown()).take(most).collect();
+        last.reverse();
+        parts_of_pictures(self.record(), last)
+    }
+
     /// Returns the picture on the screen of a surface now. Lines above the beam are new, and lines below the beam are
     /// from the preceding scan.
     pub fn seen(&self, surface: SurfaceId) -> Option<RgbImage> {
@@ -361,7 +382,7 @@ fn needed_by_run(partial: &Outcome) -> Option<u64> {
 /// Returns the number of pictures of a run. A period that shows old pictures in a new direction of the head also
 /// counts.
 fn shown_in(outcome: &Outcome) -> u64 {
-    outcome.tally().pictures.max(outcome.pipeline().turned_periods(outcome.record(), outcome.end()))
+    outcome.tally().pictures.max(outcome.turned_periods())
 }
 
 /// Number of fields below which the machine may not detect a deadlock itself.

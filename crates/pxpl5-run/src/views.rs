@@ -1,30 +1,28 @@
 use pphigs::FrameView;
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
-use std::sync::Arc;
+use std::fmt::Debug;
 use tracking::Pose;
 
-/// Function that returns a view.
-///
-/// The arguments are the number of the view and the time of the request.
-pub type Views = Arc<dyn Fn(ViewNumber, Time) -> FrameView + Send + Sync>;
+/// Source of the views and poses that firmware requests: a tracked head, or the scene's own head motion.
+pub trait ViewSource: Debug + Send + Sync {
+    /// Returns the newest view: its transforms, and the edits of moving structures. `now` is the time of the request.
+    fn newest(&self, number: ViewNumber, now: Time) -> FrameView;
 
-/// Function that returns a view for a later instant.
-///
-/// The arguments are the number of the view, the time of the request, and the instant for which the view is drawn.
-pub type ViewsWanted = Arc<dyn Fn(ViewNumber, Time, Time) -> FrameView + Send + Sync>;
+    /// Returns a view for the later instant `shown_at`, for firmware that computes the display time of a view. `now` is
+    /// the time of the request.
+    fn view_at(&self, number: ViewNumber, now: Time, shown_at: Time) -> FrameView;
 
-/// Function that predicts the head's pose.
-///
-/// The arguments are the time of the request and the instant for which the pose is predicted. From call to call, the
-/// time of the request must not decrease.
-pub type Poses = Arc<dyn Fn(Time, Time) -> Pose + Send + Sync>;
+    /// Returns the head's pose at the instant `at`, as predicted at the time `now` of the request, for displays that
+    /// follow the head's rotation. From call to call, `now` must not decrease.
+    fn pose_at(&self, now: Time, at: Time) -> Pose;
 
-/// Function that returns the arrival time of the first tracker report after an instant, or `None` if no later report
-/// exists.
-pub type ReportTimes = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;
+    /// Returns the arrival time at the host of the first tracker report that arrives at `instant` or later. Returns
+    /// `None` if no such report exists.
+    fn report_from(&self, instant: Time) -> Option<Time>;
 
-/// Function that returns the time at which a host begins its next frame.
-///
-/// The argument is the instant at which the host is ready. `None` means that the host begins no more frames.
-pub type FrameStarts = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;
+    /// Returns the arrival time at the host of the first tracker report that arrives after `instant`.
+    fn report_after(&self, instant: Time) -> Option<Time> {
+        self.report_from(Time(instant.0.saturating_add(1)))
+    }
+}

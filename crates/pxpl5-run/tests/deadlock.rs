@@ -4,7 +4,9 @@
 use pxpl5_gp::Priority;
 use pxpl5_machine::{Board, Machine, MachineConfig, Record, RunError};
 use pxpl5_renderer::Layout;
-use pxpl5_run::{Experiment, ExperimentError, Pause, PictureRules, PictureTimes, Pipeline, Pixels, Setup, Slats};
+use pxpl5_run::{
+    Experiment, ExperimentError, Pause, PictureRules, PictureTimes, Pipeline, PipelineProperties, Pixels, Setup, Slats,
+};
 use pxpl5_scene::builtin;
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
@@ -18,12 +20,8 @@ impl Pipeline for Waiting {
         "waiting"
     }
 
-    fn eyes(&self) -> usize {
-        1
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::slats()
+    fn properties(&self) -> PipelineProperties {
+        PipelineProperties::new(Layout::slats(), "none", "none")
     }
 
     fn load(&self, machine: &mut Machine, _: &Setup) -> Result<(), SettingError> {
@@ -41,14 +39,6 @@ impl Pipeline for Waiting {
 impl PictureRules for Waiting {
     fn pictures(&self, _: &Record, _: Time) -> Vec<PictureTimes> {
         Vec::new()
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        "none"
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "none"
     }
 }
 

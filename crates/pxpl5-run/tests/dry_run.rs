@@ -21,10 +21,11 @@ fn a_run_that_continues_with_another_predictor_equals_a_run_with_this_predictor_
         let scene = Arc::new(builtin("sphere:100").expect("even"));
         let plain = Experiment::with(config, pipeline, scene).fields(70).pixels(Pixels::Off);
         let of_kalman = plain.clone().head(head(PredictorKind::Kalman)).after_dry_run().expect("it runs");
-        assert!(of_kalman.dry_run().is_some(), "{name}");
+        assert!(of_kalman.dry_run.is_some(), "{name}");
         for kind in [PredictorKind::Kalman, PredictorKind::ConstantVelocity] {
             let alone = plain.clone().head(head(kind));
-            let continued = alone.clone().with_dry_run(of_kalman.dry_run().cloned());
+            let mut continued = alone.clone();
+            continued.dry_run = of_kalman.dry_run.clone();
             let [alone, continued] = [alone, continued].map(|experiment| experiment.run().expect("it runs"));
             assert_eq!(alone.record().trace_hash(), continued.record().trace_hash(), "{name}, {kind:?}");
             let sampled = [&alone, &continued].map(|outcome| outcome.head().expect("tracked").sampled());
@@ -39,5 +40,5 @@ fn an_experiment_without_prediction_has_no_dry_run() {
     let pipeline = (registry.pipeline("slats").expect("listed").build)(&PipelineSettings::default());
     let scene = Arc::new(builtin("sphere:100").expect("even"));
     let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head(PredictorKind::None));
-    assert!(experiment.after_dry_run().expect("nothing to run").dry_run().is_none());
+    assert!(experiment.after_dry_run().expect("nothing to run").dry_run.is_none());
 }

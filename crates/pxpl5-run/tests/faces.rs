@@ -33,7 +33,7 @@ const OBJECTS: FacePipeline = FacePipeline::new(FacePolicy::Objects);
 
 /// Returns a machine with changed parameters. The policies have a threshold of 90/512 degrees and cells of 5 m. The
 /// expected values of these tests depend on both.
-fn machine(preset: &str, pipeline: FacePipeline, numbers: &[(&str, u64)]) -> MachineConfig {
+fn machine(preset: &str, pipeline: &FacePipeline, numbers: &[(&str, u64)]) -> MachineConfig {
     let preset = MachineConfig::preset(preset).expect("listed");
     let mut config = pipeline.adapt(Registry::of_papers().machine_of(preset));
     for (path, value) in [("priority.theta_deg", 90.0 / 512.0), ("priority.cell_m", 5.0)] {
@@ -67,7 +67,7 @@ fn assert_no_faults(record: &Record) {
 fn the_rotation_latency_does_not_depend_on_the_number_of_triangles() {
     let run = |pipeline: FacePipeline, n: usize| {
         let scene = builtin(&format!("sphere:{n}")).expect("even");
-        let config = machine("small-hmd", pipeline, &[]);
+        let config = machine("small-hmd", &pipeline, &[]);
         let fields = if n > 10_000 { 240 } else { 60 };
         let experiment = Experiment::new(config, pipeline, scene).fields(fields).pixels(Pixels::Off);
         experiment.head(head(Pan::at(200.0))).run().expect("it runs")
@@ -102,7 +102,7 @@ fn the_rotation_latency_does_not_depend_on_the_number_of_triangles() {
 fn copies(texels: u64, packed: bool) -> (Vec<Span>, u64) {
     let bits = if packed { 16 } else { 24 };
     let numbers = [("arp.face_texels", texels), ("arp.depth_bits", bits), ("arp.colour_bits", bits)];
-    let config = machine("design-maximum", FULL, &numbers);
+    let config = machine("design-maximum", &FULL, &numbers);
     let experiment = Experiment::new(config, FULL, builtin("room").expect("built in")).fields(90).pixels(Pixels::Off);
     let outcome = experiment.run().expect("it runs");
     assert_no_faults(outcome.record());
@@ -159,7 +159,7 @@ fn balls() -> Scene {
 /// Runs a walk at 1 m/s past the balls, with renderers whose clock runs at a fraction of 40 MHz.
 fn walk(pipeline: FacePipeline, clock_hz: u64) -> Outcome {
     let numbers = [("arp.face_texels", 128), ("renderer.clock_hz", clock_hz)];
-    let experiment = Experiment::new(machine("small-hmd", pipeline, &numbers), pipeline, balls());
+    let experiment = Experiment::new(machine("small-hmd", &pipeline, &numbers), pipeline, balls());
     experiment.fields(240).pixels(Pixels::Off).head(head(Slide::right_at(1.0))).run().expect("it runs")
 }
 
@@ -211,7 +211,7 @@ fn after(experiment: &Experiment, fields: u64) -> Machine {
 }
 
 fn ball() -> Experiment {
-    let config = machine("small-hmd", FULL, &[("arp.face_texels", 128)]);
+    let config = machine("small-hmd", &FULL, &[("arp.face_texels", 128)]);
     Experiment::new(config, FULL, builtin("sphere:1000").expect("even"))
 }
 
@@ -283,7 +283,7 @@ fn compare_face(scene: &Scene, eye: DVec3, time: Time, faces: &FaceSet, face: Cu
 fn the_faces_drawn_by_the_machine_equal_the_faces_of_an_ideal_renderer() {
     for (name, faces_with_something) in [("mig", 1), ("room", 6)] {
         let scene = builtin(name).expect("built in");
-        let config = machine("small-hmd", FULL, &[]);
+        let config = machine("small-hmd", &FULL, &[]);
         let outcome = Experiment::new(config, FULL, scene.clone()).fields(40).run().expect("it runs");
         assert_no_faults(outcome.record());
         let shown = outcome.pictures().last().expect("a picture");
@@ -298,7 +298,7 @@ fn the_faces_drawn_by_the_machine_equal_the_faces_of_an_ideal_renderer() {
 
 #[test]
 fn a_display_of_faces_needs_a_pipeline_that_draws_them() {
-    let config = machine("small-hmd", FULL, &[]);
+    let config = machine("small-hmd", &FULL, &[]);
     let error = Experiment::new(config, RenderingControl::mono(), balls()).run().expect_err("no faces");
     let ExperimentError::Config(error) = error else { panic!("{error}") };
     let text = error.to_string();

@@ -8,8 +8,8 @@ use pxpl5_gp::{Account, Fault, OutOfMemory, Stage};
 use pxpl5_machine::{MachineConfig, PRESETS, Preset, RunError};
 use pxpl5_renderer::Layout;
 use pxpl5_run::{
-    Experiment, ExperimentError, FinishedRegions, Outcome, Pipeline, Pixels, RenderingControl, Slats, display_list,
-    views,
+    Experiment, ExperimentError, FinishedRegions, Outcome, Pipeline, Pixels, RenderingControl, SceneViews, Slats,
+    ViewSource, display_list,
 };
 use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Scene, builtin};
 use pxpl5_sim::Time;
@@ -41,7 +41,7 @@ fn run(pipeline: Arc<dyn Pipeline>, config: MachineConfig, scene: &Arc<Scene>, f
 }
 
 fn assert_ideal(outcome: &Outcome, what: &str) {
-    for surface in (0..outcome.pipeline().eyes() as u16).map(SurfaceId) {
+    for surface in (0..outcome.pipeline().properties().eyes as u16).map(SurfaceId) {
         let ideal = outcome.ideal_picture(surface, Time::ZERO).expect("drawn");
         let picture = outcome.pipeline().picture(outcome.record(), surface).expect("shown");
         let background = picture.get_pixel(0, 0);
@@ -193,8 +193,7 @@ fn on_screen_and_clipped(hmd: HmdConfig, grid: RegionGrid, lines: Lines) -> [(u6
     let viewport = Viewport::new(grid, lines).expect("a picture");
     let (shading, layout) = (Shading::Phong, Layout::rendering_control_phong());
     let picture = Picture { viewport, shading, binning: RegionBinning::Touched, layout, pixels: false };
-    let (views, _) = views(&scene, 1, Hmd::new(hmd).expect("in range"), 2);
-    let view = views(ViewNumber(0), Time::ZERO);
+    let view = SceneViews::new(&scene, 1, Hmd::new(hmd).expect("in range"), 2).newest(ViewNumber(0), Time::ZERO);
     [0, 1].map(|eye| {
         let pass = share.transform(&view, eye, picture);
         (pass.stats().screen_triangles, pass.stats().clipped)

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`Chart`] | series of points over two axes, linear or in powers of ten, for a screen or a column of a paper |
 //! | [`level_chart`] | speed against error of the levels of modelling |
-//! | [`curve_chart`], [`decade_chart`], [`point_chart`] | any value over another, such as the errors of a comparison over time |
+//! | [`curve_chart`], [`decade_chart`] | any value over another, such as the errors of a comparison over time |
 //! | [`histogram`] | distribution of the latencies of a run |
 //!
 //! The crate `plotters` draws all charts except the last two, whose bars have tooltips.
@@ -22,7 +22,7 @@ pub use histogram::histogram;
 pub(crate) use histogram::histogram_element;
 pub use levels::{SpeedAndError, level_chart};
 pub(crate) use parts::{MeanPart, part_bar_element};
-pub use plane::{Curve, MarkedPoint, curve_chart, decade_chart, point_chart};
+pub use plane::{curve_chart, decade_chart};
 pub use scale::AxisScale;
 
 /// Returns the values of the marks on an axis: round numbers from 0 to at most `greatest`, at equal steps. The step is

@@ -109,7 +109,7 @@ impl Film {
     /// Runs the experiment for the periods of the film without pixels. The run gives the shift that the display applies
     /// to the picture in each period. Returns `None` if the display shifts no pictures.
     fn without_pixels(&self) -> Result<Option<Outcome>, PictureError> {
-        if self.experiment.raster() == Raster::Plain {
+        if self.experiment.head.as_ref().is_none_or(|head| head.raster == Raster::Plain) {
             return Ok(None);
         }
         let length = self.first_period.after(self.periods).next().since(PeriodNumber::FIRST);

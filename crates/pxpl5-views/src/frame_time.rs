@@ -29,47 +29,20 @@ impl Fraction {
     const fn distance(self, other: Self) -> u128 {
         (self.over * other.under).abs_diff(other.over * self.under)
     }
-
-    /// Returns the next convergent of a continued fraction: `times` times this fraction, plus the fraction `before`.
-    ///
-    /// Numerators and denominators are added separately.
-    const fn followed(self, times: u128, before: Self) -> Self {
-        Self { over: times * self.over + before.over, under: times * self.under + before.under }
-    }
-
-    /// Returns the largest factor `times` with which the result of [`Self::followed`] has no numerator or denominator
-    /// above [`LIMIT`].
-    fn fits(self, before: Self) -> u128 {
-        let above = (LIMIT - before.over).checked_div(self.over).unwrap_or(u128::MAX);
-        above.min((LIMIT - before.under).checked_div(self.under).unwrap_or(u128::MAX))
-    }
 }
 
-/// Returns the fraction that is nearest to `exact` and has no numerator or denominator above [`LIMIT`], by continued
-/// fractions.
-///
-/// The result is the last convergent within the limit, or a fraction between this convergent and the next convergent.
+/// Returns the fraction that is nearest to `exact` and has no numerator or denominator above [`LIMIT`]. Of equally near
+/// fractions, the result has the smallest denominator.
 fn nearest_fraction(exact: Fraction) -> Fraction {
-    let mut before = Fraction { over: 0, under: 1 };
-    let mut last = Fraction { over: 1, under: 0 };
-    let mut rest = exact;
-    while rest.under > 0 {
-        let times = rest.over / rest.under;
-        let fits = last.fits(before);
-        if times > fits {
-            // The next fraction of the chain is too large, so the best fraction lies between the next and the last
-            // fraction.
-            let between = last.followed(fits, before);
-            let last_is_nearer = exact.distance(last) * between.under <= exact.distance(between) * last.under;
-            return if last_is_nearer && last.under > 0 { last } else { between };
-        }
-        // Continue with the remainder, as in Euclid's algorithm.
-        let next = last.followed(times, before);
-        before = last;
-        last = next;
-        rest = Fraction { over: rest.under, under: rest.over % rest.under };
-    }
-    last
+    let beside = |under: u128| {
+        let below = (exact.over * under / exact.under).min(LIMIT);
+        [below, (below + 1).min(LIMIT)].map(|over| Fraction { over, under })
+    };
+    let nearer = |best: Fraction, other: Fraction| {
+        let is_nearer = exact.distance(other) * best.under < exact.distance(best) * other.under;
+        if is_nearer { other } else { best }
+    };
+    (1..=LIMIT).flat_map(beside).reduce(nearer).unwrap_or(exact)
 }
 
 #[cfg(test)]

@@ -41,15 +41,7 @@ pub fn tints_of(name: &str) -> Tints {
 
 /// Returns the name of a stage in style sheets.
 pub const fn class_of(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Send => "send",
-        Stage::Edit => "edit",
-        Stage::Transform => "transform",
-        Stage::Render => "render",
-        Stage::Copy => "copy",
-        Stage::Sample => "sample",
-        Stage::Swap => "swap",
-    }
+    Stage::ALL[stage as usize].0
 }
 
 #[cfg(test)]

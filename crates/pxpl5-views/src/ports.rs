@@ -2,7 +2,7 @@
 //! finds the pictures that the port showed.
 
 use pxpl5_machine::Record;
-use pxpl5_run::ObservedRun;
+use pxpl5_run::FinalResults;
 use pxpl5_sim::Time;
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId};
@@ -36,12 +36,18 @@ pub(crate) fn display_ports(record: &Record) -> Vec<DisplayPort> {
 
 /// Returns true if a surface shows the content of several ports.
 pub(crate) fn has_separate_ports(record: &Record, surface: SurfaceId) -> bool {
+    display_of(record, surface).is_some_and(has_more_ports)
+}
+
+pub(crate) fn display_of(record: &Record, surface: SurfaceId) -> Option<&dyn Display> {
     let mut first = 0;
-    record.displays().iter().any(|display| {
-        let own = first..first + display.surfaces().len();
-        first = own.end;
-        own.contains(&surface.index()) && has_more_ports(display.as_ref())
-    })
+    for display in record.displays() {
+        first += display.surfaces().len();
+        if surface.index() < first {
+            return Some(display.as_ref());
+        }
+    }
+    None
 }
 
 fn has_more_ports(display: &dyn Display) -> bool {
@@ -50,9 +56,9 @@ fn has_more_ports(display: &dyn Display) -> bool {
 
 /// Returns the pictures that a port has shown, in the order in which the pictures were begun. A port shows each picture
 /// from one swap to the port's next swap.
-pub(crate) fn shown(run: &ObservedRun<'_>, node: NodeId) -> Vec<ShownPicture> {
-    let shown = run.record().shown_by(node);
-    let ends = shown.iter().skip(1).map(|next| next.at).chain([run.end()]);
+pub(crate) fn shown(run: &FinalResults<'_>, node: NodeId) -> Vec<ShownPicture> {
+    let shown = run.record.shown_by(node);
+    let ends = shown.iter().skip(1).map(|next| next.at).chain([run.now]);
     let all = shown.iter().zip(ends);
     all.map(|(shown, end)| ShownPicture { picture: shown.picture, begin: shown.at, end }).collect()
 }

@@ -30,7 +30,7 @@ pub use model::{Arrow, Bar, DrawingPlace, MAX_FIELDS, Timeline, TimelineOptions,
 use crate::results::{count_of, origin_lines};
 use draw::Words;
 use pxpl5_measure::Report;
-use pxpl5_run::{ObservedRun, Outcome};
+use pxpl5_run::{FinalResults, Outcome};
 
 /// Draws a run as an SVG document, 960 units wide. For a run without pictures, the document shows the first display
 /// periods.
@@ -46,7 +46,7 @@ pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
 }
 
 /// Draws a run that has ended or is in progress, without title and texts.
-pub fn drawing(run: &ObservedRun<'_>, options: &TimelineOptions) -> String {
+pub fn drawing(run: &FinalResults<'_>, options: &TimelineOptions) -> String {
     let title = options.title.clone().unwrap_or_default();
     draw::document(&Timeline::so_far(run, options), &Words { title, subtitle: String::new(), origin: String::new() })
 }

@@ -2,8 +2,8 @@
 
 use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;
-use pxpl5_run::{ObservedRun, PictureTimes};
-use pxpl5_sim::Time;
+use pxpl5_run::{FinalResults, PictureTimes};
+use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 
 /// The updates (head poses with edits) that the host sent in a run.
@@ -23,9 +23,9 @@ struct Received {
 }
 
 impl Updates {
-    pub(crate) fn of(run: &ObservedRun<'_>, stages: &[StageSpan]) -> Self {
+    pub(crate) fn of(run: &FinalResults<'_>, stages: &[StageSpan]) -> Self {
         let sends = stages.iter().filter(|span| span.stage == Stage::Send);
-        let receive_span = run.receive_span();
+        let receive_span = Span::from_ns(run.record.config().gp.message_ns);
         let mut received: Vec<Received> =
             sends.filter_map(|send| Some(Received { at: send.end? + receive_span, update: send.picture })).collect();
         received.sort_unstable();
@@ -47,7 +47,7 @@ impl Updates {
 }
 
 /// Returns true if the host samples the poses of pictures. Otherwise a graphics processor samples them.
-fn host_samples(run: &ObservedRun<'_>) -> bool {
-    let host = run.record().ports().host;
-    run.observation().marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host)
+fn host_samples(run: &FinalResults<'_>) -> bool {
+    let host = run.record.ports().host;
+    run.record.observation().marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host)
 }

@@ -1,6 +1,4 @@
-//! Settings that are choices with names: clips, projections, rules for points on a boundary, bins, coverage.
-
-use spatialgl::{BinTolerance, Binning, Combine, Coverage, Rotation, Strobes, TieRule};
+//! Settings that are choices with names: clips, projections and renderers.
 
 /// One of the six methods of clipping the scene to a slice. Its offset or bias is a separate number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,9 +21,15 @@ pub enum ClipKind {
 }
 
 impl ClipKind {
-    /// All six clips, in the order of the SpatialGL paper.
-    pub const ALL: [Self; 6] =
-        [Self::Prism, Self::UserPlanes, Self::Exact, Self::Tapered, Self::Parallel, Self::Hyperbolic];
+    /// All six clips with their names, in the order of the SpatialGL paper.
+    pub const ALL: [(&'static str, Self); 6] = [
+        ("prism", Self::Prism),
+        ("user-planes", Self::UserPlanes),
+        ("exact", Self::Exact),
+        ("tapered", Self::Tapered),
+        ("parallel", Self::Parallel),
+        ("hyperbolic", Self::Hyperbolic),
+    ];
 }
 
 /// A projection of points near a slice onto the slice's image.
@@ -40,8 +44,9 @@ pub enum ProjectionKind {
 }
 
 impl ProjectionKind {
-    /// All three projections, in the order in which a comparison lists them.
-    pub const ALL: [Self; 3] = [Self::Orthographic, Self::Perspective, Self::Jittered];
+    /// All three projections with their names, in the order in which a comparison lists them.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("orthographic", Self::Orthographic), ("perspective", Self::Perspective), ("jittered", Self::Jittered)];
 }
 
 /// The hardware that draws the slices.
@@ -53,68 +58,16 @@ pub enum RendererKind {
     PixelPlanes,
 }
 
-pub(crate) trait Named: Copy + PartialEq + 'static {
-    const NAMES: &'static [(&'static str, Self)];
-
-    fn name(self) -> &'static str {
-        Self::NAMES.iter().find(|(_, choice)| *choice == self).map_or("", |(name, _)| name)
-    }
+impl RendererKind {
+    /// Both renderers with their names.
+    pub const ALL: [(&'static str, Self); 2] = [("host", Self::Host), ("pixel-planes", Self::PixelPlanes)];
 }
 
-pxpl5_sim::parameters::named!(ClipKind, "clip", ClipKind::NAMES.iter().copied());
+pxpl5_sim::parameters::named!(ClipKind, "clip", ClipKind::ALL);
+pxpl5_sim::parameters::named!(ProjectionKind, "projection", ProjectionKind::ALL);
+pxpl5_sim::parameters::named!(RendererKind, "renderer", RendererKind::ALL);
 
-impl Named for ClipKind {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("prism", Self::Prism),
-        ("user-planes", Self::UserPlanes),
-        ("exact", Self::Exact),
-        ("tapered", Self::Tapered),
-        ("parallel", Self::Parallel),
-        ("hyperbolic", Self::Hyperbolic),
-    ];
-}
-
-pxpl5_sim::parameters::named!(ProjectionKind, "projection", ProjectionKind::NAMES.iter().copied());
-
-impl Named for ProjectionKind {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("orthographic", Self::Orthographic), ("perspective", Self::Perspective), ("jittered", Self::Jittered)];
-}
-
-pxpl5_sim::parameters::named!(RendererKind, "renderer", RendererKind::NAMES.iter().copied());
-
-impl Named for RendererKind {
-    const NAMES: &'static [(&'static str, Self)] = &[("host", Self::Host), ("pixel-planes", Self::PixelPlanes)];
-}
-
-impl Named for TieRule {
-    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
-}
-
-impl Named for Binning {
-    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
-}
-
-impl Named for BinTolerance {
-    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
-}
-
-impl Named for Coverage {
-    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
-}
-
-impl Named for Strobes {
-    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
-}
-
-impl Named for Combine {
-    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
-}
-
-impl Named for Rotation {
-    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
-}
-
-impl Named for bool {
-    const NAMES: &'static [(&'static str, Self)] = &[("true", true), ("false", false)];
+/// Returns the name of a choice. The name is empty if the choice has none.
+pub(crate) fn name_of<T: PartialEq>(choice: T, all: &[(&'static str, T)]) -> &'static str {
+    all.iter().find(|(_, other)| *other == choice).map_or("", |(name, _)| name)
 }

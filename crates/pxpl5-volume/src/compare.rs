@@ -1,7 +1,7 @@
 //! Comparison of all clips and projections for one scene. The comparison includes methods that the SpatialGL paper
 //! rejects as too expensive.
 
-use crate::choices::{ClipKind, Named, ProjectionKind};
+use crate::choices::{ClipKind, ProjectionKind, name_of};
 use crate::experiment::Volume;
 use crate::pictures::{EyeView, grid};
 use crate::settings::VolumeSettings;
@@ -105,10 +105,8 @@ struct Variant {
 /// use the hyperbolic clip and an orthographic projection, with more samples and with connected coverage.
 fn variants() -> Vec<Variant> {
     let sampled = |clip, projection| Variant { clip, projection, samples: 1, coverage: Coverage::Sampled };
-    let mut all: Vec<Variant> = ClipKind::ALL
-        .into_iter()
-        .flat_map(|clip| ProjectionKind::ALL.map(|projection| sampled(clip, projection)))
-        .collect();
+    let projected = |(_, clip)| ProjectionKind::ALL.map(|(_, projection)| sampled(clip, projection));
+    let mut all: Vec<Variant> = ClipKind::ALL.into_iter().flat_map(projected).collect();
     let plain = sampled(ClipKind::Hyperbolic, ProjectionKind::Orthographic);
     all.push(Variant { samples: 4, ..plain });
     all.push(Variant { samples: 16, ..plain });
@@ -197,7 +195,7 @@ impl Variant {
             clip: report.clip,
             projection: report.projection,
             samples: report.samples,
-            coverage: self.coverage.name(),
+            coverage: name_of(self.coverage, &Coverage::ALL),
             passes: report.passes,
             fragments_generated: stats.fragments_generated,
             fragments_accepted: stats.fragments_accepted,

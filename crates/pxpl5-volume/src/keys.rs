@@ -1,24 +1,27 @@
 //! Sets and reads the settings of a volume by a path, such as `clip.variant`.
 
-use crate::choices::{ClipKind, Named};
+use crate::choices::{ClipKind, ProjectionKind, RendererKind};
 use crate::settings::VolumeSettings;
 use pxpl5_sim::parameters::{Choice, PathSettings, SettingError, choose, tables_at};
-use spatialgl::BinTolerance;
+use spatialgl::{BinTolerance, Binning, Combine, Coverage, Rotation, Strobes, TieRule};
 
 impl PathSettings for VolumeSettings {
     const CHOICES: &'static [Choice<Self>] = &[
-        Choice { path: "on", set: |all, text| named(&mut all.renderer, text) },
+        Choice { path: "on", set: |all, text| choose(&mut all.renderer, &RendererKind::ALL, text) },
         Choice { path: "clip.variant", set: Self::set_clip },
-        Choice { path: "clip.ties", set: |all, text| named(&mut all.ties, text) },
-        Choice { path: "projection", set: |all, text| named(&mut all.projection, text) },
+        Choice { path: "clip.ties", set: |all, text| choose(&mut all.ties, &TieRule::ALL, text) },
+        Choice { path: "projection", set: |all, text| choose(&mut all.projection, &ProjectionKind::ALL, text) },
         Choice { path: "seed", set: |all, text| whole(&mut all.seed, text) },
-        Choice { path: "bins.planes", set: |all, text| named(&mut all.binning, text) },
+        Choice { path: "bins.planes", set: |all, text| choose(&mut all.binning, &Binning::ALL, text) },
         Choice { path: "bins.tolerance", set: Self::set_tolerance },
-        Choice { path: "draw.coverage", set: |all, text| named(&mut all.coverage, text) },
-        Choice { path: "draw.strobes", set: |all, text| named(&mut all.strobes, text) },
-        Choice { path: "draw.combine", set: |all, text| named(&mut all.combine, text) },
-        Choice { path: "draw.lit", set: |all, text| named(&mut all.is_lit, text) },
-        Choice { path: "display.rotation", set: |all, text| named(&mut all.rotation, text) },
+        Choice { path: "draw.coverage", set: |all, text| choose(&mut all.coverage, &Coverage::ALL, text) },
+        Choice { path: "draw.strobes", set: |all, text| choose(&mut all.strobes, &Strobes::ALL, text) },
+        Choice { path: "draw.combine", set: |all, text| choose(&mut all.combine, &Combine::ALL, text) },
+        Choice {
+            path: "draw.lit",
+            set: |all, text| choose(&mut all.is_lit, &[("true", true), ("false", false)], text),
+        },
+        Choice { path: "display.rotation", set: |all, text| choose(&mut all.rotation, &Rotation::ALL, text) },
     ];
 
     tables_at! {
@@ -68,13 +71,9 @@ impl VolumeSettings {
             self.bin_tolerance = BinTolerance::Pixels(pixels);
             return Ok(());
         }
-        choose(&mut self.bin_tolerance, BinTolerance::NAMES, text)
+        choose(&mut self.bin_tolerance, &BinTolerance::ALL, text)
             .map_err(|_| SettingError::text("clip, codes or a number of pixels from 0 on", text))
     }
-}
-
-fn named<T: Named>(choice: &mut T, text: &str) -> Result<(), SettingError> {
-    choose(choice, T::NAMES, text)
 }
 
 fn whole(number: &mut u64, text: &str) -> Result<(), SettingError> {

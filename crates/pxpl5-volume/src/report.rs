@@ -1,5 +1,6 @@
 //! The report of a volume. Its layout has the name and version `pxpl5-volume/1`.
 
+use crate::choices::{RendererKind, name_of};
 use crate::experiment::Volume;
 use crate::pixel_planes::{BoundRow, SimulatedRow, SliceBounds, SliceTraffic, simulate};
 use crate::settings::VolumeSettings;
@@ -220,7 +221,7 @@ impl Volume {
             clip: settings.clip_text(),
             projection: settings.projection_text(),
             seed: settings.seed,
-            renderer: settings.renderer_text(),
+            renderer: name_of(settings.renderer, &RendererKind::ALL),
             pixel_planes: self.bounds.map(|counts| PixelPlanesReport::of(counts, self.traffic.as_ref())),
             samples: stats.samples,
             triangles: stats.primitives,

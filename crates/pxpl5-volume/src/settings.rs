@@ -1,6 +1,6 @@
 //! The settings of an experiment with a volume. Each setting has a path such as `clip.bias_px2`.
 
-use crate::choices::{ClipKind, Named, ProjectionKind, RendererKind};
+use crate::choices::{ClipKind, ProjectionKind, RendererKind, name_of};
 use crate::numbers::{ClipNumbers, DrawNumbers, EyeNumbers, JitterNumbers, SweepNumbers, TileNumbers, ViewerNumbers};
 use pxpl5_sim::parameters::{PathSettings, SettingError};
 use spatialgl::perspecta::PerspectaConfig;
@@ -102,7 +102,7 @@ impl VolumeSettings {
 
     /// Returns the clip as text for options and reports: its name, and after a colon its offset or bias.
     pub fn clip_text(&self) -> String {
-        let name = self.clip.name();
+        let name = name_of(self.clip, &ClipKind::ALL);
         match self.slice_clip() {
             SliceClip::Tapered(number) | SliceClip::Parallel(number) | SliceClip::Hyperbolic(number) => {
                 format!("{name}:{number}")
@@ -132,7 +132,7 @@ impl VolumeSettings {
 
     /// Returns the name of the projection in options and reports.
     pub fn projection_text(&self) -> &'static str {
-        self.projection.name()
+        name_of(self.projection, &ProjectionKind::ALL)
     }
 
     /// Returns the radius of the display, pixels.
@@ -187,11 +187,6 @@ impl VolumeSettings {
     /// Returns the time model with the numbers of these settings.
     pub const fn time_model(&self) -> TimeModel {
         TimeModel { timing: self.gpu }
-    }
-
-    /// Returns the name of the renderer in options and reports.
-    pub fn renderer_text(&self) -> &'static str {
-        self.renderer.name()
     }
 
     /// Returns the features of these settings that go beyond the SpatialGL paper.

@@ -131,7 +131,7 @@ mod tests {
         let mut first = [None; 4];
         for step in 1..20_000_u64 {
             session.run_to(step * 20_000_000);
-            let stepper = session.stepper();
+            let stepper = &session.stepper;
             let seen = [
                 stage(stepper, Board::Gp(1)) == Some("transform"),
                 stepper
@@ -165,7 +165,7 @@ mod tests {
         let [mut drawn, mut copied] = [BTreeSet::new(), BTreeSet::new()];
         for step in 1..10_000_u64 {
             session.run_to(step * 20_000_000);
-            for region in regions(session.stepper()).as_array().expect("a list") {
+            for region in regions(&session.stepper).as_array().expect("a list") {
                 assert!(region["surface"].as_u64().is_some_and(|surface| surface < 2), "{region}");
                 let place = ["renderer", "surface", "rectangle", "lines"].map(|key| region[key].to_string());
                 if region["stage"] == "render" {
@@ -178,7 +178,7 @@ mod tests {
         }
         // A stereo pair of frames has 2 x 20 regions.
         assert!(copied.len() >= 40, "{}", copied.len());
-        let loads = loads(session.stepper());
+        let loads = loads(&session.stepper);
         let mut us = loads.as_array().expect("a list").iter().filter_map(|load| load["executed_us"].as_f64());
         // Clearing and shading the pixels add to the time of the triangles, and take less than it.
         assert!(us.clone().count() >= 40 && us.all(|us| (129.0..258.0).contains(&us)), "{loads}");
@@ -189,11 +189,11 @@ mod tests {
         let mut session = session("slats");
         session.run_to(100_000_000_000);
         let after = Time(90_000_000_000);
-        let all = messages(session.stepper(), after, usize::MAX);
+        let all = messages(&session.stepper, after, usize::MAX);
         let all = all.as_array().expect("a list");
         assert!(all.len() > 20);
         assert!(all.iter().all(|message| message["begin_ps"].as_u64().is_some_and(|begin| begin > after.0)));
-        let few = messages(session.stepper(), after, 5);
+        let few = messages(&session.stepper, after, 5);
         assert!((3..=5).contains(&few.as_array().expect("a list").len()));
     }
 
@@ -203,7 +203,7 @@ mod tests {
         let mut seen = 0;
         for step in 1..400_u64 {
             session.run_to(50_000_000_000 + step * 200_000_000);
-            for region in regions(session.stepper()).as_array().expect("a list") {
+            for region in regions(&session.stepper).as_array().expect("a list") {
                 let [left, top, width, height] =
                     [0, 1, 2, 3].map(|n| region["rectangle"][n].as_u64().expect("a number"));
                 let lines = region["lines"][1].as_u64().expect("a number");
@@ -223,13 +223,13 @@ mod tests {
         let field_ms = 1001.0 / 60.0;
         for (tracker, step_ms) in [("", 0.0), ("head.motion=still\nhead.tracker=ideal\nhead.predict=none\n", 1.0)] {
             let mut session = session(&format!("slats\n{tracker}"));
-            assert_eq!(age(session.stepper()), Value::Null);
+            assert_eq!(age(&session.stepper), Value::Null);
             for step in 0..40 {
                 let at_ms = 12.0 * field_ms + 1.0 + f64::from(step);
                 session.run_to((at_ms * 1e9) as u64);
                 let sampled_ms = ((at_ms / field_ms).floor() - 1.0) * field_ms;
                 let measured_ms = sampled_ms - sampled_ms % f64::max(step_ms, 1e-9);
-                let found = age(session.stepper())["age_ms"].as_f64().expect("a picture is shown");
+                let found = age(&session.stepper)["age_ms"].as_f64().expect("a picture is shown");
                 assert!((found - (at_ms - measured_ms)).abs() < 1e-3, "{found} ms at {at_ms} ms, {tracker}");
             }
         }

@@ -52,7 +52,7 @@ mod tests {
         let settings = "pipeline=slats\nscene=square.obj\nfields=9\nhead.motion=still\n";
         let files = Files([("square.obj".to_owned(), square.to_vec().into())].into_iter().collect());
         let session = Session::new(settings, &files).expect("known settings");
-        let lines = super::edges(session.stepper());
+        let lines = super::edges(&session.stepper);
         assert_eq!(lines.len(), 4 * 6);
         // The longest side of a model has a fixed length, and all four sides of a square have the same length.
         let length = |line: &[f32]| (0..3).map(|k| (line[k] - line[k + 3]).powi(2)).sum::<f32>().sqrt();

@@ -29,6 +29,8 @@ mod volume;
 
 pub use files::Files;
 
+use pictures::Difference;
+use pxpl5_wire::SurfaceId;
 use session::Session;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
@@ -94,7 +96,7 @@ impl WebMachine {
 
     /// Returns the present instant of simulated time, in picoseconds.
     pub fn now(&self) -> f64 {
-        self.0.stepper().now().0 as f64
+        self.0.stepper.now().0 as f64
     }
 
     /// Returns the state of the run as JSON: times in picoseconds, displays, failure and hashes.
@@ -105,48 +107,48 @@ impl WebMachine {
     /// Returns the messages that occupy the channels of the ring as JSON, one entry for each channel. The entry of a
     /// free channel is null.
     pub fn channels(&self) -> String {
-        state::channels(self.0.stepper()).to_string()
+        state::channels(&self.0.stepper).to_string()
     }
 
     /// Returns the present state of each board as JSON.
     pub fn boards(&self) -> String {
-        state::boards(self.0.stepper()).to_string()
+        state::boards(&self.0.stepper).to_string()
     }
 
     /// Returns the time for which each renderer has executed commands so far, and then the time of copies of each
     /// renderer, in picoseconds.
     pub fn busy(&self) -> Vec<f64> {
-        state::busy(self.0.stepper())
+        state::busy(&self.0.stepper)
     }
 
     /// Returns the messages that began after the instant `after_ps` (picoseconds) as JSON, at most `most` messages. If
     /// more messages began, only every n-th message is returned.
     pub fn messages(&self, after_ps: f64, most: usize) -> String {
-        diagram::messages(self.0.stepper(), pxpl5_sim::Time(after_ps as u64), most).to_string()
+        diagram::messages(&self.0.stepper, pxpl5_sim::Time(after_ps as u64), most).to_string()
     }
 
     /// Returns the regions that renderers are drawing or copying to displays, as JSON.
     pub fn regions(&self) -> String {
-        diagram::regions(self.0.stepper()).to_string()
+        diagram::regions(&self.0.stepper).to_string()
     }
 
     /// Returns the age of the shown picture as JSON: the time since the tracker measured the head for it, in milliseconds.
     /// The result is `null` before the first picture.
     pub fn age(&self) -> String {
-        diagram::age(self.0.stepper()).to_string()
+        diagram::age(&self.0.stepper).to_string()
     }
 
     /// Returns the misregistration in the middle of the first eye's picture in the last field as JSON: the distance
     /// between the shown and the true place of the content, in pixels and in degrees. The result is `null` without a
     /// tracked head, and without a picture that was complete in time.
     pub fn misregistration(&self) -> String {
-        state::misregistration(self.0.stepper()).to_string()
+        state::misregistration(&self.0.stepper).to_string()
     }
 
     /// Returns the edges of the scene as lines: x, y and z of both ends in metres. The axes are those of the head at time
     /// zero: x to the right, y up, and the view along -z. The result is empty without a tracked head.
     pub fn edges(&self) -> Vec<f32> {
-        edges::edges(self.0.stepper())
+        edges::edges(&self.0.stepper)
     }
 
     /// Returns the outlines in the ideal picture of a surface at the present instant. The ideal picture has no latency.
@@ -168,7 +170,7 @@ impl WebMachine {
     /// Returns the parts of one pixel's memory in a renderer, such as colour and depth, with one part per line. The
     /// text is empty before the renderer's first command, and for a position outside the pixel array.
     pub fn pixel(&self, renderer: usize, x: u32, y: u32) -> String {
-        state::pixel(self.0.stepper(), renderer, x, y).unwrap_or_default().join("\n")
+        state::pixel(&self.0.stepper, renderer, x, y).unwrap_or_default().join("\n")
     }
 
     /// Returns the picture on a surface as a viewer sees it now, drawn up to the beam's present position. The result is
@@ -186,50 +188,51 @@ impl WebMachine {
     /// Returns a heat map of the differences between the seen and the ideal picture of a surface. Black means equal,
     /// and larger differences are red, yellow and white. The result is empty without an ideal picture.
     pub fn heat(&self, surface: u16) -> Vec<u8> {
-        self.0.difference(surface).map(|difference| difference.heat).unwrap_or_default()
+        Difference::of(&self.0.stepper, SurfaceId(surface)).map(|difference| difference.heat).unwrap_or_default()
     }
 
     /// Returns the difference between the seen and the ideal picture of a surface as JSON. The object has the
     /// percentage of pixels that differ, and the mean difference over all pixels in per cent. The difference at a pixel
     /// is the largest of the differences of red, green and blue. The result is `null` without an ideal picture.
     pub fn difference(&self, surface: u16) -> String {
-        self.0.difference(surface).map_or_else(|| "null".to_owned(), |difference| difference.numbers().to_string())
+        let difference = Difference::of(&self.0.stepper, SurfaceId(surface));
+        difference.map_or_else(|| "null".to_owned(), |difference| difference.numbers().to_string())
     }
 
     /// Returns the 128 x 128 pixels of a renderer as bytes. Enabled pixels are green, and other pixels have the colours
     /// in their memory. The result is empty before the renderer's first command.
     pub fn renderer(&self, renderer: usize) -> Vec<u8> {
-        pictures::renderer(self.0.stepper(), renderer)
+        pictures::renderer(&self.0.stepper, renderer)
     }
 
     /// Returns the six faces of a cube around the head, as an eye's display memory holds the faces. `eye` is 0 or 1.
     /// The faces form a cross of 512 x 384 pixels. Without `memory`, all memories are combined: each texel is the
     /// nearest texel of all memories. The result is empty for a display without such memories.
     pub fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
-        self.0.faces(eye, memory)
+        pictures::faces(&self.0.stepper, eye, memory).unwrap_or_default()
     }
 
     /// Returns a timeline of the last `fields` display periods as SVG.
     pub fn timeline(&self, fields: u32) -> String {
-        state::timeline(self.0.stepper(), u64::from(fields))
+        state::timeline(&self.0.stepper, u64::from(fields))
     }
 
     /// Returns, as JSON, the parts of the latency for each of the last complete pictures. The result has at most `most`
     /// pictures.
     pub fn latencies(&self, most: usize) -> String {
-        state::latencies(self.0.stepper(), most).to_string()
+        state::latencies(&self.0.stepper, most).to_string()
     }
 
     /// Returns true if pictures after the warm-up were due, and no recent picture was complete in time.
     pub fn misses_all(&self) -> bool {
-        state::misses_all(self.0.stepper())
+        state::misses_all(&self.0.stepper)
     }
 
     /// Returns, as JSON, the share of time for which each kind of board was busy, the waits that delayed the last
     /// pictures, and the load of the regions that were drawn lately. Shares are 0 to 1, and values that were not measured
     /// are null.
     pub fn limits(&self) -> String {
-        state::limits(self.0.stepper()).to_string()
+        state::limits(&self.0.stepper).to_string()
     }
 
     /// Returns the number of triangles and spheres in the scene, followed by the number that the pipeline shows in
@@ -245,7 +248,7 @@ impl WebMachine {
     ///
     /// Returns a message if the scene cannot be drawn.
     pub fn volume(&self) -> Result<WebVolume, JsError> {
-        self.0.volume().map(WebVolume).map_err(refused)
+        volume::Volume::draw(self.0.stepper.experiment().scene()).map(WebVolume).map_err(refused)
     }
 }
 

@@ -86,16 +86,9 @@ const ENABLED: [u8; 3] = [79, 209, 165];
 /// Number of pixels on each side of a cube face in the picture of all six faces.
 pub(crate) const FACE_SIDE: u32 = 128;
 
-/// Column and row of each face in a cross of 4 x 3 faces. The middle row shows the faces left, ahead, right and behind.
-/// The faces above and below the viewer adjoin the face ahead.
-const CROSS: [(CubeFace, u32, u32); 6] = [
-    (CubeFace::PosY, 1, 0),
-    (CubeFace::NegX, 0, 1),
-    (CubeFace::NegZ, 1, 1),
-    (CubeFace::PosX, 2, 1),
-    (CubeFace::PosZ, 3, 1),
-    (CubeFace::NegY, 1, 2),
-];
+/// Column and row of each face in a cross of 4 x 3 faces, in the order of [`CubeFace::ALL`]. The middle row shows the
+/// faces left, ahead, right and behind. The faces above and below the viewer adjoin the face ahead.
+const CROSS: [(u32, u32); 6] = [(2, 1), (0, 1), (1, 0), (1, 2), (3, 1), (1, 1)];
 
 /// Returns the number of display memories for each eye. The number is 0 for a display without address recalculation.
 pub(crate) fn memories(stepper: &Stepper) -> usize {
@@ -106,16 +99,16 @@ pub(crate) fn memories(stepper: &Stepper) -> usize {
 /// Returns the six cube faces that a display memory shows to an eye now, arranged as a cross. Each side of a face has
 /// [`FACE_SIDE`] pixels. Without a memory's index, all memories are combined: each texel is the nearest texel of all
 /// memories. Returns `None` for a memory that does not exist.
-pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: Option<usize>) -> Option<Vec<u8>> {
+pub(crate) fn faces(stepper: &Stepper, eye: usize, memory: Option<usize>) -> Option<Vec<u8>> {
     let display = stepper.record().display_of_kind::<AddressRecalculationPipeline>()?;
-    let all = display.memories(eye);
+    let all = display.memories(*Eye::BOTH.get(eye)?);
     let some = match memory {
         Some(number) => std::slice::from_ref(all.get(number)?),
         None => all,
     };
     let some: Vec<_> = some.iter().map(DisplayMemory::shown_faces).collect();
     let mut cross = RgbImage::from_pixel(4 * FACE_SIDE, 3 * FACE_SIDE, image::Rgb([40, 44, 48]));
-    for (face, column, row) in CROSS {
+    for (face, (column, row)) in CubeFace::ALL.into_iter().zip(CROSS) {
         // Sample each face at the resolution of the picture.
         for (x, y) in (0..FACE_SIDE * FACE_SIDE).map(|at| (at % FACE_SIDE, at / FACE_SIDE)) {
             let texels = some.iter().filter_map(|faces| {
@@ -197,14 +190,14 @@ mod tests {
     #[test]
     fn joined_faces_are_lit_where_any_memory_is_lit() {
         let session = session("pipeline=arp-priority\ndisplay=arp\nscene=aircraft\nfields=60", 500_000_000_000);
-        let joined = faces(session.stepper(), Eye::Left, None).expect("a display with faces");
+        let joined = faces(&session.stepper, 0, None).expect("a display with faces");
         let is_lit = |rgba: &[u8]| rgba[..3] != [0, 0, 0];
-        for memory in 0..memories(session.stepper()) {
-            let one = faces(session.stepper(), Eye::Left, Some(memory)).expect("a memory");
+        for memory in 0..memories(&session.stepper) {
+            let one = faces(&session.stepper, 0, Some(memory)).expect("a memory");
             let lost =
                 one.chunks(4).zip(joined.chunks(4)).filter(|(one, joined)| is_lit(one) && !is_lit(joined)).count();
             assert_eq!(lost, 0, "memory {memory}");
         }
-        assert!(faces(session.stepper(), Eye::Left, Some(99)).is_none());
+        assert!(faces(&session.stepper, 0, Some(99)).is_none());
     }
 }

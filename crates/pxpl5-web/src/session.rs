@@ -1,15 +1,14 @@
 //! An experiment that runs in short steps, with the functions that the web page needs.
 
 use crate::files::Files;
-use crate::pictures::{self, Difference, rgba};
+use crate::pictures::{self, rgba};
 use crate::state;
-use crate::volume::Volume;
 use pxpl5_lab::limit::{LimitQuery, Model, about};
 use pxpl5_lab::{ExperimentFile, Plan};
 use pxpl5_machine::Board;
 use pxpl5_run::{BareHost, Experiment, KeptRecords, Pause, Stepper};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Eye, SurfaceId};
+use pxpl5_wire::SurfaceId;
 use serde_json::{Value, json};
 use std::sync::Arc;
 use tracking::motion::{GrowingRecording, Recording};
@@ -19,7 +18,7 @@ const LIVE: &str = "live.csv";
 
 #[derive(Debug)]
 pub(crate) struct Session {
-    stepper: Stepper,
+    pub(crate) stepper: Stepper,
     /// True if all fields of the experiment have been simulated.
     is_over: bool,
     plan: Plan,
@@ -87,10 +86,6 @@ impl Session {
         state::board(&self.stepper, board).ok_or_else(|| format!("this machine has no {board}"))
     }
 
-    pub(crate) const fn stepper(&self) -> &Stepper {
-        &self.stepper
-    }
-
     pub(crate) fn seen(&self, surface: u16) -> Vec<u8> {
         self.stepper.seen(SurfaceId(surface)).map(|picture| rgba(&picture)).unwrap_or_default()
     }
@@ -99,17 +94,8 @@ impl Session {
         self.stepper.ideal_picture(SurfaceId(surface)).map(|picture| rgba(picture.image())).unwrap_or_default()
     }
 
-    pub(crate) fn difference(&self, surface: u16) -> Option<Difference> {
-        Difference::of(&self.stepper, SurfaceId(surface))
-    }
-
     pub(crate) fn outlines(&self, surface: u16) -> Vec<u8> {
         self.stepper.ideal_picture(SurfaceId(surface)).map(|picture| pictures::outlines(&picture)).unwrap_or_default()
-    }
-
-    pub(crate) fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
-        let faces = Eye::BOTH.get(eye).and_then(|eye| pictures::faces(&self.stepper, *eye, memory));
-        faces.unwrap_or_default()
     }
 
     /// Returns the number of primitives in the scene, and approximately the number that the pipeline shows in time, as
@@ -121,7 +107,8 @@ impl Session {
         let experiment = self.stepper.experiment();
         let scene = experiment.scene();
         let primitives = scene.primitives() as u64;
-        let in_time = experiment.primitives_in_time().or_else(|| self.fitting_by_runs());
+        let in_time = experiment.estimates.and_then(|estimates| (estimates.primitives_in_time)(experiment));
+        let in_time = in_time.or_else(|| self.fitting_by_runs());
         json!({"primitives": primitives, "in_time": in_time.filter(|in_time| *in_time < primitives)})
     }
 
@@ -131,10 +118,6 @@ impl Session {
         let model = Model::new(self.plan.scene.clone(), whole);
         let query = LimitQuery { model: Some(model), head: None, ..LimitQuery::of_plan(&self.plan) };
         about(triangles, |triangles| query.reached(triangles)).ok().map(u64::from)
-    }
-
-    pub(crate) fn volume(&self) -> Result<Volume, String> {
-        Volume::draw(self.stepper.experiment().scene())
     }
 }
 
@@ -167,8 +150,8 @@ mod tests {
     fn a_run_on_the_page_has_the_trace_hash_of_the_command() {
         let mut session = new(SETTINGS).expect("known settings");
         while session.state()["over"] == false {
-            session.run_to(session.stepper().now().0 + 7_000_000_000);
-            let _ = (session.seen(0), pictures::renderer(session.stepper(), 0), state::timeline(session.stepper(), 4));
+            session.run_to(session.stepper.now().0 + 7_000_000_000);
+            let _ = (session.seen(0), pictures::renderer(&session.stepper, 0), state::timeline(&session.stepper, 4));
         }
         let text = SETTINGS.replace("slats", "\"slats\"").replace("full-screen:2", "\"full-screen:2\"");
         let plan = ExperimentFile::parse(&text, "text").and_then(|file| file.resolve()).expect("an experiment");
@@ -258,14 +241,14 @@ mod tests {
             assert_eq!(session.ideal(number as u16).len() as u64, 4 * pixels);
         }
         assert!(session.seen(9).is_empty());
-        assert!((0..9).any(|renderer| pictures::renderer(session.stepper(), renderer).len() == 128 * 128 * 4));
+        assert!((0..9).any(|renderer| pictures::renderer(&session.stepper, renderer).len() == 128 * 128 * 4));
     }
 
     #[test]
     fn every_listed_board_has_a_snapshot_and_an_unknown_board_is_refused() {
         let mut session = new(SETTINGS).expect("known settings");
         session.run_to(40_000_000_000);
-        let boards = state::boards(session.stepper());
+        let boards = state::boards(&session.stepper);
         for board in boards.as_array().expect("a list") {
             let name = board["name"].as_str().expect("a name");
             assert!(!session.board(name).expect("it is there").is_empty(), "{name}");
@@ -282,7 +265,7 @@ mod tests {
             let mut session = new(settings).expect("known");
             session.run_to(500_000_000_000);
             assert_eq!(session.state()["now_ps"], 500_000_000_000_u64);
-            (state::misses_all(session.stepper()), session.fitting())
+            (state::misses_all(&session.stepper), session.fitting())
         };
         // A number from formulas may be 5 % too large (docs/speed.md).
         for (scene, percent) in [("pipeline=slats\nscene=mig", 95), ("pipeline=jitp-scanline\nscene=aircraft", 100)] {

@@ -28,7 +28,7 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
         "trace_hash": record.trace_hash().to_string(),
         "config_hash": stepper.experiment().config_hash().to_string(),
         "surfaces": surfaces.collect::<Vec<_>>(),
-        "field_of_view_deg": stepper.experiment().hmd().config().horizontal_fov_deg,
+        "field_of_view_deg": stepper.experiment().hmd.config().horizontal_fov_deg,
         "memories": pictures::memories(stepper),
         "turn_deg_s": stepper.head().map(|head| head.head().motion().angular_velocity(stepper.now().0).length().to_degrees()),
     })
@@ -48,15 +48,15 @@ fn back(stepper: &Stepper) -> Option<Time> {
 }
 
 pub(crate) fn misses_all(stepper: &Stepper) -> bool {
-    let run = stepper.observed_run();
-    run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
+    let pictures = stepper.pictures();
+    pictures.len() > WARM_UP_PICTURES && !pictures.iter().any(PictureTimes::is_shown)
 }
 
 /// Returns, as JSON, the share of time for which each kind of board was busy, the waits that delayed the last pictures,
 /// and the load of the regions that were drawn lately. Shares are 0 to 1. `utilisation` is null at time zero, and `path`
 /// is null before the first complete picture.
 pub(crate) fn limits(stepper: &Stepper) -> Value {
-    let path = CriticalPath::so_far(&stepper.observed_run());
+    let path = CriticalPath::so_far(stepper);
     let path = path.map(|path| {
         let parts = path.parts.iter();
         let parts: Vec<Value> = parts
@@ -79,8 +79,9 @@ pub(crate) fn busy(stepper: &Stepper) -> Vec<f64> {
 }
 
 pub(crate) fn misregistration(stepper: &Stepper) -> Value {
-    let run = stepper.observed_run();
-    let found = Registration::so_far(&run).and_then(|registration| registration.in_the_middle(stepper.now()));
+    let pictures = stepper.pictures();
+    let found = Registration::so_far(stepper.results(&pictures))
+        .and_then(|registration| registration.in_the_middle(stepper.now()));
     found.map_or(Value::Null, |error| json!({"pixels": error.pixels, "degrees": error.degrees}))
 }
 
@@ -155,21 +156,21 @@ pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Optio
 }
 
 pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
-    let run = stepper.observed_run();
-    let newest = run.pictures().iter().rev().find(|times| times.is_shown() && times.shown_at <= stepper.now());
+    let pictures = stepper.pictures();
+    let newest = pictures.iter().rev().find(|times| times.is_shown() && times.shown_at <= stepper.now());
     let options = TimelineOptions {
         picture: newest.map(|times| times.picture),
         first_field: stepper.period().before(fields.saturating_sub(1)).or(Some(pxpl5_wire::PeriodNumber::FIRST)),
         fields: Some(fields),
         ..TimelineOptions::default()
     };
-    timeline::drawing(&run, &options)
+    timeline::drawing(&stepper.results(&pictures), &options)
 }
 
 /// Returns the parts of the latency of the last complete pictures in milliseconds, the newest picture last.
 pub(crate) fn latencies(stepper: &Stepper, most: usize) -> Value {
     let parts = LATENCY_PARTS.iter();
-    let pictures = stepper.observed_run().last_latencies(most);
+    let pictures = stepper.last_latencies(most);
     let rows = pictures.iter().map(|latency| {
         let spans: Vec<f64> = latency.spans.iter().map(|span| span.as_ms()).collect();
         json!({"picture": latency.picture.0, "ms": spans, "total_ms": latency.end().since(latency.begin).as_ms()})
@@ -199,7 +200,7 @@ mod tests {
                 );
                 let mut session = Session::new(&settings, &Files::default()).expect("known settings");
                 session.run_to(700_000_000_000);
-                let [error, age] = [misregistration(session.stepper()), diagram::age(session.stepper())];
+                let [error, age] = [misregistration(&session.stepper), diagram::age(&session.stepper)];
                 [&error["degrees"], &age["age_ms"]]
                     .map(|number| number.as_f64().unwrap_or_else(|| panic!("{pipeline}")))
             };

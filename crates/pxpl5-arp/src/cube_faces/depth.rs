@@ -6,7 +6,7 @@ use pxpl5_sim::parameters::SettingError;
 /// Range of the distances that are drawn, measured along the axis of a face, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthRange {
-    near_m: f64,
+    pub(crate) near_m: f64,
     far_m: f64,
 }
 
@@ -21,14 +21,6 @@ impl DepthRange {
         let found = format_args!("near {near_m} m and far {far_m} m");
         SettingError::require(is_range, "depth range", "0 < near < far, both finite", found)?;
         Ok(Self { near_m, far_m })
-    }
-
-    pub const fn near_m(&self) -> f64 {
-        self.near_m
-    }
-
-    pub const fn far_m(&self) -> f64 {
-        self.far_m
     }
 
     /// Returns the coefficients (a, b) of the depth a + b/w, where w is the distance along the face's axis. The depth

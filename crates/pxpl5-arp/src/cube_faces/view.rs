@@ -94,7 +94,7 @@ impl CubeView {
             columns,
             texels: i64::from(self.geometry.texels),
             tangent: self.geometry.tangent(),
-            near_m: self.depth.near_m(),
+            near_m: self.depth.near_m,
             depth: self.depth.linear(),
         }
     }

@@ -27,8 +27,7 @@ pub(super) fn composite_differs(world: &World, settings: &WalkSettings, eye: DVe
     simulation.frame(eye)?;
     let faces = WalkFaces::of(&simulation)?;
     // Draw the same segments in the same order into one memory.
-    let in_order: Vec<usize> =
-        simulation.shown().iter().flatten().flat_map(|content| content.segments.clone()).collect();
+    let in_order: Vec<usize> = simulation.shown.iter().flatten().flat_map(|content| content.segments.clone()).collect();
     let mut one = FaceSet::new(TEXELS, settings.display.format());
     settings.view()?.draw(eye, world.triangles(&in_order, |vertex| vertex), &mut one);
     let all = CubeFace::ALL

@@ -54,7 +54,7 @@ fn head(width: f64, height: f64) -> String {
 /// Draws the cells seen from above, coloured by memory, with partitions, path, eye and the viewer's cell. The direction
 /// -z is at the top.
 pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: DVec3) -> String {
-    let side = simulation.settings().numbers.cell_m;
+    let side = simulation.settings.numbers.cell_m;
     let cells: BTreeSet<(i64, i64)> = world.cells().map(|cell| (cell.x, cell.z)).collect();
     let plan = Plan::of(&cells, side);
     let [width, depth] = plan.size;
@@ -80,7 +80,7 @@ pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: D
     walked(&mut svg, path, &plan);
     let [x, y] = plan.at(eye.x, eye.z);
     let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"5\" fill=\"black\"/>");
-    (0..simulation.shown().len()).for_each(|memory| legend(&mut svg, memory, depth + 4.0));
+    (0..simulation.shown.len()).for_each(|memory| legend(&mut svg, memory, depth + 4.0));
     svg.push_str("</svg>\n");
     svg
 }

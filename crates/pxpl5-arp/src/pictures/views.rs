@@ -60,8 +60,8 @@ impl MemoryViews<'_> {
     ///
     /// Fails in the same cases as [`MemoryViews::seen`].
     pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, SettingError> {
-        let view = simulation.settings().view()?;
-        let screen = simulation.settings().display.picture();
+        let view = simulation.settings.view()?;
+        let screen = simulation.settings.display.picture();
         let bar = 24;
         let focal = pixels_per_radian(&self.lens, &screen);
         // The rows below the picture hold the scale.
@@ -80,7 +80,7 @@ impl MemoryViews<'_> {
     /// Returns `None` if the ray hits nothing.
     fn off(&self, simulation: &Simulation<'_>, view: &CubeView, ray: DVec3, eye: DVec3) -> Option<f64> {
         let texel = view.geometry.texel(ray.to_array())?;
-        let texels = self.faces.memories.iter().zip(simulation.shown());
+        let texels = self.faces.memories.iter().zip(&simulation.shown);
         let seen = texels.filter_map(|(faces, content)| Some((faces.texel(texel)?.1, content.as_ref()?.eye)));
         let (depth, from) = seen.min_by_key(|(depth, _)| *depth)?;
         let axis = DVec3::from_array(texel.face.forward().map(|component| component as f64));

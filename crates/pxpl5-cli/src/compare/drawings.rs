@@ -1,7 +1,7 @@
 //! Writer of the CSV tables and SVG charts of a comparison.
 
 use pxpl5::compare::{Comparison, ComparisonRow};
-use pxpl5::views::charts::{ChartAxes, Curve, MarkedPoint, curve_chart, point_chart};
+use pxpl5::views::charts::{ChartAxes, ChartPoint, ChartSeries, curve_chart};
 use pxpl5::views::results::{csv_of, csv_table};
 
 pub(super) fn files(comparison: &Comparison) -> [(&'static str, String); 6] {
@@ -22,19 +22,19 @@ fn evaluated(comparison: &Comparison) -> impl Iterator<Item = &ComparisonRow> {
 
 fn over_time(comparison: &Comparison) -> String {
     let axes = axes(comparison, "Error over time, first motion", "time, s", "mean error over the picture, px");
-    curves(comparison, &axes, |row| row.by_field.iter().map(|field| (field.time_s, field.mean_px)).collect())
+    curves(comparison, axes, |row| row.by_field.iter().map(|field| (field.time_s, field.mean_px)).collect())
 }
 
 fn distribution(comparison: &Comparison) -> String {
     let axes = axes(comparison, "Distribution of the error", "error, px", "pixels with at most this error, %");
-    curves(comparison, &axes, |row| {
+    curves(comparison, axes, |row| {
         row.error.distribution_px.iter().enumerate().map(|(percent, px)| (*px, percent as f64)).collect()
     })
 }
 
-fn curves(comparison: &Comparison, axes: &ChartAxes, points: impl Fn(&ComparisonRow) -> Vec<(f64, f64)>) -> String {
-    let curves = evaluated(comparison).map(|row| Curve { name: row.pipeline.clone(), points: points(row) });
-    curve_chart(axes, &curves.collect::<Vec<_>>())
+fn curves(comparison: &Comparison, axes: ChartAxes, points: impl Fn(&ComparisonRow) -> Vec<(f64, f64)>) -> String {
+    let curves = evaluated(comparison).map(|row| ChartSeries::line(&row.pipeline, &points(row)));
+    curve_chart(axes, curves.collect())
 }
 
 fn over_latency(comparison: &Comparison) -> String {
@@ -44,7 +44,7 @@ fn over_latency(comparison: &Comparison) -> String {
         "mean from head to light, ms",
         "mean error, px (with interval; hollow: pictures not shown)",
     );
-    points(comparison, &axes, |row| row.head_to_light_ms.mean)
+    points(comparison, axes, |row| row.head_to_light_ms.mean)
 }
 
 fn over_prediction(comparison: &Comparison) -> String {
@@ -54,22 +54,19 @@ fn over_prediction(comparison: &Comparison) -> String {
         "mean prediction interval, ms",
         "mean error, px (with interval; hollow: pictures not shown)",
     );
-    points(comparison, &axes, |row| row.prediction_interval_ms.mean)
+    points(comparison, axes, |row| row.prediction_interval_ms.mean)
 }
 
-fn points(comparison: &Comparison, axes: &ChartAxes, across: impl Fn(&ComparisonRow) -> f64) -> String {
+fn points(comparison: &Comparison, axes: ChartAxes, across: impl Fn(&ComparisonRow) -> f64) -> String {
     // Rows without a latency, such as the reference, are not drawn.
     let placed = evaluated(comparison).filter(|row| across(row).is_finite());
     let points = placed.map(|row| {
         let error = &row.error.mean_px;
-        MarkedPoint {
-            name: if row.shows_all() { row.pipeline.clone() } else { format!("{} (not all shown)", row.pipeline) },
-            at: (across(row), error.mean),
-            interval: (error.low, error.high),
-            is_hollow: !row.shows_all(),
-        }
+        let (at, interval, is_hollow) = ((across(row), error.mean), (error.low, error.high), !row.shows_all());
+        let name = if is_hollow { format!("{} (not all shown)", row.pipeline) } else { row.pipeline.clone() };
+        ChartSeries::point(&name, ChartPoint { at, interval, is_hollow })
     });
-    point_chart(axes, &points.collect::<Vec<_>>())
+    curve_chart(axes, points.collect())
 }
 
 fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAxes {

@@ -10,7 +10,7 @@ use crate::progress::Progress;
 use crate::terminal::{Column, answer, columns_text, json_text};
 use clap::Args;
 use pxpl5::lab::volumes::VolumeComparisonQuery;
-use pxpl5::views::charts::{ChartAxes, Curve, curve_chart};
+use pxpl5::views::charts::{ChartAxes, ChartSeries, curve_chart};
 use pxpl5::views::png_bytes;
 use pxpl5::views::results::csv_table;
 use pxpl5::volume::compare::{ComparePoint, VariantRow, VolumeComparison};
@@ -132,7 +132,7 @@ fn brightness(comparison: &VolumeComparison) -> String {
     let curves = plain.filter(|row| row.coverage == "sampled").map(|row| {
         let points = row.brightness_by_radius.iter().enumerate();
         let points = points.map(|(i, lit)| ((i as f64 + 0.5) * ring, *lit as f64 / ring));
-        Curve { name: row.clip.clone(), points: points.collect() }
+        ChartSeries::line(&row.clip, &points.collect::<Vec<_>>())
     });
-    curve_chart(&axes, &curves.collect::<Vec<_>>())
+    curve_chart(axes, curves.collect())
 }

@@ -9,7 +9,7 @@ use crate::terminal::{json_text, print};
 use clap::Args;
 use pxpl5::lab::motion;
 use pxpl5::views::Animation;
-use pxpl5::views::charts::{ChartAxes, Curve, decade_chart};
+use pxpl5::views::charts::{ChartAxes, ChartSeries, decade_chart};
 use pxpl5::views::results::csv_of;
 use pxpl5::volume::heads::{HeadComparison, HeadSample, HeadStudy, HeadStudyConfig};
 use std::path::Path;
@@ -93,11 +93,11 @@ fn errors_svg(study: &HeadStudy, motion: &str) -> String {
         up: "angle seen by the eye, degrees".to_owned(),
     };
     // A missing value is a gap in the curve.
-    let curve = |name: &str, value: &dyn Fn(&HeadSample) -> Option<f64>| Curve {
-        name: name.to_owned(),
-        points: study.samples.iter().map(|sample| (sample.time_s, value(sample).unwrap_or(f64::NAN))).collect(),
+    let curve = |name: &str, value: &dyn Fn(&HeadSample) -> Option<f64>| {
+        let points = study.samples.iter().map(|sample| (sample.time_s, value(sample).unwrap_or(f64::NAN)));
+        ChartSeries::line(name, &points.collect::<Vec<_>>())
     };
-    let curves = [
+    let curves = vec![
         curve("head-mounted: worst", &|sample| sample.hmd_worst_deg),
         curve("head-mounted: mean", &|sample| sample.hmd_mean_deg),
         curve("one of its pixels", &|_| Some(study.hmd_pixel_deg)),
@@ -105,7 +105,7 @@ fn errors_svg(study: &HeadStudy, motion: &str) -> String {
         curve("volume: worst voxel", &|sample| Some(sample.voxel_worst_deg)),
         curve("volume: mean voxel", &|sample| Some(sample.voxel_mean_deg)),
     ];
-    decade_chart(&axes, &curves)
+    decade_chart(axes, curves)
 }
 
 fn mean(study: &HeadStudy, value: impl Fn(&HeadSample) -> Option<f64>) -> f64 {

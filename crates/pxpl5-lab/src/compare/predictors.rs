@@ -49,12 +49,12 @@ impl Predictors {
 /// Returns `None` for an experiment without a head.
 pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     let head = experiment.head.as_ref()?;
-    let showing = head.raster().into();
+    let showing = head.raster.into();
     let each = parallel::map(&PredictorKind::ALL, |kind| with_predictor(experiment, head, showing, *kind));
     let mean = |one: &PredictorResult| one.error.as_ref().map(|error| (one.kind, error.pixels.mean));
     let evaluated = each.iter().filter_map(mean).filter(|(_, mean)| mean.is_finite());
     let best = evaluated.reduce(|best, next| if next.1 < best.1 { next } else { best });
-    Some(Predictors { chosen: head.predictor_kind(), best: best.map(|(kind, _)| kind), each })
+    Some(Predictors { chosen: head.predictor().kind, best: best.map(|(kind, _)| kind), each })
 }
 
 /// Returns the mean error of an experiment with each predictor. `of_chosen_px` is the mean error with the experiment's
@@ -63,7 +63,7 @@ pub(super) fn predictor_means(experiment: &Experiment, showing: Showing, of_chos
     let Some(head) = experiment.head.as_ref() else { return Vec::new() };
     let showing = with_raster(showing, Some(head.as_ref()));
     parallel::map(&PredictorKind::ALL, |kind| {
-        let mean_px = if *kind == head.predictor_kind() {
+        let mean_px = if *kind == head.predictor().kind {
             of_chosen_px
         } else {
             with_predictor(experiment, head, showing, *kind).error.map_or(f64::NAN, |error| error.pixels.mean)

@@ -435,10 +435,10 @@ impl CompareQuery {
             && self.predictors
             && !compared.is_reference()
         {
-            let experiment = common.experiment(&plan).with_dry_run(first.dry_run.clone());
             // All predictors are evaluated over the periods of the row.
-            let experiment = experiment.results_from(common_window_from(plan.fields));
+            let mut experiment = common.experiment(&plan).results_from(common_window_from(plan.fields));
             // The dry run of the first trial is reused for every predictor.
+            experiment.dry_run = first.dry_run.clone();
             row.predictors = predictor_means(&experiment, compared.showing, first.errors.pixels.mean);
         }
         if self.limits && !compared.is_reference() {

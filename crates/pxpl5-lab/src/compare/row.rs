@@ -170,7 +170,7 @@ impl ComparisonRow {
         let definition = if is_reference {
             "none: computed for the instant of each pixel, without a machine"
         } else {
-            pipeline.latency_definition()
+            pipeline.properties().latency_definition
         };
         // With one motion, an interval over the seeds would show the noise of the tracker alone.
         let over_seeds = |values: &[f64]| {
@@ -182,7 +182,7 @@ impl ComparisonRow {
         Self {
             pipeline: compared.name.to_owned(),
             settings: settings_text(compared),
-            eyes: pipeline.eyes(),
+            eyes: pipeline.properties().eyes,
             seeds: sampling.seeds,
             is_precise: None,
             latency_definition: definition.to_owned(),

@@ -95,7 +95,7 @@ impl Trial {
             late_regions: report.late_regions,
             near_edges: if is_timed { near_edges(outcome) } else { Vec::new() },
             host_seconds: outcome.host_seconds(),
-            dry_run: outcome.experiment().dry_run().cloned(),
+            dry_run: outcome.experiment().dry_run.clone(),
             picture: LastPicture::of(outcome, report.ends_complete).filter(|_| is_timed),
         }
     }
@@ -103,7 +103,7 @@ impl Trial {
 
 /// Returns the way in which a row shows its pictures: with the raster of the settings, unless the row has its own way.
 pub(super) fn with_raster(showing: Showing, head: Option<&Head>) -> Showing {
-    head.filter(|_| showing == Showing::Plain).map_or(showing, |head| head.raster().into())
+    head.filter(|_| showing == Showing::Plain).map_or(showing, |head| head.raster.into())
 }
 
 /// Errors of the prediction interval whose effect is evaluated, in milliseconds.
@@ -125,7 +125,7 @@ fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
 /// get the newest orientation at scan-out. All other pictures have the orientation of the pose for which they were
 /// drawn.
 fn turns_ms(outcome: &Outcome) -> Vec<f64> {
-    if outcome.pipeline().coverage() == Coverage::View {
+    if outcome.pipeline().properties().coverage == Coverage::View {
         return Budget::totals_ms(outcome);
     }
     outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()

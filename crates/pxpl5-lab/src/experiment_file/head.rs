@@ -89,9 +89,8 @@ impl HeadChoice {
             .with_raster(raster)
             .with_aim(aim)
             .with_place(place);
-        let head = evaluated(file, if is_tuned(file)? { head.tuned() } else { head })?;
-        let supposed = numbers.iter().filter(|number| !number.is_in_range()).cloned().collect();
-        let head = head.with_unsupported_parameters(supposed);
+        let mut head = evaluated(file, if is_tuned(file)? { head.tuned() } else { head })?;
+        head.unsupported_parameters = numbers.iter().filter(|number| !number.is_in_range()).cloned().collect();
         Ok(Some(Self {
             motion: motion_name,
             replay,
@@ -136,17 +135,17 @@ impl HeadChoice {
             ("head.tracker", self.tracker.clone()),
             ("head.predict", self.predict.clone()),
             ("head.filter", filter.to_owned()),
-            ("head.aim", self.head.aim().to_string()),
+            ("head.aim", self.head.aim.to_string()),
         ]
         .map(|(key, value)| (key.to_owned(), Value::from(value)))
         .into();
-        if [self.head.place(), self.usual_place] != [HeadPlace::Scene; 2] {
-            all.push(("head.place".to_owned(), Value::from(self.head.place().to_string())));
+        if [self.head.place, self.usual_place] != [HeadPlace::Scene; 2] {
+            all.push(("head.place".to_owned(), Value::from(self.head.place.to_string())));
         }
         all.extend(self.train.clone().map(|train| ("head.train".to_owned(), Value::from(train))));
         all.extend(self.added_latency_ms.map(|ms| ("head.added_latency".to_owned(), Value::from(ms))));
-        all.extend(reprojection::settings(self.head.raster()));
-        all.extend(self.head.evaluate_at_m().map(|metres| ("head.evaluate_at".to_owned(), Value::from(metres))));
+        all.extend(reprojection::settings(self.head.raster));
+        all.extend(self.head.evaluate_at_m.map(|metres| ("head.evaluate_at".to_owned(), Value::from(metres))));
         // Only recordings have an end, axes and columns.
         if is_recording(&self.motion) {
             let Replay { format, end } = &self.replay;

@@ -86,7 +86,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
     let mut config = HmdConfig::unc();
     for (key, set, _) in KEYS {
         let (Some(value), Some(setting)) = (file.number(key.name)?, file.get(key.name)) else { continue };
-        if pipeline.coverage() == Coverage::Surroundings {
+        if pipeline.properties().coverage == Coverage::Surroundings {
             let applies_to = "pipelines that draw a picture for each eye";
             return Err(not_applicable(key.name, pipeline.name(), applies_to).at(&setting.place));
         }

@@ -235,7 +235,7 @@ impl ExperimentFile {
             machine.code = code;
         }
         match self.choice("machine.times", &TIMES)? {
-            Some(true) => machine = machine.with_times_of_code(pipeline.code_use()),
+            Some(true) => machine = machine.with_times_of_code(pipeline.properties().code_use),
             Some(false) => machine = machine.with_times_of_papers(),
             None => {}
         }
@@ -313,7 +313,7 @@ impl Plan {
 
     /// Returns the parameters with values outside the range that their sources allow.
     pub fn out_of_range(&self) -> Vec<Parameter> {
-        let of_head = self.head.iter().flat_map(|head| head.head().unsupported_parameters().to_vec());
+        let of_head = self.head.iter().flat_map(|head| head.head().unsupported_parameters.clone());
         out_of_range(&self.machine, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
@@ -321,7 +321,7 @@ impl Plan {
     /// range, the recording of the head motion, and former names of keys. A warning also appears if executed code was
     /// requested but the times come from a table.
     pub fn warnings(&self) -> Vec<String> {
-        let of_table = warning_without_code(self.level, &self.machine, self.pipeline.as_ref());
+        let of_table = warning_without_code(self.level, self.pipeline.as_ref());
         let of_head = self.head.iter().flat_map(HeadChoice::warnings);
         let of_machine = self.out_of_range().into_iter().map(|parameter| parameter.warning());
         of_machine.into_iter().chain(of_table).chain(of_head).collect()
@@ -350,7 +350,7 @@ impl Plan {
     /// be built.
     pub fn display_periods(&self, time: Time) -> Option<u64> {
         let config = self.machine.displays.first()?;
-        let ports = config.ports(self.pipeline.eyes());
+        let ports = config.ports(self.pipeline.properties().eyes);
         let nodes: Vec<NodeId> = (0..ports).filter_map(|n| Some(NodeId(n.try_into().ok()?))).collect();
         Some(config.build(&nodes, self.machine.ring.word()).ok()?.period_at(time).0)
     }
@@ -362,15 +362,15 @@ impl Plan {
 
     fn at_named_level(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();
-        let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
-            .with_estimates(entry.and_then(|entry| Some(entry.closed_form?.estimates)))
+        let mut experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
             .observed_by(Some(HeadSum::begin))
-            .with_hmd(self.hmd)
             .fields(self.fields)
             .seed(self.seed)
             .pixels(self.pixels)
             .level(self.level)
             .host(Workstation::new());
+        experiment.estimates = entry.and_then(|entry| Some(entry.closed_form?.estimates));
+        experiment.hmd = self.hmd;
         match &self.head {
             Some(head) => experiment.head(head.head()),
             None => experiment,

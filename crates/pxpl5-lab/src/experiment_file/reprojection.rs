@@ -35,10 +35,10 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Ras
         Err(not_applicable(&key, pipeline.name(), applies_to).at(place))
     };
     match named {
-        Named::Raster(Raster::Vdrt) if !pipeline.has_one_pose() => {
+        Named::Raster(Raster::Vdrt) if !pipeline.properties().has_one_pose => {
             refused("rendering-control, slats and jitp-field, whose pictures are of one pose")
         }
-        Named::Device(Warp::Depth) if pipeline.coverage() == Coverage::Surroundings => refused(
+        Named::Device(Warp::Depth) if pipeline.properties().coverage == Coverage::Surroundings => refused(
             "pipelines whose pictures are of one eye; faces around the head are several pictures, of which the turn is left: rotation",
         ),
         Named::Raster(raster) => {

@@ -205,7 +205,7 @@ fn a_recording_is_found_beside_the_file_and_read_with_the_stated_columns_and_end
         (head.motion().pose(500_000_000_000).position.x - 1.0).abs() < 1e-12,
         "half of 2,000 mm after half a second"
     );
-    assert_eq!((head.motion().ends_ps(), head.evaluate_at_m()), (None, Some(3.5)));
+    assert_eq!((head.motion().ends_ps(), head.evaluate_at_m), (None, Some(3.5)));
     // The written settings mean the same in another folder.
     let other = folder.join("elsewhere");
     std::fs::create_dir_all(&other).expect("a folder");

@@ -49,7 +49,7 @@ const LOADED_PERCENT: f64 = 0.5;
 /// Returns the experiment with the times of its code in the table, at a level and with primitives that take `factor`
 /// times as long.
 fn with_times(experiment: &Experiment, level: Level, factor: f64) -> Experiment {
-    let mut machine = experiment.config().clone().with_times_of_code(experiment.pipeline().code_use());
+    let mut machine = experiment.config().clone().with_times_of_code(experiment.pipeline().properties().code_use);
     let gp = &mut machine.gp;
     for ns in [&mut gp.triangle_ns, &mut gp.sphere_ns, &mut gp.bin_entry_ns, &mut gp.guard_ns] {
         *ns = (*ns as f64 * factor).round() as u64;

@@ -132,7 +132,7 @@ fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Expe
     if !times_of_code || level == Level::Cycle {
         return Ok(experiment);
     }
-    let machine = experiment.config().clone().with_times_of_code(experiment.pipeline().code_use());
+    let machine = experiment.config().clone().with_times_of_code(experiment.pipeline().properties().code_use);
     let other = Experiment::with(machine, Arc::clone(experiment.pipeline()), Arc::clone(experiment.scene()));
     Ok(other.fields(experiment.fields).seed(experiment.seed).pixels(Pixels::Off).level(level))
 }

@@ -65,14 +65,14 @@ fn machine(preset: &str, random: &mut SplitMix64, gps: (u64, u64)) -> Result<Mac
     Ok(machine)
 }
 
-/// Returns the quantity that is compared between levels, in milliseconds. Under Rendering Control, the quantity is the
-/// mean latency. Under Slats, whose latency is always one field, the quantity is the time from the start of a field to
-/// the first copy. The value is NaN if no picture was shown in time.
+/// Returns the time that is compared between levels, in milliseconds
+/// ([`PipelineProperties::compared_ms`](pxpl5_run::PipelineProperties::compared_ms)). The value is NaN if no picture was
+/// shown in time.
 pub fn compared_ms(experiment: &Experiment, summary: &Summary) -> f64 {
     if summary.latencies_ms.is_empty() {
         return f64::NAN;
     }
-    if experiment.pipeline().name() == "slats" { summary.copy_begins_ms } else { summary.latency_ms().mean }
+    (experiment.pipeline().properties().compared_ms)(summary)
 }
 
 #[cfg(test)]

@@ -10,16 +10,14 @@ use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::keys::PipelineSettings;
 use crate::level::{Level, with_clocks_of_instructions};
-use crate::pipeline::{Pipeline, Setup};
+use crate::pipeline::{Pipeline, PipelineProperties, Setup};
 use crate::pipelines;
 use crate::registry::{DisplayEntry, PipelineEntry};
-use crate::scene_views::{hmd_on, poses, views};
-use crate::views::{FrameStarts, ReportTimes};
-use pphigs::DisplayList;
-use pxpl5_gp::HostTiming;
+use crate::scene_views::{SceneViews, hmd_on};
+use crate::views::ViewSource;
 use pxpl5_machine::{Machine, MachineConfig};
+use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
-use pxpl5_sim::{Time, mix};
 use std::sync::Arc;
 
 impl Experiment {
@@ -33,13 +31,13 @@ impl Experiment {
         let [red, green, blue] = self.scene.lighting().background;
         let background = u32::from_be_bytes([0, red, green, blue]);
         adapted.displays.iter_mut().for_each(|display| display.set_background(background));
-        let layout = self.pipeline.layout();
+        let PipelineProperties { eyes, layout, .. } = self.pipeline.properties();
         let config = match self.level {
             Level::Analytic => return Err(ExperimentError::Level),
             Level::Transaction => adapted,
             Level::Cycle => with_clocks_of_instructions(&adapted, &layout),
         };
-        let mut machine = Machine::new(&config, self.pipeline.eyes(), layout)?;
+        let mut machine = Machine::new(&config, eyes, layout)?;
         if self.level == Level::Cycle {
             machine.run_code();
         }
@@ -66,43 +64,26 @@ impl Experiment {
         machine: &mut Machine,
         preparation: Preparation,
     ) -> Result<(Setup, Option<Arc<HeadViews>>), ExperimentError> {
-        // Functions for a viewer who follows the scene's own motion without any delay.
         let hmd = hmd_on(machine.record().display(), &self.hmd);
-        let eyes = self.pipeline.eyes();
-        let period = config.host.view_period_ns * 1_000;
+        let properties = self.pipeline.properties();
         let scene = self.pipeline.prepare(&self.scene, machine)?;
-        let list = display_list_for(&scene, self.pipeline.shading())?;
-        let list = Arc::new(DisplayList { is_single: self.pipeline.is_single(config), ..list });
-        let (views, wanted) = views(&scene, self.seed, hmd, eyes);
-        let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
-        let starts = frame_starts(config.host, self.seed);
-        let aim = self.aim();
-        let pixels = self.pixels != Pixels::Off;
-        let poses = poses(&scene, self.seed);
-        let host = config.host;
-        let setup = Setup { list, views, wanted, poses, scene, aim, reports, starts, host, pixels };
-        // With a tracked head, views and reports come from the tracker instead.
-        let Some(head) = preparation.head.or_else(|| self.head.clone()) else { return Ok((setup, None)) };
-        let until = machine.record().tick(self.end());
-        check_recording(&head, until)?;
-        let head = Arc::new(HeadViews::new(head, &setup.scene, (hmd, eyes), until, preparation.seen_times));
-        let (views, wanted, reports) = HeadViews::functions(&head);
-        let setup = Setup { views, wanted, reports, poses: HeadViews::poses(&head), ..setup };
-        if !self.on_demand {
-            return Ok((setup, Some(head)));
+        let list = Arc::new(display_list_for(&scene, &properties, config)?);
+        let eyes = properties.eyes;
+        // A tracker supplies the views, or the viewer follows the scene's own motion without any delay.
+        let mut head = None;
+        if let Some(tracked) = preparation.head.or_else(|| self.head.clone()) {
+            let until = machine.record().tick(self.end());
+            check_recording(&tracked, until)?;
+            head = Some(Arc::new(HeadViews::new(tracked, &scene, (hmd, eyes), until, preparation.seen_times)));
         }
-        // With frames on demand, the first report at which the host is ready asks for a frame. The application then
-        // takes its time.
-        let asked = Arc::clone(&head);
-        let after = Arc::clone(&setup.starts);
-        Ok((Setup { starts: Arc::new(move |ready| after(asked.report_from(ready)?)), ..setup }, Some(head)))
+        let (host, seed, aim, pixels) = (config.host, self.seed, self.aim(), self.pixels != Pixels::Off);
+        let views: Arc<dyn ViewSource> = match head.clone() {
+            Some(head) => head,
+            None => Arc::new(SceneViews { period_ns: host.view_period_ns, ..SceneViews::new(&scene, seed, hmd, eyes) }),
+        };
+        let on_demand = self.on_demand && head.is_some();
+        Ok((Setup { list, views, scene, aim, host, seed, on_demand, pixels }, head))
     }
-}
-
-/// Returns the function that gives the start time of a frame: the time at which the host is ready, plus the computing
-/// time of the host's application.
-fn frame_starts(host: HostTiming, seed: u64) -> FrameStarts {
-    Arc::new(move |ready| Some(ready + host.application_span(mix(seed ^ mix(ready.0)))))
 }
 
 /// Checks that the display and the pipeline have the same coverage: one view, or all directions around the head.
@@ -112,12 +93,12 @@ fn frame_starts(host: HostTiming, seed: u64) -> FrameStarts {
 /// The [`SettingError`] states the coverage of the display and the coverage of the pipeline.
 pub fn check_coverage(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), SettingError> {
     let Some(display) = config.displays.first() else { return Ok(()) };
-    let (shown, drawn) = (display.coverage(), pipeline.coverage());
+    let (shown, drawn) = (display.coverage(), pipeline.properties().coverage);
     if shown == drawn {
         return Ok(());
     }
     // The first entries of the lists that match serve as examples.
-    let matching = |entry: &PipelineEntry| (entry.build)(&PipelineSettings::default()).coverage() == shown;
+    let matching = |entry: &PipelineEntry| (entry.build)(&PipelineSettings::default()).properties().coverage == shown;
     let pipelines = pipelines::entries().into_iter().find(matching).map_or("none", |entry| entry.name);
     let matching = |entry: &DisplayEntry| (entry.config)().coverage() == drawn;
     let displays = displays().into_iter().find(matching).map_or("none", |entry| entry.name);

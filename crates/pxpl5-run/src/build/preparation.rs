@@ -38,38 +38,23 @@ impl Experiment {
         Ok(Self { dry_run, ..self })
     }
 
-    /// Returns the dry run that [`Experiment::after_dry_run`] has stored.
-    pub const fn dry_run(&self) -> Option<&Arc<DryRun>> {
-        self.dry_run.as_ref()
-    }
-
-    /// Stores the dry run of an experiment that differs only in the predictor.
-    ///
-    /// This method is hidden, because a wrong dry run would give wrong results. A comparison of predictors uses this
-    /// method, so that one dry run serves all predictors.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn with_dry_run(self, dry_run: Option<Arc<DryRun>>) -> Self {
-        Self { dry_run, ..self }
-    }
-
     pub(crate) fn prepare(&self) -> Result<Preparation, ExperimentError> {
         let Some(head) = self.predicting_head() else { return Ok(Preparation::default()) };
         let dry_run = self.dry_run.clone().map_or_else(|| self.make_dry_run(head), Ok)?;
         let tuned = head.is_to_be_tuned().then(|| dry_run.tuned(head)).flatten();
-        let seen_times = (!self.pipeline.knows_when_seen()).then(|| dry_run.seen_times.clone());
+        let seen_times = (!self.pipeline.properties().knows_when_seen).then(|| dry_run.seen_times.clone());
         Ok(Preparation { seen_times, head: tuned.map(Arc::new) })
     }
 
     /// Returns the head if a run needs a dry run, because the firmware does not compute display times, or because the
     /// predictor is not tuned.
     fn predicting_head(&self) -> Option<&Arc<Head>> {
-        let needs = |head: &&Arc<Head>| !self.pipeline.knows_when_seen() || head.is_to_be_tuned();
+        let needs = |head: &&Arc<Head>| !self.pipeline.properties().knows_when_seen || head.is_to_be_tuned();
         self.head.as_ref().filter(|head| head.predicts()).filter(needs)
     }
 
     fn make_dry_run(&self, head: &Head) -> Result<Arc<DryRun>, ExperimentError> {
-        let dry_run = if self.pipeline.knows_when_seen() {
+        let dry_run = if self.pipeline.properties().knows_when_seen {
             self.short_dry_run(head)?
         } else {
             self.without_prediction(head, self.fields)?

@@ -5,6 +5,7 @@ use crate::pipeline::{PictureTimes, Pipeline};
 use crate::result::result_window::ResultWindow;
 use pxpl5_machine::{Arrival, Record};
 use pxpl5_scene::Hmd;
+use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Aim;
 use std::any::Any;
@@ -22,6 +23,8 @@ pub struct FinalResults<'a> {
     pub aim: Aim,
     /// Number of periods of the first display that the run simulates.
     pub fields: u64,
+    /// Instant at which the observations end. A streaming observer receives the end of the run.
+    pub now: Time,
     /// The machine and its records in memory, including records of later pictures and periods.
     pub record: &'a Record,
     /// Views of the tracked head, with the requested poses in memory. `None` without a tracked head.
@@ -46,15 +49,16 @@ pub struct FinalResults<'a> {
     pub window: Option<ResultWindow>,
 }
 
-impl FinalResults<'_> {
+impl<'a> FinalResults<'a> {
     /// Returns the pictures that lie in the result window.
-    pub fn steady_pictures(&self) -> impl Iterator<Item = &PictureTimes> {
+    pub fn steady_pictures(&self) -> &'a [PictureTimes] {
+        let Some(window) = self.window else { return &[] };
         let display = self.record.display();
-        let window = self.window;
-        let is_held = move |times: &&PictureTimes| {
-            window.is_some_and(|window| window.holds_picture(display.period_at(times.shown_at)))
-        };
-        self.pictures.iter().filter(is_held)
+        // Pictures are in the order in which they are shown.
+        let is_in = |times: &PictureTimes| window.holds_picture(display.period_at(times.shown_at));
+        let first = self.pictures.iter().position(is_in).unwrap_or(self.pictures.len());
+        let end = self.pictures.iter().rposition(is_in).map_or(first, |last| last + 1);
+        &self.pictures[first..end]
     }
 
     /// Returns the final periods of the result window from period `next` on. `next` is the first period that the

@@ -53,7 +53,7 @@ impl Window {
             KeptRecords::Statistics => !experiment.traffic,
             KeptRecords::Recent => true,
         };
-        let forgets = may_discard && experiment.pipeline.can_discard_records();
+        let forgets = may_discard && experiment.pipeline.properties().can_discard_records;
         let samples = if forgets { KEPT_SAMPLES } else { usize::MAX };
         let tally = Tally::new(experiment.end(), field_ms(record), samples);
         let observer = experiment.observer.filter(|_| forgets && experiment.keep == KeptRecords::Statistics);
@@ -112,7 +112,7 @@ impl Window {
         // The counts are updated first, because the window depends on them.
         self.tally.count(record, pictures);
         let every = experiment.pipeline.periods_a_picture(record);
-        let window = ResultWindow::begun(self.tally.ends(), every, recorded_to, experiment.end());
+        let window = ResultWindow::begun(&self.tally.ends, every, recorded_to, experiment.end());
         let window = window.not_before(experiment.results_from, every);
         self.take(&FinalResults { arrivals, pictures, next, until, samples, window, ..all });
         self.taken_to = Some(settled_to);
@@ -140,7 +140,7 @@ impl Window {
         let pipeline = experiment.pipeline.as_ref();
         let end = record.tick(experiment.end());
         // Periods that were not simulated do not count.
-        self.tally.end_early(reached);
+        self.tally.end = self.tally.end.min(reached);
         self.tally.records_read += record.observation().records() as u64;
         self.tally.take_late(&pipeline.late_regions(record, end));
         let pictures = self.fresh(pipeline, record, end);
@@ -150,7 +150,7 @@ impl Window {
         let all = experiment.final_results(record, head);
         self.tally.count(record, &pictures);
         let every = pipeline.periods_a_picture(record);
-        let window = ResultWindow::of(self.tally.ends(), every, reached, experiment.end());
+        let window = ResultWindow::of(&self.tally.ends, every, reached, experiment.end());
         // A run that ends early has a shorter first half, but samples before the start so far are already discarded.
         let from = experiment.results_from.max(self.tally.window_from);
         let window = window.and_then(|window| window.not_before(from, every));

@@ -23,6 +23,6 @@ pub(crate) use entries::ENTRIES;
 pub use history::{FaceHistory, ShownUpdate};
 pub use keys::FacePolicy;
 pub use latched_head::{OrientationTiming, RotationLatency};
-pub use pipeline::{FaceLens, FacePipeline, FaceSource};
+pub use pipeline::{FacePipeline, FaceSource};
 pub use requests::{RequestedUpdate, RequestedUpdates};
 pub use segments::SegmentedScene;

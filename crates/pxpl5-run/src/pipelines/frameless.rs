@@ -1,18 +1,18 @@
 use super::jitp::{TABLES, config, load, whole_pass};
-use super::{ntsc, samples};
+use super::{ntsc, sampled_at, samples};
 use crate::keys::PipelineSettings;
-use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use crate::result::picture_ends::PictureResult;
 use jitp::{BlockOrder, DrawingSchedule, JitpConfig};
 use pphigs::TransformCost;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, Machine, MachineConfig, Record};
+use pxpl5_machine::{Arrival, Machine, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
-use pxpl5_wire::{CopyTarget, PictureNumber, RegionGrid, RegionId, ViewNumber};
+use pxpl5_wire::{CopyTarget, PictureNumber, RegionGrid, RegionId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use tracking::view::RandomOrder;
@@ -109,20 +109,18 @@ impl Pipeline for Frameless {
         ]
     }
 
-    fn eyes(&self) -> usize {
-        1
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::slats()
-    }
-
-    fn knows_when_seen(&self) -> bool {
-        true
-    }
-
-    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        None
+    fn properties(&self) -> PipelineProperties {
+        PipelineProperties {
+            knows_when_seen: true,
+            without_code: None,
+            has_one_pose: false,
+            can_discard_records: true,
+            ..PipelineProperties::new(
+                Layout::slats(),
+                "from the order of a batch of blocks, for which the newest pose is taken, to the first light of its last block",
+                "no picture is ever due: each block is shown when it arrives, and there are no frames",
+            )
+        }
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
@@ -133,14 +131,10 @@ impl Pipeline for Frameless {
         let runs_code = machine.processor(master, Priority::Foreground).runs_code();
         let batch = self.batch(machine.record(), whole_pass(setup), runs_code);
         let schedule = DrawingSchedule::Roam { block: self.block, batch, order: self.order()? };
-        let config = config(self.name(), machine.record(), schedule, self.layout(), setup.pixels)?;
+        let config = config(self.name(), machine.record(), schedule, Layout::slats(), setup.pixels)?;
         let config = JitpConfig { aim: setup.aim, ..config };
         load(machine, setup, &config);
         Ok(())
-    }
-
-    fn has_one_pose(&self) -> bool {
-        false
     }
 }
 
@@ -155,16 +149,8 @@ impl PictureRules for Frameless {
         let batch = observation.most_regions_of_a_picture().max(1);
         let times = samples(record).filter_map(|mark| {
             let (blocks, copied_at, target) = last.get(&mark.picture)?;
-            Some(PictureTimes {
-                picture: mark.picture,
-                view: mark.view.unwrap_or(ViewNumber::taken_for(mark.picture)),
-                sampled_at: Some(mark.time),
-                transform_at: mark.time,
-                copied_at: Some(*copied_at),
-                shown_at: next_light(video, target, *copied_at),
-                end: PictureResult::of(*blocks == batch, true),
-                layer: 0,
-            })
+            let shown_at = next_light(video, target, *copied_at);
+            Some(sampled_at(mark, Some(*copied_at), shown_at, PictureResult::of(*blocks == batch, true)))
         });
         let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();
         // The order in which updates are shown may differ from the order of their numbers.
@@ -172,20 +158,8 @@ impl PictureRules for Frameless {
         times
     }
 
-    fn can_discard_records(&self) -> bool {
-        true
-    }
-
     fn light(&self, _: &Record, times: &PictureTimes) -> Time {
         times.shown_at
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        "from the order of a batch of blocks, for which the newest pose is taken, to the first light of its last block"
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "no picture is ever due: each block is shown when it arrives, and there are no frames"
     }
 
     fn updates_per_picture(&self, record: &Record) -> f64 {

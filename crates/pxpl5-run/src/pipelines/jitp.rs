@@ -1,13 +1,13 @@
-use super::{late_regions, ntsc, samples};
+use super::{late_regions, ntsc, sampled_at, samples};
 use crate::keys::PipelineSettings;
-use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup, Source};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use crate::result::picture_ends::PictureResult;
 use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, host, master, slave};
 use pphigs::{Share, TransformCost};
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, NamedTable, Record};
+use pxpl5_machine::{Arrival, LateRegion, Machine, NamedTable, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
@@ -42,19 +42,13 @@ impl Jitp {
 
     /// Returns the pipelines of all viewpoints, each without and with racing.
     pub fn all() -> Vec<Self> {
-        let viewpoints = [
-            Viewpoint::Field,
-            Viewpoint::Strip,
-            Viewpoint::Dual(Interpolation::Screen),
-            Viewpoint::Dual(Interpolation::View),
-        ];
-        viewpoints.iter().flat_map(|v| [false, true].map(|racing| Self::new(*v, racing))).collect()
+        VARIANTS.iter().map(|(_, viewpoint, racing, _)| Self::new(*viewpoint, *racing)).collect()
     }
 
     fn config(self, record: &Record, pixels: bool) -> Result<JitpConfig, SettingError> {
         let schedule =
             DrawingSchedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
-        config(self.name(), record, schedule, self.layout(), pixels)
+        config(self.name(), record, schedule, Layout::slats(), pixels)
     }
 
     fn is_middle(self, arrival: &Arrival) -> bool {
@@ -105,15 +99,15 @@ pub(super) fn whole_pass(setup: &Setup) -> TransformCost {
 
 pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let gp = machine.processor(config.host, Priority::Foreground);
-    let reports = Arc::clone(&setup.reports);
+    let views = Arc::clone(&setup.views);
     // The host passes on the tracker's reports.
-    let program = host(gp, config.clone(), setup.host, move |after| reports(after));
+    let program = host(gp, config.clone(), setup.host, move |after| views.report_after(after));
     machine.load(config.host, Priority::Foreground, Box::pin(program));
     let gp = machine.processor(config.master, Priority::Foreground);
-    let views = Arc::clone(&setup.wanted);
+    let views = Arc::clone(&setup.views);
     let pass = whole_pass(setup);
     // The master requests views for the instants at which its strips are visible.
-    let view_of = move |wanted: Wanted| views(wanted.number, wanted.reports_until, wanted.shown_at);
+    let view_of = move |wanted: Wanted| views.view_at(wanted.number, wanted.reports_until, wanted.shown_at);
     for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);
     }
@@ -143,46 +137,32 @@ struct Arrived {
 
 impl Pipeline for Jitp {
     fn name(&self) -> &'static str {
-        match (self.viewpoint, self.racing) {
-            (Viewpoint::Field, false) => "jitp-field",
-            (Viewpoint::Field, true) => "jitp-field-racing",
-            (Viewpoint::Strip, false) => "jitp-scanline",
-            (Viewpoint::Strip, true) => "jitp-scanline-racing",
-            (Viewpoint::Dual(Interpolation::Screen), false) => "jitp-dual-screen",
-            (Viewpoint::Dual(Interpolation::Screen), true) => "jitp-dual-screen-racing",
-            (Viewpoint::Dual(Interpolation::View), false) => "jitp-dual-view",
-            (Viewpoint::Dual(Interpolation::View), true) => "jitp-dual-view-racing",
-        }
+        let is_own = |(_, viewpoint, racing, _): &&Variant| (*viewpoint, *racing) == (self.viewpoint, self.racing);
+        VARIANTS.iter().find(is_own).map_or("", |(name, ..)| name)
     }
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
         vec![("strip_rows", KeyValue::Whole(self.strip_rows.into()))]
     }
 
-    fn eyes(&self) -> usize {
-        1
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::slats()
-    }
-
-    fn knows_when_seen(&self) -> bool {
-        true
-    }
-
-    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        None
+    fn properties(&self) -> PipelineProperties {
+        PipelineProperties {
+            knows_when_seen: true,
+            without_code: None,
+            has_one_pose: self.viewpoint == Viewpoint::Field,
+            can_discard_records: true,
+            ..PipelineProperties::new(
+                Layout::slats(),
+                "from the order of the middle strip (or of the field, where one view serves all of it), for which the newest pose is taken, to the scan of that strip",
+                "a picture is due every field, and in time if every strip arrives before the beam",
+            )
+        }
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let config = JitpConfig { aim: setup.aim, ..self.config(machine.record(), setup.pixels)? };
         load(machine, setup, &config);
         Ok(())
-    }
-
-    fn has_one_pose(&self) -> bool {
-        self.viewpoint == Viewpoint::Field
     }
 }
 
@@ -208,22 +188,11 @@ impl PictureRules for Jitp {
         let times = samples(record).map(|mark| {
             let Arrived { in_period, in_time, middle_at } = arrived.get(&mark.picture).copied().unwrap_or_default();
             let field = mark.picture.period_drawn_for();
-            PictureTimes {
-                picture: mark.picture,
-                view: mark.view.unwrap_or_default(),
-                sampled_at: Some(mark.time),
-                transform_at: mark.time,
-                copied_at: middle_at,
-                shown_at: video.when(0, middle_line(field), field).unwrap_or_else(|| video.retrace(field)),
-                end: PictureResult::of(in_period == grid.regions(), in_time == grid.regions()),
-                layer: 0,
-            }
+            let shown_at = video.when(0, middle_line(field), field).unwrap_or_else(|| video.retrace(field));
+            let end = PictureResult::of(in_period == grid.regions(), in_time == grid.regions());
+            sampled_at(mark, middle_at, shown_at, end)
         });
         times.filter(|times| video.retrace(times.picture.period_drawn_for().next()) <= end).collect()
-    }
-
-    fn can_discard_records(&self) -> bool {
-        true
     }
 
     fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
@@ -233,14 +202,6 @@ impl PictureRules for Jitp {
 
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        "from the order of the middle strip (or of the field, where one view serves all of it), for which the newest pose is taken, to the scan of that strip"
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "a picture is due every field, and in time if every strip arrives before the beam"
     }
 
     fn source(
@@ -278,18 +239,57 @@ const KEYS: &[Key] = &[Key::new("strip_rows", "height of a strip", KeyValues::Wh
     .with_unit("lines")
     .with_default("8 for a field, 1 for lines")];
 
-const fn entry(
-    name: &'static str,
-    about: &'static str,
-    build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
-) -> PipelineEntry {
+/// Name of a variant, the choice of the instants for which lines are drawn, true if strips arrive just before the beam,
+/// and a description.
+type Variant = (&'static str, Viewpoint, bool, &'static str);
+
+const SCREEN: Viewpoint = Viewpoint::Dual(Interpolation::Screen);
+const VIEW: Viewpoint = Viewpoint::Dual(Interpolation::View);
+const RACING: &str = "the same, just before the beam (JITP)";
+
+const VARIANTS: [Variant; 8] = [
+    (
+        "jitp-field",
+        Viewpoint::Field,
+        false,
+        "a field drawn for the instant of its middle, one field ahead of the beam (JITP)",
+    ),
+    (
+        "jitp-field-racing",
+        Viewpoint::Field,
+        true,
+        "a field drawn for the instant of its middle, just before the beam (JITP)",
+    ),
+    (
+        "jitp-scanline",
+        Viewpoint::Strip,
+        false,
+        "every line drawn for its own instant, one field ahead of the beam (JITP)",
+    ),
+    (
+        "jitp-scanline-racing",
+        Viewpoint::Strip,
+        true,
+        "every line drawn for its own instant, just before the beam (JITP)",
+    ),
+    ("jitp-dual-screen", SCREEN, false, "lines between two views of a field, interpolated on the screen (JITP)"),
+    ("jitp-dual-screen-racing", SCREEN, true, RACING),
+    ("jitp-dual-view", VIEW, false, "lines between two views of a field, interpolated before the projection (JITP)"),
+    ("jitp-dual-view-racing", VIEW, true, RACING),
+];
+
+pub(super) const ENTRIES: [PipelineEntry; 8] =
+    [entry::<0>(), entry::<1>(), entry::<2>(), entry::<3>(), entry::<4>(), entry::<5>(), entry::<6>(), entry::<7>()];
+
+const fn entry<const VARIANT: usize>() -> PipelineEntry {
+    let (name, .., about) = VARIANTS[VARIANT];
     PipelineEntry {
         name,
         family: "jitp",
         about,
         preset: "small-hmd",
         keys: KEYS,
-        build,
+        build: build::<VARIANT>,
         limit: |_| LimitCriterion { goal: Goal::NoMissedRetrace, scene: TestScene::FullScreen, fields: 24 },
         tables: TABLES,
         closed_form: None,
@@ -297,40 +297,9 @@ const fn entry(
     }
 }
 
-fn build(viewpoint: Viewpoint, racing: bool, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
+fn build<const VARIANT: usize>(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
+    let (_, viewpoint, racing, _) = VARIANTS[VARIANT];
     let jitp = Jitp::new(viewpoint, racing);
     let strip_rows = settings.whole("strip_rows").map_or(jitp.strip_rows, |rows| rows as u32);
     Arc::new(Jitp { strip_rows, ..jitp })
 }
-
-const SCREEN: Viewpoint = Viewpoint::Dual(Interpolation::Screen);
-const VIEW: Viewpoint = Viewpoint::Dual(Interpolation::View);
-
-pub(super) const ENTRIES: [PipelineEntry; 8] = [
-    entry(
-        "jitp-field",
-        "a field drawn for the instant of its middle, one field ahead of the beam (JITP)",
-        |settings| build(Viewpoint::Field, false, settings),
-    ),
-    entry(
-        "jitp-field-racing",
-        "a field drawn for the instant of its middle, just before the beam (JITP)",
-        |settings| build(Viewpoint::Field, true, settings),
-    ),
-    entry("jitp-scanline", "every line drawn for its own instant, one field ahead of the beam (JITP)", |settings| {
-        build(Viewpoint::Strip, false, settings)
-    }),
-    entry("jitp-scanline-racing", "every line drawn for its own instant, just before the beam (JITP)", |settings| {
-        build(Viewpoint::Strip, true, settings)
-    }),
-    entry("jitp-dual-screen", "lines between two views of a field, interpolated on the screen (JITP)", |settings| {
-        build(SCREEN, false, settings)
-    }),
-    entry("jitp-dual-screen-racing", "the same, just before the beam (JITP)", |settings| build(SCREEN, true, settings)),
-    entry(
-        "jitp-dual-view",
-        "lines between two views of a field, interpolated before the projection (JITP)",
-        |settings| build(VIEW, false, settings),
-    ),
-    entry("jitp-dual-view-racing", "the same, just before the beam (JITP)", |settings| build(VIEW, true, settings)),
-];

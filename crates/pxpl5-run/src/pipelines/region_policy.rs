@@ -4,10 +4,10 @@
 //! One graphics processor draws frames for a single eye and shows each frame when it is finished. The policy is called
 //! after TRANSFORM, so it receives the final number of primitives in every region.
 
-use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
-use crate::pipelines::{shading_value, whole_picture};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup};
+use crate::pipelines::{picture, sampled_at, samples, shading_value, whole_picture};
 use crate::result::picture_ends::PictureResult;
-use pphigs::{DisplayList, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages};
+use pphigs::{DisplayList, FrameView, Pass, Picture, RegionEnvelope, Shading, Share, region_messages};
 use pxpl5_gp::{Fault, Gp, Priority, Stage};
 use pxpl5_machine::{Machine, Ports, Record};
 use pxpl5_renderer::Layout;
@@ -208,16 +208,15 @@ impl Pipeline for PolicyPipeline {
         vec![("shading", shading_value(self.shading)), ("policy", KeyValue::Text(self.policy.name().into()))]
     }
 
-    fn eyes(&self) -> usize {
-        1
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::rendering_control_phong()
-    }
-
-    fn shading(&self) -> Shading {
-        self.shading
+    fn properties(&self) -> PipelineProperties {
+        PipelineProperties {
+            shading: self.shading,
+            ..PipelineProperties::new(
+                Layout::rendering_control_phong(),
+                "from the start of TRANSFORM to the retrace at which the frame is swapped in",
+                "no frame is ever due: each is shown when it is finished",
+            )
+        }
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
@@ -225,15 +224,9 @@ impl Pipeline for PolicyPipeline {
         let views = Arc::clone(&setup.views);
         let node = ports.gps[0];
         let gp = machine.processor(node, Priority::Foreground);
-        let picture = Picture {
-            viewport: whole_picture(machine.record())?,
-            shading: self.shading,
-            binning: RegionBinning::Touched,
-            layout: self.layout(),
-            pixels: setup.pixels,
-        };
+        let picture = picture(whole_picture(machine.record())?, self.shading, setup.pixels);
         let drawing = Drawing { ports, list: Arc::clone(&setup.list), picture, policy: Arc::clone(&self.policy) };
-        let program = firmware(gp, drawing, move |number, time| views(number, time));
+        let program = firmware(gp, drawing, move |number, time| views.newest(number, time));
         machine.load(node, Priority::Foreground, Box::pin(program));
         Ok(())
     }
@@ -242,26 +235,9 @@ impl Pipeline for PolicyPipeline {
 impl PictureRules for PolicyPipeline {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let shown = record.observation().frames(1).into_values();
-        let begun = record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample);
-        let times = begun.zip(shown).map(|(mark, tick)| PictureTimes {
-            picture: mark.picture,
-            view: ViewNumber::taken_for(mark.picture),
-            sampled_at: Some(mark.time),
-            transform_at: mark.time,
-            copied_at: None,
-            shown_at: record.tick(tick),
-            end: PictureResult::Shown,
-            layer: 0,
-        });
+        let begun = samples(record).zip(shown);
+        let times = begun.map(|(mark, tick)| sampled_at(mark, None, record.tick(tick), PictureResult::Shown));
         times.filter(|times| times.shown_at < end).collect()
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        "from the start of TRANSFORM to the retrace at which the frame is swapped in"
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "no frame is ever due: each is shown when it is finished"
     }
 }
 

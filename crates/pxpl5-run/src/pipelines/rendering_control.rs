@@ -1,17 +1,17 @@
-use super::{SHADING, region_has_room, shading_or, shading_value, swapped_in, whole_picture};
+use super::{SHADING, picture, region_has_room, shading_or, shading_value, swapped_in, whole_picture};
 use crate::keys::PipelineSettings;
-use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use image::RgbImage;
-use pphigs::{Picture, RegionBinning, Shading};
-use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, Machine, MachineConfig, Record};
+use pphigs::{DisplayList, Shading};
+use pxpl5_gp::{HostTiming, Priority};
+use pxpl5_machine::{Arrival, Machine, Ports, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::Surface;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
-use rendering_control::{Frames, RenderingControlConfig, frames, host, master, slave};
+use rendering_control::{Drawn, Frames, HostAction, RenderingControlConfig, frames, host, master, slave};
 use std::sync::Arc;
 
 /// The pipeline Rendering Control of the library PPHIGS (TR94).
@@ -73,39 +73,59 @@ impl RenderingControl {
         Self { mono: true, ..Self::stereo() }
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig<Frames>, SettingError> {
+    fn frames(self, machine: &Machine, pixels: bool) -> Result<Frames, SettingError> {
         let ports = machine.ports();
-        // The first GP is the master, and all others are slaves.
-        let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
-        if slaves.is_empty() {
-            return Err(too_few_gps(1));
-        }
         // A finished region takes one block of the backing store.
         region_has_room(machine.record(), 1)?;
-        let picture = Picture {
-            viewport: whole_picture(machine.record())?,
-            shading: self.shading,
-            binning: RegionBinning::Touched,
-            layout: self.layout(),
-            pixels,
-        };
-        Ok(RenderingControlConfig {
-            host: ports.host,
-            master: *master,
-            slaves: slaves.to_vec(),
-            renderers: ports.renderers.clone(),
-            drawn: Frames {
-                frame_buffers: ports.display().iter().copied().take(self.eyes()).collect(),
-                frame_buffer_ports: ports.display().to_vec(),
-                picture,
-                regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions()) as usize,
-            },
+        Ok(Frames {
+            frame_buffers: ports.display().iter().copied().take(self.properties().eyes).collect(),
+            frame_buffer_ports: ports.display().to_vec(),
+            picture: picture(whole_picture(machine.record())?, self.shading, pixels),
+            regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions()) as usize,
         })
     }
 }
 
-fn too_few_gps(found: u64) -> SettingError {
-    SettingError::limits("n_gps of Rendering Control (a master and slaves)", (2, 1_000), found)
+/// Returns the boards that draw under Rendering Control: the first graphics processor is the master, and all others are
+/// slaves. `pipeline` is the name of the pipeline, for errors.
+pub(super) fn with_boards<D>(
+    machine: &Machine,
+    pipeline: &str,
+    drawn: impl FnOnce() -> Result<D, SettingError>,
+) -> Result<RenderingControlConfig<D>, SettingError> {
+    let Ports { host, gps, renderers, .. } = machine.ports();
+    let [master, slaves @ ..] = &gps[..] else { return Err(too_few_gps(pipeline, 0)) };
+    if slaves.is_empty() {
+        return Err(too_few_gps(pipeline, 1));
+    }
+    let (slaves, renderers) = (slaves.to_vec(), renderers.clone());
+    Ok(RenderingControlConfig { host: *host, master: *master, slaves, renderers, drawn: drawn()? })
+}
+
+fn too_few_gps(pipeline: &str, found: u64) -> SettingError {
+    SettingError::limits(&format!("n_gps of {pipeline} (a master and slaves)"), (2, 1_000), found)
+}
+
+/// Loads the programs of Rendering Control. `plan` decides when the host sends a picture.
+pub(super) fn load_programs<D: Drawn>(
+    machine: &mut Machine,
+    config: &RenderingControlConfig<D>,
+    timing: HostTiming,
+    list: &Arc<DisplayList>,
+    plan: impl FnMut(PictureNumber, Time) -> HostAction<D::Sent> + 'static,
+) {
+    let foreground = Priority::Foreground;
+    let gp = machine.processor(config.host, foreground);
+    machine.load(config.host, foreground, Box::pin(host(gp, config.clone(), timing, plan)));
+    let gp = machine.processor(config.master, foreground);
+    machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));
+    // A slave runs two programs at different priorities, over its share of the triangles.
+    for (index, node) in config.slaves.iter().enumerate() {
+        let gp = machine.processor(*node, foreground);
+        for (level, program) in slave(&gp, config, config.share(list, index), index) {
+            machine.load(*node, level, Box::pin(program));
+        }
+    }
 }
 
 impl Pipeline for RenderingControl {
@@ -118,42 +138,27 @@ impl Pipeline for RenderingControl {
         vec![("mono", KeyValue::Flag(self.mono)), ("shading", shading_value(self.shading)), ("finished", finished)]
     }
 
-    fn eyes(&self) -> usize {
-        if self.mono { 1 } else { 2 }
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::rendering_control_phong()
-    }
-
-    fn shading(&self) -> Shading {
-        self.shading
-    }
-
-    /// Returns `None`, because i860 code exists for all work of this pipeline.
-    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        None
+    fn properties(&self) -> PipelineProperties {
+        PipelineProperties {
+            eyes: if self.mono { 1 } else { 2 },
+            shading: self.shading,
+            // i860 code exists for all work of this pipeline.
+            without_code: None,
+            can_discard_records: true,
+            ..PipelineProperties::new(
+                Layout::rendering_control_phong(),
+                "from the start of TRANSFORM of the frame's first eye on the first slave to the retrace at which the frame is swapped in",
+                "the time of COPY determines how often a frame is due: once in the number of periods that the pixels of all eyes need at a frame buffer's port, one eye at a time (two NTSC fields for a stereo pair); a frame is shown when it is swapped in",
+            )
+        }
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
-        let config = self.config(machine, setup.pixels)?;
-        let foreground = Priority::Foreground;
-        let views = Arc::clone(&setup.views);
-        let starts = Arc::clone(&setup.starts);
-        let gp = machine.processor(config.host, foreground);
+        let config = with_boards(machine, "Rendering Control", || self.frames(machine, setup.pixels))?;
+        let (starts, views) = (setup.clone(), Arc::clone(&setup.views));
         // The host decides when a frame begins, and samples the view for it.
-        let plan = frames(move |ready| starts(ready), move |view, time| views(view, time));
-        let program = host(gp, config.clone(), setup.host, plan);
-        machine.load(config.host, foreground, Box::pin(program));
-        let gp = machine.processor(config.master, foreground);
-        machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));
-        // A slave runs two programs at different priorities, over its share of the triangles.
-        for (index, node) in config.slaves.iter().enumerate() {
-            let gp = machine.processor(*node, foreground);
-            for (level, program) in slave(&gp, &config, config.share(&setup.list, index), index) {
-                machine.load(*node, level, Box::pin(program));
-            }
-        }
+        let plan = frames(move |ready| starts.frame_start(ready), move |view, time| views.newest(view, time));
+        load_programs(machine, &config, setup.host, &setup.list, plan);
         Ok(())
     }
 }
@@ -161,14 +166,10 @@ impl Pipeline for RenderingControl {
 impl PictureRules for RenderingControl {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let stages = record.stages();
-        let frames = record.observation().frames(self.eyes()).into_iter();
+        let frames = record.observation().frames(self.properties().eyes).into_iter();
         let shown = frames.map(|(number, tick)| (PictureNumber::FIRST.after(number), record.tick(tick)));
         let shown = shown.filter(|(_, shown_at)| *shown_at < end);
         shown.filter_map(|(frame, at)| swapped_in(&stages, frame, at)).collect()
-    }
-
-    fn can_discard_records(&self) -> bool {
-        true
     }
 
     /// Returns the time of COPY for all eyes, one after the other, in whole display periods. For a stereo pair, COPY
@@ -178,14 +179,6 @@ impl PictureRules for RenderingControl {
         let ports = (record.ports().display().len() / surfaces.len().max(1)).max(1);
         let copies: Span = surfaces.iter().map(|surface| copy_span(record, surface, ports as u16)).sum();
         Some(record.display().period_at(Time(copies.0.saturating_sub(1))).next().0)
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        "from the start of TRANSFORM of the frame's first eye on the first slave to the retrace at which the frame is swapped in"
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "the time of COPY determines how often a frame is due: once in the number of periods that the pixels of all eyes need at a frame buffer's port, one eye at a time (two NTSC fields for a stereo pair); a frame is shown when it is swapped in"
     }
 
     fn copy_part(&self, arrival: &Arrival) -> u8 {
@@ -247,9 +240,6 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     Arc::new(RenderingControl {
         mono: settings.flag("mono").unwrap_or(stereo.mono),
         shading: shading_or(settings, stereo.shading),
-        finished: match settings.name("finished") {
-            Some("wait") => FinishedRegions::Wait,
-            _ => FinishedRegions::Store,
-        },
+        finished: settings.chosen("finished").unwrap_or(stereo.finished),
     })
 }

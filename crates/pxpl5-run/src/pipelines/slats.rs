@@ -1,6 +1,6 @@
-use super::{late_regions, ntsc, samples};
+use super::{late_regions, ntsc, sampled_at, samples};
 use crate::keys::PipelineSettings;
-use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup, light_span};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use crate::result::picture_ends::PictureResult;
 use pphigs::{RegionBinning, Shading, Share};
@@ -11,7 +11,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, names};
 use pxpl5_wire::display::LightTimes;
-use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, RegionGrid, SurfaceId, ViewNumber};
+use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, RegionGrid, SurfaceId};
 use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -119,8 +119,8 @@ impl Slats {
             frame_buffers: [ports.display()[0], ports.display()[1]],
             copy: self.copy,
             binning: self.binning,
-            shading: self.shading(),
-            layout: self.layout(),
+            shading: self.lighting.shading(),
+            layout: Layout::slats(),
             pixels,
         }
     }
@@ -138,43 +138,39 @@ impl Pipeline for Slats {
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
         let mut all = vec![
-            ("copy", name(&COPIES, &self.copy)),
-            ("binning", name(&BINNINGS, &self.binning)),
-            ("lighting", name(&LIGHTINGS, &self.lighting)),
+            ("copy", name(&CopySchedule::ALL, self.copy)),
+            ("binning", name(&RegionBinning::ALL, self.binning)),
+            ("lighting", name(&SlatsLighting::ALL, self.lighting)),
         ];
-        all.extend(self.code.map(|code| ("code", name(&CODES, &code))));
+        all.extend(self.code.map(|code| ("code", name(&Code::ALL, code))));
         all
     }
 
-    fn eyes(&self) -> usize {
-        2
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::slats()
-    }
-
-    fn shading(&self) -> Shading {
-        self.lighting.shading()
-    }
-
-    fn is_single(&self, config: &MachineConfig) -> bool {
-        let is_compiled = config.code.unwrap_or(CodeVersion::Compiled) == CodeVersion::Compiled;
-        is_compiled && self.binning == RegionBinning::All && self.lighting == SlatsLighting::Precomputed
-    }
-
-    fn code_use(&self) -> CodeUse {
-        match (self.lighting, self.binning) {
-            (SlatsLighting::Precomputed, RegionBinning::All) => CodeUse::Slats,
-            (SlatsLighting::Precomputed, _) => CodeUse::SlatsTouched,
-            (SlatsLighting::OnGp, _) => CodeUse::SlatsLit,
+    fn properties(&self) -> PipelineProperties {
+        PipelineProperties {
+            eyes: 2,
+            shading: self.lighting.shading(),
+            code_use: match (self.lighting, self.binning) {
+                (SlatsLighting::Precomputed, RegionBinning::All) => CodeUse::Slats,
+                (SlatsLighting::Precomputed, _) => CodeUse::SlatsTouched,
+                (SlatsLighting::OnGp, _) => CodeUse::SlatsLit,
+            },
+            without_code: (self.binning == RegionBinning::Boxes).then_some("no code bins by bounding boxes"),
+            can_discard_records: true,
+            // The latency is always one field, but not the time from the start of a field to the first copy.
+            compared_ms: |summary| summary.copy_begins_ms,
+            ..PipelineProperties::new(
+                Layout::slats(),
+                "from the retrace at which the newest view is taken and TRANSFORM starts to the retrace from which on the field is scanned out",
+                "a picture is due every field, and in time if every region arrives before its deadline; the deadline is the retrace, or for the bottom regions of a split copy the scan of their first line; with a backup, a late picture counts for the later retrace of its lines at which it is shown",
+            )
         }
     }
 
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         // A machine with times of code has those of the program that draws this variant.
         let has_times_of_code = config.gp == GpTiming::SLATS_1994;
-        let config = if has_times_of_code { config.with_times_of_code(self.code_use()) } else { config };
+        let config = if has_times_of_code { config.with_times_of_code(self.properties().code_use) } else { config };
         let Some(code) = self.code else { return config };
         // The fitted program of 1995 has no times of its own per pass and structure.
         if has_times_of_code && matches!(code, Code::Of1995) {
@@ -185,21 +181,16 @@ impl Pipeline for Slats {
         MachineConfig { gp, code: Some(code.version()), ..config }
     }
 
-    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        (self.binning == RegionBinning::Boxes).then_some("no code bins by bounding boxes")
-    }
-
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         ntsc(machine.record(), self.name())?;
         let config = self.config(machine, setup.pixels);
         // The configuration also fixes which renderer serves which regions.
         let binding = config.check()?;
         let foreground = Priority::Foreground;
-        let views = Arc::clone(&setup.views);
-        let reports = Arc::clone(&setup.reports);
+        let [reports, views] = [(); 2].map(|()| Arc::clone(&setup.views));
         let gp = machine.processor(config.host, foreground);
-        let view_of = move |view, time| views(view, time);
-        let program = host(gp, config.clone(), setup.host, move |after| reports(after), view_of);
+        let view_of = move |view, time| views.newest(view, time);
+        let program = host(gp, config.clone(), setup.host, move |after| reports.report_after(after), view_of);
         machine.load(config.host, foreground, Box::pin(program));
         // Every GP transforms its own share of the triangles.
         for (index, node) in config.processors.iter().enumerate() {
@@ -238,16 +229,7 @@ impl PictureRules for Slats {
                 (Some(_), Some(_)) => PictureResult::Shown,
                 (Some(_), None) => PictureResult::of(in_its_period, false),
             };
-            PictureTimes {
-                picture: mark.picture,
-                view: mark.view.unwrap_or(ViewNumber::taken_for(mark.picture)),
-                sampled_at: Some(mark.time),
-                transform_at: mark.time,
-                copied_at: whole.then_some(copied.at),
-                shown_at: record.tick(shown.unwrap_or(field)),
-                end: picture_end,
-                layer: 0,
-            }
+            sampled_at(mark, whole.then_some(copied.at), record.tick(shown.unwrap_or(field)), picture_end)
         });
         // A picture is evaluated only after its last possible period. The bottom half of a split copy is scanned in
         // that period. Under a backup, a later retrace of the same lines may show the picture.
@@ -259,10 +241,6 @@ impl PictureRules for Slats {
             record.tick(PeriodNumber(last).next()) <= end
         };
         times.filter(evaluated).collect()
-    }
-
-    fn can_discard_records(&self) -> bool {
-        true
     }
 
     fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
@@ -280,14 +258,6 @@ impl PictureRules for Slats {
     /// once, because the next field has the lines between them.
     fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightTimes {
         light_span(record, record.display().period_at(times.shown_at), 1)
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        "from the retrace at which the newest view is taken and TRANSFORM starts to the retrace from which on the field is scanned out"
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "a picture is due every field, and in time if every region arrives before its deadline; the deadline is the retrace, or for the bottom regions of a split copy the scan of their first line; with a backup, a late picture counts for the later retrace of its lines at which it is shown"
     }
 
     /// Returns 0 for the upper and 1 for the lower half of a split copy. The halves are timed separately.
@@ -353,17 +323,8 @@ fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
     if before_retrace { retrace } else { video.reaches(target, field).unwrap_or(retrace) }
 }
 
-const COPIES: [(&str, CopySchedule); 3] = CopySchedule::ALL;
-const BINNINGS: [(&str, RegionBinning); 3] = RegionBinning::ALL;
-const LIGHTINGS: [(&str, SlatsLighting); 2] = SlatsLighting::ALL;
-const CODES: [(&str, Code); 3] = Code::ALL;
-
-fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> KeyValue {
-    KeyValue::Name(choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name))
-}
-
-fn chosen<T: Copy>(choices: &[(&'static str, T)], name: Option<&str>) -> Option<T> {
-    choices.iter().find(|(choice, _)| Some(*choice) == name).map(|(_, value)| *value)
+fn name<T: PartialEq>(choices: &[(&'static str, T)], value: T) -> KeyValue {
+    KeyValue::Name(choices.iter().find(|(_, choice)| *choice == value).map_or("", |(name, _)| name))
 }
 
 pub(super) const ENTRY: PipelineEntry = PipelineEntry {
@@ -410,10 +371,10 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
 fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     let split = Slats::split();
     Arc::new(Slats {
-        copy: chosen(&COPIES, settings.name("copy")).unwrap_or(split.copy),
-        binning: chosen(&BINNINGS, settings.name("binning")).unwrap_or(split.binning),
-        lighting: chosen(&LIGHTINGS, settings.name("lighting")).unwrap_or(split.lighting),
-        code: chosen(&CODES, settings.name("code")),
+        copy: settings.chosen("copy").unwrap_or(split.copy),
+        binning: settings.chosen("binning").unwrap_or(split.binning),
+        lighting: settings.chosen("lighting").unwrap_or(split.lighting),
+        code: settings.chosen("code"),
     })
 }
 
@@ -422,7 +383,7 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
 /// If every clump (group of triangles) goes to all regions, the test scene has full-screen triangles. Otherwise the
 /// test scene has small triangles.
 fn limit(settings: &PipelineSettings) -> LimitCriterion {
-    let touched = settings.name("binning") == Some(BINNINGS[1].0);
+    let touched = settings.chosen("binning") == Some(RegionBinning::Touched);
     let scene = if touched { TestScene::Typical } else { TestScene::FullScreen };
     LimitCriterion { goal: Goal::NoMissedRetrace, scene, fields: 16 }
 }

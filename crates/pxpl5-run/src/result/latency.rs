@@ -68,6 +68,23 @@ impl LatencyParts {
     }
 }
 
+/// Returns the latency parts of pictures.
+pub(crate) fn parts_of_pictures<'a>(
+    record: &Record,
+    pictures: impl IntoIterator<Item = &'a PictureTimes>,
+) -> Vec<LatencyParts> {
+    let stages = record.stages();
+    let pictures = pictures.into_iter();
+    pictures.map(|times| parts(record, times, of_picture(&stages, times.picture))).collect()
+}
+
+/// Returns the stages of a picture.
+pub(crate) fn of_picture(stages: &[StageSpan], picture: PictureNumber) -> &[StageSpan] {
+    let first = stages.partition_point(|span| span.picture < picture);
+    let count = stages[first..].iter().take_while(|span| span.picture == picture).count();
+    &stages[first..first + count]
+}
+
 /// Divides the latency of a picture into the parts of [`LATENCY_PARTS`]. `stages` must contain only the stages of this
 /// picture.
 pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan]) -> LatencyParts {

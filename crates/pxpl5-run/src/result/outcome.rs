@@ -5,13 +5,13 @@ use crate::observe::observers::FinalResults;
 use crate::observe::window::{Closed, Window, field_ms};
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::result::due::{DuePictures, MIN_UPDATES};
-use crate::result::latency::{LatencyParts, parts};
+use crate::result::latency::{LatencyParts, parts_of_pictures};
 use crate::result::result_window::{ResultWindow, WINDOW_DEFINITION};
 use crate::result::summary::Summary;
-use crate::result::tally::{Tally, of_picture};
+use crate::result::tally::Tally;
 use pxpl5_machine::{Observation, ObservedEvent, Record, StageSpan};
 use pxpl5_sim::Statistics;
-use pxpl5_sim::{Span, Time};
+use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::fmt;
 use std::sync::Arc;
@@ -98,14 +98,7 @@ impl Outcome {
 
     /// Returns the pictures in the result window.
     pub fn steady_pictures(&self) -> &[PictureTimes] {
-        let Some(window) = self.closed.window else { return &[] };
-        let display = self.record.display();
-        // Pictures are in the order in which they are shown.
-        let is_in = |times: &PictureTimes| window.holds_picture(display.period_at(times.shown_at));
-        let pictures = self.pictures();
-        let first = pictures.iter().position(is_in).unwrap_or(pictures.len());
-        let end = pictures.iter().rposition(is_in).map_or(first, |last| last + 1);
-        &pictures[first..end]
+        self.final_results().steady_pictures()
     }
 
     /// Returns the pictures in the result window that were complete in time. Other pictures have no latency.
@@ -122,12 +115,12 @@ impl Outcome {
     /// pipeline has no due pictures, or if the run ended before the first due picture or in its warm-up.
     pub fn due(&self) -> Option<DuePictures> {
         let every = self.pipeline().periods_a_picture(&self.record)?;
-        DuePictures::of_ends(self.closed.tally.ends(), every, &self.closed.window?)
+        DuePictures::of_ends(&self.closed.tally.ends, every, &self.closed.window?)
     }
 
     /// Returns a text that defines for this pipeline when a picture is due, and when it is in time.
     pub fn due_definition(&self) -> String {
-        format!("{}; {WINDOW_DEFINITION}", self.pipeline().due_definition())
+        format!("{}; {WINDOW_DEFINITION}", self.pipeline().properties().due_definition)
     }
 
     /// Returns the number of complete new pictures per second, over the result window.
@@ -147,8 +140,7 @@ impl Outcome {
         let window = self.closed.window?;
         // Otherwise several updates make up a picture, and each period counts at most once.
         let pictures = complete as f64 / self.pipeline().updates_per_picture(&self.record);
-        let seen =
-            pictures.min(self.closed.tally.ends().periods_shown([window.first_period, window.last_period]) as f64);
+        let seen = pictures.min(self.closed.tally.ends.periods_shown([window.first_period, window.last_period]) as f64);
         Some(seen * 1e3 / (window.periods() as f64 * self.field_ms()))
     }
 
@@ -195,11 +187,6 @@ impl Outcome {
         self.record.stages()
     }
 
-    /// Returns the time that a graphics processor needs to receive one message.
-    pub const fn receive_span(&self) -> Span {
-        Span::from_ns(self.experiment.config.gp.message_ns)
-    }
-
     /// Returns the pipeline that was run.
     pub fn pipeline(&self) -> &dyn Pipeline {
         self.experiment.pipeline.as_ref()
@@ -236,10 +223,7 @@ impl Outcome {
     /// Returns the parts of the latencies of the complete pictures in the result window. Pictures without records in
     /// memory are left out.
     pub fn latency_parts(&self) -> Vec<LatencyParts> {
-        let stages = self.stages();
-        let parts =
-            self.complete_pictures().map(|times| parts(&self.record, times, of_picture(&stages, times.picture)));
-        parts.collect()
+        parts_of_pictures(&self.record, self.complete_pictures())
     }
 
     /// Returns the results that are available at every level of detail, over the pictures in the result window.

@@ -3,7 +3,7 @@ use pxpl5_sim::Samples;
 use pxpl5_sim::Statistics;
 
 /// Results of an experiment that are available at every level of detail, over the pictures in the result window.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
     /// Latency of every complete picture, by the pipeline's definition, in milliseconds.
     pub latencies_ms: Samples,
@@ -39,17 +39,6 @@ impl Summary {
     /// Returns the statistics of the latencies, in milliseconds.
     pub fn latency_ms(&self) -> Statistics {
         self.latencies_ms.statistics()
-    }
-
-    /// Returns the statistics of the times from the start of an eye's TRANSFORM to the swap, over both eyes, in
-    /// milliseconds. The statistics are empty if the eyes share one TRANSFORM.
-    pub fn eye_latency_ms(&self) -> Statistics {
-        self.eye_swap_latencies_ms.statistics()
-    }
-
-    /// Returns the statistics of the numbers of retraces from the start of an eye's TRANSFORM to the swap.
-    pub fn eye_retraces(&self) -> Statistics {
-        self.eye_retraces.statistics()
     }
 
     /// Returns the statistics of the latencies in periods of the display. For NTSC, a period is a field of 1001/60000

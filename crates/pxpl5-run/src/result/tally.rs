@@ -5,7 +5,7 @@
 
 use crate::observe::observers::FinalResults;
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::result::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
+use crate::result::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, of_picture, pair, parts};
 use crate::result::picture_ends::PictureResults;
 use crate::result::summary::retraces;
 use pxpl5_gp::Stage;
@@ -58,11 +58,11 @@ pub struct Tally {
     /// twice counts twice.
     pub records_read: u64,
     surfaces_ms: Vec<Samples>,
-    ends: PictureResults,
+    pub(crate) ends: PictureResults,
     pub(crate) window_from: Option<PeriodNumber>,
     region_ms: f64,
     region_pixels: u64,
-    end: PeriodNumber,
+    pub(crate) end: PeriodNumber,
     field_ms: f64,
     limit: usize,
 }
@@ -82,14 +82,9 @@ pub struct SurfaceLatency<'a> {
     pub ms: &'a Samples,
 }
 
-/// The times of the first and the last word of a copy. A copy is one eye under Rendering Control, and half a field
+/// The times of the first and the last word of each copy. A copy is one eye under Rendering Control, and half a field
 /// under Slats.
-struct CopySpan {
-    begin: Time,
-    end: Time,
-}
-
-type Copies = BTreeMap<(PictureNumber, u8), CopySpan>;
+type Copies = BTreeMap<(PictureNumber, u8), [Time; 2]>;
 
 impl Tally {
     pub(crate) fn new(end: PeriodNumber, field_ms: f64, limit: usize) -> Self {
@@ -122,10 +117,6 @@ impl Tally {
         }
     }
 
-    pub(crate) fn end_early(&mut self, reached: PeriodNumber) {
-        self.end = self.end.min(reached);
-    }
-
     /// Counts pictures of the whole run, not only of the result window, in the order in which they are shown.
     pub(crate) fn count(&mut self, record: &Record, pictures: &[PictureTimes]) {
         for times in pictures {
@@ -147,17 +138,17 @@ impl Tally {
             // The window begins later than assumed, so all samples so far lie before the window.
             self.restart(window.first_period);
         }
-        let steady: Vec<PictureTimes> = results.steady_pictures().copied().collect();
+        let steady = results.steady_pictures();
         if steady.is_empty() {
             return;
         }
         // All pictures in the window count for copies and stages. Only complete pictures count for latencies.
         let stages = record.stages();
-        self.take_copies(pipeline, record, &steady);
+        self.take_copies(pipeline, record, steady);
         let complete = steady.iter().filter(|times| times.is_shown());
         complete.clone().for_each(|times| self.take_complete(record, times, of_picture(&stages, times.picture)));
         self.take_eye_swaps(&stages, complete);
-        self.take_stages(&stages, &steady);
+        self.take_stages(&stages, steady);
         steady.iter().for_each(|times| *self.updates.entry(times.layer).or_default() += 1);
     }
 
@@ -211,10 +202,10 @@ impl Tally {
         for times in steady {
             for (samples, place) in self.copy_ms.iter_mut().zip(0..) {
                 let span = copies.get(&(times.picture, place));
-                samples.extend(span.map(|span| (span.end - span.begin).as_ms()));
+                samples.extend(span.map(|[begin, end]| (*end - *begin).as_ms()));
             }
             let first = copies.get(&(times.picture, 0));
-            self.copy_begins_ms.extend(first.map(|first| first.begin.since(times.transform_at).as_ms()));
+            self.copy_begins_ms.extend(first.map(|[begin, _]| begin.since(times.transform_at).as_ms()));
         }
     }
 
@@ -275,16 +266,6 @@ impl Tally {
     pub fn region_copy_us(&self) -> f64 {
         self.region_ms * 1e3 * 15_360.0 / self.region_pixels as f64
     }
-
-    pub(crate) const fn ends(&self) -> &PictureResults {
-        &self.ends
-    }
-}
-
-pub(crate) fn of_picture(stages: &[StageSpan], picture: PictureNumber) -> &[StageSpan] {
-    let first = stages.partition_point(|span| span.picture < picture);
-    let count = stages[first..].iter().take_while(|span| span.picture == picture).count();
-    &stages[first..first + count]
 }
 
 fn copies(pipeline: &dyn Pipeline, record: &Record) -> Copies {
@@ -293,10 +274,9 @@ fn copies(pipeline: &dyn Pipeline, record: &Record) -> Copies {
     for arrival in &record.observation().arrivals {
         let place = pipeline.copy_part(arrival);
         let begin = arrival.begins_at(message);
-        let fresh = CopySpan { begin, end: arrival.last_part_at };
-        let span = copies.entry((arrival.target.picture, place)).or_insert(fresh);
-        span.begin = span.begin.min(begin);
-        span.end = span.end.max(arrival.last_part_at);
+        let [first, last] = copies.entry((arrival.target.picture, place)).or_insert([begin, arrival.last_part_at]);
+        *first = begin.min(*first);
+        *last = arrival.last_part_at.max(*last);
     }
     copies
 }

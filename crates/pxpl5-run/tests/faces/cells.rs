@@ -84,7 +84,7 @@ fn cells_drawn_from_one_position_equal_the_uncut_drawing() {
     for pipeline in [CELLS, WARPED] {
         let texels_of_face = [("arp.face_texels", 128)];
         let run = |pipeline: FacePipeline, scene: Scene| {
-            let config = machine("small-hmd", pipeline, &texels_of_face);
+            let config = machine("small-hmd", &pipeline, &texels_of_face);
             after(&Experiment::new(config, pipeline, scene), 30).into_record()
         };
         let cut = run(pipeline, wall());
@@ -104,7 +104,7 @@ fn cells_drawn_from_one_position_equal_the_uncut_drawing() {
 
 /// Runs a walk along the wall at 1 m/s. The policy may show images that are wrong by up to `theta_deg` degrees.
 fn along_the_wall(pipeline: FacePipeline, theta_deg: f64) -> Outcome {
-    let mut config = machine("design-maximum", pipeline, &[]);
+    let mut config = machine("design-maximum", &pipeline, &[]);
     config.set("priority.theta_deg", theta_deg).expect("a number of the policy");
     let experiment = Experiment::new(config, pipeline, wall()).fields(200);
     experiment.head(head(Slide::right_at(1.0))).run().expect("it runs")
@@ -179,7 +179,7 @@ fn far_cells_are_drawn_less_often_than_near_ones() {
 fn a_flat_wall_has_one_colour_on_all_faces() {
     let ideal = FacePipeline { source: FaceSource::Ideal, ..FULL };
     for pipeline in [FULL, ideal] {
-        let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
+        let config = machine("small-hmd", &pipeline, &[("arp.face_texels", 128)]);
         let record = after(&Experiment::new(config, pipeline, wall()), 30).into_record();
         let faces = memory(&record, 0).shown_faces();
         let wall = texels(128).filter_map(|texel| Some((texel.face, faces.texel(texel)?.0)));
@@ -200,7 +200,7 @@ fn a_flat_wall_has_one_colour_on_all_faces() {
 #[test]
 fn the_default_length_of_the_falloff_is_the_side_of_a_cell() {
     for cell_m in [1.0, 2.0, 9.0] {
-        let mut config = machine("small-hmd", WARPED, &[("arp.face_texels", 128)]);
+        let mut config = machine("small-hmd", &WARPED, &[("arp.face_texels", 128)]);
         config.set("priority.cell_m", cell_m).expect("a number of the policy");
         let machine = after(&Experiment::new(config, WARPED, wall()).pixels(Pixels::Off), 3);
         assert_no_faults(machine.record());
@@ -238,7 +238,7 @@ fn faces_are_displayed_through_the_given_lens() {
 fn an_uncut_object_belongs_to_the_fastest_memory_that_it_reaches() {
     let whole = FacePipeline { segmented: false, ..CELLS };
     let run = |pipeline: FacePipeline| {
-        let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
+        let config = machine("small-hmd", &pipeline, &[("arp.face_texels", 128)]);
         after(&Experiment::new(config, pipeline, wall()).pixels(Pixels::Off), 30).into_record()
     };
     let updated = |record: &Record| (0..4).map(|k| memory(record, k).stats().swaps > 0).collect::<Vec<_>>();
@@ -249,7 +249,7 @@ fn an_uncut_object_belongs_to_the_fastest_memory_that_it_reaches() {
 
 #[test]
 fn spheres_in_far_cells_are_drawn_once_for_a_head_that_stays() {
-    let config = machine("small-hmd", CELLS, &[("arp.face_texels", 128)]);
+    let config = machine("small-hmd", &CELLS, &[("arp.face_texels", 128)]);
     let outcome = Experiment::new(config, CELLS, balls()).fields(40).pixels(Pixels::Off);
     let outcome = outcome.head(head(tracking::motion::Pan::at(200.0))).run().expect("it runs");
     let swaps: Vec<u64> = (0..4).map(|k| memory(outcome.record(), k).stats().swaps).collect();

@@ -19,7 +19,7 @@ fn still(name: &str) -> Scene {
 
 /// One slave draws, so that ties are resolved in the order of the display list.
 fn run(pipeline: FacePipeline, scene: &Scene, level: Level) -> Outcome {
-    let mut config = machine("small-hmd", pipeline, &[("arp.face_texels", 256)]);
+    let mut config = machine("small-hmd", &pipeline, &[("arp.face_texels", 256)]);
     config.n_gps = 2;
     let experiment = Experiment::new(config, pipeline, scene.clone()).fields(FIELDS).level(level);
     match experiment.run() {
@@ -33,7 +33,7 @@ fn run(pipeline: FacePipeline, scene: &Scene, level: Level) -> Outcome {
 fn every_memory_shows_the_same_texels_at_the_cycle_level() {
     for scene in ["molecules", "gallery"].map(still) {
         for pipeline in [FULL, OBJECTS, CELLS, WARPED] {
-            let outcomes = [Level::Transaction, Level::Cycle].map(|level| run(pipeline, &scene, level));
+            let outcomes = [Level::Transaction, Level::Cycle].map(|level| run(pipeline.clone(), &scene, level));
             let [table, code] = outcomes.each_ref().map(Outcome::record);
             [table, code].into_iter().for_each(assert_no_faults);
             let memories = if pipeline == FULL { 1 } else { 4 };

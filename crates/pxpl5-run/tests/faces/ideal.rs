@@ -8,7 +8,11 @@ use pxpl5_scene::builtin;
 use pxpl5_wire::display::Display;
 use tracking::motion::{Pan, Slide, Still};
 
-const IDEAL: FacePipeline = FacePipeline { source: FaceSource::Ideal, ..FULL };
+const IDEAL: FacePipeline = {
+    let mut ideal = FULL;
+    ideal.source = FaceSource::Ideal;
+    ideal
+};
 
 fn ideal(policy: FacePolicy) -> FacePipeline {
     FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(policy) }
@@ -25,7 +29,7 @@ fn the_machine_and_the_ideal_renderer_fill_memories_with_the_same_bits() {
     for (name, numbers) in runs.into_iter().chain([("room", &packed[..])]) {
         let numbers = [numbers, &[("arp.face_texels", 128)]].concat();
         let run = |pipeline: FacePipeline, fields: u64| {
-            let config = machine("small-hmd", pipeline, &numbers);
+            let config = machine("small-hmd", &pipeline, &numbers);
             let still = head(Still(tracking::Pose::IDENTITY));
             after(&Experiment::new(config, pipeline, builtin(name).expect("built in")).head(still), fields)
                 .into_record()
@@ -45,7 +49,7 @@ fn the_machine_and_the_ideal_renderer_fill_memories_with_the_same_bits() {
 fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
     for policy in [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells, FacePolicy::CellsWarped] {
         let pipeline = ideal(policy);
-        let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
+        let config = machine("small-hmd", &pipeline, &[("arp.face_texels", 128)]);
         let experiment = Experiment::new(config, pipeline, builtin("gallery").expect("built in")).fields(60);
         let outcome = experiment.pixels(Pixels::Off).head(head(Slide::right_at(1.0))).run().expect("it runs");
         let record = outcome.record();
@@ -75,7 +79,7 @@ fn the_rotation_latency_is_the_same_with_ideal_faces_and_with_faces_drawn_by_the
     for latch in [Latch::Field, Latch::Line, Latch::Pixel] {
         let turns = [FULL, IDEAL].map(|pipeline| {
             let pipeline = FacePipeline { latch, ..pipeline };
-            let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
+            let config = machine("small-hmd", &pipeline, &[("arp.face_texels", 128)]);
             let experiment = Experiment::new(config, pipeline, builtin("sphere:100").expect("even")).fields(30);
             let outcome = experiment.pixels(Pixels::Off).head(head(Pan::at(200.0))).run().expect("it runs");
             outcome.rotation_latencies()[2..].to_vec()
@@ -93,6 +97,6 @@ fn texels_of(config: &MachineConfig) -> String {
 fn faces_have_512_texels_by_default_on_a_machine_of_any_size() {
     let config = IDEAL.adapt(MachineConfig::preset("small-hmd").expect("listed"));
     assert_eq!(texels_of(&config), "512");
-    assert_eq!(texels_of(&machine("small-hmd", IDEAL, &[("arp.face_texels", 256)])), "256");
-    assert_eq!(texels_of(&IDEAL.adapt(machine("small-hmd", cells::CELLS, &[]))), "256");
+    assert_eq!(texels_of(&machine("small-hmd", &IDEAL, &[("arp.face_texels", 256)])), "256");
+    assert_eq!(texels_of(&IDEAL.adapt(machine("small-hmd", &cells::CELLS, &[]))), "256");
 }

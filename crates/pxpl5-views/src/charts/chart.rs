@@ -62,6 +62,26 @@ pub struct ChartSeries {
     pub style: SeriesStyle,
 }
 
+impl ChartPoint {
+    /// Returns a filled point without an interval.
+    pub const fn at(at: (f64, f64)) -> Self {
+        Self { at, interval: (f64::NAN, f64::NAN), is_hollow: false }
+    }
+}
+
+impl ChartSeries {
+    /// Returns a curve through the points. A point with NaN leaves a gap in the line.
+    pub fn line(name: &str, points: &[(f64, f64)]) -> Self {
+        let points = points.iter().copied().map(ChartPoint::at).collect();
+        Self { name: name.to_owned(), points, style: SeriesStyle::Line }
+    }
+
+    /// Returns a series of one point.
+    pub fn point(name: &str, point: ChartPoint) -> Self {
+        Self { name: name.to_owned(), points: vec![point], style: SeriesStyle::Points }
+    }
+}
+
 /// Size of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChartSize {

@@ -1,6 +1,6 @@
 //! Chart of simulation speed against error.
 
-use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
+use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize};
 use super::scale::AxisScale;
 
 /// Speed and error of one way to simulate, such as a level of modelling.
@@ -31,14 +31,13 @@ pub fn level_chart(levels: &[SpeedAndError]) -> String {
 
 fn series_of(level: &SpeedAndError) -> ChartSeries {
     let name = format!("{}, {:.1} %", level.name, level.mean_error_percent);
-    ChartSeries { name, points: vec![point_of(level)], style: SeriesStyle::Points }
+    ChartSeries::point(&name, ChartPoint::at(place_of(level)))
 }
 
 /// Returns the chart position of a level of modelling. A speed below one field per second is drawn at one field per
 /// second.
-const fn point_of(level: &SpeedAndError) -> ChartPoint {
-    let at = (level.fields_per_host_second.max(1.0), level.mean_error_percent);
-    ChartPoint { at, interval: (f64::NAN, f64::NAN), is_hollow: false }
+const fn place_of(level: &SpeedAndError) -> (f64, f64) {
+    (level.fields_per_host_second.max(1.0), level.mean_error_percent)
 }
 
 /// Returns a line through the best levels, starting with the fastest level. No other level is both faster and more
@@ -56,8 +55,8 @@ fn front(levels: &[SpeedAndError]) -> Option<ChartSeries> {
             best.push(level);
         }
     }
-    let points = best.iter().map(|level| point_of(level)).collect();
-    (best.len() > 1).then(|| ChartSeries { name: "front of the best".to_owned(), points, style: SeriesStyle::Line })
+    let points: Vec<_> = best.into_iter().map(place_of).collect();
+    (points.len() > 1).then(|| ChartSeries::line("front of the best", &points))
 }
 
 #[cfg(test)]

@@ -1,64 +1,27 @@
 //! Charts for a screen that compare results: curves, and points with confidence intervals.
 
-use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
+use super::chart::{Chart, ChartAxes, ChartSeries, ChartSize};
 use super::scale::AxisScale;
 
-/// A named curve. The points are joined in their order. A point with NaN leaves a gap in the line.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
-    /// Name in the legend.
-    pub name: String,
-    /// Horizontal and vertical value of each point.
-    pub points: Vec<(f64, f64)>,
-}
-
-/// A named point with the confidence interval of its vertical value.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MarkedPoint {
-    /// Name in the legend.
-    pub name: String,
-    /// Horizontal and vertical value of the point. If either value is NaN, the point is not drawn.
-    pub at: (f64, f64),
-    /// Lower and upper end of the confidence interval. NaN means that there is no interval.
-    pub interval: (f64, f64),
-    /// True for a hollow marker. The point's value is then not comparable with the values of filled markers.
-    pub is_hollow: bool,
-}
-
-/// Returns an SVG chart of curves with a legend. Both axes begin at 0.
-pub fn curve_chart(axes: &ChartAxes, curves: &[Curve]) -> String {
-    on_screen(axes, AxisScale::FromZero, curves.iter().map(of_curve).collect())
+/// Returns an SVG chart of curves or points with a legend. Both axes begin at 0.
+pub fn curve_chart(axes: ChartAxes, series: Vec<ChartSeries>) -> String {
+    on_screen(axes, AxisScale::FromZero, series)
 }
 
 /// Returns an SVG chart of curves with a legend. The vertical axis is logarithmic. Zero and negative values leave gaps
 /// in the line.
-pub fn decade_chart(axes: &ChartAxes, curves: &[Curve]) -> String {
-    on_screen(axes, AxisScale::Decades, curves.iter().map(of_curve).collect())
+pub fn decade_chart(axes: ChartAxes, series: Vec<ChartSeries>) -> String {
+    on_screen(axes, AxisScale::Decades, series)
 }
 
-/// Returns an SVG chart of points with confidence intervals and a legend. Both axes begin at 0.
-pub fn point_chart(axes: &ChartAxes, points: &[MarkedPoint]) -> String {
-    on_screen(axes, AxisScale::FromZero, points.iter().map(of_point).collect())
-}
-
-fn on_screen(axes: &ChartAxes, up: AxisScale, series: Vec<ChartSeries>) -> String {
-    Chart { axes: axes.clone(), across: AxisScale::FromZero, up, series, size: ChartSize::Screen }.svg()
-}
-
-fn of_curve(curve: &Curve) -> ChartSeries {
-    let point = |at: &(f64, f64)| ChartPoint { at: *at, interval: (f64::NAN, f64::NAN), is_hollow: false };
-    let points = curve.points.iter().map(point).collect();
-    ChartSeries { name: curve.name.clone(), points, style: SeriesStyle::Line }
-}
-
-fn of_point(point: &MarkedPoint) -> ChartSeries {
-    let points = vec![ChartPoint { at: point.at, interval: point.interval, is_hollow: point.is_hollow }];
-    ChartSeries { name: point.name.clone(), points, style: SeriesStyle::Points }
+fn on_screen(axes: ChartAxes, up: AxisScale, series: Vec<ChartSeries>) -> String {
+    Chart { axes, across: AxisScale::FromZero, up, series, size: ChartSize::Screen }.svg()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::charts::ChartPoint;
 
     fn axes() -> ChartAxes {
         ChartAxes { title: "a < b".to_owned(), across: "time, s".to_owned(), up: "error, px".to_owned() }
@@ -87,7 +50,7 @@ mod tests {
     #[test]
     fn a_missing_value_breaks_the_line() {
         let points = vec![(0.0, 0.0), (1.0, 2.0), (2.0, f64::NAN), (3.0, 4.0), (4.0, 4.0)];
-        let svg = curve_chart(&axes(), &[Curve { name: "slats".to_owned(), points }]);
+        let svg = curve_chart(axes(), vec![ChartSeries::line("slats", &points)]);
         let courses = courses(&svg);
         // The last line is the sample in the legend.
         assert_eq!(courses.len(), 3, "{courses:?}");
@@ -105,7 +68,7 @@ mod tests {
     #[test]
     fn decades_are_equally_high() {
         let points = vec![(0.0, 0.1), (1.0, 1.0), (2.0, 0.0), (3.0, 100.0), (4.0, 10.0)];
-        let svg = decade_chart(&axes(), &[Curve { name: "error".to_owned(), points }]);
+        let svg = decade_chart(axes(), vec![ChartSeries::line("error", &points)]);
         let courses = courses(&svg);
         let (floor, third) = (courses[0][0].1, courses[0][1].1);
         let (top, two_thirds) = (courses[1][0].1, courses[1][1].1);
@@ -115,15 +78,12 @@ mod tests {
 
     #[test]
     fn a_point_without_numbers_is_only_in_the_legend() {
-        let point = |name: &str, up: f64| MarkedPoint {
-            name: name.to_owned(),
-            at: (10.0, up),
-            interval: (up - 1.0, up + 1.0),
-            is_hollow: false,
+        let point = |name: &str, up: f64| {
+            ChartSeries::point(name, ChartPoint { interval: (up - 1.0, up + 1.0), ..ChartPoint::at((10.0, up)) })
         };
-        let shown = point_chart(&axes(), &[point("shown", 3.0)]);
+        let shown = curve_chart(axes(), vec![point("shown", 3.0)]);
         assert_eq!(attributes(&shown, "circle", "cy").len(), 2, "the point and its sample");
-        let heavy = point_chart(&axes(), &[point("too heavy", f64::NAN)]);
+        let heavy = curve_chart(axes(), vec![point("too heavy", f64::NAN)]);
         assert_eq!(attributes(&heavy, "circle", "cy").len(), 1, "its sample");
         assert!(heavy.contains("too heavy"));
     }

@@ -1,7 +1,7 @@
 //! The table with one row for each picture.
 
 use super::csv_file::csv_table;
-use pxpl5_measure::{HeadTimes, LATENCY_PARTS, LatencyParts, Measure, Results, head_times, latency_parts};
+use pxpl5_measure::{HeadTimes, LATENCY_PARTS, LatencyParts, Measure, Results, head_times};
 use pxpl5_run::{Outcome, PictureTimes};
 use pxpl5_wire::PictureNumber;
 use std::collections::{BTreeMap, BTreeSet};
@@ -80,7 +80,7 @@ pub fn columns() -> Vec<Column> {
 /// for a missing value.
 pub fn rows(outcome: &Outcome) -> Vec<Vec<Option<u64>>> {
     let parts: BTreeMap<PictureNumber, LatencyParts> =
-        latency_parts(outcome).into_iter().map(|parts| (parts.picture, parts)).collect();
+        outcome.latency_parts().into_iter().map(|parts| (parts.picture, parts)).collect();
     let steady: BTreeSet<PictureNumber> = outcome.steady_pictures().iter().map(|times| times.picture).collect();
     let heads = head_times(outcome);
     let row_of = |times: &PictureTimes| {

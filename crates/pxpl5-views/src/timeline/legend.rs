@@ -7,9 +7,9 @@ use pxpl5_wire::display::Surface;
 /// Draws a legend of two lines. `x` and `y` are the coordinates of the left end of the first line's baseline.
 pub(super) fn legend(out: &mut Element, timeline: &Timeline, [x, y]: [i64; 2]) {
     let mut first = Line { out, x, y };
-    for (stage, title) in STAGES.iter().filter(|(stage, _)| timeline.bars().any(|bar| bar.stage == *stage)) {
+    for stage in STAGES.iter().filter(|stage| timeline.bars().any(|bar| bar.stage == **stage)) {
         let class = class_of(*stage);
-        first.swatch(&format!("{class} {class}-plain other"), title);
+        first.swatch(&format!("{class} {class}-plain other"), &class.to_uppercase());
     }
     first.swatch("receiving", "port receives");
     if timeline.bars().any(|bar| bar.bottom.is_some()) {

@@ -4,22 +4,22 @@ use super::model::{Bar, TimelineOptions, TimelineRow};
 use crate::ports::{DisplayPort, display_ports, has_separate_ports, shown};
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, Record, StageSpan};
-use pxpl5_run::ObservedRun;
+use pxpl5_run::FinalResults;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
 /// Returns all rows of a run from top to bottom: host, graphics processors, renderers, surfaces, and ports that swap
 /// independently.
-pub(super) fn rows(run: &ObservedRun<'_>, stages: &[StageSpan], options: &TimelineOptions) -> Vec<TimelineRow> {
+pub(super) fn rows(run: &FinalResults<'_>, stages: &[StageSpan], options: &TimelineOptions) -> Vec<TimelineRow> {
     let mut rows = Vec::new();
     if !options.without_host {
         rows.push(stage_row("host", run, stages, &[Stage::Send]));
     }
     rows.push(stage_row("graphics processors", run, stages, &[Stage::Edit, Stage::Transform]));
     rows.push(stage_row("renderers", run, stages, &[Stage::Render]));
-    let ports = display_ports(run.record());
-    let surfaces = run.record().surfaces().filter(|(id, _)| !has_separate_ports(run.record(), *id));
+    let ports = display_ports(run.record);
+    let surfaces = run.record.surfaces().filter(|(id, _)| !has_separate_ports(run.record, *id));
     rows.extend(surfaces.map(|(id, surface)| row(surface.title, copies(run, |arrival| arrival.surface == id))));
     rows.extend(ports.iter().map(|port| port_row(run, port)));
     rows
@@ -30,25 +30,25 @@ fn row(name: &str, mut bars: Vec<Bar>) -> TimelineRow {
     TimelineRow { name: name.to_owned(), bars, lanes: 1, shown: Vec::new() }
 }
 
-fn port_row(run: &ObservedRun<'_>, port: &DisplayPort) -> TimelineRow {
+fn port_row(run: &FinalResults<'_>, port: &DisplayPort) -> TimelineRow {
     let bars = copies(run, |arrival| arrival.target.frame_buffer == port.node);
     TimelineRow { shown: shown(run, port.node), ..row(&port.name, bars) }
 }
 
-fn stage_row(name: &str, run: &ObservedRun<'_>, stages: &[StageSpan], wanted: &[Stage]) -> TimelineRow {
+fn stage_row(name: &str, run: &FinalResults<'_>, stages: &[StageSpan], wanted: &[Stage]) -> TimelineRow {
     let spans = stages.iter().filter(|span| wanted.contains(&span.stage));
     row(name, spans.map(|span| stage_bar(run, span)).collect())
 }
 
-fn stage_bar(run: &ObservedRun<'_>, span: &StageSpan) -> Bar {
+fn stage_bar(run: &FinalResults<'_>, span: &StageSpan) -> Bar {
     Bar {
         stage: span.stage,
         picture: span.picture,
-        surface: span.surface.filter(|_| has_many_surfaces(run.record())),
+        surface: span.surface.filter(|_| has_many_surfaces(run.record)),
         bottom: None,
         first_line: 0,
         begin: span.begin,
-        end: span.end.unwrap_or(run.end()).max(span.begin),
+        end: span.end.unwrap_or(run.now).max(span.begin),
         lane: 0,
         receiving: Vec::new(),
     }
@@ -64,17 +64,17 @@ type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
 /// Returns the COPY bars of a surface or a port. A picture has one bar, or two bars if the picture arrived in two
 /// parts, one after the other.
-fn copies(run: &ObservedRun<'_>, is_there: impl Fn(&Arrival) -> bool) -> Vec<Bar> {
-    let message = run.record().message_span();
+fn copies(run: &FinalResults<'_>, is_there: impl Fn(&Arrival) -> bool) -> Vec<Bar> {
+    let message = run.record.message_span();
     let mut parts = Parts::new();
-    for arrival in run.observation().arrivals.iter().filter(|arrival| is_there(arrival)) {
+    for arrival in run.record.observation().arrivals.iter().filter(|arrival| is_there(arrival)) {
         let begin = arrival.begins_at(message);
         // Arrivals of the same picture and part extend one bar.
-        let key = (arrival.target.picture, run.pipeline().copy_part(arrival));
-        let bar = parts.entry(key).or_insert_with(|| copy_bar(run.record(), arrival, begin));
+        let key = (arrival.target.picture, run.pipeline.copy_part(arrival));
+        let bar = parts.entry(key).or_insert_with(|| copy_bar(run.record, arrival, begin));
         bar.begin = bar.begin.min(begin);
         bar.end = bar.end.max(arrival.last_part_at);
-        bar.first_line = bar.first_line.min(first_line(run.record(), arrival));
+        bar.first_line = bar.first_line.min(first_line(run.record, arrival));
         bar.receiving.push((begin, arrival.last_part_at));
     }
     name_halves(&mut parts);

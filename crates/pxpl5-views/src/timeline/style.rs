@@ -10,13 +10,7 @@ use pxpl5_wire::SurfaceId;
 use pxpl5_wire::display::Surface;
 use std::fmt::Write;
 
-pub(super) const STAGES: [(Stage, &str); 5] = [
-    (Stage::Send, "SEND"),
-    (Stage::Edit, "EDIT"),
-    (Stage::Transform, "TRANSFORM"),
-    (Stage::Render, "RENDER"),
-    (Stage::Copy, "COPY"),
-];
+pub(super) const STAGES: [Stage; 5] = [Stage::Send, Stage::Edit, Stage::Transform, Stage::Render, Stage::Copy];
 
 /// Suffix of the CSS class for work on the first surface or on all surfaces.
 const PLAIN: &str = "plain";
@@ -36,17 +30,10 @@ pub(super) const fn pattern(surface: Option<SurfaceId>) -> &'static str {
 ///
 /// A half of a picture that is copied separately has an additional `t` (top) or `b` (bottom).
 pub(super) fn letters(bar: &Bar, surfaces: &[Surface]) -> String {
-    let stage = match bar.stage {
-        Stage::Send => "S",
-        Stage::Edit => "E",
-        Stage::Transform => "T",
-        Stage::Render => "R",
-        Stage::Copy => "C",
-        Stage::Sample | Stage::Swap => "",
-    };
+    let stage = STAGES.contains(&bar.stage).then(|| class_of(bar.stage).to_uppercase().remove(0));
     let surface = bar.surface.and_then(|id| surfaces.get(id.index())).map(Surface::letter);
     let half = bar.bottom.map(|bottom| if bottom { 'b' } else { 't' });
-    stage.chars().chain(surface).chain(half).collect()
+    stage.into_iter().chain(surface).chain(half).collect()
 }
 
 pub(super) fn style() -> Element {
@@ -60,7 +47,7 @@ pub(super) fn style() -> Element {
          .receiving{fill:#1b6b2f}.arrow{stroke:#c00000;stroke-width:2;fill:none;marker-end:url(#head)}\
          .left-eye{fill:#ddd}.right-eye{fill:url(#eye-right)}",
     );
-    for (stage, _) in STAGES {
+    for stage in STAGES {
         // Each stage has a plain fill, a hatched fill and a text colour.
         let name = class_of(stage);
         let Tints { ground, ink, .. } = tints_of(name);
@@ -79,7 +66,7 @@ pub(super) const HATCHED_SURFACE: &str = "right-eye";
 
 /// Returns the definitions that the style sheet refers to: arrow heads and hatching patterns.
 pub(super) fn definitions() -> Element {
-    let hatches = STAGES.map(|(stage, _)| hatch(&format!("{}-hatch", class_of(stage)), tints_of(class_of(stage))));
+    let hatches = STAGES.map(|stage| hatch(&format!("{}-hatch", class_of(stage)), tints_of(class_of(stage))));
     let grey = hatch("eye-right", Tints { ground: "#ddd", ..WAITING });
     Element::new("defs").child(&arrow_head()).child(&grey).children(hatches)
 }

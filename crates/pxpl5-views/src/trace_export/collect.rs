@@ -2,7 +2,7 @@ use super::flows::connect;
 use super::groups::{Group, groups, named};
 use super::model::{Events, Slice, Trace, Track};
 use super::slices::{apart, message_slice, region_slice, stage_name, stage_slice};
-use crate::ports::{display_ports, shown as shown_by};
+use crate::ports::{display_of, display_ports, shown as shown_by};
 use crate::results::origin;
 use pxpl5_gp::{Mark, Stage, StageEdge};
 use pxpl5_machine::{Record, Traffic};
@@ -64,7 +64,7 @@ impl Trace {
         let arrivals = outcome.observation().arrivals.iter().filter(|arrival| arrival.target.frame_buffer == node);
         self.track(group, "COPY", Events::Slices(apart(arrivals.map(|arrival| region_slice(arrival, message)))));
         // A swap is an instant, and the displayed picture is a slice.
-        let shown = shown_by(&outcome.observed_run(), node);
+        let shown = shown_by(&outcome.final_results(), node);
         let swaps = shown.iter().map(|shown| (shown.begin, "swap".to_owned()));
         self.track(group, "swaps", Events::Instants(swaps.collect()));
         let slices = shown.iter().map(|shown| Slice {
@@ -93,7 +93,7 @@ impl Trace {
             }
         }
         for (stage, slices) in slices {
-            self.track(group, stage_name(stage), Events::Slices(apart(slices.into_iter())));
+            self.track(group, &stage_name(stage), Events::Slices(apart(slices.into_iter())));
         }
     }
 
@@ -156,17 +156,6 @@ fn ended(record: &Record, mark: &Mark, begin: Time) -> Slice {
 
 fn name_of(groups: &[Group], node: NodeId) -> &str {
     groups.iter().find(|group| group.node == Some(node)).map_or("", |group| &group.name)
-}
-
-fn display_of(record: &Record, surface: SurfaceId) -> Option<&dyn Display> {
-    let mut first = 0;
-    for display in record.displays() {
-        first += display.surfaces().len();
-        if surface.index() < first {
-            return Some(display.as_ref());
-        }
-    }
-    None
 }
 
 fn period_slice(display: &dyn Display, pictures: &[PictureTimes], period: PeriodNumber) -> Slice {

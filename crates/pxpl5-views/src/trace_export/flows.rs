@@ -18,7 +18,7 @@ struct Stop {
 }
 
 pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
-    let updates = Updates::of(&outcome.observed_run(), &outcome.stages());
+    let updates = Updates::of(&outcome.final_results(), &outcome.stages());
     let sends = firsts(trace, &[Stage::Send]);
     let stages = firsts(trace, &[Stage::Transform, Stage::Render, Stage::Copy]);
     let shown = first_shown(trace);
@@ -38,8 +38,8 @@ pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
 /// has the first event of each surface.
 fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<PictureNumber, Vec<Stop>> {
     let mut all: BTreeMap<(PictureNumber, String), Stop> = BTreeMap::new();
-    let names: Vec<&str> = stages.iter().map(|stage| stage_name(*stage)).collect();
-    for (stop, track, slice) in stops(trace).filter(|(_, track, _)| names.contains(track)) {
+    let names: Vec<String> = stages.iter().map(|stage| stage_name(*stage)).collect();
+    for (stop, track, slice) in stops(trace).filter(|(_, track, _)| names.iter().any(|name| name == track)) {
         let Some(picture) = slice.picture else { continue };
         // Slices of COPY have the names of regions. The name of the track is used instead, so only the first region of
         // each surface counts.

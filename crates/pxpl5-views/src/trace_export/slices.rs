@@ -1,21 +1,14 @@
 //! Slices, which are events with a duration, for stages, messages and regions.
 
 use super::model::Slice;
+use crate::palette::class_of;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, Transfer};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 
-pub(super) const fn stage_name(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Sample => "SAMPLE",
-        Stage::Send => "SEND",
-        Stage::Edit => "EDIT",
-        Stage::Transform => "TRANSFORM",
-        Stage::Render => "RENDER",
-        Stage::Copy => "COPY",
-        Stage::Swap => "SWAP",
-    }
+pub(super) fn stage_name(stage: Stage) -> String {
+    class_of(stage).to_uppercase()
 }
 
 /// Returns the slice for a stage of a picture. A slice is an event with a duration. `label` names the surface for which

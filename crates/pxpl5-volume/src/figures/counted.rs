@@ -1,13 +1,13 @@
 //! Figures of the SpatialGL paper that are counted in views of the display, or measured in drawn volumes.
 
-use super::printed::{TRIANGLE, display, recording};
+use super::printed::{display, recording};
 use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::parameters::SettingError;
 use spatialgl::perspecta::PerspectaConfig;
 use spatialgl::perspecta::figures::row;
 use spatialgl::{
-    BinLayout, Binning, ColouredVertex, CommandBuffer, DrawContext, HostRenderer, Projection, SliceClip, SliceView,
-    SpatialDisplay, SweptDisplay, Tiling, Topology, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
+    BinLayout, Binning, HostRenderer, Projection, SliceClip, SliceView, SpatialDisplay, SweptDisplay, Tiling,
+    VolumeConfig, VolumeStats, Workers, render_volume,
 };
 
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
@@ -35,7 +35,7 @@ fn passes(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
         (SliceClip::Hyperbolic(0.25), 1.0, "with a hyperbola"),
     ];
     let small = PerspectaConfig { width: SMALL, height: SMALL, ..PerspectaConfig::PAPERS };
-    let recording = small_triangle()?;
+    let recording = recording(SMALL as f64 / PerspectaConfig::PAPERS.width as f64)?;
     let count = |(clip, passes, statement)| {
         // Without bins every slice issues the triangle once per pass.
         let display = small.swept(clip, Projection::Orthographic)?;
@@ -45,15 +45,6 @@ fn passes(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     published.into_iter().map(count).collect()
 }
 
-fn small_triangle() -> Result<CommandBuffer, SettingError> {
-    let scale = SMALL as f64 / PerspectaConfig::PAPERS.width as f64;
-    let corner = |corner: [f64; 3]| ColouredVertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);
-    let buffer = VertexBuffer::new(TRIANGLE.map(corner).to_vec())?;
-    let mut context = DrawContext::default();
-    context.draw(&buffer, 0..3, Topology::Triangles)?;
-    Ok(context.present())
-}
-
 /// Returns figures P9 (pixels per word), D7 (bytes of a packed slice) and D8. D8 is the number of queries and stencil
 /// clears of a volume, with and without batches.
 fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
@@ -61,7 +52,7 @@ fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<FigureRo
         // The same triangle is drawn with batches of one slice and of four slices.
         let tiling = Tiling { batch, ..Tiling::PAPER };
         let config = VolumeConfig { tiling, binning: Binning::AllPlanes, ..VolumeConfig::paper() };
-        render_volume(display, &recording()?, &config, &HostRenderer, workers)
+        render_volume(display, &recording(1.0)?, &config, &HostRenderer, workers)
     };
     let by_slice: VolumeStats = drawn(1)?.stats;
     let batched = drawn(Tiling::PAPER.batch)?;

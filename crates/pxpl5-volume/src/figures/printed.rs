@@ -13,7 +13,7 @@ use spatialgl::{
 };
 
 /// A test triangle parallel to the axis. Its corners are in pixels.
-pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
+const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
 
 /// Index of the slice in which [`TRIANGLE`] is examined. The exact volume of this slice contains 209 pixels of the
 /// triangle (derived from the area of the intersection).
@@ -35,8 +35,9 @@ pub(super) fn display(clip: SliceClip, projection: Projection) -> Result<SweptDi
     PerspectaConfig::PAPERS.swept(clip, projection)
 }
 
-pub(super) fn recording() -> Result<CommandBuffer, SettingError> {
-    let vertices = TRIANGLE.map(|corner| ColouredVertex::new(corner.into(), [255; 3]));
+/// Records [`TRIANGLE`] with a scale.
+pub(super) fn recording(scale: f64) -> Result<CommandBuffer, SettingError> {
+    let vertices = TRIANGLE.map(|corner| ColouredVertex::new(corner.map(|place| place * scale).into(), [255; 3]));
     let buffer = VertexBuffer::new(vertices.to_vec())?;
     let mut context = DrawContext::default();
     context.draw(&buffer, 0..3, Topology::Triangles)?;
@@ -45,7 +46,7 @@ pub(super) fn recording() -> Result<CommandBuffer, SettingError> {
 
 fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, SettingError> {
     let config = VolumeConfig { strobes: Strobes::Mirror, keeps_colours: true, ..VolumeConfig::paper() };
-    render_volume(display, &recording()?, &config, &HostRenderer, workers)
+    render_volume(display, &recording(1.0)?, &config, &HostRenderer, workers)
 }
 
 /// Returns the two rows of figure P2. The first row counts the boundary planes of a slice that a circle around the axis

@@ -90,13 +90,6 @@ impl SliceTriangle {
     pub fn encode(&self, layout: &Layout, out: &mut Vec<Word>) {
         self.program(layout).iter().for_each(|instruction| instruction.encode(out));
     }
-
-    /// Returns the largest possible rounding error of the clip function (a hyperbola) at any pixel of an image, in
-    /// square pixels. Each of the six coefficients contributes half a unit.
-    pub fn clip_rounding_px2([width, height]: Size) -> f64 {
-        let [x, y] = [width, height].map(f64::from);
-        0.5 * (x * x + x * y + y * y + x + y + 1.0) / f64::from(1 << CLIP_FRACTION_BITS)
-    }
 }
 
 /// Returns the exact edge function from one corner to the next, in units of 1/256 px^2, evaluated at the middle of each

@@ -187,10 +187,8 @@ impl<'a> Machine<'a> {
     /// Sends all maps of tiles before any tile, because a tile must not overtake its map.
     fn send_maps(&mut self) {
         let destination = self.display_node();
-        let maps: Vec<Body> = self.traffic.maps.iter().map(|map| Body::Words(Arc::clone(map))).collect();
-        for (order, body) in (0..).zip(maps) {
-            let words = words_of(&body);
-            let message = Message { source: NodeId(0), destination, words, body };
+        for (order, map) in (0..).zip(&self.traffic.maps) {
+            let message = message_of(NodeId(0), destination, Arc::clone(map));
             self.request(Time::ZERO, Request { message, ticket: None, hold: false, order });
         }
     }
@@ -255,12 +253,12 @@ impl<'a> Machine<'a> {
         if has_tiles {
             runs.push_back(run(CommandKind::CopyRegion, COPY_WORDS, 1));
         }
-        let mut lists = vec![CommandList { runs: Vec::new(), context: 0, copies: Vec::new(), content: None }];
+        let mut lists = vec![list_of(Vec::new())];
         // Start a new list when a message would exceed the limit.
         for run in runs {
             let list = lists.last_mut().expect("there is one");
             if list.words() + run.words_each > MAX_MESSAGE_WORDS {
-                lists.push(CommandList { runs: vec![run], ..list_without_runs() });
+                lists.push(list_of(vec![run]));
             } else {
                 list.runs.push(run);
             }
@@ -359,9 +357,7 @@ impl<'a> Machine<'a> {
         // The last tile has the ticket, which notifies the renderer that its region has left.
         let last = tiles.len().saturating_sub(1);
         for (i, words) in tiles.into_iter().enumerate() {
-            let body = Body::Words(words);
-            let message =
-                Message { source: message.source, destination: message.destination, words: words_of(&body), body };
+            let message = message_of(message.source, message.destination, words);
             let request = Request { message, ticket: (i == last).then_some(0), hold: i != last, order: i as u32 };
             self.request(at, request);
         }
@@ -409,12 +405,12 @@ impl<'a> Machine<'a> {
     }
 }
 
-fn list_without_runs() -> CommandList {
-    CommandList { runs: Vec::new(), context: 0, copies: Vec::new(), content: None }
+fn list_of(runs: Vec<CommandRun>) -> CommandList {
+    CommandList { runs, context: 0, copies: Vec::new(), content: None }
 }
 
-fn words_of(body: &Body) -> u32 {
-    if let Body::Words(words) = body { words.len() as u32 } else { 0 }
+fn message_of(source: NodeId, destination: NodeId, words: Arc<[Word]>) -> Message {
+    Message { source, destination, words: words.len() as u32, body: Body::Words(words) }
 }
 
 /// Returns the renderer's times for drawing slices. A slice triangle has the command code of a triangle, and a halftone

@@ -12,7 +12,7 @@ use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::{CommandKind, Layout};
-use pxpl5_run::{Experiment, Level, Statistics, Summary, WARM_UP_PICTURES, display_list, views};
+use pxpl5_run::{Experiment, Level, SceneViews, Statistics, Summary, ViewSource, WARM_UP_PICTURES, display_list};
 use pxpl5_scene::{Hmd, Scene};
 use pxpl5_sim::Time;
 use std::sync::Arc;
@@ -237,14 +237,14 @@ pub(super) fn regions_touched(settings: &FigureSettings) -> Result<FigureValue> 
 /// Returns the number of bin entries per visible triangle, over both eyes and `n_views` head poses.
 fn touched(scene: &Arc<Scene>, binning: RegionBinning, n_views: u64) -> Result<f64> {
     let list = Arc::new(display_list(scene)?);
-    let (views, _) = views(scene, 1, Hmd::unc(), 2);
+    let views = SceneViews::new(scene, 1, Hmd::unc(), 2);
     let share = Share::new(list, 0, 1);
     let layout = Layout::rendering_control_phong();
     let picture = Picture { viewport: Viewport::FRAME, shading: Shading::Phong, binning, layout, pixels: false };
     let mut entries = 0u64;
     let mut triangles = 0u64;
     for number in 0..n_views {
-        let view = views(pxpl5_wire::ViewNumber(number), Time(number * VIEW_PERIOD_PS));
+        let view = views.newest(pxpl5_wire::ViewNumber(number), Time(number * VIEW_PERIOD_PS));
         for eye in 0..2 {
             // Both eyes of every view count.
             let pass = share.transform(&view, eye, picture);

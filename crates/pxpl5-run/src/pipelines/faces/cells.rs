@@ -77,7 +77,7 @@ impl ByCells {
 
 impl DuePolicy for ByCells {
     fn begin(&mut self, updates: &Updates, number: PictureNumber, now: Time) -> VecDeque<Due> {
-        let eye = (updates.setup.poses)(now, now).position;
+        let eye = updates.setup.views.pose_at(now, now).position;
         let mut update = self.policy.frame(eye);
         update.due[0] |= self.has_moving;
         if !update.due.contains(&true) {

@@ -6,7 +6,8 @@ use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
 use crate::result::outcome::Outcome;
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory};
 use pxpl5_machine::Record;
-use pxpl5_wire::display::{Aim, Display};
+use pxpl5_sim::Span;
+use pxpl5_wire::display::Display;
 use pxpl5_wire::{Eye, FieldParity, NodeId, PeriodNumber};
 
 /// An update of a display memory, with the first period in which the memory shows the update.
@@ -21,16 +22,11 @@ pub struct ShownUpdate {
 /// Updates that each display memory of a run has shown, in order.
 #[derive(Clone, Debug, Default)]
 pub struct FaceHistory {
-    memories: Vec<Vec<ShownUpdate>>,
+    /// Updates of each display memory.
+    pub memories: Vec<Vec<ShownUpdate>>,
 }
 
 impl FaceHistory {
-    /// Returns the history of the cube faces of a run, from the records in memory. Returns `None` if the run's display
-    /// does not accept cube faces.
-    pub fn of(outcome: &Outcome) -> Option<Self> {
-        Self::held(outcome.record())
-    }
-
     /// Returns the history from the records of a run that has ended or is in progress. Returns `None` if the run's
     /// display does not accept cube faces.
     pub fn held(record: &Record) -> Option<Self> {
@@ -46,11 +42,6 @@ impl FaceHistory {
     /// Memories that show nothing are left out.
     pub fn at(&self, period: PeriodNumber) -> impl Iterator<Item = &ShownUpdate> {
         (0..self.memories.len()).filter_map(move |memory| self.memory_at(memory, period))
-    }
-
-    /// Returns the number of display memories.
-    pub const fn n_memories(&self) -> usize {
-        self.memories.len()
     }
 
     /// Returns the update that a display memory shows in a period. Returns `None` before the memory's first update.
@@ -80,26 +71,17 @@ pub(crate) fn display(record: &Record) -> Option<&AddressRecalculationPipeline> 
 }
 
 impl OrientationTiming {
-    /// Returns the orientation timing of a run, or `None` if the run's display does not accept cube faces.
-    pub fn of(outcome: &Outcome) -> Option<Self> {
-        Self::of_run(&outcome.final_results())
-    }
-
     /// Returns the orientation timing of a run that has ended or is in progress. Returns `None` if the run's display
     /// does not accept cube faces.
     pub fn of_run(results: &FinalResults<'_>) -> Option<Self> {
-        Self::of_record(results.record, results.aim)
-    }
-
-    pub(super) fn of_record(record: &Record, aim: Aim) -> Option<Self> {
-        let link = record.config().host.link_span(ORIENTATION_WORDS);
-        Self::before(record.display(), link, aim)
+        let link = results.record.config().host.link_span(ORIENTATION_WORDS);
+        Self::before(results.record.display(), link, results.aim)
     }
 }
 
 /// Returns the middle pixel of the first surface in a period. An interlaced display shows one of two neighbouring lines
 /// in each period.
-pub(super) fn middle_pixel(record: &Record, period: PeriodNumber) -> Option<[u32; 2]> {
+fn middle_pixel(record: &Record, period: PeriodNumber) -> Option<[u32; 2]> {
     let surface = record.display().surfaces().first()?;
     Some([surface.width / 2, surface.height / 2 + FieldParity::of_field(period).first_line()])
 }
@@ -117,6 +99,17 @@ impl Outcome {
         self.record().attached().map_or_else(Vec::new, RequestedUpdates::all)
     }
 
+    /// Returns the number of display periods in which a display with cube faces showed old pictures in a new direction
+    /// of the head. Returns 0 for any other display.
+    ///
+    /// Each such period counts as a picture, although the pipeline drew nothing for this period. The periods begin with
+    /// the first swap of any display memory, because each field is shown with its own latched orientation.
+    pub fn turned_periods(&self) -> u64 {
+        let first = display(self.record()).and_then(|_| self.observation().first_swap());
+        let after = self.record().display().period_at(self.end());
+        first.map_or(0, |first| after.since(first.min(after)))
+    }
+
     /// Returns the rotation latency of the middle pixel of every field, beginning with the first field that has a
     /// rotation latency. The list is empty without a tracked head, or if the display does not accept cube faces.
     pub fn rotation_latencies(&self) -> Vec<RotationLatency> {
@@ -126,6 +119,16 @@ impl Outcome {
 }
 
 impl FinalResults<'_> {
+    /// Returns the prediction interval of the orientation by which the display turns the middle pixel of a period. The
+    /// interval lasts from the measurement of the orientation to the instant for which the orientation was predicted.
+    /// Returns `None` if the display turns no pictures, and before the first report.
+    pub(crate) fn turn_interval(&self, period: PeriodNumber) -> Option<Span> {
+        let (timing, head, [x, y]) = (OrientationTiming::of_run(self)?, self.head?, middle_pixel(self.record, period)?);
+        let (reports_until, aimed) = timing.orientation_of_pixel(head, x, y, period)?;
+        let measured = head.measured_at(head.report_by(reports_until)?)?;
+        Some(aimed.since(measured))
+    }
+
     /// Returns the rotation latency of the middle pixel of each of the fields `fields`. Fields without a latency are
     /// left out. The results of the fields must be final.
     pub fn rotation_latencies(&self, fields: impl Iterator<Item = PeriodNumber>) -> Vec<RotationLatency> {

@@ -1,6 +1,4 @@
 use super::plan::{Due, DuePolicy, Plan, Updates};
-use crate::pipeline::Setup;
-use crate::pipelines::faces::latched_head::lights_of;
 use address_recalculation::{CubeFace, FaceScan};
 use pphigs::oracle::ideal_picture_of;
 use pphigs::{DisplayList, FrameView};
@@ -81,26 +79,13 @@ impl IdealFaces {
     }
 }
 
-/// Returns the setup of a host whose updates are shown at the next retrace. The views are predicted for the time at
-/// which the next field is lit.
-pub(super) fn seen_next(setup: &Setup, scan: FaceScan) -> Setup {
-    let wanted = Arc::clone(&setup.wanted);
-    let aim = setup.aim;
-    let views = move |number, now| {
-        let field = scan.field_at(now).next();
-        wanted(number, now, aim.instant(&lights_of(&scan, field)))
-    };
-    Setup { views: Arc::new(views), ..setup.clone() }
-}
-
 pub(super) struct All {
     pub(super) structures: Arc<[bool]>,
 }
 
 impl DuePolicy for All {
     fn begin(&mut self, _: &Updates, _: PictureNumber, now: Time) -> VecDeque<Due> {
-        let structures = Arc::clone(&self.structures);
-        [Due { memory: 0, together: 0, structures, at: now, view: None, warp: None }].into()
+        [Due::newest(Arc::clone(&self.structures), now)].into()
     }
 }
 

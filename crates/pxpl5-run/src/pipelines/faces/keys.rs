@@ -26,14 +26,14 @@ impl FacePolicy {
 
 pxpl5_sim::parameters::named!(FacePolicy, "policy", FacePolicy::ALL);
 
-pub(super) const NAMES: [[&str; 3]; 4] = [
+/// Names of the pipelines of each policy, and of the ideal renderer, by the latched part of a field.
+pub(super) const NAMES: [[&str; 3]; 5] = [
     ["arp-full", "arp-full-line", "arp-full-pixel"],
     ["arp-priority", "arp-priority-line", "arp-priority-pixel"],
     ["arp-cells", "arp-cells-line", "arp-cells-pixel"],
     ["arp-cells-warp", "arp-cells-warp-line", "arp-cells-warp-pixel"],
+    ["arp-ideal", "arp-ideal-line", "arp-ideal-pixel"],
 ];
-
-pub(super) const IDEAL_NAMES: [&str; 3] = ["arp-ideal", "arp-ideal-line", "arp-ideal-pixel"];
 
 pub(super) const LENS: Key = Key::new(
     "lens",

@@ -69,7 +69,7 @@ impl ByObjects {
 impl DuePolicy for ByObjects {
     fn begin(&mut self, updates: &Updates, _: PictureNumber, now: Time) -> VecDeque<Due> {
         let field = self.scan.field_at(now);
-        let eye = (updates.setup.poses)(now, now).position;
+        let eye = updates.setup.views.pose_at(now, now).position;
         // The first cycle has no earlier position, so the speed is 0.
         let speed = self.began.map_or(0.0, |(before, from)| {
             let seconds = self.scan.retrace(field).since(self.scan.retrace(before)).as_ms() * 1e-3;

@@ -2,36 +2,32 @@
 //! orientation of the head.
 
 use super::cells::ByCells;
-use super::ideal::{All, IdealFaces, seen_next};
-use super::keys::{FacePolicy, IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
+use super::ideal::{All, IdealFaces};
+use super::keys::{FacePolicy, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::objects::ByObjects;
-use super::plan::{Cycles, Full, Plan, Updates};
-use crate::head_views::HeadViews;
-use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
-use crate::pipelines::faces::history::middle_pixel;
+use super::plan::{Cycles, DuePolicy, Plan, Updates, full};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, PipelineProperties, Setup};
 use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::pipelines::faces::segments::SegmentedScene;
-use crate::pipelines::{region_has_room, shading_value, swapped_in};
+use crate::pipelines::rendering_control::{load_programs, with_boards};
+use crate::pipelines::{picture, region_has_room, shading_value, swapped_in};
 use crate::result::picture_ends::PictureResult;
-use crate::views::{Poses, ReportTimes};
+use crate::views::ViewSource;
 use address_recalculation::priority::{Falloff, PriorityTiming};
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Lens, Orientation, orientation_message};
 use glam::{Mat4, Vec4};
-use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
+use pphigs::{DisplayList, RecentViews, Shading};
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::Priority;
 use pxpl5_machine::{Attachment, HostLine, Machine, MachineConfig, Record, Shown};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::{HmdConfig, Scene};
+use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{KeyValue, SettingError};
-use pxpl5_sim::{Span, Time};
-use pxpl5_wire::display::{Aim, Coverage};
-use pxpl5_wire::{Body, CopyContent, Lines, NodeId, PeriodNumber, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
+use pxpl5_wire::display::Coverage;
+use pxpl5_wire::{Body, CopyContent, Lines, NodeId, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
 use rendering_control::cube::{Faces, WarpedLists};
-use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::any::Any;
-use std::fmt;
 use std::sync::Arc;
 
 /// The renderer that draws the cube faces.
@@ -46,7 +42,7 @@ pub enum FaceSource {
 }
 
 /// A pipeline that draws six cube faces for an address recalculation display.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FacePipeline {
     /// The renderer that draws the cube faces.
     pub source: FaceSource,
@@ -64,53 +60,8 @@ pub struct FacePipeline {
     /// Decrease of the displacement of vertices, for warped cells, with the distance from the border to a display
     /// memory with a lower update rate.
     pub falloff: Falloff,
-    /// Lens between display and eye.
-    pub lens: FaceLens,
-}
-
-/// A lens that is defined by at most two coefficients.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FaceLens {
-    /// The lens in the display's configuration. By default, the display has no lens.
-    #[default]
-    OfDisplay,
-    /// Lens whose viewing angle is proportional to the distance from the middle.
-    Equidistant,
-    /// Radial polynomial lens with two coefficients. The coefficients are stored as bits, so that pipelines can be
-    /// compared.
-    Radial([u64; 2]),
-}
-
-impl FaceLens {
-    /// Converts a lens. Returns `None` for a lens that is defined by a table.
-    pub fn of(lens: Lens) -> Option<Self> {
-        match lens {
-            Lens::Flat => Some(Self::OfDisplay),
-            Lens::Equidistant => Some(Self::Equidistant),
-            Lens::Radial { k1, k2 } => Some(Self::Radial([k1, k2].map(f64::to_bits))),
-            Lens::Table(_) => None,
-        }
-    }
-
-    /// Returns the lens, or `None` for the lens of the display.
-    pub fn lens(self) -> Option<Lens> {
-        match self {
-            Self::OfDisplay => None,
-            Self::Equidistant => Some(Lens::Equidistant),
-            Self::Radial(bits) => {
-                let [k1, k2] = bits.map(f64::from_bits);
-                Some(Lens::Radial { k1, k2 })
-            }
-        }
-    }
-
-    fn text(self) -> Option<String> {
-        match self.lens()? {
-            Lens::Radial { k1, k2: 0.0 } => Some(format!("radial:{k1}")),
-            Lens::Radial { k1, k2 } => Some(format!("radial:{k1}:{k2}")),
-            _ => Some("equidistant".to_owned()),
-        }
-    }
+    /// Lens between display and eye. By default, the lens in the display's configuration.
+    pub lens: Option<Lens>,
 }
 
 impl FacePipeline {
@@ -124,34 +75,17 @@ impl FacePipeline {
             shading: Shading::Phong,
             segmented: true,
             falloff: Falloff::Linear,
-            lens: FaceLens::OfDisplay,
+            lens: None,
         }
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig<Faces>, SettingError> {
-        let ports = machine.ports();
-        // The first GP is the master, and all others are slaves.
-        let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
-        if slaves.is_empty() {
-            return Err(too_few_gps(1));
-        }
-        Ok(RenderingControlConfig {
-            host: ports.host,
-            master: *master,
-            slaves: slaves.to_vec(),
-            renderers: ports.renderers.clone(),
-            drawn: self.faces(machine, pixels)?,
-        })
-    }
-
-    fn faces(self, machine: &Machine, pixels: bool) -> Result<Faces, SettingError> {
+    fn faces(&self, machine: &Machine, pixels: bool) -> Result<Faces, SettingError> {
         let display = display_of(machine.record())?.config();
         let texels = display.timing.face_texels as u32;
         // A face is a square picture, divided into the usual regions.
         let grid = RegionGrid { width: texels, height: texels, region_width: REGION_SIZE, region_height: REGION_SIZE };
         let viewport = Viewport::new(grid, Lines::Frame).map_err(|error| error.at("arp.face_texels"))?;
-        let picture =
-            Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels };
+        let picture = picture(viewport, self.shading, pixels);
         // A display with packed texels takes one word a pixel, otherwise colour and depth are sent.
         let content = if display.format().words() == 1 { CopyContent::Packed } else { CopyContent::ColourAndDepth };
         if self.source == FaceSource::PixelPlanes {
@@ -161,43 +95,45 @@ impl FacePipeline {
         Ok(Faces { memories, picture, content, warped: WarpedLists::default() })
     }
 
-    fn plan(self, machine: &mut Machine, setup: &Setup) -> Result<Plan, SettingError> {
+    fn plan(&self, machine: &mut Machine, setup: &Setup) -> Result<Plan, SettingError> {
         let notes = Arc::new(RequestedUpdates::default());
         machine.attach(Arc::clone(&notes) as Arc<dyn Attachment>);
         let display = display_of(machine.record())?.config();
         let projection = projection(display);
         let scan = display.scan()?;
         // An ideal renderer has no delay, so its views are predicted for the next field.
-        let setup = &if self.source == FaceSource::Ideal { seen_next(setup, scan) } else { setup.clone() };
-        let updates = Updates::new(setup, &notes, projection, display.timing.display_memories as usize);
-        if self.policy == FacePolicy::Full && self.source == FaceSource::Ideal {
-            let structures = vec![true; setup.list.structures.len()].into();
-            let mut cycles = Cycles::new(updates, scan, All { structures });
-            return Ok(Box::new(move |number, now| cycles.next(number, now)));
-        }
-        if self.policy == FacePolicy::Full {
-            let mut full = Full::new(updates);
-            return Ok(Box::new(move |number, now| full.next(number, now)));
+        let seen_next = (self.source == FaceSource::Ideal).then_some(scan);
+        let updates = Updates::new(setup, seen_next, &notes, projection, display.timing.display_memories as usize);
+        let structures = vec![true; setup.list.structures.len()].into();
+        if self.policy == FacePolicy::Full && self.source == FaceSource::PixelPlanes {
+            return Ok(full(updates, structures));
         }
         // Other policies distribute structures over several memories and work in cycles.
-        let timing =
-            PriorityTiming { memories: display.timing.display_memories, ..priority_timing(machine.record().config())? };
-        if self.policy == FacePolicy::Objects {
-            let policy = ByObjects::new(&setup.list, scan, &timing);
-            let mut cycles = Cycles::new(updates, scan, policy);
-            return Ok(Box::new(move |number, now| cycles.next(number, now)));
-        }
-        // Without warping, cells use a falloff of `None`.
-        let falloff = if self.policy == FacePolicy::CellsWarped { self.falloff } else { Falloff::None };
-        let cut: Option<&SegmentedScene> = machine.record().attached();
-        let cells = cut.map_or_else(Arc::default, |cut| Arc::clone(&cut.cells));
-        let policy = ByCells::new(&updates, cells, &timing, falloff);
-        let mut cycles = Cycles::new(updates, scan, policy);
-        Ok(Box::new(move |number, now| cycles.next(number, now)))
+        let memories = display.timing.display_memories;
+        let timing = || priority_timing(machine.record().config()).map(|timing| PriorityTiming { memories, ..timing });
+        let policy: Box<dyn DuePolicy> = match self.policy {
+            FacePolicy::Full => Box::new(All { structures }),
+            FacePolicy::Objects => Box::new(ByObjects::new(&setup.list, scan, &timing()?)),
+            FacePolicy::Cells | FacePolicy::CellsWarped => {
+                // Without warping, cells use a falloff of `None`.
+                let falloff = if self.policy == FacePolicy::CellsWarped { self.falloff } else { Falloff::None };
+                let cut: Option<&SegmentedScene> = machine.record().attached();
+                let cells = cut.map_or_else(Arc::default, |cut| Arc::clone(&cut.cells));
+                Box::new(ByCells::new(&updates, cells, &timing()?, falloff))
+            }
+        };
+        Ok(Cycles::plan(updates, scan, policy))
     }
 
-    const fn has_cells(self) -> bool {
+    const fn has_cells(&self) -> bool {
         matches!(self.policy, FacePolicy::Cells | FacePolicy::CellsWarped)
+    }
+}
+
+fn lens_text(lens: &Lens) -> String {
+    match lens {
+        Lens::Radial { k1, k2: 0.0 } => format!("radial:{k1}"),
+        lens => lens.to_string(),
     }
 }
 
@@ -205,10 +141,6 @@ fn priority_timing(config: &MachineConfig) -> Result<PriorityTiming, SettingErro
     let timing = config.firmware_table().copied().unwrap_or(PriorityTiming::PAPERS);
     timing.check()?;
     Ok(timing)
-}
-
-fn too_few_gps(found: u64) -> SettingError {
-    SettingError::limits("n_gps of faces (a master and slaves)", (2, 1_000), found)
 }
 
 fn display_of(record: &Record) -> Result<&AddressRecalculationPipeline, SettingError> {
@@ -235,26 +167,20 @@ const ORIENTATION_PORT: usize = 0;
 /// Connection from the host to the display that carries the head's orientations.
 ///
 /// The first orientation is the head's initial orientation. Later orientations follow tracker reports or are predicted.
+#[derive(Debug)]
 struct OrientationLine {
-    reports: ReportTimes,
-    poses: Poses,
+    views: Arc<dyn ViewSource>,
     latched: OrientationTiming,
-}
-
-impl fmt::Debug for OrientationLine {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("OrientationLine").field("latched", &self.latched).finish_non_exhaustive()
-    }
 }
 
 impl HostLine for OrientationLine {
     fn next(&self, after: Time) -> Option<Time> {
-        self.latched.next(after, |instant| (self.reports)(instant))
+        self.latched.next(after, |instant| self.views.report_after(instant))
     }
 
     fn messages(&mut self, now: Time) -> Vec<(usize, Body)> {
         let (reports_until, aimed) = self.latched.predicted(now);
-        let turned = (self.poses)(reports_until, aimed).orientation;
+        let turned = self.views.pose_at(reports_until, aimed).orientation;
         let rows = Orientation::from_quaternion(turned.to_array()).map_or([[f64::NAN; 3]; 3], |turned| turned.rows());
         vec![(ORIENTATION_PORT, Body::Words(orientation_message(rows)))]
     }
@@ -262,12 +188,8 @@ impl HostLine for OrientationLine {
 
 impl Pipeline for FacePipeline {
     fn name(&self) -> &'static str {
-        let [field, line, pixel] = self.names();
-        match self.latch {
-            Latch::Field => field,
-            Latch::Line => line,
-            Latch::Pixel => pixel,
-        }
+        let row = if self.source == FaceSource::Ideal { FacePolicy::ALL.len() } else { self.policy as usize };
+        NAMES[row][self.latch as usize]
     }
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
@@ -276,7 +198,7 @@ impl Pipeline for FacePipeline {
             settings.push((POLICY.name, KeyValue::Name(FacePolicy::ALL[self.policy as usize].0)));
         }
         // Without a lens, the key for the lens is absent, so that names of older experiments stay valid.
-        settings.extend(self.lens.text().map(|lens| (LENS.name, KeyValue::Text(lens.into()))));
+        settings.extend(self.lens.as_ref().map(|lens| (LENS.name, KeyValue::Text(lens_text(lens).into()))));
         if self.has_cells() {
             settings.push((SEGMENT.name, KeyValue::Flag(self.segmented)));
         }
@@ -287,20 +209,27 @@ impl Pipeline for FacePipeline {
         settings
     }
 
-    fn eyes(&self) -> usize {
-        1
-    }
-
-    fn layout(&self) -> Layout {
-        Layout::rendering_control_phong()
-    }
-
-    fn shading(&self) -> Shading {
-        self.shading
-    }
-
-    fn coverage(&self) -> Coverage {
-        Coverage::Surroundings
+    fn properties(&self) -> PipelineProperties {
+        let is_ideal = self.source == FaceSource::Ideal;
+        // An ideal renderer uses no graphics processors. Moving vertices of warped cells takes no time at any level.
+        let is_warped = !is_ideal && self.policy == FacePolicy::CellsWarped;
+        PipelineProperties {
+            shading: self.shading,
+            coverage: Coverage::Surroundings,
+            without_code: is_warped.then_some("moving the vertices of warped cells (0 in the table)"),
+            knows_when_seen: is_ideal,
+            has_one_pose: false,
+            can_discard_records: true,
+            ..PipelineProperties::new(
+                Layout::rendering_control_phong(),
+                if is_ideal {
+                    "of translation: from the instant at which an update of any display memory is drawn, in no time, to the retrace at which it is swapped in"
+                } else {
+                    "of translation: from the start of TRANSFORM of an update of any display memory on the first slave to the retrace at which it is swapped in"
+                },
+                "an update is never due: until it is shown, the display shows the old faces in the right direction, from the old eye position",
+            )
+        }
     }
 
     /// Adapts the display to this variant. The adapted display accepts cube faces, and uses the variant's latch mode
@@ -308,7 +237,7 @@ impl Pipeline for FacePipeline {
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
         // Replace a display that takes no faces.
-        if config.displays.first().is_none_or(|display| display.coverage() != self.coverage()) {
+        if config.displays.first().is_none_or(|display| display.coverage() != Coverage::Surroundings) {
             let display = match self.source {
                 FaceSource::PixelPlanes => ArpConfig::MACHINE,
                 FaceSource::Ideal => ArpConfig::IDEAL,
@@ -320,8 +249,8 @@ impl Pipeline for FacePipeline {
             config.displays.first_mut().and_then(|d| (d.as_mut() as &mut dyn Any).downcast_mut::<ArpConfig>())
         {
             display.latch = self.latch;
-            if let Some(lens) = self.lens.lens() {
-                display.lens = lens;
+            if let Some(lens) = &self.lens {
+                display.lens = lens.clone();
             }
             if self.policy == FacePolicy::Full {
                 display.timing.display_memories = 1;
@@ -345,46 +274,18 @@ impl Pipeline for FacePipeline {
         Ok(scene)
     }
 
-    /// Returns a description of work without i860 code: moving vertices of warped cells takes no time at any level.
-    ///
-    /// An ideal renderer uses no graphics processors and returns `None`.
-    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
-        let is_warped = self.source == FaceSource::PixelPlanes && self.policy == FacePolicy::CellsWarped;
-        is_warped.then_some("moving the vertices of warped cells (0 in the table)")
-    }
-
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         self.plug_orientations(machine, setup);
         if self.source == FaceSource::Ideal {
             return self.plug_ideal_source(machine, setup);
         }
-        let config = self.config(machine, setup.pixels)?;
+        let config = with_boards(machine, "faces", || self.faces(machine, setup.pixels))?;
         // All slaves share recent views, because each slave transforms for the same faces.
         let mut list = matte(&setup.list);
         list.recent = RecentViews::keeping(VIEWS_AT_A_TIME);
-        let list = Arc::new(list);
-        let foreground = Priority::Foreground;
         let plan = self.plan(machine, setup)?;
-        let gp = machine.processor(config.host, foreground);
-        machine.load(config.host, foreground, Box::pin(host(gp, config.clone(), setup.host, plan)));
-        let gp = machine.processor(config.master, foreground);
-        machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));
-        // Each slave gets its share of the triangles.
-        for (index, node) in config.slaves.iter().enumerate() {
-            let gp = machine.processor(*node, foreground);
-            for (level, program) in slave(&gp, &config, config.share(&list, index), index) {
-                machine.load(*node, level, Box::pin(program));
-            }
-        }
+        load_programs(machine, &config, setup.host, &Arc::new(list), plan);
         Ok(())
-    }
-
-    fn has_one_pose(&self) -> bool {
-        false
-    }
-
-    fn knows_when_seen(&self) -> bool {
-        self.source == FaceSource::Ideal
     }
 }
 
@@ -406,62 +307,19 @@ impl PictureRules for FacePipeline {
         pictures.sort_by_key(|times| (times.shown_at, times.picture));
         pictures
     }
-
-    fn can_discard_records(&self) -> bool {
-        true
-    }
-
-    /// Counts the fields since the first swap of any display memory, because each field is shown with its own latched
-    /// orientation.
-    fn turned_periods(&self, record: &Record, end: Time) -> u64 {
-        let first = record.observation().first_swap();
-        let after = record.display().period_at(end);
-        first.map_or(0, |first| after.since(first.min(after)))
-    }
-
-    fn turn_interval(&self, record: &Record, head: &HeadViews, aim: Aim, period: PeriodNumber) -> Option<Span> {
-        let (timing, [x, y]) = (OrientationTiming::of_record(record, aim)?, middle_pixel(record, period)?);
-        let (reports_until, aimed) = timing.orientation_of_pixel(head, x, y, period)?;
-        let measured = head.measured_at(head.report_by(reports_until)?)?;
-        Some(aimed.since(measured))
-    }
-
-    fn latency_definition(&self) -> &'static str {
-        match self.source {
-            FaceSource::PixelPlanes => {
-                "of translation: from the start of TRANSFORM of an update of any display memory on the first slave to the retrace at which it is swapped in"
-            }
-            FaceSource::Ideal => {
-                "of translation: from the instant at which an update of any display memory is drawn, in no time, to the retrace at which it is swapped in"
-            }
-        }
-    }
-
-    fn due_definition(&self) -> &'static str {
-        "an update is never due: until it is shown, the display shows the old faces in the right direction, from the old eye position"
-    }
 }
 
 impl FacePipeline {
-    const fn names(self) -> [&'static str; 3] {
-        match self.source {
-            FaceSource::PixelPlanes => NAMES[self.policy as usize],
-            FaceSource::Ideal => IDEAL_NAMES,
-        }
-    }
-
     /// Adds the connection that carries orientations from the host to the display. Every renderer of faces needs this
     /// connection.
-    fn plug_orientations(self, machine: &mut Machine, setup: &Setup) {
+    fn plug_orientations(&self, machine: &mut Machine, setup: &Setup) {
         let link = setup.host.link_span(ORIENTATION_WORDS);
         if let Some(latched) = OrientationTiming::before(machine.record().display(), link, setup.aim) {
-            let reports = Arc::clone(&setup.reports);
-            let poses = Arc::clone(&setup.poses);
-            machine.plug_host_line(Box::new(OrientationLine { reports, poses, latched }));
+            machine.plug_host_line(Box::new(OrientationLine { views: Arc::clone(&setup.views), latched }));
         }
     }
 
-    fn plug_ideal_source(self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
+    fn plug_ideal_source(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let display = display_of(machine.record())?;
         let scan = display.config().scan()?;
         let ideal = IdealFaces {

@@ -2,6 +2,7 @@
 //! policy selects.
 
 use crate::pipeline::Setup;
+use crate::pipelines::faces::latched_head::lights_of;
 use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
 use crate::pipelines::faces::segments::moves;
 use address_recalculation::FaceScan;
@@ -18,6 +19,9 @@ pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction<FaceUpda
 
 pub(super) struct Updates {
     pub(super) setup: Setup,
+    /// Scan of the display if updates are shown at the next retrace. Views are then predicted for the time at which the
+    /// next field is lit.
+    seen_next: Option<FaceScan>,
     pub(super) projection: Mat4,
     pub(super) notes: Arc<RequestedUpdates>,
     /// Flag of each structure of the scene: true if the structure moves by itself or with the head.
@@ -28,15 +32,25 @@ pub(super) struct Updates {
 }
 
 impl Updates {
-    pub(super) fn new(setup: &Setup, notes: &Arc<RequestedUpdates>, projection: Mat4, memories: usize) -> Self {
+    pub(super) fn new(
+        setup: &Setup,
+        seen_next: Option<FaceScan>,
+        notes: &Arc<RequestedUpdates>,
+        projection: Mat4,
+        memories: usize,
+    ) -> Self {
         let has_head_frame = setup.list.structures.iter().any(|structure| structure.frame == ModelFrame::Head);
         let moving = setup.scene.structures().iter().map(moves).collect();
         let (setup, notes) = (setup.clone(), Arc::clone(notes));
-        Self { setup, projection, notes, moving, sent: vec![0; memories], has_head_frame }
+        Self { setup, seen_next, projection, notes, moving, sent: vec![0; memories], has_head_frame }
     }
 
     pub(super) fn view(&self, number: PictureNumber, now: Time) -> FrameView {
-        (self.setup.views)(ViewNumber::taken_for(number), now)
+        let (view, Setup { views, aim, .. }) = (ViewNumber::taken_for(number), &self.setup);
+        match self.seen_next {
+            None => views.newest(view, now),
+            Some(scan) => views.view_at(view, now, aim.instant(&lights_of(&scan, scan.field_at(now).next()))),
+        }
     }
 
     /// Returns the next update of a display memory, drawn from the eye position that is known at `now`.
@@ -91,42 +105,27 @@ pub(super) struct Due {
     pub(super) warp: Option<FaceWarp>,
 }
 
+impl Due {
+    /// Returns an update of the only display memory, which contains `structures` and is drawn from the newest view.
+    pub(super) const fn newest(structures: Arc<[bool]>, at: Time) -> Self {
+        Self { memory: 0, together: 0, structures, at, view: None, warp: None }
+    }
+}
+
 pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
     let matrix = world_to_eye.as_dmat4();
     -(DMat3::from_mat4(matrix).transpose() * matrix.w_axis.truncate())
 }
 
-/// A plan for a single display memory. Each update redraws all structures. The next update begins when the previous
-/// update ends.
-pub(super) struct Full {
-    updates: Updates,
-    structures: Arc<[bool]>,
-}
-
-impl Full {
-    pub(super) fn new(updates: Updates) -> Self {
-        let structures = vec![true; updates.setup.list.structures.len()].into();
-        Self { updates, structures }
-    }
-
-    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction<FaceUpdate> {
-        match (self.updates.setup.starts)(now) {
-            None => HostAction::Nothing,
-            Some(start) if start > now => HostAction::Wait(start),
-            // The host is ready: request a redraw of everything.
-            Some(_) => {
-                let due = Due {
-                    memory: 0,
-                    together: 0,
-                    structures: Arc::clone(&self.structures),
-                    at: now,
-                    view: None,
-                    warp: None,
-                };
-                HostAction::Send(self.updates.of_memory(number, now, &due))
-            }
-        }
-    }
+/// Returns a plan for a single display memory. Each update redraws all structures. The next update begins when the
+/// previous update ends.
+pub(super) fn full(mut updates: Updates, structures: Arc<[bool]>) -> Plan {
+    Box::new(move |number, now| match updates.setup.frame_start(now) {
+        None => HostAction::Nothing,
+        Some(start) if start > now => HostAction::Wait(start),
+        // The host is ready: request a redraw of everything.
+        Some(_) => HostAction::Send(updates.of_memory(number, now, &Due::newest(Arc::clone(&structures), now))),
+    })
 }
 
 pub(super) trait DuePolicy {
@@ -140,20 +139,21 @@ pub(super) trait DuePolicy {
 /// A cycle begins when all display memories of the previous cycle have been sent, but never in the field in which the
 /// previous cycle began. The selected memories are sent in ascending order. On a machine that is fast enough, each
 /// cycle lasts one field and begins with the field.
-pub(super) struct Cycles<P> {
+pub(super) struct Cycles {
     updates: Updates,
     scan: FaceScan,
-    policy: P,
+    policy: Box<dyn DuePolicy>,
     pending: VecDeque<Due>,
     began: Option<PeriodNumber>,
 }
 
-impl<P: DuePolicy> Cycles<P> {
-    pub(super) const fn new(updates: Updates, scan: FaceScan, policy: P) -> Self {
-        Self { updates, scan, policy, pending: VecDeque::new(), began: None }
+impl Cycles {
+    pub(super) fn plan(updates: Updates, scan: FaceScan, policy: Box<dyn DuePolicy>) -> Plan {
+        let mut cycles = Self { updates, scan, policy, pending: VecDeque::new(), began: None };
+        Box::new(move |number, now| cycles.next(number, now))
     }
 
-    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction<FaceUpdate> {
+    fn next(&mut self, number: PictureNumber, now: Time) -> HostAction<FaceUpdate> {
         if self.pending.is_empty() {
             let field = self.scan.field_at(now);
             if self.began.is_some_and(|began| began >= field) {
