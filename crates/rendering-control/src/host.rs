@@ -2,10 +2,9 @@
 
 use crate::drawn::{Drawn, RenderingControlConfig, Sent};
 use crate::protocol::StageOrder;
-use pphigs::FrameView;
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
-use pxpl5_wire::{PictureNumber, ViewNumber};
+use pxpl5_wire::PictureNumber;
 
 /// The next action of the host.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,22 +64,22 @@ async fn send<D: Drawn>(gp: &Gp, config: &RenderingControlConfig<D>, timing: Hos
     gp.end(Stage::Send, number, None);
 }
 
-/// Returns a function for the argument `plan` of `host`, which sends frames of a display one after the other.
+/// Returns a function for the argument `plan` of `host`, which sends one picture after the other.
 ///
-/// `start_of` receives the time at which the host may send a frame, and returns the time at which the frame begins. The
-/// result is `None` after the last frame. `view_of` returns the view for the pose of the head at a time.
-pub fn frames(
+/// `start_of` receives the time at which the host may send a picture, and returns the time at which the picture begins.
+/// The result is `None` after the last picture. `sent` returns what is sent for the pose of the head at a time.
+pub fn frames<T>(
     start_of: impl Fn(Time) -> Option<Time>,
-    mut view_of: impl FnMut(ViewNumber, Time) -> FrameView,
-) -> impl FnMut(PictureNumber, Time) -> HostAction<FrameView> {
+    mut sent: impl FnMut(PictureNumber, Time) -> T,
+) -> impl FnMut(PictureNumber, Time) -> HostAction<T> {
     let mut start = None;
-    move |frame, now| match start.take().or_else(|| start_of(now)) {
+    move |picture, now| match start.take().or_else(|| start_of(now)) {
         None => HostAction::Nothing,
         Some(at) if at > now => {
             start = Some(at);
             HostAction::Wait(at)
         }
         // The sample is taken when SEND begins.
-        Some(_) => HostAction::Send(view_of(ViewNumber::taken_for(frame), now)),
+        Some(_) => HostAction::Send(sent(picture, now)),
     }
 }

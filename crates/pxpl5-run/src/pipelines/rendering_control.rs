@@ -10,7 +10,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::Surface;
-use pxpl5_wire::{MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId, ViewNumber};
 use rendering_control::{Drawn, Frames, HostAction, RenderingControlConfig, frames, host, master, slave};
 use std::sync::Arc;
 
@@ -157,7 +157,8 @@ impl Pipeline for RenderingControl {
         let config = with_boards(machine, "Rendering Control", || self.frames(machine, setup.pixels))?;
         let (starts, views) = (setup.clone(), Arc::clone(&setup.views));
         // The host decides when a frame begins, and samples the view for it.
-        let plan = frames(move |ready| starts.frame_start(ready), move |view, time| views.newest(view, time));
+        let view = move |frame, time| views.newest(ViewNumber::taken_for(frame), time);
+        let plan = frames(move |ready| starts.frame_start(ready), view);
         load_programs(machine, &config, setup.host, &setup.list, plan);
         Ok(())
     }

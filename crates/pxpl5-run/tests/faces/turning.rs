@@ -21,6 +21,20 @@ fn with_an_empty_memory_0_every_retrace_counts_as_a_new_picture_of_a_rotating_he
     assert_eq!(outcome.rotation_latencies().len(), 60);
 }
 
+/// The host computes for 50 ms and then sends. The update before it must end first, and retraces come every 16.7 ms. An
+/// update more or less in 10 s changes the mean by half a percent.
+#[test]
+fn an_application_on_the_host_delays_every_update_of_all_faces() {
+    let period_ms = |application_ns: u64| {
+        let scene = builtin("sphere:10").expect("even");
+        let config = machine("small-hmd", &FULL, &[("host.application_ns", application_ns)]);
+        let outcome = Experiment::new(config, FULL, scene).fields(600).pixels(Pixels::Off).run().expect("it is shown");
+        1_000.0 / outcome.updates_hz().expect("several updates")
+    };
+    let (alone, delayed) = (period_ms(0), period_ms(50_000_000));
+    assert!((49.7..50.0 + alone + 16.7).contains(&delayed), "{alone} {delayed}");
+}
+
 /// The scene has a rectangle that is attached to the head.
 #[test]
 fn objects_fixed_to_the_head_are_drawn_in_its_direction() {

@@ -10,8 +10,8 @@ use glam::{DMat3, DVec3, Mat3, Mat4};
 use pphigs::{EyeView, FrameView, ModelFrame};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
-use rendering_control::HostAction;
 use rendering_control::cube::{FaceUpdate, FaceWarp};
+use rendering_control::{HostAction, frames};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -120,12 +120,9 @@ pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
 /// Returns a plan for a single display memory. Each update redraws all structures. The next update begins when the
 /// previous update ends.
 pub(super) fn full(mut updates: Updates, structures: Arc<[bool]>) -> Plan {
-    Box::new(move |number, now| match updates.setup.frame_start(now) {
-        None => HostAction::Nothing,
-        Some(start) if start > now => HostAction::Wait(start),
-        // The host is ready: request a redraw of everything.
-        Some(_) => HostAction::Send(updates.of_memory(number, now, &Due::newest(Arc::clone(&structures), now))),
-    })
+    let setup = updates.setup.clone();
+    let all = move |number, now| updates.of_memory(number, now, &Due::newest(Arc::clone(&structures), now));
+    Box::new(frames(move |ready| setup.frame_start(ready), all))
 }
 
 pub(super) trait DuePolicy {
