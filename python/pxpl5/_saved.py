@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import json
 import zipfile
 from collections.abc import Callable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict, TypeVar, get_type_hints
-
-import numpy as np
-from numpy.typing import NDArray
 
 from . import _native
 from ._errors import SettingError
@@ -26,7 +22,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 #: Name and version of the layout of a file.
-SCHEMA = "pxpl5-outcome/1"
+SCHEMA = "pxpl5-outcome/2"
 
 
 class Saved(TypedDict):
@@ -67,8 +63,8 @@ class OptionalState(TypedDict, total=False):
 
     #: Arguments of the function that makes the motion.
     motion: list[object]
-    #: Arrays and other parts of the scene.
-    scene: tuple[dict[str, NDArray[np.generic]], dict[str, object]]
+    #: The scene as JSON text, and warnings about its file.
+    scene: tuple[bytes, list[str]]
 
 
 class ExperimentState(OptionalState):
@@ -117,10 +113,8 @@ def write(path: str | PathLike[str], saved: Saved, experiment: ExperimentState |
         if experiment is not None:
             state: dict[str, object] = {**experiment}
             if "scene" in experiment:
-                arrays, state["scene"] = experiment["scene"]
-                buffer = io.BytesIO()
-                np.savez(buffer, allow_pickle=False, **arrays)
-                file.writestr("scene.npz", buffer.getvalue())
+                text, state["scene"] = experiment["scene"]
+                file.writestr("scene.json", text)
             plain["experiment"] = state
         file.writestr("outcome.json", json.dumps(plain, indent=1))
         for name, picture in pictures.items():
@@ -237,8 +231,9 @@ def _experiment(state: object, file: zipfile.ZipFile) -> ExperimentState | None:
     if "motion" in state:
         experiment["motion"] = list(state["motion"])
     if "scene" in state:
-        with np.load(io.BytesIO(file.read("scene.npz")), allow_pickle=False) as arrays:
-            experiment["scene"] = ({name: arrays[name] for name in arrays.files}, state["scene"])
+        if not _is_texts(state["scene"]):
+            raise SettingError("outcome.json: experiment: expected the scene's warnings, found another object")
+        experiment["scene"] = (file.read("scene.json"), state["scene"])
     return experiment
 
 

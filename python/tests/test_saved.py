@@ -66,12 +66,6 @@ def edited(whole: bytes, edit: Callable[[dict[str, Any]], object]) -> bytes:
     return changed(whole, {"outcome.json": json.dumps(plain).encode()})
 
 
-def pickled() -> bytes:
-    contents = io.BytesIO()
-    np.savez(contents, vertices=np.array([{"an": "object"}], dtype=object))
-    return contents.getvalue()
-
-
 def report(plain: dict[str, Any], key: str, value: object) -> None:
     plain["report"] = json.dumps({**json.loads(plain["report"]), key: value})
 
@@ -85,7 +79,7 @@ FOREIGN: dict[str, Callable[[bytes], bytes]] = {
     "no member": lambda whole: changed(b"PK\x05\x06" + bytes(18), {}),
     "without outcome.json": lambda whole: changed(whole, {"outcome.json": None}),
     "without a picture": lambda whole: changed(whole, {"left.png": None}),
-    "without the scene": lambda whole: changed(whole, {"scene.npz": None}),
+    "without the scene": lambda whole: changed(whole, {"scene.json": None}),
     "no JSON": lambda whole: changed(whole, {"outcome.json": b"{"}),
     "no UTF-8": lambda whole: changed(whole, {"outcome.json": b'"\xff\xfe"'}),
     "nested": lambda whole: changed(whole, {"outcome.json": b"[" * 100_000}),
@@ -93,8 +87,8 @@ FOREIGN: dict[str, Callable[[bytes], bytes]] = {
     "a number": lambda whole: changed(whole, {"outcome.json": b"3"}),
     "no PNG": lambda whole: changed(whole, {"left.png": b"P6 1 1 255"}),
     "half a PNG": lambda whole: changed(whole, {"both.png": b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"}),
-    "no arrays": lambda whole: changed(whole, {"scene.npz": b"no arrays"}),
-    "pickled arrays": lambda whole: changed(whole, {"scene.npz": pickled()}),
+    "no scene": lambda whole: changed(whole, {"scene.json": b"no scene"}),
+    "an empty scene": lambda whole: changed(whole, {"scene.json": b"{}"}),
     "another schema": lambda whole: edited(whole, lambda plain: plain.update(schema="pxpl5-outcome/9")),
     "no schema": lambda whole: edited(whole, lambda plain: plain.pop("schema")),
     "a report of another type": lambda whole: edited(whole, lambda plain: plain.update(report="[]")),
