@@ -223,19 +223,19 @@ mod tests {
     fn a_manifest_is_read_as_written_and_finds_changed_files() {
         let folder = tempfile::tempdir().expect("a folder");
         let folder = folder.path();
-        assert_eq!(Manifest::read(&folder).expect("no file is no error"), None);
+        assert_eq!(Manifest::read(folder).expect("no file is no error"), None);
         let mut manifest = Manifest::new("run");
         manifest.add("a", b"one");
         manifest.add("a", b"two");
         manifest.add_growing("b");
         fs::write(folder.join(MANIFEST_FILE), manifest.to_text()).expect("ours");
-        assert_eq!(Manifest::read(&folder).expect("it is one").as_ref(), Some(&manifest));
+        assert_eq!(Manifest::read(folder).expect("it is one").as_ref(), Some(&manifest));
         for (contents, is_whole) in [("one", false), ("two", true)] {
             fs::write(folder.join("a"), contents).expect("ours");
-            assert_eq!(manifest.read_file(&folder, "a").is_ok(), is_whole, "{contents}");
+            assert_eq!(manifest.read_file(folder, "a").is_ok(), is_whole, "{contents}");
         }
-        assert!(manifest.read_file(&folder, "b").is_err(), "it is not there");
-        assert_eq!(manifest.read_file(&folder, "c").ok().flatten(), None);
+        assert!(manifest.read_file(folder, "b").is_err(), "it is not there");
+        assert_eq!(manifest.read_file(folder, "c").ok().flatten(), None);
     }
 
     #[test]
@@ -251,14 +251,14 @@ mod tests {
         }
         let mut next = Manifest::new("run");
         next.add("kept", b"new");
-        assert_eq!(next.replace(&before, &folder), [folder.join("gone")]);
+        assert_eq!(next.replace(&before, folder), [folder.join("gone")]);
         // If a run ended before it removed a file, the next run removes the file.
         let mut third = Manifest::new("run");
-        assert_eq!(third.replace(&next, &folder), [folder.join("gone")], "`kept` has the old contents");
+        assert_eq!(third.replace(&next, folder), [folder.join("gone")], "`kept` has the old contents");
         // Another command writes the file of the list `replaced` again. The next run removes the file once.
         next.add("gone", b"old");
         let mut fourth = Manifest::new("run");
-        assert_eq!(fourth.replace(&next, &folder), [folder.join("gone")], "the file is in both lists");
+        assert_eq!(fourth.replace(&next, folder), [folder.join("gone")], "the file is in both lists");
     }
 
     #[test]
@@ -271,7 +271,7 @@ mod tests {
                 Manifest::SCHEMA
             );
             fs::write(folder.join(MANIFEST_FILE), text).expect("ours");
-            assert_eq!(Manifest::read(&folder).expect_err(name).kind, FileErrorKind::Occupied, "{name}");
+            assert_eq!(Manifest::read(folder).expect_err(name).kind, FileErrorKind::Occupied, "{name}");
         }
     }
 }
