@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Upper limits of the sums of all crates: sources, and tests.
-const LIMITS: [usize; 2] = [89_914, 44_244];
+const LIMITS: [usize; 2] = [89_933, 44_244];
 
 /// Returns the lines of a file that are neither blank nor only a comment: before its tests, and from its first
 /// `#[cfg(test)]` on. In a file of tests, all lines are lines of tests.

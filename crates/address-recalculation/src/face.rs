@@ -26,6 +26,10 @@ impl CubeFace {
     /// All faces in the order of their indices.
     pub const ALL: [Self; 6] = [Self::PosX, Self::NegX, Self::PosY, Self::NegY, Self::PosZ, Self::NegZ];
 
+    /// Column and row of each face in a cross of 4 x 3 faces, in the order of [`Self::ALL`]. The middle row shows the
+    /// faces left, ahead, right and behind. The faces above and below the viewer adjoin the face ahead.
+    pub const CROSS: [(u32, u32); 6] = [(2, 1), (0, 1), (1, 0), (1, 2), (3, 1), (1, 1)];
+
     /// Returns the index of the face: 0 for [`CubeFace::PosX`] to 5 for [`CubeFace::NegZ`].
     pub const fn index(self) -> usize {
         self as usize

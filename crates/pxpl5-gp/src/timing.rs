@@ -102,6 +102,13 @@ pub enum CodeUse {
     SlatsLit,
 }
 
+impl CodeUse {
+    /// Returns true if this version of the code draws triangles with planes in single precision.
+    pub const fn is_single(self, version: CodeVersion) -> bool {
+        matches!((self, version), (Self::Slats, CodeVersion::Compiled))
+    }
+}
+
 // Times of primitives that follow from i860 code (derived from code). They are means over the three application scenes,
 // measured by examples/code_times. A test of pxpl5-lab compares these constants with the code.
 //

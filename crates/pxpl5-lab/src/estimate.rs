@@ -4,7 +4,7 @@
 //!
 //! Memory in bytes: `BASE + GP gps + PRIMITIVE primitives + WAITING batch + kept (FIELD + BLOCK blocks)`
 //!
-//! - `kept` is the number of fields whose observations are in memory: all fields, or the last `KEPT_FIELDS` of a run that
+//! - `kept` is the number of fields whose observations are in memory: all fields, or at most `KEPT_FIELDS` in a run that
 //!   keeps statistics.
 //! - A tracked head adds `min(fields, EVALUATED_FIELDS) ERRORS`.
 //! - `batch` is the number of blocks of pixels drawn with one head pose. `blocks` is the number of blocks that the
@@ -79,8 +79,8 @@ const WAITING: f64 = 5.5e3;
 const FIELD: f64 = 4e3;
 /// Bytes for the observations of a block of pixels.
 const BLOCK: f64 = 350.0;
-/// Number of the most recent fields whose observations a run keeps that keeps statistics. Derived: it stores blocks of 240
-/// fields, each in 100 bytes.
+/// Number of fields whose observations take as much memory as a run that keeps only statistics. Derived from such a run,
+/// which stores the blocks of the last 240 fields, each in 100 bytes: 240 x 100 / [`BLOCK`].
 const KEPT_FIELDS: f64 = 70.0;
 /// Bytes for the pixel errors of one display field.
 const ERRORS: f64 = 1e3;

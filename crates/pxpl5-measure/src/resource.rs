@@ -42,9 +42,17 @@ impl Resource {
 
     /// Returns the name of the resource in reports and quantities.
     pub const fn name(self) -> &'static str {
-        let names =
-            ["retrace", "ports", "ring", "renderers", "backing_store", "transform", "messages", "host", "other"];
-        names[self as usize]
+        match self {
+            Self::Retrace => "retrace",
+            Self::Ports => "ports",
+            Self::Ring => "ring",
+            Self::Renderers => "renderers",
+            Self::BackingStore => "backing_store",
+            Self::Transform => "transform",
+            Self::Messages => "messages",
+            Self::Host => "host",
+            Self::Other => "other",
+        }
     }
 
     /// Returns a description of the work for which a picture waits at this resource.

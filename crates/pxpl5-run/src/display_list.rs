@@ -2,7 +2,7 @@ use crate::error::ExperimentError;
 use crate::pipeline::PipelineProperties;
 use pphigs::{DisplayList, DisplayStructure, MAX_EDITS, ModelFrame, RecentViews, Shading};
 use pxpl5_geometry::{Culling, WorldSphere};
-use pxpl5_gp::{CodeUse, CodeVersion};
+use pxpl5_gp::CodeVersion;
 use pxpl5_machine::MachineConfig;
 use pxpl5_scene::Scene;
 
@@ -64,7 +64,6 @@ pub(crate) fn display_list_for(
     let list = display_list(scene)?;
     let is_precomputed = pipeline.shading == Shading::Precomputed;
     let list = if is_precomputed { list.with_precomputed_colours() } else { list };
-    // The compiled program of Slats has planes in single precision.
-    let is_compiled = config.code.unwrap_or(CodeVersion::Compiled) == CodeVersion::Compiled;
-    Ok(DisplayList { is_single: is_compiled && pipeline.code_use == CodeUse::Slats, ..list })
+    let is_single = pipeline.code_use.is_single(config.code.unwrap_or(CodeVersion::Compiled));
+    Ok(DisplayList { is_single, ..list })
 }

@@ -40,7 +40,13 @@ impl Cause {
 
     /// Returns the name of the cause of error in tables and files.
     pub const fn name(self) -> &'static str {
-        ["latency", "scan-out", "noise", "prediction", "sampling"][self as usize]
+        match self {
+            Self::Latency => "latency",
+            Self::ScanOut => "scan-out",
+            Self::Noise => "noise",
+            Self::Prediction => "prediction",
+            Self::Sampling => "sampling",
+        }
     }
 }
 

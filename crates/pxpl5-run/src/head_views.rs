@@ -123,8 +123,8 @@ impl HeadViews {
         };
         let base = Pose { orientation: begin.orientation.normalize(), ..begin };
         let schedule = Mutex::new(ReportSchedule::new(head.arrivals(until)));
-        let [views, turns] = [(); 2].map(|()| Follower::of_head(&head, until));
-        let (state, turns) = (Mutex::new((views, Vec::new())), Mutex::new(turns));
+        let state = Mutex::new((Follower::of_head(&head, until), Vec::new()));
+        let turns = Mutex::new(Follower::of_head(&head, until));
         Self {
             head,
             scene: Arc::clone(scene),
@@ -235,8 +235,8 @@ impl ViewSource for HeadViews {
     fn view_at(&self, number: ViewNumber, reports_until: Time, shown_at: Time) -> FrameView {
         let (follower, sampled) = &mut *self.state();
         let pose = self.in_scene(&follower.pose(reports_until, shown_at, &self.start));
-        let [measured_at, arrived_at] =
-            [|it: Coming| it.measured, |it: Coming| it.arrives].map(|at| follower.newest.map(at));
+        let measured_at = follower.newest.map(|report| report.measured);
+        let arrived_at = follower.newest.map(|report| report.arrives);
         let predicted_for = self.head.predicts().then_some(shown_at);
         let objects_at = shown_at;
         sampled.push(SampledPose { number, reports_until, measured_at, arrived_at, predicted_for, objects_at, pose });

@@ -86,10 +86,6 @@ const ENABLED: [u8; 3] = [79, 209, 165];
 /// Number of pixels on each side of a cube face in the picture of all six faces.
 pub(crate) const FACE_SIDE: u32 = 128;
 
-/// Column and row of each face in a cross of 4 x 3 faces, in the order of [`CubeFace::ALL`]. The middle row shows the
-/// faces left, ahead, right and behind. The faces above and below the viewer adjoin the face ahead.
-const CROSS: [(u32, u32); 6] = [(2, 1), (0, 1), (1, 0), (1, 2), (3, 1), (1, 1)];
-
 /// Returns the number of display memories for each eye. The number is 0 for a display without address recalculation.
 pub(crate) fn memories(stepper: &Stepper) -> usize {
     let display = stepper.record().display_of_kind::<AddressRecalculationPipeline>();
@@ -108,7 +104,7 @@ pub(crate) fn faces(stepper: &Stepper, eye: usize, memory: Option<usize>) -> Opt
     };
     let some: Vec<_> = some.iter().map(DisplayMemory::shown_faces).collect();
     let mut cross = RgbImage::from_pixel(4 * FACE_SIDE, 3 * FACE_SIDE, image::Rgb([40, 44, 48]));
-    for (face, (column, row)) in CubeFace::ALL.into_iter().zip(CROSS) {
+    for (face, (column, row)) in CubeFace::ALL.into_iter().zip(CubeFace::CROSS) {
         // Sample each face at the resolution of the picture.
         for (x, y) in (0..FACE_SIDE * FACE_SIDE).map(|at| (at % FACE_SIDE, at / FACE_SIDE)) {
             let texels = some.iter().filter_map(|faces| {

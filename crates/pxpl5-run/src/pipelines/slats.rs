@@ -187,7 +187,8 @@ impl Pipeline for Slats {
         // The configuration also fixes which renderer serves which regions.
         let binding = config.check()?;
         let foreground = Priority::Foreground;
-        let [reports, views] = [(); 2].map(|()| Arc::clone(&setup.views));
+        let views = Arc::clone(&setup.views);
+        let reports = Arc::clone(&setup.views);
         let gp = machine.processor(config.host, foreground);
         let view_of = move |view, time| views.newest(view, time);
         let program = host(gp, config.clone(), setup.host, move |after| reports.report_after(after), view_of);
