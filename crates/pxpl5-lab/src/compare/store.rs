@@ -113,11 +113,11 @@ impl CompareStore {
     pub(super) fn append(&self, row: ComparisonRow) -> Result<ComparisonRow, StudyError> {
         let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
         let (file, count) = &mut *rows;
-        *count += 1;
         // The pictures are stored first, because the line of the row names them.
-        let picture = row.picture.as_ref().map(|picture| self.put_picture(*count, picture)).transpose()?;
+        let picture = row.picture.as_ref().map(|picture| self.put_picture(*count + 1, picture)).transpose()?;
         let text = line_of(&Line { by_field: row.by_field.clone(), picture, row });
         file.put(&text)?;
+        *count += 1;
         let line: Line = serde_json::from_str(&text)
             .map_err(std::io::Error::from)
             .map_err(FileError::io(&self.folder, "cannot be read"))?;
